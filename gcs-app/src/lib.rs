@@ -1,0 +1,1 @@
+//! Shell: the ground station: window, headless commands and the demo.

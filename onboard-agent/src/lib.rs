@@ -1,0 +1,1 @@
+//! Shell: FCS Gateway, FP Manager and their supervisor.

@@ -1,0 +1,423 @@
+//! What goes into the executor and what comes out of it.
+
+use flight_plan::{Cause, Id, VariableValue};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Monotonic time since an arbitrary start; in simulation, simulated time.
+pub type Time = std::time::Duration;
+
+/// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
+/// updates, emergencies and restarts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(transparent)]
+pub struct Token(pub u64);
+
+/// What the autopilot does at or towards a waypoint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Action {
+    /// Take off along a heading and climb to the waypoint's altitude.
+    TakeOff {
+        /// Runway heading, degrees true.
+        heading_deg: f64,
+    },
+    /// Fly to it.
+    Fly,
+    /// Circle it until told otherwise (radius positive; direction by sign: positive clockwise).
+    Loiter {
+        /// Signed radius, metres.
+        radius_m: f64,
+    },
+    /// Land here (touch-down point), rolling out along a heading.
+    Land {
+        /// Runway heading, degrees true.
+        heading_deg: f64,
+    },
+}
+
+/// A waypoint, as sent to the gateway.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Waypoint {
+    /// Its number.
+    pub token: Token,
+    /// Where.
+    pub position: LatLon,
+    /// Metres above mean sea level.
+    pub altitude_amsl_m: f64,
+    /// Airspeed towards it, m/s.
+    pub airspeed_mps: f64,
+    /// What to do.
+    pub action: Action,
+    /// Cross it before turning.
+    pub fly_over: bool,
+    /// The leg it belongs to.
+    pub leg: Id,
+    /// Flying it ends the plan: no waypoint will follow.
+    pub end_of_plan: bool,
+}
+
+/// What the gateway tells the executor about the flight.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct AircraftState {
+    /// Where it is.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Direction of travel over the ground, degrees true.
+    pub track_deg: f64,
+    /// Over the ground, m/s.
+    pub ground_speed_mps: f64,
+    /// Through the air, m/s.
+    pub airspeed_mps: f64,
+    /// Where the wind blows to, m/s east and north.
+    pub wind_east_mps: f64,
+    /// See `wind_east_mps`.
+    pub wind_north_mps: f64,
+    /// Share of the energy left, 0..1.
+    pub battery: f64,
+    /// On the ground.
+    pub on_ground: bool,
+}
+
+/// One step of a nest of loops.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct IterationPlace {
+    /// The iterative leg.
+    pub leg: Id,
+    /// Arrivals at the final leg's end so far, plus one: the pass being flown, from 1.
+    pub iteration: u64,
+    /// The count, if there is one.
+    pub of: Option<u64>,
+    /// Flown backwards now.
+    pub reverse: bool,
+}
+
+/// Which part of the document is being flown.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Branching {
+    /// The main plan.
+    Main,
+    /// An emergency plan.
+    Emergency(Id),
+}
+
+/// Where the flight is in the plan: survives update, restart and hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct PlacePointer {
+    /// Main plan or which emergency plan.
+    pub plan: Branching,
+    /// The stage.
+    pub stage: Id,
+    /// The leg being flown.
+    pub leg: Id,
+    /// Loops around it, outermost first.
+    pub iterations: Vec<IterationPlace>,
+    /// Flown backwards.
+    pub reverse: bool,
+    /// Way already made on this passage of the leg, metres.
+    pub distance_m: f64,
+}
+
+/// What the executor is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Phase {
+    /// No plan, or a plan that was not started.
+    Idle,
+    /// Flying.
+    Flying,
+    /// Holding by command.
+    Holding,
+    /// Waiting at an intersection that has neither decision nor default.
+    AwaitingDecision,
+    /// The last waypoint was flown.
+    Finished,
+}
+
+/// A snapshot for people and services.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Status {
+    /// What it is doing.
+    pub phase: Phase,
+    /// Hash of the active plan (hex SHA-256 of its canonical bytes), if any.
+    pub plan: Option<Arc<str>>,
+    /// Counts accepted plans and changes of this flight.
+    pub revision: u64,
+    /// Where in the plan.
+    pub place: Option<PlacePointer>,
+    /// Emergency plan in force for this place (what a fallback-cause emergency would fly).
+    pub emergency_in_force: Option<Id>,
+    /// Next token to be flown.
+    pub current: Option<Token>,
+    /// Waypoints handed out and not flown yet.
+    pub outstanding: usize,
+    /// The decision that is being asked for, if any.
+    pub decision: Option<DecisionRequest>,
+    /// A hash that was proposed and may be committed.
+    pub proposed: Option<Arc<str>>,
+}
+
+/// What an intersection asks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct DecisionRequest {
+    /// The intersection leg.
+    pub leg: Id,
+    /// `(branch id, label)`.
+    pub options: Vec<(Id, String)>,
+    /// Taken at the deadline.
+    pub default: Option<Id>,
+    /// Metres of path left until the decision is due.
+    pub distance_left_m: f64,
+    /// Estimated seconds left until then.
+    pub time_left_s: f64,
+}
+
+/// What people and services may ask of the executor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "command", rename_all = "kebab-case")]
+pub enum Command {
+    /// Begin the main plan at its first stage.
+    Start,
+    /// Hold here.
+    Hold,
+    /// Go on from the place where `Hold` was given.
+    Resume,
+    /// Leave the current leg at once for the next.
+    SkipLeg,
+    /// Go to the start of a leg of the plan being flown.
+    GoTo {
+        /// The leg.
+        leg: Id,
+    },
+    /// Set a loop's count for its present activation.
+    SetCount {
+        /// The iterative leg.
+        leg: Id,
+        /// The new count.
+        count: u64,
+    },
+    /// Take a branch.
+    Decide {
+        /// The intersection leg.
+        leg: Id,
+        /// The branch.
+        branch: Id,
+    },
+    /// Write a variable.
+    SetVariable {
+        /// Its name.
+        name: Id,
+        /// Its new value.
+        value: VariableValue,
+    },
+    /// Fly an emergency plan: the named one, else the one in force here for the cause.
+    Emergency {
+        /// Why.
+        cause: Cause,
+        /// Which, if it must be a certain one.
+        plan: Option<Id>,
+    },
+    /// Leave an emergency plan for a leg of the main plan.
+    ReturnToMain {
+        /// The leg to go to.
+        leg: Id,
+    },
+    /// Make the proposed plan the active one.
+    Commit {
+        /// Hash of the proposal.
+        hash: Arc<str>,
+        /// The leg to enter, when the current leg is gone.
+        entry: Option<Id>,
+    },
+}
+
+/// Why a command was refused; the sentence says what to do.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema, thiserror::Error)]
+#[error("{code}: {reason}")]
+pub struct Refusal {
+    /// Short, stable, for programs: `no-plan`, `unknown-leg`, `stale-revision`, …
+    pub code: String,
+    /// For people.
+    pub reason: String,
+}
+
+/// What a proposed plan would do, or why it can't be flown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ProposalReport {
+    /// Hash of the proposal.
+    pub hash: Arc<str>,
+    /// May be committed.
+    pub acceptable: bool,
+    /// Errors and warnings, one sentence each.
+    pub problems: Vec<String>,
+    /// Legs that are only in the new plan.
+    pub added: Vec<Id>,
+    /// Legs that are only in the active plan.
+    pub removed: Vec<Id>,
+    /// Legs that differ.
+    pub changed: Vec<Id>,
+    /// The leg the aircraft would fly next.
+    pub next_leg: Option<Id>,
+    /// The position it would fly to next.
+    pub next_position: Option<LatLon>,
+    /// The current leg is gone: the commit must name an entry leg.
+    pub entry_needed: bool,
+}
+
+/// Correlates a request with its one answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(transparent)]
+pub struct RequestId(pub u64);
+
+/// Everything that can happen to the executor.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Input {
+    /// Time passed (drives deadlines; also sent when nothing else happens).
+    Tick,
+    /// A new plan is put forward (checked and compiled by the shell's call to `flight_plan`).
+    Propose {
+        /// For the answer.
+        request: RequestId,
+        /// The compiled plan.
+        program: Arc<flight_plan::Program>,
+    },
+    /// A command.
+    Command {
+        /// For the answer.
+        request: RequestId,
+        /// What is asked.
+        command: Command,
+    },
+    /// Fresh state of the aircraft.
+    Aircraft(AircraftState),
+    /// The aircraft is now steering to `current`; everything before it has been flown.
+    /// `None`: everything handed out has been flown.
+    Progress {
+        /// The waypoint steered to.
+        current: Option<Token>,
+    },
+    /// The gateway refused a batch that began with this token, whole; its buffer is as it was.
+    Rejected {
+        /// First token of the batch.
+        first: Token,
+        /// Why.
+        reason: String,
+    },
+    /// The gateway entered or left a mode in which it does not take waypoints (Safe, Manual).
+    GatewayControls(bool),
+}
+
+/// What the executor wants done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// Forget every waypoint after this token (`Token(0)`: all), then append these; one
+    /// transaction. `cancel_after: None` just appends.
+    Feed {
+        /// Last waypoint to be kept.
+        cancel_after: Option<Token>,
+        /// What follows it.
+        waypoints: Vec<Waypoint>,
+    },
+    /// Hold where the aircraft is.
+    Hold,
+    /// The one answer to a request.
+    Answer {
+        /// Which.
+        request: RequestId,
+        /// How it went.
+        result: Result<Answer, Refusal>,
+    },
+    /// Something that services and people want to know.
+    Event(Event),
+}
+
+/// A good answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Answer {
+    /// Done.
+    Done,
+    /// What a proposal would do.
+    Proposal(Box<ProposalReport>),
+}
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub enum Event {
+    /// The aircraft began a leg.
+    LegEntered {
+        /// Where that is.
+        place: PlacePointer,
+    },
+    /// A pass of a loop ended at its final leg.
+    IterationFinished {
+        /// The iterative leg.
+        leg: Id,
+        /// Passes finished.
+        finished: u64,
+        /// The count, if any.
+        of: Option<u64>,
+    },
+    /// Somebody should decide.
+    DecisionRequested(DecisionRequest),
+    /// It was decided.
+    DecisionTaken {
+        /// The intersection leg.
+        leg: Id,
+        /// The branch.
+        branch: Id,
+        /// `operator`, `condition` or `default`.
+        by: String,
+    },
+    /// A variable has a new value.
+    VariableChanged {
+        /// Its name.
+        name: Id,
+        /// Its value.
+        value: VariableValue,
+    },
+    /// A pattern could not be regenerated; the old one goes on.
+    PatternRefused {
+        /// The leg.
+        leg: Id,
+        /// Why.
+        reason: String,
+    },
+    /// A plan became the active one.
+    PlanActivated {
+        /// Its hash.
+        hash: Arc<str>,
+        /// The revision it makes.
+        revision: u64,
+    },
+    /// An emergency plan is being flown.
+    EmergencyStarted {
+        /// Why.
+        cause: Cause,
+        /// Which.
+        plan: Id,
+        /// The leg it was raised on.
+        from_leg: Option<Id>,
+    },
+    /// No emergency plan applies: the gateway's Safe mode has to decide.
+    EmergencyUnanswered {
+        /// Why it was raised.
+        cause: Cause,
+    },
+    /// What it is doing changed.
+    PhaseChanged {
+        /// To this.
+        phase: Phase,
+    },
+    /// Waypoints were refused by the gateway.
+    WaypointsRejected {
+        /// The leg of the first of them.
+        leg: Option<Id>,
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,12 @@
+//! Pure: geodesy on WGS84, local frames, turns, arcs, holdings, polygons and scan patterns.
+//!
+//! Knows nothing of plans or autopilots. Angles are radians inside formulas and degrees at the
+//! edges; the unit is always in the name.
+
+pub mod geodesy;
+pub mod local;
+pub mod path;
+
+pub use geodesy::LatLon;
+pub use local::{LocalFrame, Vec2};
+pub use path::PathElement;

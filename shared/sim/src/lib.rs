@@ -1,0 +1,1 @@
+//! Shell around a pure core: a simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does.

@@ -1,0 +1,3 @@
+//! Shell: the service contract (keys, types, sessions) over Zenoh; the only crate that knows Zenoh.
+
+pub mod contract;
