@@ -1,0 +1,31 @@
+"""xmllint, an outside validator, against the schema and every example."""
+
+import subprocess
+
+import pytest
+from conftest import TOP
+
+SCHEMA = TOP / "assets/schema/flight-plan-1.xsd"
+GOOD = sorted((TOP / "assets/plans").glob("*.xml"))
+BAD = sorted((TOP / "assets/plans/bad").glob("*.xml"))
+# faults of meaning, which a schema cannot see, are for the product's own checks
+SCHEMA_SEES = [path for path in BAD if path.name.startswith("xsd-")]
+
+
+def validate(path):
+    return subprocess.run(["xmllint", "--noout", "--nonet", "--schema", SCHEMA, path], capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.name)
+def test_a_good_example_is_valid(path):
+    result = validate(path)
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("path", SCHEMA_SEES, ids=lambda path: path.name)
+def test_a_bad_example_is_rejected(path):
+    assert validate(path).returncode != 0
+
+
+def test_there_are_examples():
+    assert len(GOOD) >= 2 and len(SCHEMA_SEES) >= 3

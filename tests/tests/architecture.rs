@@ -1,0 +1,113 @@
+//! The dependency directions of ARCHITECTURE.md, enforced.
+
+use std::{collections::BTreeMap, process::Command};
+
+/// Crates of ours that each crate may depend on, and outside crates only it may use.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("geometry", &[]),
+    ("terrain", &["geometry"]),
+    ("aircraft", &["geometry"]),
+    ("flight-plan", &["geometry", "terrain", "aircraft"]),
+    ("flight-exec", &["geometry", "terrain", "aircraft", "flight-plan"]),
+    ("usal", &["geometry", "flight-plan", "flight-exec"]),
+    ("sim", &["geometry", "aircraft"]),
+    ("onboard-agent", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal"]),
+    (
+        "gcs-app",
+        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal", "onboard-agent", "sim"],
+    ),
+    ("system-tests", &[]),
+];
+
+/// Outside crates that stay behind one wall each.
+const ONLY_IN: &[(&str, &[&str])] = &[
+    ("zenoh", &["usal"]),
+    ("zenoh-ext", &["usal"]),
+    ("mavlink", &["onboard-agent", "sim"]),
+    ("egui", &["gcs-app"]),
+    ("eframe", &["gcs-app"]),
+    ("walkers", &["gcs-app"]),
+    ("quick-xml", &["flight-plan"]),
+    ("cel", &["flight-plan"]),
+];
+
+/// Crates whose cores must stay pure: no clock, no IO, no runtime.
+const PURE: &[&str] = &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec"];
+
+/// Name of each workspace package → names of its ordinary dependencies.
+fn dependencies() -> BTreeMap<String, Vec<String>> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])
+        .output()
+        .expect("cargo metadata runs");
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("metadata is JSON");
+    let packages = metadata["packages"].as_array().expect("packages");
+    packages
+        .iter()
+        .map(|package| {
+            let ordinary = package["dependencies"].as_array().expect("dependencies").iter();
+            let names = ordinary.filter(|d| d["kind"].is_null()).map(|d| text(&d["name"])).collect();
+            (text(&package["name"]), names)
+        })
+        .collect()
+}
+
+fn text(value: &serde_json::Value) -> String {
+    value.as_str().expect("a string").to_owned()
+}
+
+#[test]
+fn our_crates_depend_one_way() {
+    let dependencies = dependencies();
+    assert_eq!(dependencies.len(), MAY_USE.len(), "a crate is missing from MAY_USE");
+    for (name, allowed) in MAY_USE {
+        for used in &dependencies[*name] {
+            let ours = dependencies.contains_key(used);
+            assert!(!ours || allowed.contains(&used.as_str()), "{name} must not depend on {used}");
+        }
+    }
+}
+
+#[test]
+fn outside_crates_stay_behind_their_walls() {
+    for (name, used) in dependencies() {
+        for (wall, inside) in ONLY_IN {
+            let leaks = used.iter().any(|u| u == wall) && !inside.contains(&name.as_str());
+            assert!(!leaks, "{name} must not use {wall}: only {inside:?} may");
+        }
+    }
+}
+
+#[test]
+fn pure_crates_have_no_runtime() {
+    let dependencies = dependencies();
+    for name in PURE {
+        for banned in ["tokio", "rand", "socket2", "tracing"] {
+            assert!(!dependencies[*name].iter().any(|u| u == banned), "{name} is pure: no {banned}");
+        }
+    }
+}
+
+#[test]
+fn only_the_demo_sees_agent_and_simulator() {
+    let source = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcs-app/src");
+    let mut folders = vec![source];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() && !path.ends_with("demo") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("demo.rs") {
+                let code = std::fs::read_to_string(&path).expect("source");
+                for seen in ["onboard_agent::", "sim::"] {
+                    let found = code.lines().any(|l| {
+                        !l.trim_start().starts_with("//") && l.match_indices(seen).any(|(i, _)| {
+                            !l[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_')
+                        })
+                    });
+                    assert!(!found, "{} uses {seen}", path.display());
+                }
+            }
+        }
+    }
+}
