@@ -1,4 +1,15 @@
 //! Pure: elevation tiles (SRTM HGT bytes to metres above sea level).
+//!
+//! [`Tile`] reads one file, [`Tiles`] answers from several, [`along`] looks at what lies under a path.
+//! Files are read by whoever owns the disk; this crate gets their name and bytes.
+
+pub mod along;
+pub mod tile;
+pub mod tiles;
+
+pub use along::{Ground, ground_along};
+pub use tile::{Tile, TileError};
+pub use tiles::Tiles;
 
 use geometry::LatLon;
 

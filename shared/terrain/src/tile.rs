@@ -1,0 +1,317 @@
+//! One elevation tile: a square of one degree, as SRTM and NASADEM publish it (`N36W085.hgt`).
+//!
+//! Format: no header; rows from north to south, samples from west to east, big-endian signed 16-bit
+//! metres above the EGM96 geoid; the outermost rows and columns lie on the whole degrees, so that neighbours
+//! share them. 1201 samples a side are 3″, 3601 are 1″. −32768 is a void. The name gives the south-west corner.
+//! (USGS, *SRTM Topo*, "Documentation".)
+
+use geometry::LatLon;
+
+/// What the format calls "not measured".
+const VOID: i16 = i16::MIN;
+/// Elevations on Earth's land, metres; what is outside is a fault of the data and counts as void.
+const PLAUSIBLE_M: std::ops::RangeInclusive<i16> = -500..=9000;
+/// Samples a side of the two resolutions in use.
+const SIDES: [usize; 2] = [1201, 3601];
+
+/// Why bytes are not an elevation tile.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TileError {
+    /// The name does not give a corner.
+    #[error(
+        "`{0}` is not the name of an elevation tile: name it after its south-west corner, like N36W085.hgt"
+    )]
+    Name(String),
+    /// The length fits neither resolution.
+    #[error(
+        "an elevation tile has 2884802 bytes (3″) or 25934402 bytes (1″), this one has {0}: get the file again"
+    )]
+    Length(usize),
+    /// Nothing but voids.
+    #[error("the elevation tile holds no elevation at all: get the file again")]
+    Empty,
+}
+
+/// One degree by one degree of ground.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Tile {
+    south_deg: i32,
+    west_deg: i32,
+    side: usize,
+    /// Rows from north to south; [`VOID`] where nothing is known.
+    samples_m: Vec<i16>,
+}
+
+impl std::fmt::Debug for Tile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "Tile({}°, {}°, {} samples a side)",
+            self.south_deg, self.west_deg, self.side
+        )
+    }
+}
+
+impl Tile {
+    /// Reads the bytes of a `.hgt` file; `name` is its file name, with or without the extension.
+    ///
+    /// # Errors
+    /// A name without a corner, a length of neither resolution, or nothing but voids.
+    pub fn from_hgt(name: &str, bytes: &[u8]) -> Result<Self, TileError> {
+        let (south_deg, west_deg) =
+            corner(name).ok_or_else(|| TileError::Name(name.chars().take(80).collect()))?;
+        let side = SIDES
+            .into_iter()
+            .find(|side| bytes.len() == side * side * 2)
+            .ok_or(TileError::Length(bytes.len()))?;
+        let samples_m: Vec<i16> = bytes.chunks_exact(2).map(sample).collect();
+        if samples_m.iter().all(|s| *s == VOID) {
+            return Err(TileError::Empty);
+        }
+        Ok(Self {
+            south_deg,
+            west_deg,
+            side,
+            samples_m,
+        })
+    }
+
+    /// South-west corner, whole degrees: `(latitude, longitude)`.
+    pub fn corner_deg(&self) -> (i32, i32) {
+        (self.south_deg, self.west_deg)
+    }
+
+    /// Distance between samples, degrees of latitude and of longitude.
+    pub fn spacing_deg(&self) -> f64 {
+        1.0 / (self.side - 1) as f64
+    }
+
+    /// The box around everything that is known: `(south-west, north-east)`.
+    pub fn known_box(&self) -> (LatLon, LatLon) {
+        let (mut top, mut bottom, mut left, mut right) = (self.side, 0, self.side, 0);
+        for (i, _) in self
+            .samples_m
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| **s != VOID)
+        {
+            let (row, column) = (i / self.side, i % self.side);
+            (top, bottom) = (top.min(row), bottom.max(row));
+            (left, right) = (left.min(column), right.max(column));
+        }
+        (self.place(bottom, left), self.place(top, right))
+    }
+
+    /// Metres AMSL at `p`, bilinear between the four samples around it; `None` outside the tile or
+    /// where a sample that matters is void.
+    pub fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        let last = (self.side - 1) as f64;
+        let down = (f64::from(self.south_deg) + 1.0 - p.lat_deg) * last;
+        let right = (p.lon_deg - f64::from(self.west_deg)) * last;
+        if !(0.0..=last).contains(&down) || !(0.0..=last).contains(&right) {
+            return None;
+        }
+        let (row, column) = (down.floor().min(last - 1.0), right.floor().min(last - 1.0));
+        let (v, u) = (down - row, right - column);
+        let (row, column) = (row as usize, column as usize);
+        let upper = self.blend(row, column, u);
+        let lower = self.blend(row + 1, column, u);
+        mix(upper, lower, v)
+    }
+
+    /// Between a sample and its eastern neighbour, `u` in 0..=1.
+    fn blend(&self, row: usize, column: usize, u: f64) -> Option<f64> {
+        mix(self.known(row, column), self.known(row, column + 1), u)
+    }
+
+    fn known(&self, row: usize, column: usize) -> Option<f64> {
+        let sample = *self.samples_m.get(row * self.side + column)?;
+        (sample != VOID).then_some(f64::from(sample))
+    }
+
+    fn place(&self, row: usize, column: usize) -> LatLon {
+        let step = self.spacing_deg();
+        LatLon::new(
+            f64::from(self.south_deg) + 1.0 - row as f64 * step,
+            f64::from(self.west_deg) + column as f64 * step,
+        )
+    }
+}
+
+/// Linear between two values; a void counts only if it has weight.
+fn mix(a: Option<f64>, b: Option<f64>, share_of_b: f64) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a + (b - a) * share_of_b),
+        (Some(a), None) if share_of_b == 0.0 => Some(a),
+        (None, Some(b)) if share_of_b == 1.0 => Some(b),
+        _ => None,
+    }
+}
+
+fn sample(pair: &[u8]) -> i16 {
+    let value = i16::from_be_bytes([pair[0], pair[1]]);
+    if PLAUSIBLE_M.contains(&value) {
+        value
+    } else {
+        VOID
+    }
+}
+
+/// `N36W085` (any case, any extension) as degrees of the south-west corner.
+fn corner(name: &str) -> Option<(i32, i32)> {
+    let stem = name.split('.').next()?.as_bytes();
+    let [ns, lat @ .., ew, e1, e2, e3] = stem else {
+        return None;
+    };
+    let lat_deg = signed(*ns, b'N', b'S', lat, 2, 90)?;
+    let lon_deg = signed(*ew, b'E', b'W', &[*e1, *e2, *e3], 3, 180)?;
+    // the tile extends one degree north and east of its corner
+    (lat_deg < 90 && lon_deg < 180).then_some((lat_deg, lon_deg))
+}
+
+fn signed(sign: u8, plus: u8, minus: u8, digits: &[u8], count: usize, limit: i32) -> Option<i32> {
+    if digits.len() != count || !digits.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    let value = digits.iter().fold(0, |n, d| n * 10 + i32::from(d - b'0'));
+    let value = match sign.to_ascii_uppercase() {
+        s if s == plus => value,
+        s if s == minus => -value,
+        _ => return None,
+    };
+    (value.abs() <= limit).then_some(value)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use proptest::prelude::*;
+
+    /// HGT bytes of a 3″ tile whose samples are `f(row, column)`.
+    pub(crate) fn hgt(f: impl Fn(usize, usize) -> i16) -> Vec<u8> {
+        (0..1201 * 1201)
+            .flat_map(|i| f(i / 1201, i % 1201).to_be_bytes())
+            .collect()
+    }
+
+    #[test]
+    fn names() {
+        for (name, expected) in [
+            ("N36W085.hgt", Some((36, -85))),
+            ("s01e000", Some((-1, 0))),
+            ("N00E179.SRTMGL1.hgt", Some((0, 179))),
+            ("S90W180.hgt", Some((-90, -180))),
+            ("N90E000.hgt", None),
+            ("N00E180.hgt", None),
+            ("N91E000.hgt", None),
+            ("N3W085.hgt", None),
+            ("N36W85.hgt", None),
+            ("X36W085.hgt", None),
+            ("N3éW085", None),
+            ("", None),
+            (".hgt", None),
+        ] {
+            assert_eq!(corner(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn bad_bytes_are_errors() {
+        let good = hgt(|_, _| 7);
+        assert!(matches!(
+            Tile::from_hgt("tile.hgt", &good),
+            Err(TileError::Name(_))
+        ));
+        assert_eq!(
+            Tile::from_hgt("N36W085.hgt", &good[1..]),
+            Err(TileError::Length(good.len() - 1))
+        );
+        assert_eq!(
+            Tile::from_hgt("N36W085.hgt", &[]),
+            Err(TileError::Length(0))
+        );
+        assert_eq!(
+            Tile::from_hgt("N36W085.hgt", &hgt(|_, _| VOID)),
+            Err(TileError::Empty)
+        );
+        // 32767 is what some tools write for "nothing"
+        assert_eq!(
+            Tile::from_hgt("N36W085.hgt", &hgt(|_, _| i16::MAX)),
+            Err(TileError::Empty)
+        );
+    }
+
+    #[test]
+    fn voids_and_outside_are_unknown() {
+        let bytes = hgt(|row, column| {
+            if (row, column) == (600, 600) {
+                VOID
+            } else {
+                100
+            }
+        });
+        let tile = Tile::from_hgt("N36W085.hgt", &bytes).unwrap();
+        let step = tile.spacing_deg();
+        for (north, east, known) in [
+            (0.0, 0.0, false),
+            (0.5, 0.5, false),
+            (1.5, 0.0, true),
+            (0.0, -1.5, true),
+        ] {
+            let p = LatLon::new(36.5 + north * step, -84.5 + east * step);
+            assert_eq!(tile.elevation_m(p).is_some(), known, "{north} {east}");
+        }
+        for (lat, lon) in [
+            (35.999, -84.5),
+            (37.001, -84.5),
+            (36.5, -85.001),
+            (36.5, -83.999),
+            (f64::NAN, -84.5),
+        ] {
+            assert_eq!(tile.elevation_m(LatLon::new(lat, lon)), None);
+        }
+    }
+
+    #[test]
+    fn known_box_is_the_box_of_the_data() {
+        let bytes = hgt(|r, c| {
+            if (321..=664).contains(&r) && (704..=1106).contains(&c) {
+                300
+            } else {
+                VOID
+            }
+        });
+        let (sw, ne) = Tile::from_hgt("N36W085.hgt", &bytes).unwrap().known_box();
+        assert!(
+            (sw.lat_deg - (37.0 - 664.0 / 1200.0)).abs() < 1e-9
+                && (sw.lon_deg + 85.0 - 704.0 / 1200.0).abs() < 1e-9
+        );
+        assert!(
+            (ne.lat_deg - (37.0 - 321.0 / 1200.0)).abs() < 1e-9
+                && (ne.lon_deg + 85.0 - 1106.0 / 1200.0).abs() < 1e-9
+        );
+    }
+
+    /// A plane: 2 m a row southwards, 3 m a column eastwards.
+    static PLANE: std::sync::LazyLock<Tile> = std::sync::LazyLock::new(|| {
+        Tile::from_hgt("S01E006.hgt", &hgt(|r, c| (r * 2 + c * 3) as i16)).unwrap()
+    });
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn bilinear_is_exact_on_a_plane(points in prop::collection::vec((0.0..=1200.0f64, 0.0..=1200.0f64), 64)) {
+                        for (row, column) in points {
+                let p = LatLon::new(-row / 1200.0, 6.0 + column / 1200.0);
+                let elevation = PLANE.elevation_m(p).unwrap();
+                prop_assert!((elevation - (row * 2.0 + column * 3.0)).abs() < 1e-6);
+            }
+        }
+
+        #[test]
+        fn any_bytes_and_name_never_panic(name in ".{0,12}", bytes in prop::collection::vec(any::<u8>(), 0..64)) {
+            prop_assert!(Tile::from_hgt(&name, &bytes).is_err());
+        }
+    }
+}
