@@ -1,0 +1,1 @@
+//! Data that is compiled in: basemap, terrain, example plans.
