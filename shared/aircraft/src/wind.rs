@@ -1,0 +1,56 @@
+//! The wind, as the vector it carries an aircraft along with.
+
+use geometry::Vec2;
+use serde::{Deserialize, Serialize};
+
+/// A constant wind: where it blows **to**, m/s over the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Wind {
+    /// Eastward, m/s.
+    pub east_mps: f64,
+    /// Northward, m/s.
+    pub north_mps: f64,
+}
+
+impl Wind {
+    /// No wind.
+    pub const CALM: Wind = Wind { east_mps: 0.0, north_mps: 0.0 };
+
+    /// A wind as it is reported: the direction it blows **from**, degrees true, and its speed, m/s.
+    pub fn from_direction(from_deg: f64, speed_mps: f64) -> Self {
+        let to = Vec2::from_bearing_rad(from_deg.to_radians()) * -speed_mps;
+        Self { east_mps: to.e, north_mps: to.n }
+    }
+
+    /// The direction it blows from, degrees true in 0..360 (0 when calm).
+    pub fn direction_from_deg(&self) -> f64 {
+        geometry::geodesy::normalise_360((-self.east_mps).atan2(-self.north_mps).to_degrees())
+    }
+
+    /// Its speed, m/s.
+    pub fn speed_mps(&self) -> f64 {
+        self.east_mps.hypot(self.north_mps)
+    }
+
+    /// As a vector, m/s east and north.
+    pub fn vector(&self) -> Vec2 {
+        Vec2::new(self.east_mps, self.north_mps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reported_direction_is_where_it_comes_from() {
+        for (from, speed, east, north) in
+            [(0.0, 5.0, 0.0, -5.0), (270.0, 8.0, 8.0, 0.0), (225.0, 10.0, 7.071, 7.071)]
+        {
+            let wind = Wind::from_direction(from, speed);
+            assert!((wind.east_mps - east).abs() < 1e-3 && (wind.north_mps - north).abs() < 1e-3);
+            assert!((wind.direction_from_deg() - from).abs() < 1e-9);
+            assert!((wind.speed_mps() - speed).abs() < 1e-9);
+        }
+    }
+}
