@@ -1,7 +1,15 @@
 //! A checked plan, ready for the executor.
 
-use crate::FlightPlan;
+use crate::expression::{self, Env, EvalError, Expression};
+use crate::{
+    Altitude, Area, Cause, EmergencyChoice, EmergencyPlan, FlightPlan, HoldingLength, Id, Leg, LegKind,
+    Place, Problem, Stage, Value, check, xml,
+};
+use aircraft::Profile;
+use geometry::LatLon;
+use std::collections::HashMap;
 use std::sync::Arc;
+use terrain::Terrain;
 
 /// A plan without errors, its expressions compiled and its lookups resolved; immutable.
 #[derive(Debug)]
@@ -10,10 +18,310 @@ pub struct Program {
     pub plan: FlightPlan,
     /// Hex SHA-256 of the plan's canonical XML.
     pub hash: Arc<str>,
+    /// What the checks said that does not forbid flying.
+    pub warnings: Vec<Problem>,
+    paths: HashMap<Id, LegPath>,
+    expressions: HashMap<Arc<str>, Expression>,
 }
 
 impl PartialEq for Program {
     fn eq(&self, other: &Self) -> bool {
         self.hash == other.hash
     }
+}
+
+/// Where a leg or a stage is in the document.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LegPath {
+    /// `None`: main plan, else the index of the emergency plan.
+    pub emergency_plan: Option<usize>,
+    /// Index of the stage in its plan.
+    pub stage: usize,
+    /// Index in each nested list, outermost first; the last one is the leg's own. Empty for a stage.
+    pub indices: Vec<usize>,
+}
+
+/// Checks a plan and compiles it.
+///
+/// # Errors
+/// Every problem of the plan, if one of them forbids flying.
+pub fn compile(plan: FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Result<Program, Vec<Problem>> {
+    let problems = check(&plan, profile, terrain);
+    if problems.iter().any(Problem::is_error) {
+        return Err(problems);
+    }
+    Ok(Program {
+        hash: xml::hash(&plan).into(),
+        warnings: problems,
+        paths: paths(&plan),
+        expressions: compiled(&plan),
+        plan,
+    })
+}
+
+/// Reads, checks and compiles a document.
+///
+/// # Errors
+/// Every problem of the document, with its place, if one of them forbids flying.
+pub fn compile_document(
+    document: &[u8],
+    profile: &Profile,
+    terrain: &dyn Terrain,
+) -> Result<Program, Vec<Problem>> {
+    let reading = xml::read(document);
+    if reading.has_errors() {
+        return Err(reading.problems);
+    }
+    let places = reading.places;
+    let mut program = compile(reading.plan, profile, terrain).map_err(|mut problems| {
+        places.locate(&mut problems);
+        problems
+    })?;
+    places.locate(&mut program.warnings);
+    program.warnings.splice(0..0, reading.problems);
+    Ok(program)
+}
+
+impl Program {
+    /// Where a leg (or a stage) is.
+    pub fn path(&self, id: &Id) -> Option<&LegPath> {
+        self.paths.get(id)
+    }
+
+    /// The stages of the main plan (`None`) or of an emergency plan (its index).
+    pub fn stages(&self, emergency_plan: Option<usize>) -> &[Stage] {
+        match emergency_plan {
+            None => &self.plan.stages,
+            Some(index) => self.plan.emergency_plans.get(index).map_or(&[], |e| &e.stages),
+        }
+    }
+
+    /// The stage on a path.
+    pub fn stage(&self, path: &LegPath) -> Option<&Stage> {
+        self.stages(path.emergency_plan).get(path.stage)
+    }
+
+    /// The list that contains the leg of a path (of a stage: its legs).
+    pub fn list(&self, path: &LegPath) -> Option<&[Leg]> {
+        let mut list = self.stage(path)?.legs.as_slice();
+        let outer = path.indices.split_last().map_or(&[][..], |(_, outer)| outer);
+        for index in outer {
+            list = list.get(*index)?.body();
+        }
+        Some(list)
+    }
+
+    /// The legs from the outermost loop down to the leg itself; empty for a stage.
+    pub fn chain(&self, path: &LegPath) -> Vec<&Leg> {
+        let mut list = self.stage(path).map_or(&[][..], |s| &s.legs);
+        let mut chain = Vec::with_capacity(path.indices.len());
+        for index in &path.indices {
+            let Some(leg) = list.get(*index) else { break };
+            chain.push(leg);
+            list = leg.body();
+        }
+        chain
+    }
+
+    /// A leg by its identifier.
+    pub fn leg(&self, id: &Id) -> Option<&Leg> {
+        self.chain(self.path(id)?).last().copied()
+    }
+
+    /// The emergency plan of a leg (or stage) for a cause.
+    ///
+    /// The most specific association wins: the leg's own, the enclosing loops' from the inside out, the stage's, the
+    /// document's. At each of these levels the entry for the cause comes before the level's fallback; and a
+    /// level's fallback comes before any entry farther out, because whoever wrote it there without a
+    /// cause meant every cause. Legs of emergency plans end at the document's association as well; the executor
+    /// sees to it that an emergency does not nest.
+    pub fn emergency_for(&self, id: &Id, cause: Cause) -> Option<&EmergencyPlan> {
+        let path = self.path(id)?;
+        let chain = self.chain(path);
+        let levels = chain.iter().rev().map(|leg| &leg.emergency);
+        let levels = levels.chain(self.stage(path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
+        let chosen = levels.filter_map(|level| level.plan_for(cause)).next()?;
+        self.plan.emergency_plan(chosen)
+    }
+
+    /// A number: a constant as it is, an expression evaluated.
+    ///
+    /// # Errors
+    /// The expression has no finite value now.
+    pub fn eval_number(&self, value: &Value<f64>, env: &Env) -> Result<f64, EvalError> {
+        match value {
+            Value::Constant(x) => Ok(*x),
+            Value::Expression(source) => self.expression(source)?.number(env),
+        }
+    }
+
+    /// A condition.
+    ///
+    /// # Errors
+    /// It can't be evaluated now.
+    pub fn eval_bool(&self, source: &str, env: &Env) -> Result<bool, EvalError> {
+        self.expression(source)?.bool(env)
+    }
+
+    /// A position: a constant as it is, an expression evaluated.
+    ///
+    /// # Errors
+    /// The expression has no valid value now.
+    pub fn eval_position(&self, value: &Value<LatLon>, env: &Env) -> Result<LatLon, EvalError> {
+        match value {
+            Value::Constant(p) => Ok(*p),
+            Value::Expression(source) => self.expression(source)?.position(env),
+        }
+    }
+
+    /// Where a place is now.
+    ///
+    /// # Errors
+    /// Its expression has no valid value now.
+    pub fn eval_place(&self, place: &Place, env: &Env) -> Result<LatLon, EvalError> {
+        match place {
+            Place::Fix(id) => {
+                Ok(self.plan.fix(id).ok_or_else(|| EvalError::NotCompiled(id.to_string()))?.position)
+            }
+            Place::Position(value) => self.eval_position(value, env),
+        }
+    }
+
+    /// A compiled expression by its source (what variables it reads, its type).
+    ///
+    /// # Errors
+    /// The plan has no such expression.
+    pub fn expression(&self, source: &str) -> Result<&Expression, EvalError> {
+        self.expressions.get(source).ok_or_else(|| EvalError::NotCompiled(source.into()))
+    }
+
+    /// True if a leg's geometry, altitude or speed reads this variable (not the legs inside it).
+    pub fn leg_reads(&self, leg: &Leg, variable: &Id) -> bool {
+        let mut reads = false;
+        leg.for_each_expression(&mut |source, _| {
+            reads |= self.expression(source).is_ok_and(|e| e.variables.contains(variable));
+        });
+        reads
+    }
+}
+
+impl EmergencyChoice {
+    /// The plan this level names for a cause: the cause's own entry, else its fallback.
+    pub fn plan_for(&self, cause: Cause) -> Option<&Id> {
+        let of = |wanted| self.by_cause.iter().find(|(c, _)| *c == wanted).map(|(_, plan)| plan);
+        of(Some(cause)).or_else(|| of(None))
+    }
+}
+
+/// What an expression is used as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Use {
+    /// A number.
+    Number,
+    /// A condition.
+    Condition,
+    /// A position.
+    Position,
+}
+
+impl Leg {
+    /// Every expression of the leg itself (not of the legs inside it), with what it is used as.
+    pub fn for_each_expression(&self, visit: &mut dyn FnMut(&Arc<str>, Use)) {
+        visit_altitude(self.altitude.as_ref(), visit);
+        visit_number(self.speed_mps.as_ref(), visit);
+        match &self.kind {
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
+                visit_place(&to.place, visit)
+            }
+            LegKind::Hf(h) | LegKind::Ha(h) => {
+                visit_place(&h.fix.place, visit);
+                visit_number(h.inbound_course_deg.as_ref(), visit);
+                let (HoldingLength::Distance(length) | HoldingLength::Time(length)) = &h.leg;
+                visit_number(Some(length), visit);
+            }
+            LegKind::Iterative { count, until, .. } => {
+                visit_number(count.as_ref(), visit);
+                until.iter().for_each(|source| visit(source, Use::Condition));
+            }
+            LegKind::Intersection { branches, .. } => {
+                branches
+                    .iter()
+                    .filter_map(|b| b.when.as_ref())
+                    .for_each(|source| visit(source, Use::Condition));
+            }
+            LegKind::Scan(scan) => {
+                if let Area::Circle { centre, radius_m } = &scan.area {
+                    visit_place(centre, visit);
+                    visit_number(Some(radius_m), visit);
+                }
+                visit_number(Some(&scan.spacing_m), visit);
+                visit_number(scan.heading_deg.as_ref(), visit);
+                visit_number(Some(&scan.overshoot_m), visit);
+            }
+            LegKind::Orbit { centre, radius_m, turns, .. } => {
+                visit_place(centre, visit);
+                visit_number(Some(radius_m), visit);
+                visit_number(Some(turns), visit);
+            }
+        }
+    }
+}
+
+impl Stage {
+    /// Every expression of the stage itself (not of its legs), with what it is used as.
+    pub fn for_each_expression(&self, visit: &mut dyn FnMut(&Arc<str>, Use)) {
+        visit_altitude(self.altitude.as_ref(), visit);
+        visit_number(self.speed_mps.as_ref(), visit);
+    }
+}
+
+fn visit_altitude(altitude: Option<&Altitude>, visit: &mut dyn FnMut(&Arc<str>, Use)) {
+    visit_number(altitude.map(|a| &a.metres), visit);
+}
+
+fn visit_number(value: Option<&Value<f64>>, visit: &mut dyn FnMut(&Arc<str>, Use)) {
+    if let Some(Value::Expression(source)) = value {
+        visit(source, Use::Number);
+    }
+}
+
+fn visit_place(place: &Place, visit: &mut dyn FnMut(&Arc<str>, Use)) {
+    if let Place::Position(Value::Expression(source)) = place {
+        visit(source, Use::Position);
+    }
+}
+
+fn paths(plan: &FlightPlan) -> HashMap<Id, LegPath> {
+    let mut paths = HashMap::new();
+    let main = plan.stages.iter().enumerate().map(|(i, s)| (None, i, s));
+    let others = plan.emergency_plans.iter().enumerate();
+    let others = others.flat_map(|(e, p)| p.stages.iter().enumerate().map(move |(i, s)| (Some(e), i, s)));
+    for (emergency_plan, index, stage) in main.chain(others) {
+        let mut path = LegPath { emergency_plan, stage: index, indices: Vec::new() };
+        paths.insert(stage.id.clone(), path.clone());
+        add_paths(&stage.legs, &mut path, &mut paths);
+    }
+    paths
+}
+
+fn add_paths(legs: &[Leg], path: &mut LegPath, paths: &mut HashMap<Id, LegPath>) {
+    for (index, leg) in legs.iter().enumerate() {
+        path.indices.push(index);
+        paths.insert(leg.id.clone(), path.clone());
+        add_paths(leg.body(), path, paths);
+        path.indices.pop();
+    }
+}
+
+/// Every expression of the plan; those that don't compile have been found by the checks.
+fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Expression> {
+    let mut compiled = HashMap::new();
+    let mut add = |source: &Arc<str>, _: Use| {
+        if !compiled.contains_key(source) {
+            compiled.extend(expression::compile(source, plan).ok().map(|e| (source.clone(), e)));
+        }
+    };
+    plan.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut add));
+    plan.all_legs().iter().for_each(|c| c.leg.for_each_expression(&mut add));
+    compiled
 }

@@ -1,0 +1,323 @@
+//! From CEL source to a checked tree.
+
+use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type};
+use crate::{FlightPlan, Id, VariableValue};
+use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
+use cel::parser::Parser;
+
+/// Longest expression, bytes.
+pub const MAX_LENGTH: usize = 1000;
+/// Deepest nesting, both of brackets and of the tree.
+pub const MAX_DEPTH: usize = 48;
+
+/// Parses and type-checks `source` over the plan's fixes and variables.
+pub fn compile(source: &str, plan: &FlightPlan) -> Result<Expression, ExpressionError> {
+    let at_start =
+        |code, message: String| ExpressionError { code, column: 1, source_text: shorten(source), message };
+    if source.len() > MAX_LENGTH || bracket_depth(source) > MAX_DEPTH {
+        return Err(at_start(
+            "expression-too-large",
+            format!(
+                "simplify this expression: at most {MAX_LENGTH} bytes and {MAX_DEPTH} nested brackets are allowed"
+            ),
+        ));
+    }
+    if source.trim().is_empty() {
+        return Err(at_start("expression-syntax", "write an expression here".into()));
+    }
+    let (tree, places) = Parser::new()
+        .max_recursion_depth(2 * MAX_DEPTH as u16)
+        .parse_with_source_info(source)
+        .map_err(|errors| syntax_error(source, errors))?;
+    let mut checker = Checker { plan, source, places, variables: Vec::new() };
+    let (node, kind) = checker.check(&tree, 0)?;
+    Ok(Expression { kind, variables: checker.variables, node })
+}
+
+/// For messages: long sources are cut.
+fn shorten(source: &str) -> String {
+    if source.chars().count() <= 80 {
+        source.into()
+    } else {
+        source.chars().take(79).chain(['…']).collect()
+    }
+}
+
+/// Deepest nesting of brackets, also unbalanced ones (the parser sees those as well).
+fn bracket_depth(source: &str) -> usize {
+    let (mut depth, mut deepest) = (0_usize, 0);
+    for byte in source.bytes() {
+        match byte {
+            b'(' | b'[' | b'{' | b'?' | b'!' | b'-' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    deepest
+}
+
+/// The parser's first complaint, as ours.
+fn syntax_error(source: &str, errors: cel::ParseErrors) -> ExpressionError {
+    let first = errors.errors.first();
+    let column = first.map_or(1, |e| e.pos.1.max(1).unsigned_abs());
+    let complaint =
+        first.map_or_else(|| "not an expression".into(), |e| e.msg.lines().next().unwrap_or("").to_owned());
+    ExpressionError {
+        code: "expression-syntax",
+        column,
+        source_text: shorten(source),
+        message: format!("this is not a CEL expression, correct it: {complaint}"),
+    }
+}
+
+type Checked = Result<(Node, Type), ExpressionError>;
+
+/// Walks the parser's tree with the plan's names at hand.
+struct Checker<'a> {
+    plan: &'a FlightPlan,
+    source: &'a str,
+    places: SourceInfo,
+    variables: Vec<Id>,
+}
+
+impl Checker<'_> {
+    fn error(&self, at: &IdedExpr, code: &'static str, message: impl Into<String>) -> ExpressionError {
+        let offset = self.places.offset_for(at.id).map_or(0, |(start, _)| start as usize);
+        ExpressionError {
+            code,
+            column: offset + 1,
+            source_text: shorten(self.source),
+            message: message.into(),
+        }
+    }
+
+    fn wrong_type(&self, at: &IdedExpr, wanted: &str, found: Type) -> ExpressionError {
+        self.error(at, "wrong-type", format!("{wanted} is needed here, not {found}"))
+    }
+
+    fn check(&mut self, at: &IdedExpr, depth: usize) -> Checked {
+        if depth > 4 * MAX_DEPTH {
+            return Err(self.error(
+                at,
+                "expression-too-large",
+                "simplify this expression: it nests too deeply",
+            ));
+        }
+        match &at.expr {
+            Expr::Literal(literal) => self.literal(at, literal),
+            Expr::Ident(name) => self.name(at, name),
+            Expr::Call(call) => self.call(at, call, depth + 1),
+            _ => Err(self.error(
+                at,
+                "expression-syntax",
+                "use only numbers, text, names, operators and functions: lists, maps, fields and macros are not part of plan expressions",
+            )),
+        }
+    }
+
+    fn literal(&self, at: &IdedExpr, literal: &LiteralValue) -> Checked {
+        Ok(match literal {
+            LiteralValue::Boolean(b) => (Node::Bool(*b.inner()), Type::Bool),
+            LiteralValue::Int(i) => (Node::Int(*i.inner()), Type::Int),
+            LiteralValue::Double(d) => (Node::Number(*d.inner()), Type::Number),
+            LiteralValue::String(s) => (Node::Text(s.inner().into()), Type::Text),
+            LiteralValue::UInt(_) | LiteralValue::Bytes(_) | LiteralValue::Null => {
+                return Err(self.error(
+                    at,
+                    "wrong-type",
+                    "write this as a number (5 or 5.0), text or true/false",
+                ));
+            }
+        })
+    }
+
+    fn name(&mut self, at: &IdedExpr, name: &str) -> Checked {
+        if let Some((_, flight, kind)) = FlightName::ALL.iter().find(|(n, ..)| *n == name) {
+            return Ok((Node::Flight(*flight), *kind));
+        }
+        let Some(variable) = self.plan.variables.iter().find(|v| v.name.as_str() == name) else {
+            return Err(self.error(
+                at,
+                "unknown-name",
+                format!("declare the variable `{name}` or correct its name"),
+            ));
+        };
+        let kind = match variable.initial {
+            VariableValue::Bool(_) => Type::Bool,
+            VariableValue::Number(_) => Type::Number,
+            VariableValue::Text(_) => Type::Text,
+            VariableValue::Position(_) => Type::Position,
+        };
+        if !self.variables.contains(&variable.name) {
+            self.variables.push(variable.name.clone());
+        }
+        Ok((Node::Variable(variable.name.clone()), kind))
+    }
+
+    fn call(&mut self, at: &IdedExpr, call: &CallExpr, depth: usize) -> Checked {
+        let name = call.func_name.as_str();
+        // `t.contains(u)` is checked as `contains(t, u)`
+        let arguments: Vec<&IdedExpr> = call.target.as_deref().into_iter().chain(&call.args).collect();
+        if let Some(operator) = binary_operator(name) {
+            return self.binary(at, operator, &arguments, depth);
+        }
+        match (name, arguments.as_slice()) {
+            (operators::LOGICAL_NOT, [a]) => Ok((Node::Not(self.bool(a, depth)?), Type::Bool)),
+            (operators::NEGATE, [a]) => {
+                let (node, kind) = self.numeric(a, depth)?;
+                Ok((Node::Negate(node.into()), kind))
+            }
+            (operators::LOGICAL_AND, [a, b]) => {
+                Ok((Node::And(self.bool(a, depth)?, self.bool(b, depth)?), Type::Bool))
+            }
+            (operators::LOGICAL_OR, [a, b]) => {
+                Ok((Node::Or(self.bool(a, depth)?, self.bool(b, depth)?), Type::Bool))
+            }
+            (operators::CONDITIONAL, [c, a, b]) => self.choose(c, a, b, depth),
+            ("distance_to", [to]) => self.distance_to(to, depth),
+            _ => self.function(at, name, &arguments, depth),
+        }
+    }
+
+    fn bool(&mut self, at: &IdedExpr, depth: usize) -> Result<Box<Node>, ExpressionError> {
+        self.expect(at, Type::Bool, depth)
+    }
+
+    fn expect(&mut self, at: &IdedExpr, wanted: Type, depth: usize) -> Result<Box<Node>, ExpressionError> {
+        match self.check(at, depth)? {
+            (node, kind) if kind == wanted => Ok(node.into()),
+            // an int stands for a number where nothing is computed with it
+            (node, Type::Int) if wanted == Type::Number => {
+                Ok(Node::Call(Function::Double, vec![node]).into())
+            }
+            (_, kind) => Err(self.wrong_type(at, &wanted.to_string(), kind)),
+        }
+    }
+
+    fn numeric(&mut self, at: &IdedExpr, depth: usize) -> Checked {
+        match self.check(at, depth)? {
+            checked @ (_, Type::Int | Type::Number) => Ok(checked),
+            (_, kind) => Err(self.wrong_type(at, "a number", kind)),
+        }
+    }
+
+    fn choose(&mut self, c: &IdedExpr, a: &IdedExpr, b: &IdedExpr, depth: usize) -> Checked {
+        let condition = self.bool(c, depth)?;
+        let (yes, kind) = self.check(a, depth)?;
+        let (no, other) = self.check(b, depth)?;
+        if kind != other {
+            return Err(self.wrong_type(b, &format!("{kind}, as in the other branch,"), other));
+        }
+        Ok((Node::Choose(condition, yes.into(), no.into()), kind))
+    }
+
+    fn binary(
+        &mut self,
+        at: &IdedExpr,
+        operator: Operator,
+        arguments: &[&IdedExpr],
+        depth: usize,
+    ) -> Checked {
+        let &[a, b] = arguments else {
+            return Err(self.error(at, "expression-syntax", "this operator takes two operands"));
+        };
+        let (left, kind) = self.check(a, depth)?;
+        let (right, other) = self.check(b, depth)?;
+        let result = self.binary_type(at, operator, kind, other)?;
+        Ok((Node::Binary(operator, left.into(), right.into()), result))
+    }
+
+    /// Which types an operator takes, as in CEL: no mixed arithmetic, `%` for int only, `+` for text too.
+    fn binary_type(
+        &self,
+        at: &IdedExpr,
+        operator: Operator,
+        a: Type,
+        b: Type,
+    ) -> Result<Type, ExpressionError> {
+        use {Operator as O, Type as T};
+        let numbers = matches!((a, b), (T::Int | T::Number, T::Int | T::Number));
+        let ordered = numbers || (a == b && a == T::Text);
+        match operator {
+            O::Equal | O::NotEqual if a == b || numbers => Ok(T::Bool),
+            O::Less | O::LessOrEqual | O::Greater | O::GreaterOrEqual if ordered => Ok(T::Bool),
+            O::Remainder if a == T::Int && b == T::Int => Ok(T::Int),
+            O::Add | O::Subtract | O::Multiply | O::Divide if numbers && a == b => Ok(a),
+            O::Add if a == T::Text && b == T::Text => Ok(T::Text),
+            _ if numbers && a != b => Err(self.error(
+                at,
+                "wrong-type",
+                "write both operands as doubles (200.0 instead of 200) or convert with double(…)",
+            )),
+            _ => Err(self.error(at, "wrong-type", format!("this operator can't be applied to {a} and {b}"))),
+        }
+    }
+
+    /// `distance_to('COVE')` or `distance_to(position)`.
+    fn distance_to(&mut self, to: &IdedExpr, depth: usize) -> Checked {
+        let target = match &to.expr {
+            Expr::Literal(LiteralValue::String(id)) => {
+                let fix = self.plan.fixes.iter().find(|f| f.id.as_str() == id.inner());
+                let unknown = || {
+                    self.error(
+                        to,
+                        "unknown-name",
+                        format!("there is no fix `{}`: add it or correct its name", id.inner()),
+                    )
+                };
+                Node::Position(fix.ok_or_else(unknown)?.position)
+            }
+            _ => *self.expect(to, Type::Position, depth)?,
+        };
+        Ok((Node::Call(Function::Distance, vec![Node::Flight(FlightName::Position), target]), Type::Number))
+    }
+
+    fn function(&mut self, at: &IdedExpr, name: &str, arguments: &[&IdedExpr], depth: usize) -> Checked {
+        use Type::{Bool, Number, Position, Text};
+        let (function, parameters, result): (_, &[Type], _) = match name {
+            "double" => (Function::Double, &[Number], Number),
+            "abs" => (Function::Abs, &[Number], Number),
+            "min" => (Function::Min, &[Number, Number], Number),
+            "max" => (Function::Max, &[Number, Number], Number),
+            "distance" => (Function::Distance, &[Position, Position], Number),
+            "offset" => (Function::Offset, &[Position, Number, Number], Position),
+            "contains" => (Function::Contains, &[Text, Text], Bool),
+            "startsWith" => (Function::StartsWith, &[Text, Text], Bool),
+            "endsWith" => (Function::EndsWith, &[Text, Text], Bool),
+            _ => {
+                return Err(self.error(
+                    at,
+                    "unknown-name",
+                    format!("there is no function `{name}`: correct its name"),
+                ));
+            }
+        };
+        if arguments.len() != parameters.len() {
+            let message = format!("`{name}` takes {} arguments, not {}", parameters.len(), arguments.len());
+            return Err(self.error(at, "wrong-type", message));
+        }
+        let mut nodes = Vec::with_capacity(arguments.len());
+        for (argument, wanted) in arguments.iter().zip(parameters) {
+            nodes.push(*self.expect(argument, *wanted, depth)?);
+        }
+        Ok((Node::Call(function, nodes), result))
+    }
+}
+
+fn binary_operator(name: &str) -> Option<Operator> {
+    Some(match name {
+        operators::ADD => Operator::Add,
+        operators::SUBSTRACT => Operator::Subtract,
+        operators::MULTIPLY => Operator::Multiply,
+        operators::DIVIDE => Operator::Divide,
+        operators::MODULO => Operator::Remainder,
+        operators::EQUALS => Operator::Equal,
+        operators::NOT_EQUALS => Operator::NotEqual,
+        operators::LESS => Operator::Less,
+        operators::LESS_EQUALS => Operator::LessOrEqual,
+        operators::GREATER => Operator::Greater,
+        operators::GREATER_EQUALS => Operator::GreaterOrEqual,
+        _ => return None,
+    })
+}

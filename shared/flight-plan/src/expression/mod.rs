@@ -1,0 +1,185 @@
+//! Conditions and expressions: a typed subset of the Common Expression Language.
+//!
+//! The `cel` crate parses; this module checks the types against the plan's names, resolves fixes, and keeps a
+//! small tree that is evaluated without allocation surprises: bounded in size and depth, no loops, no side effects.
+//! The subset: literals (bool, int, double, string), the plan's variables, the in-flight names, `! - + * / % == != < <= > >= && || ?:`,
+//! `double(int)`, `abs(number)`, `min(a, b)`, `max(a, b)`, `distance_to(fix or position)`, `distance(p, q)`,
+//! `offset(position, bearing_deg, distance_m)` and the text tests `contains`, `startsWith`, `endsWith`.
+//! As in CEL, int and double compare with each other but do not mix in arithmetic.
+
+mod compile;
+mod eval;
+
+pub use compile::{MAX_DEPTH, MAX_LENGTH, compile};
+pub use eval::{Env, EvalError, FlightState};
+
+use crate::Id;
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// Type of an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Type {
+    /// True or false.
+    Bool,
+    /// A whole number (CEL `int`).
+    Int,
+    /// A number (CEL `double`).
+    Number,
+    /// Text.
+    Text,
+    /// A position.
+    Position,
+}
+
+impl std::fmt::Display for Type {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Type::Bool => "a condition (bool)",
+            Type::Int => "a whole number (int)",
+            Type::Number => "a number (double)",
+            Type::Text => "text",
+            Type::Position => "a position",
+        })
+    }
+}
+
+/// What is wrong with an expression.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message} (column {column} of `{source_text}`)")]
+pub struct ExpressionError {
+    /// `expression-syntax`, `unknown-name`, `wrong-type` or `expression-too-large`.
+    pub code: &'static str,
+    /// Column in the expression, characters from 1.
+    pub column: usize,
+    /// The expression.
+    pub source_text: String,
+    /// Says what to do.
+    pub message: String,
+}
+
+/// A checked expression.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    /// Type of its value.
+    pub kind: Type,
+    /// Variables it reads, each once.
+    pub variables: Vec<Id>,
+    node: Node,
+}
+
+/// A name whose value the flight gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FlightName {
+    Iteration,
+    Time,
+    Altitude,
+    Airspeed,
+    Battery,
+    Fuel,
+    Wind,
+    Position,
+}
+
+impl FlightName {
+    /// Every in-flight name with its meaning.
+    const ALL: [(&'static str, FlightName, Type); 8] = [
+        ("iteration", FlightName::Iteration, Type::Int),
+        ("time", FlightName::Time, Type::Number),
+        ("altitude", FlightName::Altitude, Type::Number),
+        ("airspeed", FlightName::Airspeed, Type::Number),
+        ("battery", FlightName::Battery, Type::Number),
+        ("fuel", FlightName::Fuel, Type::Number),
+        ("wind", FlightName::Wind, Type::Number),
+        ("position", FlightName::Position, Type::Position),
+    ];
+}
+
+/// True for names that a variable can't have because the language has them.
+pub fn is_reserved(name: &str) -> bool {
+    /// CEL's keywords and reserved words, and our functions.
+    const WORDS: [&str; 32] = [
+        "true",
+        "false",
+        "null",
+        "in",
+        "as",
+        "break",
+        "const",
+        "continue",
+        "else",
+        "for",
+        "function",
+        "if",
+        "import",
+        "let",
+        "loop",
+        "package",
+        "namespace",
+        "return",
+        "var",
+        "void",
+        "while",
+        "double",
+        "int",
+        "abs",
+        "min",
+        "max",
+        "distance",
+        "distance_to",
+        "offset",
+        "contains",
+        "startsWith",
+        "endsWith",
+    ];
+    WORDS.contains(&name) || FlightName::ALL.iter().any(|(n, ..)| *n == name)
+}
+
+/// Arithmetic and comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+    Equal,
+    NotEqual,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+/// Functions of numbers, positions and text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Function {
+    Double,
+    Abs,
+    Min,
+    Max,
+    Distance,
+    Offset,
+    Contains,
+    StartsWith,
+    EndsWith,
+}
+
+/// A checked tree.
+#[derive(Debug, Clone, PartialEq)]
+enum Node {
+    Bool(bool),
+    Int(i64),
+    Number(f64),
+    Text(Arc<str>),
+    Position(LatLon),
+    Variable(Id),
+    Flight(FlightName),
+    Not(Box<Node>),
+    Negate(Box<Node>),
+    And(Box<Node>, Box<Node>),
+    Or(Box<Node>, Box<Node>),
+    Choose(Box<Node>, Box<Node>, Box<Node>),
+    Binary(Operator, Box<Node>, Box<Node>),
+    Call(Function, Vec<Node>),
+}

@@ -1,0 +1,125 @@
+//! The plan's variables in flight: typed, bounded, written by services and people.
+
+use crate::{FlightPlan, Id, Variable, VariableValue};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Present values by name.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Variables(BTreeMap<Id, VariableValue>);
+
+/// Why a value was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum VariableError {
+    /// No such variable.
+    #[error("the plan has no variable `{0}`")]
+    Unknown(Id),
+    /// Another type.
+    #[error("variable `{name}` is {wanted}: give it a value of that type")]
+    WrongType {
+        /// The variable.
+        name: Id,
+        /// Its type.
+        wanted: &'static str,
+    },
+    /// Outside its bounds, or not finite, or not on Earth.
+    #[error("variable `{name}` must be {allowed}")]
+    OutOfBounds {
+        /// The variable.
+        name: Id,
+        /// What is allowed.
+        allowed: String,
+    },
+}
+
+impl VariableValue {
+    /// The type's name in the document.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            VariableValue::Bool(_) => "bool",
+            VariableValue::Number(_) => "number",
+            VariableValue::Text(_) => "text",
+            VariableValue::Position(_) => "position",
+        }
+    }
+}
+
+impl Variable {
+    /// Whether it may have this value: the right type, within its bounds, finite.
+    pub fn accepts(&self, value: &VariableValue) -> Result<(), VariableError> {
+        use VariableValue as V;
+        match (&self.initial, value) {
+            (V::Bool(_), V::Bool(_)) => Ok(()),
+            (V::Number(_), V::Number(x)) => self.accepts_number(*x),
+            (V::Text(_), V::Text(text)) => self.accepts_text(text),
+            (V::Position(_), V::Position(p)) if p.is_valid() => Ok(()),
+            (V::Position(_), V::Position(_)) => {
+                Err(self.out_of_bounds("a valid latitude and longitude".into()))
+            }
+            _ => Err(VariableError::WrongType { name: self.name.clone(), wanted: self.initial.type_name() }),
+        }
+    }
+
+    fn accepts_number(&self, x: f64) -> Result<(), VariableError> {
+        let low = self.min.is_none_or(|min| x >= min);
+        let high = self.max.is_none_or(|max| x <= max);
+        if x.is_finite() && low && high {
+            return Ok(());
+        }
+        let bound = |b: Option<f64>| b.map_or_else(|| "any".into(), |b| b.to_string());
+        Err(self.out_of_bounds(format!("a number between {} and {}", bound(self.min), bound(self.max))))
+    }
+
+    fn accepts_text(&self, text: &str) -> Result<(), VariableError> {
+        let longest = self.text_limit();
+        if text.chars().count() <= longest {
+            Ok(())
+        } else {
+            Err(self.out_of_bounds(format!("at most {longest} characters long")))
+        }
+    }
+
+    /// Longest text it takes, characters: its own limit, and never more than 1000.
+    pub fn text_limit(&self) -> usize {
+        const LONGEST: usize = 1000;
+        self.max_length.map_or(LONGEST, |n| n.min(LONGEST))
+    }
+
+    fn out_of_bounds(&self, allowed: String) -> VariableError {
+        VariableError::OutOfBounds { name: self.name.clone(), allowed }
+    }
+}
+
+impl Variables {
+    /// Every variable of the plan at its initial value.
+    pub fn initial(plan: &FlightPlan) -> Self {
+        Self(plan.variables.iter().map(|v| (v.name.clone(), v.initial.clone())).collect())
+    }
+
+    /// A variable's value.
+    pub fn get(&self, name: &Id) -> Option<&VariableValue> {
+        self.0.get(name)
+    }
+
+    /// Names and values, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&Id, &VariableValue)> {
+        self.0.iter()
+    }
+
+    /// Writes one, if the plan has it and it accepts the value.
+    pub fn set(&mut self, plan: &FlightPlan, name: &Id, value: VariableValue) -> Result<(), VariableError> {
+        let unknown = || VariableError::Unknown(name.clone());
+        plan.variables.iter().find(|v| v.name == *name).ok_or_else(unknown)?.accepts(&value)?;
+        self.0.insert(name.clone(), value);
+        Ok(())
+    }
+
+    /// The variables of a new plan: values that it still accepts are kept, the others start afresh.
+    pub fn carried_over(&self, plan: &FlightPlan) -> Self {
+        let keep = |v: &Variable| {
+            self.get(&v.name).filter(|value| v.accepts(value).is_ok()).unwrap_or(&v.initial).clone()
+        };
+        Self(plan.variables.iter().map(|v| (v.name.clone(), keep(v))).collect())
+    }
+}

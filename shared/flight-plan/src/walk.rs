@@ -1,0 +1,137 @@
+//! Walking a plan: every leg with what is around it.
+
+use crate::{EmergencyPlan, FlightPlan, Id, Leg, LegKind, Stage};
+
+/// Which part of the document a stage is in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Section<'a> {
+    /// The main plan.
+    Main,
+    /// An emergency plan.
+    Emergency(&'a EmergencyPlan),
+}
+
+/// A leg with what is around it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegContext<'a> {
+    /// The leg.
+    pub leg: &'a Leg,
+    /// Its stage.
+    pub stage: &'a Stage,
+    /// Main plan or emergency plan.
+    pub section: Section<'a>,
+    /// Iterative legs around it, outermost first.
+    pub loops: Vec<&'a Leg>,
+    /// The list it is in: its stage's legs or the innermost loop's body.
+    pub siblings: &'a [Leg],
+    /// Its index in that list.
+    pub index: usize,
+}
+
+impl<'a> LegContext<'a> {
+    /// The leg that follows: `next` if it names a sibling, else the next in the document.
+    pub fn successor(&self) -> Option<&'a Leg> {
+        match &self.leg.next {
+            Some(next) => self.siblings.iter().find(|l| l.id == *next),
+            None => self.siblings.get(self.index + 1),
+        }
+    }
+}
+
+impl Leg {
+    /// The legs inside it: the body of an iterative leg, else none.
+    pub fn body(&self) -> &[Leg] {
+        match &self.kind {
+            LegKind::Iterative { body, .. } => body,
+            _ => &[],
+        }
+    }
+
+    /// What it is called in the document.
+    pub fn kind_name(&self) -> &'static str {
+        match &self.kind {
+            LegKind::If(_) => "IF",
+            LegKind::Tf(_) => "TF",
+            LegKind::Df { .. } => "DF",
+            LegKind::Rf { .. } => "RF",
+            LegKind::Hf(_) => "HF",
+            LegKind::Ha(_) => "HA",
+            LegKind::Iterative { .. } => "iterative",
+            LegKind::Intersection { .. } => "intersection",
+            LegKind::Scan(_) => "scan",
+            LegKind::Orbit { .. } => "orbit",
+        }
+    }
+}
+
+impl FlightPlan {
+    /// Every stage in document order, with its section.
+    pub fn all_stages(&self) -> impl Iterator<Item = (Section<'_>, &Stage)> {
+        let main = self.stages.iter().map(|s| (Section::Main, s));
+        main.chain(
+            self.emergency_plans
+                .iter()
+                .flat_map(|e| e.stages.iter().map(move |s| (Section::Emergency(e), s))),
+        )
+    }
+
+    /// Every leg in document order, a loop before its body.
+    pub fn all_legs(&self) -> Vec<LegContext<'_>> {
+        let mut found = Vec::new();
+        for (section, stage) in self.all_stages() {
+            collect(&stage.legs, stage, section, &mut Vec::new(), &mut found);
+        }
+        found
+    }
+
+    /// A leg by its identifier, with what is around it.
+    pub fn leg(&self, id: &Id) -> Option<LegContext<'_>> {
+        self.all_legs().into_iter().find(|c| c.leg.id == *id)
+    }
+
+    /// A stage by its identifier.
+    pub fn stage(&self, id: &Id) -> Option<&Stage> {
+        self.all_stages().map(|(_, s)| s).find(|s| s.id == *id)
+    }
+
+    /// A fix by its identifier.
+    pub fn fix(&self, id: &Id) -> Option<&crate::Fix> {
+        self.fixes.iter().find(|f| f.id == *id)
+    }
+
+    /// A runway by its identifier.
+    pub fn runway(&self, id: &Id) -> Option<&crate::Runway> {
+        self.runways.iter().find(|r| r.id == *id)
+    }
+
+    /// A variable by its name.
+    pub fn variable(&self, name: &Id) -> Option<&crate::Variable> {
+        self.variables.iter().find(|v| v.name == *name)
+    }
+
+    /// An emergency plan by its identifier.
+    pub fn emergency_plan(&self, id: &Id) -> Option<&EmergencyPlan> {
+        self.emergency_plans.iter().find(|e| e.id == *id)
+    }
+
+    /// The runway of the first take-off stage: where the aircraft stands, and what `home` altitudes are above.
+    pub fn home(&self) -> Option<&crate::Runway> {
+        let take_off = self.stages.iter().find(|s| s.kind == crate::StageKind::TakeOff)?;
+        self.runway(take_off.runway.as_ref()?)
+    }
+}
+
+fn collect<'a>(
+    legs: &'a [Leg],
+    stage: &'a Stage,
+    section: Section<'a>,
+    loops: &mut Vec<&'a Leg>,
+    found: &mut Vec<LegContext<'a>>,
+) {
+    for (index, leg) in legs.iter().enumerate() {
+        found.push(LegContext { leg, stage, section, loops: loops.clone(), siblings: legs, index });
+        loops.push(leg);
+        collect(leg.body(), stage, section, loops, found);
+        loops.pop();
+    }
+}

@@ -1,0 +1,29 @@
+//! The document: XML in and out.
+//!
+//! Reading never fails as a whole: it gives a plan, as far as one can be made out, and the problems it met.
+//! Writing is canonical: the same plan gives the same bytes, and their SHA-256 is the plan's identity.
+
+mod attributes;
+mod cursor;
+mod legs;
+mod read;
+mod write;
+
+pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEMS};
+pub use read::{Places, Reading, read};
+pub use write::write;
+
+use crate::FlightPlan;
+use sha2::{Digest, Sha256};
+
+/// The document's namespace.
+pub const NAMESPACE: &str = "urn:legwork:flight-plan:1";
+
+/// Hex SHA-256 of the plan's canonical document: its identity aboard and on the ground.
+pub fn hash(plan: &FlightPlan) -> String {
+    use std::fmt::Write;
+    Sha256::digest(write(plan)).iter().fold(String::with_capacity(64), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}

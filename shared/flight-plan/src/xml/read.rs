@@ -1,0 +1,463 @@
+//! From bytes to a plan and problems.
+
+use super::cursor::{Cursor, Element, MAX_BYTES, shown};
+use super::{NAMESPACE, attributes};
+use crate::{
+    Altitude, AltitudeReference, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Location,
+    Problem, Runway, Stage, StageKind, Value, Variable, VariableValue,
+};
+use geometry::LatLon;
+use std::collections::HashMap;
+
+/// What came out of a document.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reading {
+    /// The plan, as far as it could be made out. What was missing or broken is an unknown fix or NaN in it,
+    /// so that the checks refuse it too.
+    pub plan: FlightPlan,
+    /// What is wrong with the document (not yet with the plan: see [`crate::check`]).
+    pub problems: Vec<Problem>,
+    /// Where everything stands.
+    pub places: Places,
+}
+
+/// Where the elements with identifiers stand in a document.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Places(HashMap<Id, Location>);
+
+impl Places {
+    /// Where a leg, stage, fix, runway, variable or emergency plan stands (the last one, if the identifier is there twice).
+    pub fn get(&self, id: &Id) -> Option<Location> {
+        self.0.get(id).copied()
+    }
+
+    /// Adds places to problems that have a subject and no place.
+    pub fn locate(&self, problems: &mut [Problem]) {
+        for problem in problems.iter_mut().filter(|p| p.location.is_none()) {
+            problem.location = problem.subject.as_ref().and_then(|id| self.get(id));
+        }
+    }
+}
+
+impl Reading {
+    /// The document has problems that forbid flying.
+    pub fn has_errors(&self) -> bool {
+        self.problems.iter().any(Problem::is_error)
+    }
+}
+
+/// Reads a document. Never fails as a whole: see [`Reading`]. Time and memory are bounded by the
+/// limits beside this function, whatever the bytes are.
+pub fn read(document: impl AsRef<[u8]>) -> Reading {
+    let bytes = document.as_ref();
+    if bytes.len() > MAX_BYTES {
+        let message = format!(
+            "this document has {} bytes, at most {MAX_BYTES} are accepted: split the plan",
+            bytes.len()
+        );
+        return Reading { problems: vec![Problem::error("too-large", message)], ..Reading::default() };
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = String::from_utf8_lossy(bytes);
+    let encoding = encoding_problem(bytes).or_else(|| character_problem(&text));
+    let mut document = Document { cursor: Cursor::new(&text), places: Places::default() };
+    encoding.into_iter().for_each(|p| document.cursor.report(p));
+    let plan = document.flight_plan();
+    Reading { plan, problems: document.cursor.into_problems(), places: document.places }
+}
+
+fn encoding_problem(bytes: &[u8]) -> Option<Problem> {
+    let error = std::str::from_utf8(bytes).err()?;
+    let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to())?);
+    let message = "save the document as UTF-8: this byte does not belong to it";
+    Some(Problem::error("not-utf8", message).at(location_of(&before)))
+}
+
+fn character_problem(text: &str) -> Option<Problem> {
+    let (offset, character) = text.char_indices().find(|(_, c)| !attributes::allowed(*c))?;
+    let message = format!("remove this character (U+{:04X}): XML does not allow it", u32::from(character));
+    Some(Problem::error("bad-character", message).at(location_of(text.get(..offset)?)))
+}
+
+/// The place just behind a text.
+fn location_of(before: &str) -> Location {
+    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+    Location {
+        line: before.matches('\n').count() + 1,
+        column: before.get(line_start..).map_or(0, |l| l.chars().count()) + 1,
+    }
+}
+
+/// A document being read.
+pub(super) struct Document<'a> {
+    pub cursor: Cursor<'a>,
+    places: Places,
+}
+
+impl<'a> Document<'a> {
+    fn flight_plan(&mut self) -> FlightPlan {
+        let mut plan = FlightPlan::default();
+        let Some(root) = self.cursor.root() else {
+            self.cursor.report(Problem::error(
+                "not-a-plan",
+                "this is not a flight plan: it has no <flightPlan> element",
+            ));
+            return plan;
+        };
+        if root.name != "flightPlan" {
+            let message = format!(
+                "this is not a flight plan: the first element is <{}>, not <flightPlan>",
+                shown(root.name)
+            );
+            self.cursor.report(Problem::error("not-a-plan", message).at(root.location));
+            return plan;
+        }
+        if root.attributes.take("xmlns").is_none_or(|n| n != NAMESPACE) {
+            let message = format!("write xmlns=\"{NAMESPACE}\" on <flightPlan>");
+            self.cursor.report(Problem::error("namespace", message).at(root.location));
+        }
+        plan.name = self.text(&root, "name");
+        plan.aircraft = self.text(&root, "aircraft");
+        while let Some(part) = self.cursor.child(&root) {
+            self.part(part, &mut plan);
+        }
+        self.cursor.finish(&root);
+        if let Some(second) = self.cursor.root() {
+            self.cursor.unknown(second, "document", "one <flightPlan>");
+        }
+        plan
+    }
+
+    fn part(&mut self, part: Element<'a>, plan: &mut FlightPlan) {
+        match part.name {
+            "fixes" => self.list(&part, "fix", &mut plan.fixes, Self::fix),
+            "runways" => self.list(&part, "runway", &mut plan.runways, Self::runway),
+            "variables" => self.list(&part, "variable", &mut plan.variables, Self::variable),
+            "emergencyPlans" => {
+                self.list(&part, "emergencyPlan", &mut plan.emergency_plans, Self::emergency_plan)
+            }
+            "mainPlan" => {
+                plan.emergency = self.emergency_attribute(&part);
+                self.stages(&part, &mut plan.stages, Some(&mut plan.emergency));
+            }
+            _ => {
+                return self.cursor.unknown(
+                    part,
+                    "flightPlan",
+                    "fixes, runways, variables, mainPlan, emergencyPlans",
+                );
+            }
+        }
+        self.cursor.finish(&part);
+    }
+
+    fn list<T>(
+        &mut self,
+        parent: &Element<'a>,
+        name: &str,
+        into: &mut Vec<T>,
+        read: fn(&mut Self, Element<'a>) -> T,
+    ) {
+        while let Some(child) = self.cursor.child(parent) {
+            if child.name == name {
+                let item = read(self, child);
+                into.push(item);
+            } else {
+                self.cursor.unknown(child, parent.name, name);
+            }
+        }
+    }
+
+    fn fix(&mut self, element: Element<'a>) -> Fix {
+        let fix = Fix {
+            id: self.id(&element, "id"),
+            position: self.lat_lon(&element, "lat", "lon").unwrap_or(NOWHERE),
+            name: self.text(&element, "name"),
+            description: self.text(&element, "description"),
+        };
+        self.cursor.close(element);
+        fix
+    }
+
+    fn runway(&mut self, element: Element<'a>) -> Runway {
+        let runway = Runway {
+            id: self.id(&element, "id"),
+            threshold: self.lat_lon(&element, "lat", "lon").unwrap_or(NOWHERE),
+            elevation_amsl_m: self.required_number(&element, "elevation"),
+            heading_deg: self.required_number(&element, "heading"),
+            length_m: self.required_number(&element, "length"),
+            priority: self.whole(&element, "priority").unwrap_or(1),
+            approach_entry: self.parsed(
+                &element,
+                "approachEntry",
+                "a position: latitude and longitude in degrees",
+                position,
+            ),
+        };
+        self.cursor.close(element);
+        runway
+    }
+
+    fn variable(&mut self, element: Element<'a>) -> Variable {
+        let variable = Variable {
+            name: self.id(&element, "name"),
+            initial: self.initial(&element),
+            unit: self.text(&element, "unit"),
+            min: self.number(&element, "min"),
+            max: self.number(&element, "max"),
+            max_length: self.whole(&element, "maxLength"),
+        };
+        self.cursor.close(element);
+        variable
+    }
+
+    fn initial(&mut self, element: &Element<'a>) -> VariableValue {
+        const TYPES: [(&str, u8); 4] = [("bool", 0), ("number", 1), ("text", 2), ("position", 3)];
+        let kind = self.choice(element, "type", &TYPES);
+        self.require(element, "type");
+        self.require(element, "initial");
+        match kind {
+            Some(0) => VariableValue::Bool(self.flag(element, "initial")),
+            Some(1) => VariableValue::Number(self.number(element, "initial").unwrap_or(f64::NAN)),
+            Some(3) => {
+                let wanted = "a position: latitude and longitude in degrees";
+                VariableValue::Position(self.parsed(element, "initial", wanted, position).unwrap_or(NOWHERE))
+            }
+            _ => VariableValue::Text(self.text(element, "initial")),
+        }
+    }
+
+    fn emergency_plan(&mut self, element: Element<'a>) -> EmergencyPlan {
+        let mut plan = EmergencyPlan {
+            id: self.id(&element, "id"),
+            name: self.text(&element, "name"),
+            runway: self.reference(&element, "runway").unwrap_or_else(|| self.missing(&element, "runway")),
+            stages: Vec::new(),
+        };
+        self.stages(&element, &mut plan.stages, None);
+        self.cursor.finish(&element);
+        plan
+    }
+
+    /// Stages, and where the element may have them, emergencies by cause.
+    fn stages(
+        &mut self,
+        parent: &Element<'a>,
+        into: &mut Vec<Stage>,
+        mut emergency: Option<&mut EmergencyChoice>,
+    ) {
+        while let Some(child) = self.cursor.child(parent) {
+            match (child.name, &mut emergency) {
+                ("stage", _) => {
+                    let stage = self.stage(child);
+                    into.push(stage);
+                }
+                ("emergency", Some(choice)) => self.emergency_child(child, choice),
+                _ => self.cursor.unknown(child, parent.name, "stage"),
+            }
+        }
+    }
+
+    fn stage(&mut self, element: Element<'a>) -> Stage {
+        const KINDS: [(&str, StageKind); 7] = [
+            ("take-off", StageKind::TakeOff),
+            ("departure", StageKind::Departure),
+            ("en-route", StageKind::EnRoute),
+            ("mission", StageKind::Mission),
+            ("arrival", StageKind::Arrival),
+            ("approach", StageKind::Approach),
+            ("land", StageKind::Land),
+        ];
+        self.require(&element, "type");
+        let mut stage = Stage {
+            id: self.id(&element, "id"),
+            name: self.text(&element, "name"),
+            kind: self.choice(&element, "type", &KINDS).unwrap_or(StageKind::EnRoute),
+            emergency: self.emergency_attribute(&element),
+            runway: self.reference(&element, "runway"),
+            altitude: self.altitude(&element),
+            speed_mps: self.value(&element, "speed"),
+            legs: Vec::new(),
+        };
+        self.legs(&element, &mut stage.legs, &mut stage.emergency);
+        self.cursor.finish(&element);
+        stage
+    }
+
+    /// The `emergency` attribute: the fallback for every cause.
+    pub fn emergency_attribute(&mut self, element: &Element<'a>) -> EmergencyChoice {
+        EmergencyChoice {
+            by_cause: self.reference(element, "emergency").map(|plan| (None, plan)).into_iter().collect(),
+        }
+    }
+
+    /// `<emergency cause="…" plan="…"/>`.
+    pub fn emergency_child(&mut self, element: Element<'a>, into: &mut EmergencyChoice) {
+        const CAUSES: [(&str, Cause); 7] = [
+            ("operator", Cause::Operator),
+            ("payload", Cause::Payload),
+            ("traffic", Cause::Traffic),
+            ("link", Cause::Link),
+            ("gps", Cause::Gps),
+            ("energy", Cause::Energy),
+            ("engine", Cause::Engine),
+        ];
+        self.require(&element, "cause");
+        let cause = self.choice(&element, "cause", &CAUSES);
+        let plan = self.reference(&element, "plan").unwrap_or_else(|| self.missing(&element, "plan"));
+        into.by_cause.push((cause, plan));
+        self.cursor.close(element);
+    }
+
+    pub fn altitude(&mut self, element: &Element<'a>) -> Option<Altitude> {
+        let reference = self.choice(element, "altitudeReference", &REFERENCES);
+        let metres = self.value(element, "altitude");
+        if metres.is_some() != element.attributes.take("altitudeReference").is_some() {
+            let message = format!(
+                "give <{}> both `altitude` and `altitudeReference` (amsl, agl or home), or neither",
+                element.name
+            );
+            self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
+        }
+        Some(Altitude { metres: metres?, reference: reference.unwrap_or(AltitudeReference::Amsl) })
+    }
+}
+
+const REFERENCES: [(&str, AltitudeReference); 3] =
+    [("amsl", AltitudeReference::Amsl), ("agl", AltitudeReference::Agl), ("home", AltitudeReference::Home)];
+
+/// Stands for a position that could not be read: never valid.
+const NOWHERE: LatLon = LatLon::new(f64::NAN, f64::NAN);
+
+/// Attributes, each with its problems.
+impl<'a> Document<'a> {
+    pub fn text(&mut self, element: &Element<'a>, name: &str) -> String {
+        element.attributes.take(name).map_or_else(String::new, |v| v.as_ref().into())
+    }
+
+    /// An identifier of this element: required, and its place is kept.
+    pub fn id(&mut self, element: &Element<'a>, name: &str) -> Id {
+        let id = self.reference(element, name).unwrap_or_else(|| self.missing(element, name));
+        self.places.0.insert(id.clone(), element.location);
+        id
+    }
+
+    /// An identifier of something else.
+    pub fn reference(&mut self, element: &Element<'a>, name: &str) -> Option<Id> {
+        element.attributes.take(name).map(|v| Id::new(v.trim()))
+    }
+
+    /// Reports that an attribute is missing, and stands in for it.
+    pub fn missing(&mut self, element: &Element<'a>, name: &str) -> Id {
+        self.require(element, name);
+        Id::new("")
+    }
+
+    pub fn require(&mut self, element: &Element<'a>, name: &str) {
+        if element.attributes.location(name).is_none() {
+            let message = format!("give <{}> the attribute `{name}`", element.name);
+            self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
+        }
+    }
+
+    /// An attribute through a parser; what it refuses is a problem.
+    pub fn parsed<T>(
+        &mut self,
+        element: &Element<'a>,
+        name: &str,
+        wanted: &str,
+        parse: fn(&str) -> Option<T>,
+    ) -> Option<T> {
+        let text = element.attributes.take(name)?;
+        let parsed = parse(text.trim());
+        if parsed.is_none() {
+            let message = format!("`{name}` must be {wanted}, not \"{}\"", shown(text));
+            let location = element.attributes.location(name).unwrap_or(element.location);
+            self.cursor.report(Problem::error("bad-value", message).at(location));
+        }
+        parsed
+    }
+
+    pub fn choice<T: Copy>(&mut self, element: &Element<'a>, name: &str, allowed: &[(&str, T)]) -> Option<T> {
+        let text = element.attributes.take(name)?;
+        let found = allowed.iter().find(|(word, _)| *word == text.trim()).map(|(_, value)| *value);
+        if found.is_none() {
+            let words: Vec<&str> = allowed.iter().map(|(word, _)| *word).collect();
+            let message = format!("`{name}` must be one of {}, not \"{}\"", words.join(", "), shown(text));
+            let location = element.attributes.location(name).unwrap_or(element.location);
+            self.cursor.report(Problem::error("bad-value", message).at(location));
+        }
+        found
+    }
+
+    pub fn flag(&mut self, element: &Element<'a>, name: &str) -> bool {
+        self.choice(element, name, &[("true", true), ("1", true), ("false", false), ("0", false)])
+            .unwrap_or(false)
+    }
+
+    pub fn number(&mut self, element: &Element<'a>, name: &str) -> Option<f64> {
+        self.parsed(element, name, "a finite number", number)
+    }
+
+    fn required_number(&mut self, element: &Element<'a>, name: &str) -> f64 {
+        self.require(element, name);
+        self.number(element, name).unwrap_or(f64::NAN)
+    }
+
+    fn whole<T: std::str::FromStr>(&mut self, element: &Element<'a>, name: &str) -> Option<T> {
+        self.parsed(element, name, "a whole number", |text| text.parse().ok())
+    }
+
+    /// A number or `= expression`; what can't be read is NaN.
+    pub fn value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<f64>> {
+        element.attributes.take(name)?;
+        let wanted = "a finite number, or = and an expression";
+        Some(
+            self.parsed(element, name, wanted, |text| value(text, number))
+                .unwrap_or(Value::Constant(f64::NAN)),
+        )
+    }
+
+    pub fn required_value(&mut self, element: &Element<'a>, name: &str) -> Value<f64> {
+        self.require(element, name);
+        self.value(element, name).unwrap_or(Value::Constant(f64::NAN))
+    }
+
+    /// A position as `lat lon`, or `= expression`.
+    pub fn position_value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<LatLon>> {
+        let wanted = "latitude and longitude in degrees, or = and an expression";
+        self.parsed(element, name, wanted, |text| value(text, position))
+    }
+
+    /// A position in two attributes, both required.
+    pub fn lat_lon(&mut self, element: &Element<'a>, lat: &str, lon: &str) -> Option<LatLon> {
+        self.require(element, lat);
+        self.require(element, lon);
+        let latitude = self.parsed(element, lat, "a latitude in degrees, −90 to 90", |text| {
+            number(text).filter(|x| x.abs() <= 90.0)
+        });
+        let longitude = self.parsed(element, lon, "a longitude in degrees, −180 to 180", |text| {
+            number(text).filter(|x| x.abs() <= 180.0)
+        });
+        Some(LatLon::new(latitude?, longitude?))
+    }
+}
+
+/// A finite number (not `inf`, not `NaN`).
+pub(super) fn number(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// `lat lon`, degrees.
+fn position(text: &str) -> Option<LatLon> {
+    let (lat, lon) = text.split_once([' ', ','])?;
+    Some(LatLon::new(number(lat.trim())?, number(lon.trim())?)).filter(|p| p.is_valid())
+}
+
+/// `= expression` or a constant.
+fn value<T>(text: &str, constant: fn(&str) -> Option<T>) -> Option<Value<T>> {
+    match text.strip_prefix('=') {
+        Some(source) => Some(Value::Expression(source.trim().into())),
+        None => constant(text).map(Value::Constant),
+    }
+}

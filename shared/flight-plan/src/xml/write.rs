@@ -1,0 +1,347 @@
+//! From a plan to its canonical document: fixed order, two spaces, shortest numbers.
+
+use super::NAMESPACE;
+use super::attributes::allowed;
+use crate::{
+    Altitude, AltitudeReference, Area, Branch, Cause, DecideBefore, EmergencyChoice, EmergencyPlan, Fix,
+    FlightPlan, Holding, HoldingLength, IterativeForm, Leg, LegKind, Place, PlanWaypoint, Runway, Stage,
+    StageKind, TurnDirection, Value, Variable, VariableValue,
+};
+use geometry::LatLon;
+use std::fmt::{Display, Write};
+
+/// The canonical document of a plan. Reading it gives the plan back.
+pub fn write(plan: &FlightPlan) -> String {
+    let mut out = Writer { text: String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"), depth: 0 };
+    let tag = Tag::new("flightPlan")
+        .with("xmlns", NAMESPACE)
+        .text("name", &plan.name)
+        .text("aircraft", &plan.aircraft);
+    out.element(tag, |out| {
+        out.list("fixes", &plan.fixes, fix);
+        out.list("runways", &plan.runways, runway);
+        out.list("variables", &plan.variables, variable);
+        out.element(fallback(Tag::new("mainPlan"), &plan.emergency), |out| {
+            out.emergencies(&plan.emergency);
+            plan.stages.iter().for_each(|s| stage(out, s));
+        });
+        out.list("emergencyPlans", &plan.emergency_plans, emergency_plan);
+    });
+    out.text
+}
+
+/// A start tag being put together.
+struct Tag {
+    name: &'static str,
+    text: String,
+}
+
+impl Tag {
+    fn new(name: &'static str) -> Self {
+        Self { name, text: format!("<{name}") }
+    }
+
+    fn with(mut self, name: &str, value: impl Display) -> Self {
+        let _ = write!(self.text, " {name}=\"");
+        escape_into(&value.to_string(), &mut self.text);
+        self.text.push('"');
+        self
+    }
+
+    fn maybe(self, name: &str, value: Option<impl Display>) -> Self {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+
+    /// Left out when empty.
+    fn text(self, name: &str, value: &str) -> Self {
+        self.maybe(name, Some(value).filter(|v| !v.is_empty()))
+    }
+
+    fn value(self, name: &str, value: &Value<f64>) -> Self {
+        match value {
+            Value::Constant(x) => self.with(name, x),
+            Value::Expression(source) => self.with(name, format_args!("= {source}")),
+        }
+    }
+
+    fn maybe_value(self, name: &str, value: Option<&Value<f64>>) -> Self {
+        match value {
+            Some(value) => self.value(name, value),
+            None => self,
+        }
+    }
+
+    fn altitude(self, altitude: Option<&Altitude>) -> Self {
+        let Some(altitude) = altitude else { return self };
+        let reference = match altitude.reference {
+            AltitudeReference::Amsl => "amsl",
+            AltitudeReference::Agl => "agl",
+            AltitudeReference::Home => "home",
+        };
+        self.value("altitude", &altitude.metres).with("altitudeReference", reference)
+    }
+
+    /// A place; a constant as `lat` and `lon`.
+    fn place(self, place: &Place, expression: &str) -> Self {
+        match place {
+            Place::Fix(id) => self.with("fix", id),
+            Place::Position(Value::Constant(p)) => self.with("lat", p.lat_deg).with("lon", p.lon_deg),
+            Place::Position(Value::Expression(source)) => self.with(expression, format_args!("= {source}")),
+        }
+    }
+
+    fn waypoint(self, waypoint: &PlanWaypoint) -> Self {
+        self.place(&waypoint.place, "at").maybe("flyOver", waypoint.fly_over.then_some(true))
+    }
+
+    fn turn(self, turn: TurnDirection) -> Self {
+        self.with("turn", if turn == TurnDirection::Left { "left" } else { "right" })
+    }
+}
+
+/// Attribute values: what reading would change is written as a reference; what XML can't say becomes U+FFFD.
+fn escape_into(value: &str, text: &mut String) {
+    for c in value.chars() {
+        match c {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '"' => text.push_str("&quot;"),
+            '\t' | '\n' | '\r' => {
+                let _ = write!(text, "&#{};", u32::from(c));
+            }
+            c if allowed(c) => text.push(c),
+            _ => text.push('\u{fffd}'),
+        }
+    }
+}
+
+/// The document being written.
+struct Writer {
+    text: String,
+    depth: usize,
+}
+
+impl Writer {
+    fn line(&mut self, line: &str) {
+        self.text.extend(std::iter::repeat_n("  ", self.depth));
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    fn leaf(&mut self, tag: Tag) {
+        self.line(&(tag.text + "/>"));
+    }
+
+    /// An element with its children; without children it is a leaf.
+    fn element(&mut self, tag: Tag, children: impl FnOnce(&mut Self)) {
+        let before = self.text.len();
+        self.line(&format!("{}>", tag.text));
+        let opened = self.text.len();
+        self.depth += 1;
+        children(self);
+        self.depth -= 1;
+        if self.text.len() == opened {
+            self.text.truncate(before);
+            self.leaf(tag);
+        } else {
+            self.line(&format!("</{}>", tag.name));
+        }
+    }
+
+    fn list<T>(&mut self, name: &'static str, items: &[T], write: fn(&mut Self, &T)) {
+        if !items.is_empty() {
+            self.element(Tag::new(name), |out| items.iter().for_each(|item| write(out, item)));
+        }
+    }
+
+    /// Everything but the fallback, which is the `emergency` attribute.
+    fn emergencies(&mut self, choice: &EmergencyChoice) {
+        for (cause, plan) in choice.by_cause.iter().filter(|(cause, _)| cause.is_some()) {
+            self.leaf(Tag::new("emergency").maybe("cause", cause.map(cause_name)).with("plan", plan));
+        }
+    }
+}
+
+fn fallback(tag: Tag, choice: &EmergencyChoice) -> Tag {
+    tag.maybe("emergency", choice.by_cause.iter().find(|(cause, _)| cause.is_none()).map(|(_, plan)| plan))
+}
+
+fn cause_name(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Operator => "operator",
+        Cause::Payload => "payload",
+        Cause::Traffic => "traffic",
+        Cause::Link => "link",
+        Cause::Gps => "gps",
+        Cause::Energy => "energy",
+        Cause::Engine => "engine",
+    }
+}
+
+fn lat_lon(p: LatLon) -> String {
+    format!("{} {}", p.lat_deg, p.lon_deg)
+}
+
+fn fix(out: &mut Writer, fix: &Fix) {
+    let tag = Tag::new("fix")
+        .with("id", &fix.id)
+        .with("lat", fix.position.lat_deg)
+        .with("lon", fix.position.lon_deg);
+    out.leaf(tag.text("name", &fix.name).text("description", &fix.description));
+}
+
+fn runway(out: &mut Writer, runway: &Runway) {
+    let tag = Tag::new("runway")
+        .with("id", &runway.id)
+        .with("lat", runway.threshold.lat_deg)
+        .with("lon", runway.threshold.lon_deg)
+        .with("elevation", runway.elevation_amsl_m)
+        .with("heading", runway.heading_deg)
+        .with("length", runway.length_m)
+        .with("priority", runway.priority)
+        .maybe("approachEntry", runway.approach_entry.map(lat_lon));
+    out.leaf(tag);
+}
+
+fn variable(out: &mut Writer, variable: &Variable) {
+    let initial = match &variable.initial {
+        VariableValue::Bool(b) => b.to_string(),
+        VariableValue::Number(x) => x.to_string(),
+        VariableValue::Text(text) => text.clone(),
+        VariableValue::Position(p) => lat_lon(*p),
+    };
+    let tag = Tag::new("variable")
+        .with("name", &variable.name)
+        .with("type", variable.initial.type_name())
+        .with("initial", initial)
+        .text("unit", &variable.unit)
+        .maybe("min", variable.min)
+        .maybe("max", variable.max)
+        .maybe("maxLength", variable.max_length);
+    out.leaf(tag);
+}
+
+fn emergency_plan(out: &mut Writer, plan: &EmergencyPlan) {
+    let tag =
+        Tag::new("emergencyPlan").with("id", &plan.id).text("name", &plan.name).with("runway", &plan.runway);
+    out.element(tag, |out| plan.stages.iter().for_each(|s| stage(out, s)));
+}
+
+fn stage(out: &mut Writer, stage: &Stage) {
+    let kind = match stage.kind {
+        StageKind::TakeOff => "take-off",
+        StageKind::Departure => "departure",
+        StageKind::EnRoute => "en-route",
+        StageKind::Mission => "mission",
+        StageKind::Arrival => "arrival",
+        StageKind::Approach => "approach",
+        StageKind::Land => "land",
+    };
+    let tag = Tag::new("stage").with("id", &stage.id).text("name", &stage.name).with("type", kind);
+    let tag = fallback(tag, &stage.emergency).maybe("runway", stage.runway.as_ref());
+    let tag = tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref());
+    out.element(tag, |out| {
+        out.emergencies(&stage.emergency);
+        stage.legs.iter().for_each(|l| leg(out, l));
+    });
+}
+
+fn leg(out: &mut Writer, leg: &Leg) {
+    let tag = Tag::new(leg.kind_name()).with("id", &leg.id).text("name", &leg.name);
+    let tag = fallback(kind_attributes(tag, &leg.kind), &leg.emergency)
+        .altitude(leg.altitude.as_ref())
+        .maybe_value("speed", leg.speed_mps.as_ref())
+        .maybe("next", leg.next.as_ref());
+    out.element(tag, |out| {
+        out.emergencies(&leg.emergency);
+        kind_children(out, &leg.kind);
+    });
+}
+
+fn kind_attributes(tag: Tag, kind: &LegKind) -> Tag {
+    match kind {
+        LegKind::If(to) | LegKind::Tf(to) => tag.waypoint(to),
+        LegKind::Df { to, turn } => match turn {
+            Some(turn) => tag.waypoint(to).turn(*turn),
+            None => tag.waypoint(to),
+        },
+        LegKind::Rf { to, centre, turn } => {
+            tag.waypoint(to).with("centreLat", centre.lat_deg).with("centreLon", centre.lon_deg).turn(*turn)
+        }
+        LegKind::Hf(h) | LegKind::Ha(h) => holding(tag, h),
+        LegKind::Iterative { form, count, until, turn, .. } => {
+            let form = if *form == IterativeForm::Forward { "forward" } else { "reverse" };
+            tag.with("form", form)
+                .maybe_value("count", count.as_ref())
+                .maybe("until", until.as_ref())
+                .turn(*turn)
+        }
+        LegKind::Intersection { default, decide_before, .. } => {
+            let tag = tag.maybe("default", default.as_ref());
+            match decide_before {
+                DecideBefore::Time(s) => tag.with("decideBefore", format_args!("{s}s")),
+                DecideBefore::Distance(m) => tag.with("decideBefore", format_args!("{m}m")),
+            }
+        }
+        LegKind::Scan(scan) => tag
+            .value("spacing", &scan.spacing_m)
+            .maybe_value("heading", scan.heading_deg.as_ref())
+            .value("overshoot", &scan.overshoot_m),
+        LegKind::Orbit { radius_m, turns, turn, .. } => {
+            tag.value("radius", radius_m).value("turns", turns).turn(*turn)
+        }
+    }
+}
+
+fn holding(tag: Tag, holding: &Holding) -> Tag {
+    let tag = tag
+        .waypoint(&holding.fix)
+        .maybe_value("course", holding.inbound_course_deg.as_ref())
+        .turn(holding.turn);
+    match &holding.leg {
+        HoldingLength::Distance(metres) => tag.value("length", metres),
+        HoldingLength::Time(seconds) => tag.value("time", seconds),
+    }
+}
+
+fn kind_children(out: &mut Writer, kind: &LegKind) {
+    match kind {
+        LegKind::Iterative { body, .. } => body.iter().for_each(|l| leg(out, l)),
+        LegKind::Intersection { branches, .. } => branches.iter().for_each(|b| branch(out, b)),
+        LegKind::Scan(scan) => area(out, &scan.area),
+        LegKind::Orbit { centre, .. } => out.leaf(Tag::new("centre").place(centre, "at")),
+        LegKind::If(_)
+        | LegKind::Tf(_)
+        | LegKind::Df { .. }
+        | LegKind::Rf { .. }
+        | LegKind::Hf(_)
+        | LegKind::Ha(_) => {}
+    }
+}
+
+fn branch(out: &mut Writer, branch: &Branch) {
+    let tag = Tag::new("branch").with("id", &branch.id).text("label", &branch.label);
+    out.leaf(tag.maybe("next", branch.next.as_ref()).maybe("when", branch.when.as_ref()));
+}
+
+fn area(out: &mut Writer, area: &Area) {
+    match area {
+        Area::Circle { centre, radius_m } => {
+            out.leaf(Tag::new("area").place(centre, "centre").value("radius", radius_m))
+        }
+        Area::Polygon { corners, holes } => out.element(Tag::new("area"), |out| {
+            corners.iter().for_each(|c| corner(out, *c));
+            for hole in holes {
+                out.element(Tag::new("hole"), |out| hole.iter().for_each(|c| corner(out, *c)));
+            }
+        }),
+    }
+}
+
+fn corner(out: &mut Writer, corner: LatLon) {
+    out.leaf(Tag::new("corner").with("lat", corner.lat_deg).with("lon", corner.lon_deg));
+}
