@@ -26,6 +26,15 @@ pub struct Inverse {
     pub bearing_end_deg: f64,
 }
 
+/// Where a geodesic leads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Direct {
+    /// The position reached.
+    pub position: LatLon,
+    /// Direction of travel there, degrees true in 0..360.
+    pub bearing_end_deg: f64,
+}
+
 impl LatLon {
     /// A position; use [`LatLon::is_valid`] on anything that comes from outside.
     pub const fn new(lat_deg: f64, lon_deg: f64) -> Self {
@@ -41,11 +50,7 @@ impl LatLon {
     pub fn inverse(self, other: LatLon) -> Inverse {
         let (distance_m, azi1, azi2, _): (f64, f64, f64, f64) =
             WGS84.inverse(self.lat_deg, self.lon_deg, other.lat_deg, other.lon_deg);
-        Inverse {
-            distance_m,
-            bearing_start_deg: normalise_360(azi1),
-            bearing_end_deg: normalise_360(azi2),
-        }
+        Inverse { distance_m, bearing_start_deg: normalise_360(azi1), bearing_end_deg: normalise_360(azi2) }
     }
 
     /// Geodesic distance to `other`, metres.
@@ -60,9 +65,22 @@ impl LatLon {
 
     /// The position `distance_m` metres along the geodesic that leaves at `bearing_deg`.
     pub fn destination(self, bearing_deg: f64, distance_m: f64) -> LatLon {
-        let (lat, lon): (f64, f64) =
-            WGS84.direct(self.lat_deg, self.lon_deg, bearing_deg, distance_m);
+        let (lat, lon): (f64, f64) = WGS84.direct(self.lat_deg, self.lon_deg, bearing_deg, distance_m);
         LatLon::new(lat, normalise_180(lon))
+    }
+
+    /// As [`LatLon::destination`], with the direction of travel at the end. A negative distance
+    /// goes backwards along the geodesic; the direction of travel stays that of the forward one.
+    pub fn direct(self, bearing_deg: f64, distance_m: f64) -> Direct {
+        let (lat, lon, azimuth): (f64, f64, f64) =
+            WGS84.direct(self.lat_deg, self.lon_deg, bearing_deg, distance_m);
+        Direct { position: LatLon::new(lat, normalise_180(lon)), bearing_end_deg: normalise_360(azimuth) }
+    }
+
+    /// The point of the geodesic to `other` at a fraction of its length (0: here, 1: `other`).
+    pub fn interpolate(self, other: LatLon, fraction: f64) -> LatLon {
+        let line = self.inverse(other);
+        self.destination(line.bearing_start_deg, line.distance_m * fraction)
     }
 }
 
@@ -72,8 +90,11 @@ pub fn normalise_360(deg: f64) -> f64 {
     if r >= 360.0 { 0.0 } else { r }
 }
 
-/// An angle brought into −180..180 degrees (180 becomes −180 only if it came from below).
+/// An angle brought into −180..=180 degrees; angles that are already there stay as they are.
 pub fn normalise_180(deg: f64) -> f64 {
+    if deg.abs() <= 180.0 {
+        return deg;
+    }
     let r = (deg + 180.0).rem_euclid(360.0) - 180.0;
     if r == -180.0 && deg > 0.0 { 180.0 } else { r }
 }

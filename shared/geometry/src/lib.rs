@@ -3,10 +3,16 @@
 //! Knows nothing of plans or autopilots. Angles are radians inside formulas and degrees at the
 //! edges; the unit is always in the name.
 
+pub mod arc;
 pub mod geodesy;
+pub mod holding;
 pub mod local;
 pub mod path;
+mod plane;
+pub mod turn;
 
+pub use arc::Flattening;
 pub use geodesy::LatLon;
 pub use local::{LocalFrame, Vec2};
 pub use path::PathElement;
+pub use turn::Turn;

@@ -87,10 +87,7 @@ impl LocalFrame {
     /// Metres east and north of the origin.
     pub fn to_local(&self, p: LatLon) -> Vec2 {
         let dlon = crate::geodesy::normalise_180(p.lon_deg - self.origin.lon_deg);
-        Vec2::new(
-            dlon * self.metres_per_deg_lon,
-            (p.lat_deg - self.origin.lat_deg) * self.metres_per_deg_lat,
-        )
+        Vec2::new(dlon * self.metres_per_deg_lon, (p.lat_deg - self.origin.lat_deg) * self.metres_per_deg_lat)
     }
     /// The position of a point of the frame.
     pub fn to_geo(&self, v: Vec2) -> LatLon {

@@ -1,0 +1,147 @@
+//! Arcs as waypoints, and whether a coded arc (RF) is one.
+
+use crate::path::course_change_deg;
+use crate::turn::Turn;
+use crate::{LatLon, PathElement};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// No arc needs more vertices than this: it bounds what a tolerance of nearly 0 can cost.
+pub const MAX_SEGMENTS: usize = 10_000;
+
+/// Where the vertices go that stand for an arc.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Flattening {
+    /// On the circle: chords are inside by at most the tolerance.
+    Inscribed,
+    /// Vertices outside, middles of chords inside by the tolerance: about 1.41 × fewer vertices.
+    Balanced,
+    /// On the tangents: an autopilot that flies fly-by turns of the arc's radius flies the arc
+    /// exactly; vertices are outside by at most the tolerance.
+    Circumscribed,
+}
+
+impl Flattening {
+    /// Greatest angle between neighbouring vertices, radians (at most a quarter turn).
+    ///
+    /// Inscribed 2·acos(1 − e/r), balanced 2·acos((r − e)/(r + e)), circumscribed
+    /// 2·acos(r/(r + e)). Radius and tolerance in metres.
+    pub fn step_rad(self, radius_m: f64, tolerance_m: f64) -> f64 {
+        let cos_half = match self {
+            Flattening::Inscribed => 1.0 - tolerance_m / radius_m,
+            Flattening::Balanced => (radius_m - tolerance_m) / (radius_m + tolerance_m),
+            Flattening::Circumscribed => radius_m / (radius_m + tolerance_m),
+        };
+        (2.0 * cos_half.clamp(-1.0, 1.0).acos()).min(FRAC_PI_2)
+    }
+
+    /// Chords that an arc needs, every vertex being placed alike: sweep / step, rounded up,
+    /// within 1..=[`MAX_SEGMENTS`].
+    pub fn segments(self, radius_m: f64, sweep_deg: f64, tolerance_m: f64) -> usize {
+        let step_rad = self.step_rad(radius_m, tolerance_m);
+        whole_segments(sweep_deg.to_radians().abs() / step_rad)
+    }
+}
+
+/// Rounds up, forgiving rounding errors; anything that is not a number gives 1.
+fn whole_segments(exact: f64) -> usize {
+    (exact - 1e-9).ceil().clamp(1.0, MAX_SEGMENTS as f64) as usize
+}
+
+/// The waypoints of an element after its start, the last at its end. A line has one.
+///
+/// The straight lines from the start through an arc's vertices stay within `tolerance_m` of it
+/// (circumscribed: the vertices do), as far as [`MAX_SEGMENTS`] allow. Start and end are exact,
+/// so that elements join: a balanced arc may for that need one chord more than
+/// [`Flattening::segments`] counts.
+pub fn flatten(element: &PathElement, how: Flattening, tolerance_m: f64) -> Vec<LatLon> {
+    let PathElement::Arc { centre, radius_m, start_bearing_deg, sweep_deg } = *element else {
+        return vec![element.end()];
+    };
+    let sweep_rad = sweep_deg.to_radians().abs();
+    let vertices = match how {
+        Flattening::Inscribed => inscribed(radius_m, sweep_rad, tolerance_m),
+        Flattening::Balanced => balanced(radius_m, sweep_rad, tolerance_m),
+        Flattening::Circumscribed => circumscribed(radius_m, sweep_rad, tolerance_m),
+    };
+    let mut points: Vec<LatLon> = vertices
+        .map(|v| {
+            let swept_deg = v.swept_rad.to_degrees().copysign(sweep_deg);
+            centre.destination(start_bearing_deg + swept_deg, v.radius_m)
+        })
+        .collect();
+    points.push(element.end());
+    points
+}
+
+/// A vertex between an arc's start and end.
+struct Vertex {
+    swept_rad: f64,
+    radius_m: f64,
+}
+
+type Vertices = Box<dyn Iterator<Item = Vertex>>;
+
+fn inscribed(radius_m: f64, sweep_rad: f64, tolerance_m: f64) -> Vertices {
+    let n = Flattening::Inscribed.segments(radius_m, sweep_rad.to_degrees(), tolerance_m);
+    Box::new((1..n).map(move |i| Vertex { swept_rad: sweep_rad * i as f64 / n as f64, radius_m }))
+}
+
+/// Vertices in the middle of equal steps, where the tangents at the steps' ends meet.
+fn circumscribed(radius_m: f64, sweep_rad: f64, tolerance_m: f64) -> Vertices {
+    let n = Flattening::Circumscribed.segments(radius_m, sweep_rad.to_degrees(), tolerance_m);
+    let step = sweep_rad / n as f64;
+    Box::new(
+        (0..n).map(move |i| Vertex {
+            swept_rad: step * (i as f64 + 0.5),
+            radius_m: radius_m / (step / 2.0).cos(),
+        }),
+    )
+}
+
+/// Start and end on the circle, the vertices between them outside. The first and last chord
+/// start on the circle and may therefore span less: acos((r−e)/r) + acos((r−e)/(r+e)).
+fn balanced(radius_m: f64, sweep_rad: f64, tolerance_m: f64) -> Vertices {
+    let step = Flattening::Balanced.step_rad(radius_m, tolerance_m);
+    let on_circle = Flattening::Inscribed.step_rad(radius_m, tolerance_m);
+    let end_step = (step + on_circle) / 2.0;
+    if sweep_rad <= on_circle * (1.0 + 1e-9) {
+        return Box::new(std::iter::empty());
+    }
+    let inner =
+        if sweep_rad > 2.0 * end_step { whole_segments((sweep_rad - 2.0 * end_step) / step) } else { 0 };
+    // all angles shrink alike until they fit; chords then bend less than they may
+    let shrink = sweep_rad / (2.0 * end_step + inner as f64 * step);
+    let outside_m = tolerance_m.min(radius_m) * (shrink * shrink).min(1.0);
+    Box::new((0..=inner).map(move |i| Vertex {
+        swept_rad: shrink * (end_step + step * i as f64),
+        radius_m: radius_m + outside_m,
+    }))
+}
+
+/// How well a coded arc fits: from `start` to `end` around `centre`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RadiusToFix {
+    /// The arc, with the start's radius.
+    pub arc: PathElement,
+    /// Distance from the centre to the end minus that to the start, metres.
+    pub radius_mismatch_m: f64,
+}
+
+impl RadiusToFix {
+    /// Fits the arc.
+    pub fn new(start: LatLon, end: LatLon, centre: LatLon, turn: Turn) -> Self {
+        let arc = PathElement::arc_between(centre, start, end, turn);
+        Self { arc, radius_mismatch_m: centre.distance_m(end) - centre.distance_m(start) }
+    }
+    /// Turn from the arrival course to the arc's first course, degrees, positive to the right;
+    /// an RF leg is valid within 1°.
+    pub fn kink_at_start_deg(&self, arrival_course_deg: f64) -> f64 {
+        course_change_deg(arrival_course_deg, self.arc.start_course_deg())
+    }
+    /// Turn from the arc's last course to the departure course, degrees, positive to the right.
+    pub fn kink_at_end_deg(&self, departure_course_deg: f64) -> f64 {
+        course_change_deg(self.arc.end_course_deg(), departure_course_deg)
+    }
+}
