@@ -1,1 +1,0 @@
-//! Data that is compiled in: basemap, terrain, example plans.
