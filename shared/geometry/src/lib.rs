@@ -9,10 +9,13 @@ pub mod holding;
 pub mod local;
 pub mod path;
 mod plane;
+pub mod polygon;
+pub mod scan;
 pub mod turn;
 
 pub use arc::Flattening;
 pub use geodesy::LatLon;
 pub use local::{LocalFrame, Vec2};
 pub use path::PathElement;
+pub use polygon::Polygon;
 pub use turn::Turn;

@@ -58,6 +58,9 @@ impl std::ops::Mul<f64> for Vec2 {
     }
 }
 
+/// Farthest from its origin that a frame may be used, metres.
+pub const RADIUS_M: f64 = 50_000.0;
+
 /// A local frame: distances and bearings near the origin are those of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalFrame {

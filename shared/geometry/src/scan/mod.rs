@@ -1,0 +1,283 @@
+//! Parallel scans over any simple polygon, generated as they are flown.
+//!
+//! A scan is a set of parallel *lines* across the polygon, numbered from its left edge, flown as
+//! *tracks*, numbered in flight order. A line that crosses a gap (a hole, a bay of a concave
+//! outline) has several scanning segments; the gap between them is flown over, marked as transit.
+//! Nothing is stored per line: a million tracks take the memory of the polygon.
+
+mod coverage;
+mod order;
+mod outline;
+mod segments;
+
+pub use coverage::coverage;
+pub use segments::{ScanWaypoint, Segment, Segments, Waypoints};
+
+use crate::polygon::Polygon;
+use crate::{LocalFrame, Vec2};
+use order::Order;
+use outline::{Outline, Sweep};
+use std::ops::Range;
+
+/// More lines than this can't be numbered exactly in an `f64`.
+const MAX_LINES: f64 = 9e15;
+
+/// How a polygon is to be scanned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanParameters {
+    /// Distance between neighbouring lines, metres. The first and the last line are half of it
+    /// inside the polygon's extent; the last but one gap may be smaller.
+    pub spacing_m: f64,
+    /// Direction of the lines, degrees true; `None`: the one with the fewest lines.
+    pub heading_deg: Option<f64>,
+    /// How far a track goes on beyond the area's edge, metres. No point of a scanning segment is
+    /// farther outside the area. From half the spacing on, every point of the area is
+    /// within half the spacing of a scanning segment, whatever the area's shape: where the edge is
+    /// slanted, tracks are prolonged as far as the strip they stand for needs it.
+    pub overshoot_m: f64,
+    /// Where the pattern begins.
+    pub entry: Entry,
+    /// Radius of the turns between tracks, metres. Where neighbouring lines are nearer than twice
+    /// of it, every k-th line is flown, k · spacing ≥ 2 · radius, in k passes. 0: neighbours in turn.
+    pub turn_radius_m: f64,
+}
+
+/// Where a scan begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Entry {
+    /// At the corner whose first waypoint is nearest to a point.
+    Nearest(Vec2),
+    /// At a certain corner.
+    Corner(Corner),
+}
+
+/// A corner of the pattern, seen along its heading: at the lines' start or end, left or right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Corner {
+    /// Leftmost line, flown along the heading.
+    StartLeft,
+    /// Rightmost line, flown along the heading.
+    StartRight,
+    /// Leftmost line, flown against the heading.
+    EndLeft,
+    /// Rightmost line, flown against the heading.
+    EndRight,
+}
+
+impl Corner {
+    const ALL: [Corner; 4] = [Corner::StartLeft, Corner::StartRight, Corner::EndLeft, Corner::EndRight];
+    fn is_right(self) -> bool {
+        matches!(self, Corner::StartRight | Corner::EndRight)
+    }
+    fn is_end(self) -> bool {
+        matches!(self, Corner::EndLeft | Corner::EndRight)
+    }
+}
+
+/// Why a polygon can't be scanned so.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ScanError {
+    /// Not a positive number.
+    #[error("the spacing is {0} m: it must be a positive number")]
+    Spacing(f64),
+    /// Not a number.
+    #[error("the heading is {0}: it must be a number of degrees")]
+    Heading(f64),
+    /// Negative or not a number.
+    #[error("the overshoot is {0} m: it must be 0 or more")]
+    Overshoot(f64),
+    /// Negative or not a number.
+    #[error("the turn radius is {0} m: it must be 0 or more")]
+    TurnRadius(f64),
+    /// The entry point is not a number.
+    #[error("the point that the scan should begin near to is not a position")]
+    EntryPoint,
+    /// More lines than can be counted.
+    #[error("a spacing of {0} m gives more lines than can be counted: widen it")]
+    TooManyLines(f64),
+}
+
+/// A scan, ready to be flown.
+#[derive(Debug, Clone)]
+pub struct Scan {
+    outline: Outline,
+    axes: Axes,
+    lines: Lines,
+    order: Order,
+    heading_deg: f64,
+    overshoot_m: f64,
+    /// Half-width of the strip that a track is prolonged for, metres.
+    strip_m: f64,
+}
+
+/// Directions of the pattern: `along` its lines, and `across` them to the right.
+#[derive(Debug, Clone, Copy)]
+struct Axes {
+    along: Vec2,
+    across: Vec2,
+}
+
+impl Axes {
+    fn new(heading_deg: f64) -> Self {
+        let along = Vec2::from_bearing_rad(heading_deg.to_radians());
+        Self { along, across: Vec2::new(along.n, -along.e) }
+    }
+    fn point(&self, along_m: f64, across_m: f64) -> Vec2 {
+        self.along * along_m + self.across * across_m
+    }
+}
+
+/// Where the lines are, across the heading.
+#[derive(Debug, Clone, Copy)]
+struct Lines {
+    first_m: f64,
+    last_m: f64,
+    spacing_m: f64,
+    count: u64,
+}
+
+impl Lines {
+    fn new((left_m, right_m): (f64, f64), spacing_m: f64) -> Result<Self, ScanError> {
+        let width_m = right_m - left_m;
+        // forgives rounding: a width of 10 spacings has 10 lines
+        let count = (width_m / spacing_m - 1e-9).ceil().max(1.0);
+        if count > MAX_LINES {
+            return Err(ScanError::TooManyLines(spacing_m));
+        }
+        let inside_m = (spacing_m / 2.0).min(width_m / 2.0);
+        Ok(Self { first_m: left_m + inside_m, last_m: right_m - inside_m, spacing_m, count: count as u64 })
+    }
+    fn across_m(&self, line: u64) -> f64 {
+        (self.first_m + line as f64 * self.spacing_m).min(self.last_m)
+    }
+    fn nearest(&self, across_m: f64) -> u64 {
+        let line = ((across_m - self.first_m) / self.spacing_m).round();
+        // a cast of NaN or of a negative number gives 0
+        (line as u64).min(self.count.saturating_sub(1))
+    }
+}
+
+impl Scan {
+    /// Prepares a scan.
+    ///
+    /// # Errors
+    /// A parameter that makes no sense.
+    pub fn new(polygon: &Polygon, p: &ScanParameters) -> Result<Self, ScanError> {
+        p.check()?;
+        let heading_deg = p.heading_deg.unwrap_or_else(|| polygon.narrowest_heading_deg());
+        let axes = Axes::new(heading_deg);
+        let outline = Outline::new(polygon, axes);
+        let lines = Lines::new(outline.extent(), p.spacing_m)?;
+        let step = (2.0 * p.turn_radius_m / p.spacing_m - 1e-9).ceil().max(1.0);
+        let mut scan = Self {
+            outline,
+            axes,
+            lines,
+            order: Order::new(lines.count, step as u64, Corner::StartLeft),
+            heading_deg,
+            overshoot_m: p.overshoot_m,
+            strip_m: p.overshoot_m.min(p.spacing_m / 2.0),
+        };
+        scan.order = Order::new(lines.count, step as u64, scan.corner(p.entry));
+        Ok(scan)
+    }
+
+    fn corner(&self, entry: Entry) -> Corner {
+        let near = match entry {
+            Entry::Corner(corner) => return corner,
+            Entry::Nearest(point) => point,
+        };
+        let distance_m = |corner: &Corner| {
+            let from = self.first_point(*corner);
+            from.map_or(f64::INFINITY, |from| (from - near).length())
+        };
+        let best = Corner::ALL.into_iter().min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+        best.unwrap_or(Corner::StartLeft)
+    }
+
+    /// Where a pattern that enters at a corner begins.
+    fn first_point(&self, corner: Corner) -> Option<Vec2> {
+        let line = if corner.is_right() { self.lines.count.saturating_sub(1) } else { 0 };
+        let across_m = self.lines.across_m(line);
+        let mut sweep = Sweep::default();
+        sweep.go_to(&self.outline, across_m, self.strip_m, self.overshoot_m);
+        let span = if corner.is_end() { sweep.spans().last() } else { sweep.spans().first() };
+        span.map(|s| {
+            let along_m = if corner.is_end() { s.end_m } else { s.start_m };
+            self.axes.point(along_m, across_m)
+        })
+    }
+
+    /// Direction of the lines, degrees true (0..180 if it was left to the scan).
+    pub fn heading_deg(&self) -> f64 {
+        self.heading_deg
+    }
+
+    /// Number of tracks; they are numbered from 0 in flight order.
+    pub fn tracks(&self) -> u64 {
+        self.lines.count
+    }
+
+    /// How many lines on the next track is (1: neighbours in turn).
+    pub fn interleave(&self) -> u64 {
+        self.order.step()
+    }
+
+    /// The line, counted from the left edge, that a track flies.
+    pub fn line_of_track(&self, track: u64) -> u64 {
+        self.order.line(track)
+    }
+
+    /// The track that flies a line.
+    pub fn track_of_line(&self, line: u64) -> u64 {
+        self.order.track(line)
+    }
+
+    /// The track whose line is nearest to a point, among those that are wanted (for example not
+    /// yet flown); of two equally near ones the one flown first. Looks at the lines from
+    /// the nearest on outwards; `None` if none is wanted.
+    pub fn nearest_track(&self, point: Vec2, wanted: impl Fn(u64) -> bool) -> Option<u64> {
+        let middle = self.lines.nearest(point.dot(self.axes.across));
+        let last = self.lines.count.saturating_sub(1);
+        let pair = |out: u64| {
+            let left = middle.checked_sub(out);
+            let right = middle.checked_add(out).filter(|&line| line <= last);
+            let tracks = left.into_iter().chain(right).map(|l| self.order.track(l));
+            tracks.filter(|&track| wanted(track)).min()
+        };
+        (0..=middle.max(last - middle)).find_map(pair)
+    }
+
+    /// The segments of a range of tracks in flight order.
+    pub fn segments(&self, tracks: Range<u64>) -> Segments<'_> {
+        Segments::new(self, tracks)
+    }
+
+    /// The waypoints of a range of tracks in flight order.
+    pub fn waypoints(&self, frame: LocalFrame, tracks: Range<u64>) -> Waypoints<'_> {
+        Waypoints::new(self.segments(tracks), frame)
+    }
+}
+
+impl ScanParameters {
+    fn check(&self) -> Result<(), ScanError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let not_negative = |x: f64| x >= 0.0 && x.is_finite();
+        if !positive(self.spacing_m) {
+            return Err(ScanError::Spacing(self.spacing_m));
+        }
+        if let Some(heading_deg) = self.heading_deg.filter(|h| !h.is_finite()) {
+            return Err(ScanError::Heading(heading_deg));
+        }
+        if !not_negative(self.overshoot_m) {
+            return Err(ScanError::Overshoot(self.overshoot_m));
+        }
+        if !not_negative(self.turn_radius_m) {
+            return Err(ScanError::TurnRadius(self.turn_radius_m));
+        }
+        match self.entry {
+            Entry::Nearest(point) if !point.length().is_finite() => Err(ScanError::EntryPoint),
+            _ => Ok(()),
+        }
+    }
+}
