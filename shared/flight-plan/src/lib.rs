@@ -1,8 +1,10 @@
 //! Pure: the flight plan document: model, XML, problems and checks, edits, compilation to a program.
 
 pub mod checks;
+pub mod diff;
 pub mod edit;
 pub mod expression;
+pub mod history;
 pub mod model;
 pub mod problem;
 pub mod program;
@@ -11,8 +13,10 @@ pub mod walk;
 pub mod xml;
 
 pub use checks::check;
-pub use edit::Edit;
+pub use diff::Difference;
+pub use edit::{Edit, EditError, Spot};
 pub use expression::{Env, EvalError, Expression, FlightState};
+pub use history::History;
 pub use model::*;
 pub use problem::{Location, Problem, Severity};
 pub use program::{LegPath, Program, Use, compile, compile_document};

@@ -1,0 +1,82 @@
+//! `above-ceiling`: higher than the aircraft flies; `no-altitude`: nothing says how high a leg is flown.
+
+use super::Inspection;
+use super::inspection::{Step, altitude_of};
+use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for (_, stage) in view.plan.all_stages() {
+        let home = view.plan.home();
+        let at = stage.runway.as_ref().and_then(|id| view.plan.runway(id)).or(home).map(|r| r.threshold);
+        let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at));
+        ceiling(view, amsl_m, &stage.id, problems);
+    }
+    for step in &view.steps {
+        ceiling(view, own_altitude_m(view, step), &step.context.leg.id, problems);
+        unknown(view, step, problems);
+    }
+}
+
+/// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
+fn own_altitude_m(view: &Inspection, step: &Step) -> Option<f64> {
+    let altitude: &Altitude = step.context.leg.altitude.as_ref()?;
+    match (step.end, altitude.reference) {
+        (Some(end), _) => view.altitude_amsl_m(altitude, end.position),
+        (None, AltitudeReference::Amsl) => view.number(&altitude.metres),
+        (None, _) => view.place(step.context.leg.place()?).and_then(|at| view.altitude_amsl_m(altitude, at)),
+    }
+}
+
+fn ceiling(view: &Inspection, amsl_m: Option<f64>, of: &Id, problems: &mut Vec<Problem>) {
+    let ceiling_m = view.profile.ceiling_amsl_m;
+    if let Some(amsl_m) = amsl_m.filter(|m| *m > ceiling_m) {
+        let message = format!(
+            "lower the altitude to {ceiling_m:.0} m AMSL or less: {amsl_m:.0} m is above the aircraft's ceiling"
+        );
+        problems.push(Problem::error("above-ceiling", message).of(of));
+    }
+}
+
+/// The first leg of a plan has no leg before it to take its altitude from.
+fn unknown(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = step.context.leg;
+    let moves = !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. });
+    let main = step.context.section == crate::Section::Main;
+    let takes_off = view.plan.home().is_some();
+    if moves
+        && main
+        && !takes_off
+        && step.before.is_none()
+        && step.context.index == 0
+        && altitude_of(&step.context).is_none()
+    {
+        let first = view.plan.stages.iter().find_map(|s| s.legs.first());
+        if first.is_some_and(|f| f.id == leg.id) {
+            let message =
+                "give this leg or its stage an `altitude`: nothing before it says how high it is flown";
+            problems.push(Problem::error("no-altitude", message).of(&leg.id));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::{check_legs, codes, document};
+
+    #[test]
+    fn above_the_ceiling_in_any_datum() {
+        let with = |altitude: &str| format!(r#"<DF id="a" fix="A" {altitude}/>"#);
+        check_legs(&[
+            (&with(r#"altitude="3000" altitudeReference="amsl""#), &[]),
+            (&with(r#"altitude="3001" altitudeReference="amsl""#), &["above-ceiling"]),
+            (&with(r#"altitude="2701" altitudeReference="agl""#), &["above-ceiling"]),
+            (&with(r#"altitude="2701" altitudeReference="home""#), &["above-ceiling"]),
+        ]);
+    }
+
+    #[test]
+    fn a_plan_that_never_says_how_high() {
+        let stage = r#"<stage id="s" type="en-route"><DF id="a" fix="A"/></stage>"#;
+        assert_eq!(codes(&document(stage)), ["no-altitude"]);
+    }
+}

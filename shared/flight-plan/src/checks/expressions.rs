@@ -1,0 +1,74 @@
+//! `expression-syntax`, `unknown-name`, `wrong-type`, `expression-too-large`: expressions that don't compile, or give
+//! something else than is needed; `no-value`: one that has no value at the variables' initial values.
+
+use super::Inspection;
+use crate::expression::{self, Type};
+use crate::{Id, Problem, Use};
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for (_, stage) in view.plan.all_stages() {
+        stage.for_each_expression(&mut |source, used| one(view, source, used, &stage.id, problems));
+    }
+    for step in &view.steps {
+        let leg = step.context.leg;
+        leg.for_each_expression(&mut |source, used| one(view, source, used, &leg.id, problems));
+    }
+}
+
+fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, problems: &mut Vec<Problem>) {
+    let wanted = match used {
+        Use::Number => Type::Number,
+        Use::Condition => Type::Bool,
+        Use::Position => Type::Position,
+    };
+    match expression::compile(source, view.plan) {
+        Err(error) => problems.push(Problem::error(error.code, error.to_string()).of(of)),
+        Ok(compiled) if !compiled.gives(wanted) => {
+            let message = format!(
+                "`{source}` is {}, but {wanted} is needed here: change the expression",
+                compiled.kind
+            );
+            problems.push(Problem::error("wrong-type", message).of(of));
+        }
+        Ok(_) if !view.has_value(source, used) => {
+            let message =
+                format!("`{source}` has no value at the start: change it or the variables' initial values");
+            problems.push(Problem::warning("no-value", message).of(of));
+        }
+        Ok(_) => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::{codes, document_with};
+
+    #[test]
+    fn expressions_are_typed() {
+        let cases: [(&str, &[&str]); 12] = [
+            (r#"count="= n""#, &[]),
+            (r#"count="= 3""#, &[]),
+            (r#"until="done || battery &lt; 0.3""#, &[]),
+            (r#"until="iteration &gt;= 3 &amp;&amp; distance_to('A') &lt; 100.0""#, &[]),
+            (r#"until="distance(where, position) &lt; 100.0""#, &[]),
+            (r#"until="n""#, &["wrong-type"]),
+            (r#"count="= done""#, &["wrong-type"]),
+            (r#"until="gone""#, &["unknown-name"]),
+            (r#"until="distance_to('Z') &lt; 100.0""#, &["unknown-name"]),
+            (r#"until="done &amp;&amp;""#, &["expression-syntax"]),
+            (r#"until="n + 1 &gt; 3.0""#, &["wrong-type"]),
+            (r#"count="= 1.0 / (n - n)""#, &["no-value"]),
+        ];
+        for (attributes, expected) in cases {
+            let variables = r#"<variable name="n" type="number" initial="2"/> <variable name="done" type="bool" initial="false"/>
+                <variable name="where" type="position" initial="36.3 -84.2"/>"#;
+            let stages = format!(
+                r#"<stage id="s" type="mission" altitude="500" altitudeReference="amsl"><IF id="a" fix="A"/>
+                   <iterative id="l" form="forward" {attributes}><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative></stage>"#
+            );
+            let emergency = r#"<emergencyPlan id="home" runway="R"><stage id="e" type="arrival"><DF id="d" fix="A"/></stage>
+                <stage id="el" type="land" runway="R"/></emergencyPlan>"#;
+            assert_eq!(codes(&document_with(variables, &stages, emergency)), expected, "{attributes}");
+        }
+    }
+}

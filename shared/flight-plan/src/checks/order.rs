@@ -1,0 +1,83 @@
+//! `unreachable-leg`: no path leads to a leg; `endless-loop`: `next` leads back and never out again.
+
+use super::Inspection;
+use crate::{Leg, LegKind, Problem};
+use std::collections::HashMap;
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for (_, stage) in view.plan.all_stages() {
+        list(&stage.legs, problems);
+    }
+    view.steps.iter().for_each(|step| list(step.context.leg.body(), problems));
+}
+
+/// One list: a graph whose nodes are its legs and, last, its end.
+fn list(legs: &[Leg], problems: &mut Vec<Problem>) {
+    let index: HashMap<&str, usize> = legs.iter().enumerate().map(|(i, l)| (l.id.as_str(), i)).collect();
+    let forward: Vec<Vec<usize>> =
+        legs.iter().enumerate().map(|(i, leg)| successors(i, leg, &index)).collect();
+    let mut backward = vec![Vec::new(); legs.len() + 1];
+    for (from, successors) in forward.iter().enumerate() {
+        successors
+            .iter()
+            .filter_map(|to| backward.get_mut(*to).map(|b: &mut Vec<usize>| b.push(from)))
+            .count();
+    }
+    let reached = reach(0, &forward, legs.len() + 1);
+    let leaves = reach(legs.len(), &backward, legs.len() + 1);
+    for ((leg, reached), leaves) in legs.iter().zip(&reached).zip(&leaves) {
+        if !reached {
+            let message = "no leg leads here: remove it, or lead a `next` or a branch to it";
+            problems.push(Problem::warning("unreachable-leg", message).of(&leg.id));
+        } else if !leaves {
+            let message = "`next` leads back here for ever: lead one way out, or use an iterative leg with a count or condition";
+            problems.push(Problem::error("endless-loop", message).of(&leg.id));
+        }
+    }
+}
+
+fn successors(index: usize, leg: &Leg, known: &HashMap<&str, usize>) -> Vec<usize> {
+    let target = |next: &Option<crate::Id>| match next {
+        Some(id) => known.get(id.as_str()).copied(),
+        None => Some(index + 1),
+    };
+    match &leg.kind {
+        LegKind::Intersection { branches, .. } if !branches.is_empty() => {
+            branches.iter().filter_map(|b| target(&b.next)).collect()
+        }
+        // an unknown target is another rule's business; it is taken for a way out
+        _ => vec![target(&leg.next).unwrap_or(known.len())],
+    }
+}
+
+fn reach(from: usize, edges: &[Vec<usize>], nodes: usize) -> Vec<bool> {
+    let mut reached = vec![false; nodes];
+    let mut open = vec![from];
+    while let Some(node) = open.pop() {
+        if reached.get_mut(node).is_some_and(|r| !std::mem::replace(r, true)) {
+            open.extend(edges.get(node).into_iter().flatten());
+        }
+    }
+    reached
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::check_legs;
+
+    #[test]
+    fn jumps_that_skip_or_never_end() {
+        check_legs(&[
+            (
+                r#"<IF id="a" fix="A" next="c"/><TF id="b" fix="B"/><TF id="c" fix="C"/>"#,
+                &["unreachable-leg"],
+            ),
+            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" next="a"/>"#, &["endless-loop", "endless-loop"]),
+            (
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>
+                   <intersection id="i" default="on"><branch id="back" next="b"/><branch id="on"/></intersection><TF id="c" fix="C"/>"#,
+                &[],
+            ),
+        ]);
+    }
+}

@@ -1,0 +1,82 @@
+//! `segment-too-short`: a track is shorter than what the turns at its ends take of it.
+
+use super::Inspection;
+use super::inspection::{Path, Step, course_change_deg};
+use crate::{LegKind, Problem};
+
+/// Turns up to this need no room, degrees (guidance: no fly-by for less).
+const STRAIGHT_DEG: f64 = 3.0;
+/// Intercept angle after a fly-over, degrees.
+const INTERCEPT_DEG: f64 = 30.0;
+/// Fly-by beyond this is flown as a fly-over, degrees.
+const STEEPEST_FLY_BY_DEG: f64 = 150.0;
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    // what the turn at each step's end takes of the step that follows it
+    let mut taken_after = vec![0.0; view.steps.len()];
+    let mut taken_before = vec![0.0; view.steps.len()];
+    for (index, step) in view.steps.iter().enumerate() {
+        let Some((before, from)) = step.before.and_then(|i| Some((i, view.steps.get(i)?))) else { continue };
+        let (Some(arriving), Some(leaving)) = (from.path, step.path) else { continue };
+        let change_deg = course_change_deg(arriving.course_end_deg(), leaving.course_start_deg());
+        let (at_end_m, at_start_m) = room(view, from, change_deg);
+        taken_before.get_mut(before).into_iter().for_each(|t| *t = at_end_m);
+        taken_after.get_mut(index).into_iter().for_each(|t| *t = at_start_m);
+    }
+    for ((step, before_m), after_m) in view.steps.iter().zip(taken_before).zip(taken_after) {
+        if let Some(Path::Line { length_m, .. }) = step.path
+            && length_m < before_m + after_m
+        {
+            let message = format!(
+                "lengthen this track to {:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more",
+                before_m + after_m
+            );
+            problems.push(Problem::warning("segment-too-short", message).of(&step.context.leg.id));
+        }
+    }
+}
+
+/// Metres that a turn takes of the track before it and of the track after it (guidance.md §1).
+fn room(view: &Inspection, step: &Step, change_deg: f64) -> (f64, f64) {
+    let radius_m = view.turn_radius_m(step.speed_mps);
+    if change_deg <= STRAIGHT_DEG {
+        return (0.0, 0.0);
+    }
+    let fly_over = matches!(&step.context.leg.kind, LegKind::Tf(to) | LegKind::Rf { to, .. } if to.fly_over);
+    if fly_over || change_deg > STEEPEST_FLY_BY_DEG {
+        return (0.0, fly_over_room_m(radius_m, change_deg.to_radians()));
+    }
+    let anticipation_m = radius_m * (change_deg.to_radians() / 2.0).tan();
+    (anticipation_m, anticipation_m)
+}
+
+/// Distance past a fly-over fix until established on the new track, both turns with the same radius.
+fn fly_over_room_m(radius_m: f64, change_rad: f64) -> f64 {
+    let intercept_rad = INTERCEPT_DEG.to_radians();
+    let turn = change_rad.sin() - change_rad.cos() / intercept_rad.tan() + 1.0 / intercept_rad.sin();
+    (radius_m * (turn + (intercept_rad / 2.0).tan())).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::check_legs;
+
+    /// East, `metres` north, then west again: two turns of 90° by 137 m each.
+    fn with(metres: f64, attributes: &str) -> String {
+        let lat = 36.3 + metres / 110_970.0;
+        format!(
+            r#"<IF id="a" fix="A"/><TF id="b" fix="B" {attributes}/><TF id="c" lat="{lat}" lon="-84.17"/><TF id="d" lat="{lat}" lon="-84.20"/>"#
+        )
+    }
+
+    #[test]
+    fn a_track_leaves_room_for_its_turns() {
+        check_legs(&[
+            (&with(300.0, ""), &[]),
+            (&with(250.0, ""), &["segment-too-short"]),
+            (&with(500.0, r#"flyOver="true""#), &["segment-too-short"]),
+            (&with(700.0, r#"flyOver="true""#), &[]),
+            (&with(250.0, r#"speed="20""#), &[]),
+        ]);
+    }
+}

@@ -1,0 +1,37 @@
+//! `speed-outside-envelope`: slower or faster than the aircraft flies.
+
+use super::Inspection;
+use crate::{Id, Problem, Value};
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for (_, stage) in view.plan.all_stages() {
+        one(view, stage.speed_mps.as_ref(), &stage.id, problems);
+    }
+    for step in &view.steps {
+        one(view, step.context.leg.speed_mps.as_ref(), &step.context.leg.id, problems);
+    }
+}
+
+fn one(view: &Inspection, speed: Option<&Value<f64>>, of: &Id, problems: &mut Vec<Problem>) {
+    let (min, max) = (view.profile.min_airspeed_mps, view.profile.max_airspeed_mps);
+    if let Some(speed) = speed.and_then(|s| view.number(s)).filter(|s| !(min..=max).contains(s)) {
+        let message = format!(
+            "choose a speed between {min:.0} and {max:.0} m/s: the aircraft can't fly {speed:.0} m/s"
+        );
+        problems.push(Problem::error("speed-outside-envelope", message).of(of));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::check_legs;
+
+    #[test]
+    fn too_slow_and_too_fast() {
+        check_legs(&[
+            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="16"/>"#, &[]),
+            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="15"/>"#, &["speed-outside-envelope"]),
+            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="36"/>"#, &["speed-outside-envelope"]),
+        ]);
+    }
+}

@@ -1,0 +1,82 @@
+//! `below-terrain`: a leg goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
+
+use super::Inspection;
+use super::inspection::{Point, Step};
+use crate::{Problem, StageKind};
+
+/// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
+const MARGIN_M: f64 = 50.0;
+/// Distance between looks at the ground, metres: half of what 3″ data resolves.
+const SPACING_M: f64 = 45.0;
+/// Most looks on a leg.
+const MOST_LOOKS: f64 = 2_000.0;
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for step in &view.steps {
+        let Some((clearance_m, ground_m)) = lowest_clearance_m(view, step) else { continue };
+        let near_runway =
+            matches!(step.context.stage.kind, StageKind::Departure | StageKind::Approach | StageKind::Land);
+        let leg = &step.context.leg.id;
+        if clearance_m < 0.0 {
+            let message = format!(
+                "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high there",
+                MARGIN_M - clearance_m
+            );
+            problems.push(Problem::error("below-terrain", message).of(leg));
+        } else if clearance_m < MARGIN_M && !near_runway {
+            let message = format!(
+                "raise this leg by {:.0} m: it passes {clearance_m:.0} m above the ground",
+                MARGIN_M - clearance_m
+            );
+            problems.push(Problem::warning("low-clearance", message).of(leg));
+        }
+    }
+}
+
+/// `(least height above the ground, ground elevation there)`, metres.
+fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
+    let end = step.end?;
+    let at_end = clearance_m(view, end, end.altitude_amsl_m?);
+    let along = step.start.zip(step.path).and_then(|(start, path)| {
+        let from_m = start.altitude_amsl_m?;
+        let looks = (path.length_m() / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
+        let look = |i: u32| {
+            let share = f64::from(i) / looks;
+            let position = path.at(start.position, share);
+            let altitude_m = from_m + (end.altitude_amsl_m? - from_m) * share;
+            clearance_m(view, Point { position, altitude_amsl_m: None }, altitude_m)
+        };
+        (0..=looks as u32).filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0))
+    });
+    at_end.into_iter().chain(along).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+fn clearance_m(view: &Inspection, at: Point, altitude_m: f64) -> Option<(f64, f64)> {
+    let ground_m = view.terrain.elevation_m(at.position)?;
+    Some((altitude_m - ground_m, ground_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::{codes_over, plan_with};
+    use geometry::LatLon;
+    use terrain::Terrain;
+
+    /// A ridge between A and B.
+    struct Ridge(f64);
+    impl Terrain for Ridge {
+        fn elevation_m(&self, p: LatLon) -> Option<f64> {
+            Some(if (p.lon_deg + 84.185).abs() < 0.001 { self.0 } else { 300.0 })
+        }
+    }
+
+    #[test]
+    fn a_ridge_between_two_waypoints_is_seen() {
+        let plan = plan_with(r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>"#);
+        for (ridge_m, expected) in
+            [(440.0, &[][..]), (460.0, &["low-clearance"]), (510.0, &["below-terrain"])]
+        {
+            assert_eq!(codes_over(&plan, &Ridge(ridge_m)), expected, "{ridge_m}");
+        }
+    }
+}

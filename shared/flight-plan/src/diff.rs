@@ -1,0 +1,72 @@
+//! What changed between two plans.
+
+use crate::{FlightPlan, Id, Leg, LegContext, LegKind};
+use std::collections::BTreeMap;
+
+/// Identifiers of legs by what became of them, in document order.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Difference {
+    /// Only in the new plan.
+    pub added: Vec<Id>,
+    /// Only in the old plan.
+    pub removed: Vec<Id>,
+    /// In both, but another leg, in another stage or loop, or over fixes or a runway that moved. A loop counts as
+    /// changed only for its own properties and the order of its body, not for what changed inside a leg of it.
+    pub changed: Vec<Id>,
+}
+
+impl Difference {
+    /// From one plan to another.
+    pub fn between(old: &FlightPlan, new: &FlightPlan) -> Self {
+        let (before, after) = (old.all_legs(), new.all_legs());
+        let by_id = |legs: &[LegContext<'_>]| -> BTreeMap<Id, usize> {
+            legs.iter().enumerate().map(|(i, c)| (c.leg.id.clone(), i)).collect()
+        };
+        let (in_old, in_new) = (by_id(&before), by_id(&after));
+        let mut difference = Difference::default();
+        for context in &after {
+            match in_old.get(&context.leg.id).and_then(|i| before.get(*i)) {
+                None => difference.added.push(context.leg.id.clone()),
+                Some(was) if differs((old, was), (new, context)) => {
+                    difference.changed.push(context.leg.id.clone())
+                }
+                Some(_) => {}
+            }
+        }
+        let gone = before.iter().filter(|c| !in_new.contains_key(&c.leg.id));
+        difference.removed = gone.map(|c| c.leg.id.clone()).collect();
+        difference
+    }
+
+    /// Nothing changed that legs can show.
+    pub fn is_empty(&self) -> bool {
+        self.added.is_empty() && self.removed.is_empty() && self.changed.is_empty()
+    }
+}
+
+fn differs((old, was): (&FlightPlan, &LegContext), (new, is): (&FlightPlan, &LegContext)) -> bool {
+    let around =
+        |c: &LegContext| (c.stage.id.clone(), c.loops.iter().map(|l| l.id.clone()).collect::<Vec<_>>());
+    let inherited = |c: &LegContext| (c.stage.altitude.clone(), c.stage.speed_mps.clone());
+    around(was) != around(is)
+        || inherited(was) != inherited(is)
+        || fix_position(old, was.leg) != fix_position(new, is.leg)
+        || shallow(was.leg) != shallow(is.leg)
+}
+
+fn fix_position(plan: &FlightPlan, leg: &Leg) -> Option<geometry::LatLon> {
+    match leg.place()? {
+        crate::Place::Fix(id) => plan.fix(id).map(|f| f.position),
+        crate::Place::Position(_) => None,
+    }
+}
+
+/// A leg with its body reduced to the identifiers in it.
+fn shallow(leg: &Leg) -> (Leg, Vec<Id>) {
+    let ids = leg.body().iter().map(|l| l.id.clone()).collect();
+    let mut alone = leg.clone();
+    if let LegKind::Iterative { body, .. } = &mut alone.kind {
+        body.clear();
+    }
+    (alone, ids)
+}
