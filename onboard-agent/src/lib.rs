@@ -1,1 +1,3 @@
 //! Shell: FCS Gateway, FP Manager and their supervisor.
+
+pub mod gateway;

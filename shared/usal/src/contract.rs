@@ -402,6 +402,55 @@ pub struct Ahead {
 /// FP Manager event stream `events`: a plan event with its time.
 pub type FpManagerEvent = Stamped<PlanEvent>;
 
+/// Gateway event stream `events`: a gateway event with its time.
+pub type TimedGatewayEvent = Stamped<GatewayEvent>;
+
+/// A request or an answer that says nothing more; an absent payload counts as one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Empty {}
+
+/// FP Manager variable `variables`: the plan's variables as they are now.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct PlanVariables {
+    /// In the order of the plan.
+    pub variables: Vec<PlanVariable>,
+}
+
+/// A plan's variable as it is now.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PlanVariable {
+    /// Its name.
+    pub name: Id,
+    /// Its value.
+    pub value: VariableValue,
+    /// Unit of a number, for the reader.
+    pub unit: String,
+    /// Least value of a number.
+    pub min: Option<f64>,
+    /// Greatest value of a number.
+    pub max: Option<f64>,
+}
+
+/// FP Manager variable `plan`: which plan is active. The document itself: invocation `plan`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct PlanInfo {
+    /// What people call it.
+    pub name: String,
+    /// Hash of the active plan (hex SHA-256 of its canonical bytes), if any.
+    pub hash: Option<String>,
+    /// Counts accepted plans and changes of this flight.
+    pub revision: u64,
+}
+
+/// Answer of FP Manager invocation `plan`: the active plan's document.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct PlanDocument {
+    /// Which it is.
+    pub info: PlanInfo,
+    /// Its canonical XML; empty if there is none.
+    pub xml: String,
+}
+
 /// Clock of a simulated flight: nobody goes on before every participant has acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClockTick {

@@ -1,3 +1,38 @@
 //! Shell: the service contract (keys, types, sessions) over Zenoh; the only crate that knows Zenoh.
+//!
+//! A [`Session`] speaks for one vehicle. What may be said is listed, typed, in [`topics`]:
+//! variables, events and invocations of each service. Everything that is received is put into
+//! channels and cells that can be polled without blocking, so that a window can use them from
+//! its drawing thread; [`Config::wake`] tells it when to look.
+//!
+//! Nothing undecodable stops a session: it is counted ([`Session::health`]), logged at a limited
+//! rate and ignored; an undecodable request is answered with what was wrong with it.
 
 pub mod contract;
+pub mod topics;
+
+mod call;
+mod clock;
+mod codec;
+mod describe;
+mod error;
+mod event;
+mod health;
+mod invocation;
+mod keys;
+mod liveliness;
+mod session;
+mod variable;
+
+pub use call::PendingCall;
+pub use clock::{Conductor, Participant};
+pub use codec::Format;
+pub use describe::{Description, Primitive, fp_manager_description, gateway_description};
+pub use error::{CallError, SessionError};
+pub use event::{EventPublisher, EventSubscriber, Occurrence, Start};
+pub use health::{Health, HealthCount};
+pub use invocation::{Incoming, Server};
+pub use keys::{Key, KeyError, Kind};
+pub use liveliness::{Announcement, Presence};
+pub use session::{Config, DEFAULT_ENDPOINT, Role, Session, Wake};
+pub use variable::{Received, VariablePublisher, VariableSubscriber};

@@ -1,0 +1,162 @@
+//! Calling invocations, without blocking.
+
+use crate::codec::{self, Format};
+use crate::contract::Refusal;
+use crate::keys::Kind;
+use crate::session::{Inner, Session};
+use crate::topics::Invocation;
+use crate::variable::PRIORITY;
+use crate::{CallError, SessionError};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::{Arc, Weak};
+use std::task::{Context, Poll};
+use std::time::Duration;
+use tokio::sync::{mpsc, oneshot};
+use tokio::time::Instant;
+use zenoh::Wait;
+use zenoh::bytes::ZBytes;
+use zenoh::qos::CongestionControl;
+use zenoh::query::{ConsolidationMode, Reply};
+
+/// Pause before a request that reached nobody is tried again.
+const RETRY: Duration = Duration::from_millis(50);
+/// Our deadline comes first; only then the network gives up.
+const GRACE: Duration = Duration::from_millis(500);
+
+/// An answer to come: a future, or polled without blocking by [`Self::try_take`].
+#[derive(Debug)]
+pub struct PendingCall<A> {
+    answer: oneshot::Receiver<Result<A, CallError>>,
+}
+
+impl<A> PendingCall<A> {
+    /// The answer if it is there; once. Does not block.
+    pub fn try_take(&mut self) -> Option<Result<A, CallError>> {
+        match self.answer.try_recv() {
+            Ok(answer) => Some(answer),
+            Err(oneshot::error::TryRecvError::Empty) => None,
+            Err(oneshot::error::TryRecvError::Closed) => Some(Err(CallError::Closed)),
+        }
+    }
+}
+
+impl<A> Future for PendingCall<A> {
+    type Output = Result<A, CallError>;
+
+    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
+        Pin::new(&mut self.answer).poll(context).map(|answer| answer.unwrap_or(Err(CallError::Closed)))
+    }
+}
+
+impl Session {
+    /// Asks a service. The request is on its way when this returns; it is repeated under the same
+    /// id while nobody is there to take it, and executed once. The answer, or
+    /// [`CallError`], is there within `timeout`.
+    pub fn call<Q, A>(&self, invocation: Invocation<Q, A>, request: &Q, timeout: Duration) -> PendingCall<A>
+    where
+        Q: Serialize,
+        A: DeserializeOwned + Send + 'static,
+    {
+        let (sender, answer) = oneshot::channel();
+        match self.request(invocation, request, timeout) {
+            Err(reason) => {
+                let name = invocation.name.to_owned();
+                // the receiver is in our hands
+                let _ = sender.send(Err(CallError::Undecodable { name, reason }));
+            }
+            Ok(request) => {
+                let first = request.attempt(timeout);
+                let wake = self.inner.wake.clone();
+                self.inner.runtime.spawn(async move {
+                    // nobody waits any more: no matter
+                    let _ = sender.send(request.run(first).await);
+                    wake();
+                });
+            }
+        }
+        PendingCall { answer }
+    }
+
+    fn request<Q: Serialize, A>(
+        &self,
+        invocation: Invocation<Q, A>,
+        request: &Q,
+        timeout: Duration,
+    ) -> Result<Request, String> {
+        let key = self.key(invocation.service, Kind::Invocation, invocation.name).map_err(|e| e.to_string())?;
+        let payload = codec::encode(request, Format::Cbor)?;
+        Ok(Request {
+            inner: Arc::downgrade(&self.inner),
+            selector: format!("{key}?id={};timeout_ms={}", self.request_id(), timeout.as_millis()),
+            name: key.to_string(),
+            payload: payload.into(),
+            timeout,
+            deadline: Instant::now() + timeout,
+        })
+    }
+}
+
+struct Request {
+    inner: Weak<Inner>,
+    selector: String,
+    name: String,
+    payload: ZBytes,
+    timeout: Duration,
+    deadline: Instant,
+}
+
+impl Request {
+    /// Sends it once. The channel ends without a reply when the network knows that none will come.
+    fn attempt(&self, left: Duration) -> Result<mpsc::Receiver<Reply>, CallError> {
+        let inner = self.inner.upgrade().ok_or(CallError::Closed)?;
+        let (sender, receiver) = mpsc::channel(1);
+        inner
+            .zenoh
+            .get(&self.selector)
+            .payload(self.payload.clone())
+            .encoding(Format::Cbor.encoding())
+            .consolidation(ConsolidationMode::None)
+            .congestion_control(CongestionControl::Block)
+            .priority(PRIORITY)
+            .timeout(left + GRACE)
+            // one answer is enough; a second service of the same name is not heard
+            .callback(move |reply| drop(sender.try_send(reply)))
+            .wait()
+            .map_err(|e| {
+                tracing::debug!("{}", SessionError::network(e));
+                CallError::Closed
+            })?;
+        Ok(receiver)
+    }
+
+    async fn run<A: DeserializeOwned>(self, first: Result<mpsc::Receiver<Reply>, CallError>) -> Result<A, CallError> {
+        let mut attempt = first?;
+        loop {
+            match tokio::time::timeout_at(self.deadline, attempt.recv()).await {
+                Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
+                Ok(Some(reply)) => return self.read(&reply),
+                Ok(None) => {
+                    if Instant::now() + RETRY >= self.deadline {
+                        return Err(CallError::Unreachable { name: self.name });
+                    }
+                    tokio::time::sleep(RETRY).await;
+                    attempt = self.attempt(self.deadline.saturating_duration_since(Instant::now()))?;
+                }
+            }
+        }
+    }
+
+    fn read<A: DeserializeOwned>(self, reply: &Reply) -> Result<A, CallError> {
+        let read = match reply.result() {
+            Ok(sample) => codec::decode(sample.payload(), sample.encoding()).map(Ok),
+            Err(error) => codec::decode::<Refusal>(error.payload(), error.encoding()).map(Err),
+        };
+        match read {
+            Ok(answer) => answer.map_err(CallError::Refused),
+            Err(reason) => Err(CallError::Undecodable { name: self.name, reason }),
+        }
+    }
+}

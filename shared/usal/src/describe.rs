@@ -1,0 +1,144 @@
+//! Self-description: what a service is called, which version it speaks and what it says, with
+//! JSON Schemas made from the types. A golden file shows every change of the contract.
+
+use crate::contract::{ClockAck, ClockTick, Empty, Stamped};
+use crate::keys::Kind;
+use crate::session::Session;
+use crate::topics::{self, Events, FP_MANAGER, GATEWAY, Invocation, Variable};
+use crate::{Server, SessionError};
+use schemars::{JsonSchema, schema_for};
+use serde::{Deserialize, Serialize};
+
+/// What a service is and can.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Description {
+    /// Its name.
+    pub service: String,
+    /// Version of the program, semantic; the contract is compatible within a major version.
+    pub version: String,
+    /// What it says, in the order of the contract.
+    pub primitives: Vec<Primitive>,
+}
+
+/// A variable, a stream of events or an invocation. Angles in degrees and SI units; units are
+/// part of the field names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Primitive {
+    /// Which kind.
+    pub kind: Kind,
+    /// Its name.
+    pub name: String,
+    /// JSON Schema of a variable's or event's payload, or of an invocation's answer.
+    pub schema: serde_json::Value,
+    /// JSON Schema of an invocation's request.
+    pub request: Option<serde_json::Value>,
+}
+
+impl Primitive {
+    fn variable<T: JsonSchema>(variable: Variable<T>) -> Self {
+        Self::plain(Kind::Variable, variable.name, schema::<Stamped<T>>())
+    }
+
+    fn events<T: JsonSchema>(events: Events<T>) -> Self {
+        Self::plain(Kind::Event, events.name, schema::<T>())
+    }
+
+    fn invocation<Q: JsonSchema, A: JsonSchema>(invocation: Invocation<Q, A>) -> Self {
+        Self { request: Some(schema::<Q>()), ..Self::plain(Kind::Invocation, invocation.name, schema::<A>()) }
+    }
+
+    fn plain(kind: Kind, name: &str, schema: serde_json::Value) -> Self {
+        Self { kind, name: name.into(), schema, request: None }
+    }
+}
+
+fn schema<T: JsonSchema>() -> serde_json::Value {
+    schema_for!(T).to_value()
+}
+
+fn description(service: &str, primitives: Vec<Primitive>) -> Description {
+    Description { service: service.into(), version: env!("CARGO_PKG_VERSION").into(), primitives }
+}
+
+/// The FCS Gateway's description.
+pub fn gateway_description() -> Description {
+    use topics::gateway::*;
+    let primitives = vec![
+        Primitive::variable(POSITION),
+        Primitive::variable(ATTITUDE),
+        Primitive::variable(AIR),
+        Primitive::variable(GPS),
+        Primitive::variable(ENGINE),
+        Primitive::variable(POWER),
+        Primitive::variable(NAVIGATION),
+        Primitive::variable(STATE),
+        // carries its own time and is not stamped
+        Primitive::plain(Kind::Variable, "clock", schema::<ClockTick>()),
+        Primitive::events(EVENTS),
+        Primitive::invocation(FEED),
+        Primitive::invocation(JOIN),
+        Primitive::invocation(REQUEST),
+        Primitive::invocation(topics::describe(GATEWAY)),
+    ];
+    description(GATEWAY, primitives)
+}
+
+/// The FP Manager's description.
+pub fn fp_manager_description() -> Description {
+    use topics::fp_manager::*;
+    let primitives = vec![
+        Primitive::variable(STATUS),
+        Primitive::variable(AHEAD),
+        Primitive::variable(VARIABLES),
+        Primitive::variable(HEARTBEAT),
+        Primitive::variable(PLAN),
+        Primitive::plain(Kind::Variable, "clock-ack", schema::<ClockAck>()),
+        Primitive::events(EVENTS),
+        Primitive::invocation(PROPOSE),
+        Primitive::invocation(COMMAND),
+        Primitive::invocation(PLAN_DOCUMENT),
+        Primitive::invocation(topics::describe(FP_MANAGER)),
+    ];
+    description(FP_MANAGER, primitives)
+}
+
+impl Session {
+    /// Serves `describe` of a service: answer each request with its description.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn serve_description(&self, service: &'static str) -> Result<Server<Empty, Description>, SessionError> {
+        self.serve(topics::describe(service))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    /// `LEGWORK_BLESS=1 cargo test -p usal` rewrites the file: look at the difference before
+    /// committing it; it is a change of the contract.
+    #[test]
+    fn the_contract_is_the_one_in_the_golden_file() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/contract.json");
+        let now = serde_json::to_string_pretty(&[gateway_description(), fp_manager_description()]).unwrap() + "\n";
+        if std::env::var_os("LEGWORK_BLESS").is_some() {
+            std::fs::write(path, &now).unwrap();
+        }
+        let golden = std::fs::read_to_string(path).unwrap_or_default();
+        let first = golden.lines().zip(now.lines()).position(|(a, b)| a != b);
+        assert!(golden == now, "the contract differs from contract.json, first in line {:?}", first.map(|n| n + 1));
+    }
+
+    #[test]
+    fn every_primitive_has_a_schema_and_a_key() {
+        for description in [gateway_description(), fp_manager_description()] {
+            for primitive in &description.primitives {
+                crate::Key::new("uav1", &description.service, primitive.kind, &primitive.name).unwrap();
+                assert!(primitive.schema.is_object(), "{}", primitive.name);
+                assert_eq!(primitive.request.is_some(), primitive.kind == Kind::Invocation, "{}", primitive.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! Serving invocations: one typed answer each, repeated requests executed once.
+//!
+//! A request may carry, as parameters of its selector, `id` (any text without `;`; the same id
+//! is executed once and answered again from memory) and `timeout_ms` (after which it is not
+//! executed any more). A refusal is an error reply of the form `{code, reason}`. Answers come in
+//! the format of the request.
+
+use crate::codec::{self, Format};
+use crate::contract::Refusal;
+use crate::health::Health;
+use crate::keys::Kind;
+use crate::session::Session;
+use crate::topics::Invocation;
+use crate::SessionError;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::collections::{HashMap, VecDeque};
+use std::marker::PhantomData;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use tokio::sync::mpsc;
+use zenoh::Wait;
+use zenoh::bytes::{Encoding, ZBytes};
+use zenoh::query::{Query, Queryable};
+
+/// Requests that may wait for the service.
+const QUEUE: usize = 64;
+/// Answers remembered for repeated requests.
+const REMEMBERED: usize = 256;
+/// Answers larger than this are not remembered, bytes (256 of them make 16 MiB).
+const REMEMBERED_BYTES: usize = 64 << 10;
+/// Repetitions of one request that may wait for its answer.
+const WAITING: usize = 8;
+/// Longest request id, bytes.
+const ID_MAX: usize = 128;
+/// Deadline of a request that names none, and the longest that it may name.
+const TIMEOUT_MAX: Duration = Duration::from_secs(60);
+
+/// Receives the requests of an invocation.
+pub struct Server<Q, A> {
+    receiver: mpsc::Receiver<Incoming<Q, A>>,
+    _queryable: Queryable<()>,
+    _session: Session,
+}
+
+impl<Q, A: Serialize> Server<Q, A> {
+    /// Waits for the next request whose deadline has not passed; `None` when the session is
+    /// closed.
+    pub async fn recv(&mut self) -> Option<Incoming<Q, A>> {
+        loop {
+            let incoming = self.receiver.recv().await?;
+            if let Some(incoming) = incoming.unless_expired() {
+                return Some(incoming);
+            }
+        }
+    }
+
+    /// The next request, if there is one. Does not block.
+    pub fn try_recv(&mut self) -> Option<Incoming<Q, A>> {
+        loop {
+            let incoming = self.receiver.try_recv().ok()?;
+            if let Some(incoming) = incoming.unless_expired() {
+                return Some(incoming);
+            }
+        }
+    }
+}
+
+/// A request that wants its one answer; dropped without one, it is answered as `unanswered`.
+pub struct Incoming<Q, A> {
+    /// What is asked.
+    pub request: Q,
+    reply: Replier,
+    deadline: Instant,
+    _answer: PhantomData<fn(&A)>,
+}
+
+impl<Q, A: Serialize> Incoming<Q, A> {
+    /// Answers it.
+    pub fn answer(mut self, answer: Result<A, Refusal>) {
+        self.reply.answer(&answer);
+    }
+
+    /// The request and the duty to answer it, apart.
+    pub fn split(self) -> (Q, impl FnOnce(Result<A, Refusal>) + Send + use<Q, A>) {
+        let mut reply = self.reply;
+        (self.request, move |answer| reply.answer(&answer))
+    }
+
+    fn unless_expired(self) -> Option<Self> {
+        if Instant::now() < self.deadline {
+            return Some(self);
+        }
+        self.answer(Err(refusal("expired", "its deadline passed before it could be executed; send it again")));
+        None
+    }
+}
+
+pub(crate) fn refusal(code: &str, reason: &str) -> Refusal {
+    Refusal { code: code.into(), reason: reason.into() }
+}
+
+impl Session {
+    /// Serves an invocation.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn serve<Q, A>(&self, invocation: Invocation<Q, A>) -> Result<Server<Q, A>, SessionError>
+    where
+        Q: DeserializeOwned + Send + 'static,
+        A: Serialize + 'static,
+    {
+        let key = self.key(invocation.service, Kind::Invocation, invocation.name)?.to_string();
+        let (sender, receiver) = mpsc::channel(QUEUE);
+        let memory = Arc::new(Mutex::new(Memory::default()));
+        let health = self.inner.health.clone();
+        let wake = self.inner.wake.clone();
+        let queryable = self
+            .inner
+            .zenoh
+            .declare_queryable(key)
+            .complete(true)
+            .callback(move |query| {
+                if let Some(reply) = admit(&memory, &health, query) {
+                    receive(&sender, reply);
+                    wake();
+                }
+            })
+            .wait()
+            .map_err(SessionError::network)?;
+        Ok(Server { receiver, _queryable: queryable, _session: self.clone() })
+    }
+}
+
+/// Decodes a request and queues it; what cannot be is answered at once.
+fn receive<Q: DeserializeOwned, A: Serialize>(sender: &mpsc::Sender<Incoming<Q, A>>, mut reply: Replier) {
+    let empty = ZBytes::new();
+    let payload = reply.query.payload().unwrap_or(&empty);
+    let encoding = reply.query.encoding().unwrap_or(&Encoding::ZENOH_BYTES);
+    match codec::decode::<Q>(payload, encoding) {
+        Err(reason) => {
+            reply.health.undecodable(reply.query.key_expr().as_str(), &reason);
+            reply.answer::<A>(&Err(refusal("bad-request", &reason)));
+        }
+        Ok(request) => {
+            let deadline = Instant::now() + timeout(&reply.query);
+            let incoming = Incoming { request, reply, deadline, _answer: PhantomData };
+            if let Err(full) = sender.try_send(incoming) {
+                full.into_inner().answer(Err(refusal("busy", "too many requests are waiting; try again later")));
+            }
+        }
+    }
+}
+
+fn timeout(query: &Query) -> Duration {
+    let asked = query.parameters().get("timeout_ms").and_then(|ms| ms.parse().ok());
+    asked.map_or(TIMEOUT_MAX, Duration::from_millis).min(TIMEOUT_MAX)
+}
+
+/// Lets a request through to the service unless it repeats an earlier one.
+fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Option<Replier> {
+    let id = query.parameters().get("id").filter(|id| id.len() <= ID_MAX).map(str::to_owned);
+    let format = query.encoding().map_or(Format::Cbor, Format::of);
+    if let Some(id) = &id {
+        let mut memory = memory.lock().unwrap_or_else(PoisonError::into_inner);
+        match memory.requests.get_mut(id) {
+            Some(Request::Running(waiting)) => {
+                if waiting.len() < WAITING {
+                    waiting.push(query);
+                }
+                return None;
+            }
+            Some(Request::Done(reply)) => {
+                send(&query, reply, health);
+                return None;
+            }
+            None => memory.begin(id.clone()),
+        }
+    }
+    Some(Replier { query, format, id, memory: memory.clone(), health: health.clone(), answered: false })
+}
+
+/// The duty to answer one request, and those that repeat it.
+struct Replier {
+    query: Query,
+    format: Format,
+    id: Option<String>,
+    memory: Arc<Mutex<Memory>>,
+    health: Arc<Health>,
+    answered: bool,
+}
+
+impl Replier {
+    fn answer<A: Serialize>(&mut self, answer: &Result<A, Refusal>) {
+        self.answered = true;
+        let reply = Reply::new(answer, self.format);
+        send(&self.query, &reply, &self.health);
+        if let Some(id) = &self.id {
+            let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+            for waiting in memory.finish(id, &reply) {
+                send(&waiting, &reply, &self.health);
+            }
+        }
+    }
+}
+
+impl Drop for Replier {
+    fn drop(&mut self) {
+        if !self.answered {
+            self.answer::<()>(&Err(refusal("unanswered", "the service gave up on it; look at its log")));
+        }
+    }
+}
+
+/// An answer, written.
+#[derive(Clone)]
+struct Reply {
+    good: bool,
+    bytes: ZBytes,
+    format: Format,
+}
+
+impl Reply {
+    fn new<A: Serialize>(answer: &Result<A, Refusal>, format: Format) -> Self {
+        let encoded = match answer {
+            Ok(answer) => codec::encode(answer, format).map(|bytes| (true, bytes)),
+            Err(refusal) => codec::encode(refusal, format).map(|bytes| (false, bytes)),
+        };
+        let (good, bytes) = encoded.unwrap_or_else(|reason| {
+            let refusal = refusal("unanswered", &format!("the answer cannot be written: {reason}"));
+            (false, codec::encode(&refusal, format).unwrap_or_default())
+        });
+        Self { good, bytes: bytes.into(), format }
+    }
+}
+
+fn send(query: &Query, reply: &Reply, health: &Health) {
+    let encoding = reply.format.encoding();
+    let sent = if reply.good {
+        query.reply(query.key_expr().clone(), reply.bytes.clone()).encoding(encoding).wait()
+    } else {
+        query.reply_err(reply.bytes.clone()).encoding(encoding).wait()
+    };
+    if let Err(e) = sent {
+        health.unsent(query.key_expr().as_str(), &e.to_string());
+    }
+}
+
+/// Requests with an id, so that a repeated one is not executed again; the oldest are forgotten.
+#[derive(Default)]
+struct Memory {
+    requests: HashMap<String, Request>,
+    order: VecDeque<String>,
+}
+
+enum Request {
+    Running(Vec<Query>),
+    Done(Reply),
+}
+
+impl Memory {
+    fn begin(&mut self, id: String) {
+        if self.order.len() >= REMEMBERED
+            && let Some(oldest) = self.order.pop_front()
+        {
+            self.requests.remove(&oldest);
+        }
+        self.order.push_back(id.clone());
+        self.requests.insert(id, Request::Running(Vec::new()));
+    }
+
+    /// Remembers an answer and returns the repetitions that wait for it.
+    fn finish(&mut self, id: &str, reply: &Reply) -> Vec<Query> {
+        let Some(request) = self.requests.get_mut(id) else { return Vec::new() };
+        let kept = if reply.bytes.len() <= REMEMBERED_BYTES {
+            reply.clone()
+        } else {
+            let forgotten = refusal("answer-too-large", "it was executed; its answer is too large to be kept: ask for the state");
+            Reply::new::<()>(&Err(forgotten), reply.format)
+        };
+        match std::mem::replace(request, Request::Done(kept)) {
+            Request::Running(waiting) => waiting,
+            Request::Done(_) => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Who is there: each service shows a token as long as it lives.
+
+use crate::keys::{self, Key, Kind};
+use crate::session::Session;
+use crate::{KeyError, SessionError};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use tokio::sync::watch;
+use zenoh::Wait;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Subscriber;
+use zenoh::sample::SampleKind;
+
+/// Names beyond this are not remembered: no vehicle has so many services.
+const SERVICES_MAX: usize = 256;
+const ALIVE: &str = "alive";
+
+/// Shows that a service is there, until dropped.
+pub struct Announcement {
+    _token: LivelinessToken,
+    _session: Session,
+}
+
+/// Which services are there.
+pub struct Presence {
+    receiver: watch::Receiver<Arc<BTreeSet<String>>>,
+    _subscriber: Subscriber<()>,
+    _session: Session,
+}
+
+impl Presence {
+    /// The services that are alive now. Does not block.
+    pub fn services(&self) -> Arc<BTreeSet<String>> {
+        self.receiver.borrow().clone()
+    }
+
+    /// Whether this one is. Does not block.
+    pub fn is_alive(&self, service: &str) -> bool {
+        self.receiver.borrow().contains(service)
+    }
+
+    /// Waits for somebody to come or go; `None` when the session is closed.
+    pub async fn changed(&mut self) -> Option<Arc<BTreeSet<String>>> {
+        self.receiver.changed().await.ok()?;
+        Some(self.receiver.borrow_and_update().clone())
+    }
+}
+
+impl Session {
+    /// Shows that a service is there. Call it after its publishers and servers are made.
+    ///
+    /// # Errors
+    /// [`SessionError`] for a bad name or on a closed session.
+    pub fn announce(&self, service: &str) -> Result<Announcement, SessionError> {
+        let token = self.token(service, ALIVE)?;
+        Ok(Announcement { _token: token, _session: self.clone() })
+    }
+
+    /// Watches who is there.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn presence(&self) -> Result<Presence, SessionError> {
+        let (sender, receiver) = watch::channel(Arc::default());
+        let inner = Arc::downgrade(&self.inner);
+        let subscriber = self.watch_tokens(ALIVE, move |service, alive| {
+            sender.send_modify(|services: &mut Arc<BTreeSet<String>>| {
+                let services = Arc::make_mut(services);
+                if !alive {
+                    services.remove(&service);
+                } else if services.len() < SERVICES_MAX {
+                    services.insert(service);
+                }
+            });
+            if let Some(inner) = inner.upgrade() {
+                (inner.wake)();
+            }
+        })?;
+        Ok(Presence { receiver, _subscriber: subscriber, _session: self.clone() })
+    }
+
+    pub(crate) fn token(&self, service: &str, name: &str) -> Result<LivelinessToken, SessionError> {
+        let key = self.key(service, Kind::Liveliness, name)?.to_string();
+        self.inner.zenoh.liveliness().declare_token(key).wait().map_err(SessionError::network)
+    }
+
+    /// Calls back with the service whose token of this name came or went; those that are there
+    /// already come first.
+    pub(crate) fn watch_tokens(
+        &self,
+        name: &str,
+        changed: impl Fn(String, bool) + Send + Sync + 'static,
+    ) -> Result<Subscriber<()>, SessionError> {
+        let pattern = keys::every_service(&self.inner.vehicle, Kind::Liveliness, name)?;
+        self.inner
+            .zenoh
+            .liveliness()
+            .declare_subscriber(pattern)
+            .history(true)
+            .callback(move |sample| {
+                let key: Result<Key, KeyError> = sample.key_expr().as_str().parse();
+                if let Ok(key) = key {
+                    changed(key.service, sample.kind() == SampleKind::Put);
+                }
+            })
+            .wait()
+            .map_err(SessionError::network)
+    }
+}

@@ -1,0 +1,196 @@
+//! A session: one vehicle's services, over explicit endpoints.
+
+use crate::health::{Health, HealthCount};
+use crate::keys::{Key, KeyError, Kind};
+use crate::SessionError;
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use tokio::runtime::{Handle, RuntimeFlavor};
+
+/// Where a vehicle's hub listens unless told otherwise: this machine only.
+pub const DEFAULT_ENDPOINT: &str = "tcp/127.0.0.1:7447";
+
+/// Called, from a network thread, whenever something has been received; must return at once.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// How a session takes part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Role {
+    /// Everybody else connects here (the gateway).
+    Hub {
+        /// Endpoint, `tcp/host:port`.
+        listen: String,
+    },
+    /// Connects to the hub, now or as soon as it is there, again and again.
+    Client {
+        /// Endpoint, `tcp/host:port`.
+        connect: String,
+    },
+}
+
+/// What a session is opened with.
+#[derive(Clone)]
+pub struct Config {
+    /// The vehicle's name, a key segment.
+    pub vehicle: String,
+    /// Hub or client.
+    pub role: Role,
+    /// For windows: repaint.
+    pub wake: Option<Wake>,
+}
+
+impl Config {
+    /// The hub's.
+    pub fn hub(vehicle: &str, listen: &str) -> Self {
+        Self { vehicle: vehicle.into(), role: Role::Hub { listen: listen.into() }, wake: None }
+    }
+
+    /// Everybody else's.
+    pub fn client(vehicle: &str, connect: &str) -> Self {
+        Self { vehicle: vehicle.into(), role: Role::Client { connect: connect.into() }, wake: None }
+    }
+
+    /// With a function that is called when something has been received.
+    pub fn wake(mut self, wake: Wake) -> Self {
+        self.wake = Some(wake);
+        self
+    }
+}
+
+impl fmt::Debug for Config {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Config").field("vehicle", &self.vehicle).field("role", &self.role).finish_non_exhaustive()
+    }
+}
+
+/// A way to all services of a vehicle; cheap to clone. Publishers, subscribers and servers made
+/// from it keep it open.
+#[derive(Clone)]
+pub struct Session {
+    pub(crate) inner: Arc<Inner>,
+}
+
+pub(crate) struct Inner {
+    pub(crate) zenoh: zenoh::Session,
+    pub(crate) vehicle: String,
+    pub(crate) health: Arc<Health>,
+    pub(crate) runtime: Handle,
+    pub(crate) wake: Wake,
+    instance: String,
+    requests: AtomicU64,
+}
+
+impl fmt::Debug for Session {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Session").field("vehicle", &self.inner.vehicle).finish_non_exhaustive()
+    }
+}
+
+impl Session {
+    /// Opens a session. A client returns at once even if its hub is absent, and connects when
+    /// it comes.
+    ///
+    /// # Errors
+    /// [`SessionError`] if the vehicle's name or the endpoint is not usable, or outside of a
+    /// multi-threaded tokio runtime.
+    pub async fn open(config: Config) -> Result<Self, SessionError> {
+        Key::new(&config.vehicle, "session", Kind::Liveliness, "alive")?;
+        let runtime = Handle::try_current().map_err(|_| SessionError::Runtime)?;
+        if runtime.runtime_flavor() == RuntimeFlavor::CurrentThread {
+            return Err(SessionError::Runtime);
+        }
+        let zenoh = open_zenoh(&config.role).await?;
+        let instance = zenoh.zid().to_string();
+        Ok(Self {
+            inner: Arc::new(Inner {
+                zenoh,
+                vehicle: config.vehicle,
+                health: Arc::default(),
+                runtime,
+                wake: config.wake.unwrap_or_else(|| Arc::new(|| {})),
+                instance,
+                requests: AtomicU64::new(1),
+            }),
+        })
+    }
+
+    /// The vehicle it speaks for.
+    pub fn vehicle(&self) -> &str {
+        &self.inner.vehicle
+    }
+
+    /// What went wrong so far.
+    pub fn health(&self) -> HealthCount {
+        self.inner.health.count()
+    }
+
+    /// Whether it has a connection now: a client to its hub, a hub to anybody.
+    pub async fn is_connected(&self) -> bool {
+        let info = self.inner.zenoh.info();
+        info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
+    }
+
+    /// Ends the session for all its clones and parts.
+    pub async fn close(&self) {
+        if let Err(e) = self.inner.zenoh.close().await {
+            tracing::debug!("closing the session: {e}");
+        }
+    }
+
+    pub(crate) fn key(&self, service: &str, kind: Kind, name: &str) -> Result<Key, KeyError> {
+        Key::new(&self.inner.vehicle, service, kind, name)
+    }
+
+    /// A request id that nobody else uses.
+    pub(crate) fn request_id(&self) -> String {
+        format!("{}-{}", self.inner.instance, self.inner.requests.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+async fn open_zenoh(role: &Role) -> Result<zenoh::Session, SessionError> {
+    let endpoint = match role {
+        Role::Hub { listen } => listen,
+        Role::Client { connect } => connect,
+    };
+    let bad = |reason: String| SessionError::Endpoint { endpoint: endpoint.clone(), reason };
+    let config = zenoh_config(role).map_err(|e| bad(e.to_string()))?;
+    zenoh::open(config).await.map_err(|e| bad(e.to_string()))
+}
+
+/// No multicast, no gossip: only the endpoint given. Everybody is a Zenoh router, found by trying
+/// (1.10): it forwards between the others, can be opened while the hub is absent and connects
+/// again by itself. A Zenoh client cannot be opened without its router, and two peers of the
+/// same router do not hear each other. Outside clients may be of any mode.
+fn zenoh_config(role: &Role) -> zenoh::Result<zenoh::Config> {
+    let (listen, connect) = match role {
+        Role::Hub { listen } => (vec![listen], vec![]),
+        Role::Client { connect } => (vec![], vec![connect]),
+    };
+    let mut config = zenoh::Config::default();
+    let values = [
+        ("mode", serde_json::json!("router")),
+        ("listen/endpoints", serde_json::json!(listen)),
+        ("connect/endpoints", serde_json::json!(connect)),
+        ("connect/timeout_ms", serde_json::json!(-1)),
+        ("connect/exit_on_failure", serde_json::json!(false)),
+        (
+            "connect/retry",
+            serde_json::json!({"period_init_ms": 50, "period_max_ms": 500, "period_increase_factor": 1.5}),
+        ),
+        ("scouting/multicast/enabled", serde_json::json!(false)),
+        ("scouting/gossip/enabled", serde_json::json!(false)),
+        ("scouting/delay", serde_json::json!(0)),
+        ("open/return_conditions/connect_scouted", serde_json::json!(false)),
+        // a frozen peer is noticed after two seconds instead of ten
+        ("transport/link/tx/lease", serde_json::json!(2000)),
+        // payloads carry their own time
+        ("timestamping/enabled", serde_json::json!(false)),
+        // a peer that takes nothing for a second is dropped instead of holding up the sender for five
+        ("transport/link/tx/queue/congestion_control/block/wait_before_close", serde_json::json!(1_000_000)),
+    ];
+    for (path, value) in values {
+        config.insert_json5(path, &value.to_string())?;
+    }
+    Ok(config)
+}

@@ -1,0 +1,121 @@
+//! Everything that may be said, with its type. What is not here is not part of the contract.
+
+use crate::Description;
+use std::marker::PhantomData;
+
+/// The FCS Gateway's name.
+pub const GATEWAY: &str = "gateway";
+/// The FP Manager's name.
+pub const FP_MANAGER: &str = "fp-manager";
+
+/// A variable: `Stamped<T>` on the wire.
+pub struct Variable<T> {
+    /// Whose.
+    pub service: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    payload: PhantomData<fn() -> T>,
+}
+
+/// A stream of events.
+pub struct Events<T> {
+    /// Whose.
+    pub service: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    payload: PhantomData<fn() -> T>,
+}
+
+/// An invocation with request `Q` and answer `A`.
+pub struct Invocation<Q, A> {
+    /// Who serves it.
+    pub service: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    payload: PhantomData<fn(Q) -> A>,
+}
+
+macro_rules! copyable {
+    ($type:ident<$($parameter:ident),+>) => {
+        impl<$($parameter),+> Clone for $type<$($parameter),+> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<$($parameter),+> Copy for $type<$($parameter),+> {}
+        impl<$($parameter),+> $type<$($parameter),+> {
+            /// Of a service, by name.
+            pub const fn new(service: &'static str, name: &'static str) -> Self {
+                Self { service, name, payload: PhantomData }
+            }
+        }
+    };
+}
+copyable!(Variable<T>);
+copyable!(Events<T>);
+copyable!(Invocation<Q, A>);
+
+/// What a service is and can.
+pub const fn describe(service: &'static str) -> Invocation<crate::contract::Empty, Description> {
+    Invocation::new(service, "describe")
+}
+
+/// The FCS Gateway.
+pub mod gateway {
+    use super::{Events, GATEWAY, Invocation, Variable};
+    use crate::contract::*;
+
+    /// Where the aircraft is.
+    pub const POSITION: Variable<Position> = Variable::new(GATEWAY, "position");
+    /// How it lies in the air.
+    pub const ATTITUDE: Variable<Attitude> = Variable::new(GATEWAY, "attitude");
+    /// Airspeed and wind.
+    pub const AIR: Variable<Air> = Variable::new(GATEWAY, "air");
+    /// Quality of the position.
+    pub const GPS: Variable<Gps> = Variable::new(GATEWAY, "gps");
+    /// The engine.
+    pub const ENGINE: Variable<Engine> = Variable::new(GATEWAY, "engine");
+    /// The battery.
+    pub const POWER: Variable<Power> = Variable::new(GATEWAY, "power");
+    /// Where it is steering to, and the waypoint buffer.
+    pub const NAVIGATION: Variable<Navigation> = Variable::new(GATEWAY, "navigation");
+    /// What the gateway is doing.
+    pub const STATE: Variable<GatewayStatus> = Variable::new(GATEWAY, "state");
+
+    /// What happened.
+    pub const EVENTS: Events<TimedGatewayEvent> = Events::new(GATEWAY, "events");
+
+    /// Waypoints for the buffer.
+    pub const FEED: Invocation<Feed, FeedAnswer> = Invocation::new(GATEWAY, "feed");
+    /// The FP Manager presents itself.
+    pub const JOIN: Invocation<Join, JoinAnswer> = Invocation::new(GATEWAY, "join");
+    /// What people and services may ask of it.
+    pub const REQUEST: Invocation<GatewayRequest, Empty> = Invocation::new(GATEWAY, "request");
+}
+
+/// The FP Manager.
+pub mod fp_manager {
+    use super::{Events, FP_MANAGER, Invocation, Variable};
+    use crate::contract::*;
+
+    /// What the executor is doing, and where.
+    pub const STATUS: Variable<PlanStatus> = Variable::new(FP_MANAGER, "status");
+    /// The waypoints to be flown next.
+    pub const AHEAD: Variable<Ahead> = Variable::new(FP_MANAGER, "ahead");
+    /// The plan's variables.
+    pub const VARIABLES: Variable<PlanVariables> = Variable::new(FP_MANAGER, "variables");
+    /// Sign of life for the gateway.
+    pub const HEARTBEAT: Variable<Heartbeat> = Variable::new(FP_MANAGER, "heartbeat");
+    /// Which plan is active.
+    pub const PLAN: Variable<PlanInfo> = Variable::new(FP_MANAGER, "plan");
+
+    /// What happened.
+    pub const EVENTS: Events<FpManagerEvent> = Events::new(FP_MANAGER, "events");
+
+    /// Puts a plan forward; `Command::Commit` makes it the active one.
+    pub const PROPOSE: Invocation<Propose, ProposalReport> = Invocation::new(FP_MANAGER, "propose");
+    /// What people and services may ask of the executor.
+    pub const COMMAND: Invocation<Command, Empty> = Invocation::new(FP_MANAGER, "command");
+    /// The active plan's document.
+    pub const PLAN_DOCUMENT: Invocation<Empty, PlanDocument> = Invocation::new(FP_MANAGER, "plan");
+}

@@ -1,0 +1,255 @@
+//! Variables: periodic data, the latest value wins, late joiners get the last one.
+//!
+//! A publisher answers queries on its own key with the last value and shows a liveliness token;
+//! a subscriber that sees the token asks once. So a plain Zenoh client gets the last value by
+//! an ordinary `get`, and a restarted publisher or hub heals by itself.
+
+use crate::contract::Stamped;
+use crate::keys::Kind;
+use crate::session::{Inner, Session};
+use crate::topics::Variable;
+use crate::{Format, SessionError, codec};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::marker::PhantomData;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+use zenoh::Wait;
+use zenoh::bytes::ZBytes;
+use zenoh::handlers::CallbackDrop;
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::{Publisher, Subscriber};
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::query::{Query, Queryable};
+use zenoh::sample::{Sample, SampleKind};
+
+/// One priority for all that must stay in order on a connection: variables, events, requests
+/// and the simulated clock.
+pub(crate) const PRIORITY: Priority = Priority::RealTime;
+
+/// How long a late joiner waits for the last value.
+const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
+
+type Last = Arc<Mutex<Option<ZBytes>>>;
+
+/// Publishes a variable.
+pub struct VariablePublisher<T> {
+    session: Session,
+    publisher: Publisher<'static>,
+    last: Last,
+    _queryable: Queryable<()>,
+    _token: LivelinessToken,
+    _type: PhantomData<fn(&T)>,
+}
+
+impl<T: Serialize> VariablePublisher<T> {
+    /// Publishes a value that was true at `time_s` (source time, seconds) and may be believed for
+    /// `validity_s` seconds. Never blocks: under congestion it is dropped, as the next one is
+    /// newer anyway.
+    pub fn set(&self, time_s: f64, validity_s: f64, value: &T) {
+        let key = self.publisher.key_expr().as_str();
+        let bytes = match codec::encode(&Stamped { time_s, validity_s, value }, Format::Cbor) {
+            Ok(bytes) => ZBytes::from(bytes),
+            Err(reason) => return self.session.inner.health.unsent(key, &reason),
+        };
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes.clone());
+        if let Err(e) = self.publisher.put(bytes).wait() {
+            self.session.inner.health.unsent(key, &e.to_string());
+        }
+    }
+}
+
+/// A value as it came in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Received<T> {
+    /// The value with its source time.
+    pub stamped: Stamped<T>,
+    /// When it came in.
+    pub at: Instant,
+}
+
+impl<T> Received<T> {
+    /// Wall-clock time since it came in.
+    pub fn age(&self) -> Duration {
+        self.at.elapsed()
+    }
+}
+
+/// Receives a variable; holds the latest value.
+pub struct VariableSubscriber<T> {
+    receiver: watch::Receiver<Option<Arc<Received<T>>>>,
+    _subscriber: Subscriber<()>,
+    _publishers: Subscriber<()>,
+    _session: Session,
+}
+
+impl<T> VariableSubscriber<T> {
+    /// The latest value, if there ever was one. Does not block.
+    pub fn latest(&self) -> Option<Arc<Received<T>>> {
+        self.receiver.borrow().clone()
+    }
+
+    /// The latest value if it came in after the last call of this or [`Self::changed`]. Does not
+    /// block.
+    pub fn take_new(&mut self) -> Option<Arc<Received<T>>> {
+        match self.receiver.has_changed() {
+            Ok(true) => self.receiver.borrow_and_update().clone(),
+            _ => None,
+        }
+    }
+
+    /// Waits for a value that was not seen before; `None` when the session is closed.
+    pub async fn changed(&mut self) -> Option<Arc<Received<T>>> {
+        self.receiver.changed().await.ok()?;
+        self.receiver.borrow_and_update().clone()
+    }
+}
+
+impl Session {
+    /// Publishes a variable.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn publish<T: Serialize>(&self, variable: Variable<T>) -> Result<VariablePublisher<T>, SessionError> {
+        let key = self.key(variable.service, Kind::Variable, variable.name)?.to_string();
+        let token = self.key(variable.service, Kind::Liveliness, &token_name(variable.name))?.to_string();
+        let publisher = self
+            .inner
+            .zenoh
+            .declare_publisher(key.clone())
+            .encoding(Format::Cbor.encoding())
+            .congestion_control(CongestionControl::Drop)
+            .priority(PRIORITY)
+            .wait()
+            .map_err(SessionError::network)?;
+        let last = Last::default();
+        let answers = last.clone();
+        let queryable = self
+            .inner
+            .zenoh
+            .declare_queryable(key)
+            .callback(move |query| answer_last(&query, &answers))
+            .wait()
+            .map_err(SessionError::network)?;
+        // after the queryable: who sees the token can ask
+        let token = self.inner.zenoh.liveliness().declare_token(token).wait().map_err(SessionError::network)?;
+        Ok(VariablePublisher {
+            session: self.clone(),
+            publisher,
+            last,
+            _queryable: queryable,
+            _token: token,
+            _type: PhantomData,
+        })
+    }
+
+    /// Follows a variable, whoever publishes it, now or later.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn follow<T>(&self, variable: Variable<T>) -> Result<VariableSubscriber<T>, SessionError>
+    where
+        T: DeserializeOwned + Send + Sync + 'static,
+    {
+        let key = self.key(variable.service, Kind::Variable, variable.name)?.to_string();
+        let token = self.key(variable.service, Kind::Liveliness, &token_name(variable.name))?.to_string();
+        let (sender, receiver) = watch::channel(None);
+        let sender = Arc::new(sender);
+        let inner = Arc::downgrade(&self.inner);
+        let (live_inner, live_sender) = (inner.clone(), sender.clone());
+        let subscriber = self
+            .inner
+            .zenoh
+            .declare_subscriber(key.clone())
+            .callback(move |sample| accept(&live_inner, &live_sender, &sample, None))
+            .wait()
+            .map_err(SessionError::network)?;
+        let publishers = self
+            .inner
+            .zenoh
+            .liveliness()
+            .declare_subscriber(token)
+            .history(true)
+            .callback(move |sample| {
+                if sample.kind() == SampleKind::Put {
+                    ask_last(&inner, &key, &sender);
+                }
+            })
+            .wait()
+            .map_err(SessionError::network)?;
+        Ok(VariableSubscriber {
+            receiver,
+            _subscriber: subscriber,
+            _publishers: publishers,
+            _session: self.clone(),
+        })
+    }
+}
+
+fn token_name(variable: &str) -> String {
+    format!("variable.{variable}")
+}
+
+fn answer_last(query: &Query, last: &Last) {
+    let bytes = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let Some(bytes) = bytes else { return };
+    let reply = query.reply(query.key_expr().clone(), bytes).encoding(Format::Cbor.encoding());
+    if let Err(e) = reply.wait() {
+        tracing::debug!("answering with the last value: {e}");
+    }
+}
+
+type Cell<T> = Arc<watch::Sender<Option<Arc<Received<T>>>>>;
+
+/// Asks the publisher for its last value; an answer is good only while nothing newer came in.
+fn ask_last<T>(inner: &Weak<Inner>, key: &str, cell: &Cell<T>)
+where
+    T: DeserializeOwned + Send + Sync + 'static,
+{
+    let Some(session) = inner.upgrade() else { return };
+    let asked = Instant::now();
+    let (inner, cell) = (inner.clone(), cell.clone());
+    let callback = move |reply: zenoh::query::Reply| {
+        if let Ok(sample) = reply.result() {
+            accept(&inner, &cell, sample, Some(asked));
+        }
+    };
+    let query = session
+        .zenoh
+        .get(key)
+        .consolidation(zenoh::query::ConsolidationMode::None)
+        .timeout(QUERY_TIMEOUT)
+        .priority(PRIORITY)
+        .with(CallbackDrop { callback, drop: || {} });
+    if let Err(e) = query.wait() {
+        session.health.unsent(key, &e.to_string());
+    }
+}
+
+fn accept<T>(inner: &Weak<Inner>, cell: &Cell<T>, sample: &Sample, asked: Option<Instant>)
+where
+    T: DeserializeOwned + Send + Sync + 'static,
+{
+    let Some(inner) = inner.upgrade() else { return };
+    if sample.kind() == SampleKind::Delete {
+        return;
+    }
+    match codec::decode::<Stamped<T>>(sample.payload(), sample.encoding()) {
+        Err(reason) => inner.health.undecodable(sample.key_expr().as_str(), &reason),
+        Ok(stamped) => {
+            let received = Arc::new(Received { stamped, at: Instant::now() });
+            let changed = cell.send_if_modified(|held| {
+                let newer = |held: &Arc<Received<T>>| asked.is_some_and(|asked| held.at >= asked);
+                if held.as_ref().is_some_and(newer) {
+                    return false;
+                }
+                *held = Some(received);
+                true
+            });
+            if changed {
+                (inner.wake)();
+            }
+        }
+    }
+}
