@@ -10,7 +10,7 @@ const UNITS_PER_DEG: f32 = 1000.0;
 /// Edges beyond these lie on the cut at the antimeridian or at the south pole and are no coast.
 const CUT_LON_DEG: f32 = 179.98;
 /// See [`CUT_LON_DEG`].
-const CUT_LAT_DEG: f32 = -85.5;
+const CUT_LAT_DEG: f32 = -89.5;
 
 /// Why bytes are not a basemap.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -1,0 +1,234 @@
+//! How far from the previewed path it was flown.
+
+use super::record::{Passage, PassageKey, Record, Track, TrackPoint};
+use geometry::{LocalFrame, Vec2};
+use std::collections::HashMap;
+
+/// Points this long before and after a passage belong to it as well, for the ends of a passage are
+/// announced at slightly different places. Seconds.
+const NEIGHBOUR_S: f64 = 30.0;
+
+/// Deviations of one passage, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    /// Root of the mean square.
+    pub rms_m: f64,
+    /// Not exceeded by 95 % of the points.
+    pub p95_m: f64,
+    /// The greatest.
+    pub max_m: f64,
+}
+
+impl Statistics {
+    /// Of absolute deviations; `None` without any.
+    pub fn of(mut metres: Vec<f64>) -> Option<Self> {
+        metres.sort_by(f64::total_cmp);
+        let count = metres.len();
+        let rank = ((count as f64 * 0.95).ceil() as usize).clamp(1, count.max(1)) - 1;
+        let square: f64 = metres.iter().map(|m| m * m).sum();
+        Some(Self {
+            rms_m: (square / count as f64).sqrt(),
+            p95_m: *metres.get(rank)?,
+            max_m: *metres.last()?,
+        })
+    }
+}
+
+/// A row of the leg table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassageReport {
+    /// Which leg, which time.
+    pub passage: Passage,
+    /// When it was entered, seconds since the flight began.
+    pub start_s: f64,
+    /// Seconds flown.
+    pub time_s: f64,
+    /// Metres flown over the ground.
+    pub distance_m: f64,
+    /// Seconds it should have taken, if it was planned at all.
+    pub planned_time_s: Option<f64>,
+    /// Against the previewed path of the same passage; `None` if that was not planned.
+    pub cross_track: Option<Statistics>,
+}
+
+impl PassageReport {
+    /// The greatest deviation, metres; 0 where none could be measured.
+    pub fn worst_m(&self) -> f64 {
+        self.cross_track.map_or(0.0, |s| s.max_m)
+    }
+}
+
+/// For each flown point its distance from the planned path of the same passage, metres, positive to
+/// the right; `None` where the passage was not planned.
+pub fn signed(planned: &Track, flown: &Track) -> Vec<Option<f64>> {
+    let Some(origin) = planned.points().first() else {
+        return vec![None; flown.points().len()];
+    };
+    let frame = LocalFrame::new(origin.position);
+    let by_key: HashMap<&PassageKey, usize> =
+        planned.passages().iter().enumerate().map(|(i, p)| (&p.key, i)).collect();
+    let mut result = vec![None; flown.points().len()];
+    for (i, passage) in flown.passages().iter().enumerate() {
+        let Some(twin) = by_key.get(&passage.key) else { continue };
+        let path: Vec<Vec2> =
+            with_neighbours(planned, *twin).iter().map(|p| frame.to_local(p.position)).collect();
+        for index in flown.range(i) {
+            result[index] = offset_m(&path, frame.to_local(flown.points()[index].position));
+        }
+    }
+    result
+}
+
+/// The points of a passage and those shortly before and after it.
+fn with_neighbours(track: &Track, passage: usize) -> &[TrackPoint] {
+    let points = track.points();
+    let range = track.range(passage);
+    let (Some(first), Some(last)) = (points.get(range.start), points.get(range.end.saturating_sub(1))) else {
+        return &[];
+    };
+    let from = points.partition_point(|p| p.time_s < first.time_s - NEIGHBOUR_S);
+    let to = points.partition_point(|p| p.time_s <= last.time_s + NEIGHBOUR_S);
+    points.get(from..to.max(from)).unwrap_or(&[])
+}
+
+/// Signed distance from a polyline, positive to the right of its direction.
+fn offset_m(path: &[Vec2], p: Vec2) -> Option<f64> {
+    path.windows(2)
+        .map(|ends| segment_offset_m(ends[0], ends[1], p))
+        .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .or_else(|| path.first().map(|only| (p - *only).length()))
+}
+
+fn segment_offset_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
+    let (along, to_p) = (b - a, p - a);
+    let length2 = along.dot(along);
+    let t = if length2 > 0.0 { (to_p.dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    let distance = (to_p - along * t).length();
+    // counter-clockwise (positive cross product) is to the left
+    if along.cross(to_p) > 0.0 { -distance } else { distance }
+}
+
+/// One row per flown passage.
+pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageReport> {
+    let track = record.main_track();
+    let planned: HashMap<&PassageKey, f64> = record
+        .planned
+        .passages()
+        .iter()
+        .enumerate()
+        .map(|(i, p)| (&p.key, times(&record.planned, i).1))
+        .collect();
+    track
+        .passages()
+        .iter()
+        .enumerate()
+        .map(|(i, passage)| {
+            let (start_s, time_s) = times(track, i);
+            let range = track.range(i);
+            let metres = deviations.get(range.clone()).unwrap_or(&[]);
+            PassageReport {
+                start_s,
+                time_s,
+                distance_m: track.distance_m(range.start..(range.end + 1).min(track.points().len())),
+                planned_time_s: planned.get(&passage.key).copied(),
+                cross_track: Statistics::of(metres.iter().flatten().map(|m| m.abs()).collect()),
+                passage: passage.clone(),
+            }
+        })
+        .collect()
+}
+
+/// Start and duration of a passage, seconds; it lasts until the next one begins.
+fn times(track: &Track, passage: usize) -> (f64, f64) {
+    let range = track.range(passage);
+    let points = track.points();
+    let end = points.get(range.end).or(points.last()).map_or(0.0, |p| p.time_s);
+    let start = points.get(range.start).map_or(end, |p| p.time_s);
+    (start, (end - start).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::report::record::PlaceKind;
+    use geometry::LatLon;
+
+    const HOME: LatLon = LatLon::new(36.3, -84.2);
+
+    fn key(leg: &str) -> PassageKey {
+        PassageKey { leg: leg.into(), iterations: String::new(), reverse: false, occurrence: 0 }
+    }
+
+    /// Legs along the given bearings, 60 points of 25 m each, shifted to the right of the first bearing.
+    fn track(legs: &[(&str, f64)], shift_right_m: f64) -> Track {
+        let mut track = Track::default();
+        let mut p = HOME.destination(legs[0].1 + 90.0, shift_right_m);
+        for (i, (leg, bearing)) in legs.iter().enumerate() {
+            track.begin(key(leg), "TF", "stage".into());
+            for k in 0..60 {
+                track.push(TrackPoint { time_s: (i * 60 + k) as f64, position: p, altitude_amsl_m: 500.0 });
+                p = p.destination(*bearing, 25.0);
+            }
+        }
+        track
+    }
+
+    #[test]
+    fn a_shift_to_the_right_is_positive_and_measured() {
+        let planned = track(&[("a", 40.0), ("b", 40.0)], 0.0);
+        for shift in [7.0, -3.0, 0.0] {
+            let flown = track(&[("a", 40.0), ("b", 40.0)], shift);
+            for offset in signed(&planned, &flown) {
+                assert!((offset.unwrap() - shift).abs() < 0.05, "{offset:?} for {shift}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_passage_is_compared_with_its_own() {
+        // forth and back 10 m beside: without passages the way back would look like the way out
+        let planned = track(&[("out", 90.0), ("back", 270.0)], 0.0);
+        let flown = track(&[("out", 90.0), ("other", 270.0)], 0.0);
+        let offsets = signed(&planned, &flown);
+        assert!(offsets[..60].iter().all(|o| o.unwrap().abs() < 0.1));
+        assert!(offsets[60..].iter().all(Option::is_none), "not planned");
+    }
+
+    #[test]
+    fn an_early_announcement_at_a_corner_is_no_deviation() {
+        let planned = track(&[("a", 0.0), ("b", 90.0)], 0.0);
+        let mut flown = Track::default();
+        flown.begin(key("a"), "TF", String::new());
+        for (i, p) in planned.points().iter().enumerate() {
+            if i == 57 {
+                flown.begin(key("b"), "TF", String::new());
+            }
+            flown.push(*p);
+        }
+        assert!(signed(&planned, &flown).iter().all(|o| o.unwrap().abs() < 0.1));
+    }
+
+    #[test]
+    fn statistics() {
+        let s = Statistics::of((1..=100).map(f64::from).collect()).unwrap();
+        assert_eq!((s.p95_m, s.max_m), (95.0, 100.0));
+        assert!((s.rms_m - 58.17).abs() < 0.01);
+        assert_eq!(Statistics::of(vec![]), None);
+        assert_eq!(Statistics::of(vec![4.0]).unwrap(), Statistics { rms_m: 4.0, p95_m: 4.0, max_m: 4.0 });
+    }
+
+    #[test]
+    fn the_rows_of_the_table() {
+        let mut record = crate::report::record::tests::record();
+        record.planned = track(&[("a", 0.0), ("b", 90.0)], 0.0);
+        record.flown = track(&[("a", 0.0), ("b", 90.0), ("b", 90.0)], 2.0);
+        let rows = by_passage(&record, &signed(&record.planned, &record.flown));
+        assert_eq!(rows.len(), 3);
+        assert_eq!((rows[0].start_s, rows[0].time_s, rows[0].planned_time_s), (0.0, 60.0, Some(60.0)));
+        assert!((rows[0].distance_m - 1500.0).abs() < 0.1);
+        assert!(rows[1].worst_m() < 2.1 && rows[1].cross_track.is_some());
+        assert_eq!((rows[2].passage.key.occurrence, rows[2].cross_track), (1, None));
+        assert!(record.places.iter().any(|p| matches!(p.kind, PlaceKind::Runway { .. })));
+    }
+}

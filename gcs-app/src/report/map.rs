@@ -1,0 +1,266 @@
+//! `map.png`: planned and flown over the ground.
+
+use super::canvas::{Anchor, Canvas, Pen, Type};
+use super::record::{Area, Place, PlaceKind, Record, Track};
+use super::style::*;
+use super::{Findings, hillshade, panel};
+use geometry::{LatLon, LocalFrame, Vec2};
+
+const WIDTH: f32 = 1600.0;
+const HEIGHT: f32 = 1120.0;
+const HEADER: f32 = 76.0;
+const PANEL: f32 = 372.0;
+const MAP_WIDTH: f32 = WIDTH - PANEL;
+const MAP_HEIGHT: f32 = HEIGHT - HEADER;
+/// Free space around what is shown, share of the map.
+const MARGIN: f64 = 0.07;
+/// Pixels of the map per pixel of the shaded ground.
+const SHADE_SCALE: f32 = 2.0;
+/// Minutes between the time marks on the track.
+const TIME_MARK_MIN: u32 = 5;
+
+/// The picture as PNG bytes.
+///
+/// # Errors
+/// Nothing to draw, or the encoder fails.
+pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
+    let mut canvas = Canvas::new(WIDTH as u32, HEIGHT as u32, PAPER)?;
+    let view = View::of(record).ok_or_else(|| anyhow::anyhow!("the track is empty: nothing to draw"))?;
+    draw_ground(&mut canvas, record, &view);
+    for area in &record.areas {
+        draw_area(&mut canvas, &view, area);
+    }
+    draw_tracks(&mut canvas, record, &view);
+    record.places.iter().for_each(|place| draw_place(&mut canvas, &view, place));
+    label_areas(&mut canvas, record, &view);
+    draw_time_marks(&mut canvas, record.main_track(), &view);
+    draw_happenings(&mut canvas, record, &view);
+    draw_scale(&mut canvas, &view);
+    draw_north(&mut canvas);
+    draw_header(&mut canvas, record);
+    panel::draw(&mut canvas, record, findings, (MAP_WIDTH, HEADER, WIDTH, HEIGHT));
+    canvas.png()
+}
+
+/// Which part of the world is where on the picture.
+struct View {
+    frame: LocalFrame,
+    metres_per_pixel: f64,
+}
+
+impl View {
+    fn of(record: &Record) -> Option<Self> {
+        let tracks = record.planned.points().iter().chain(record.flown.points()).map(|p| p.position);
+        let shown: Vec<LatLon> =
+            tracks.chain(record.areas.iter().flat_map(|a| a.outline.iter().copied())).collect();
+        let about = LocalFrame::new(*shown.first()?);
+        let local: Vec<Vec2> = shown.iter().map(|p| about.to_local(*p)).collect();
+        let range = |axis: fn(&Vec2) -> f64| {
+            local.iter().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
+        };
+        let ((west, east), (south, north)) = (range(|p| p.e), range(|p| p.n));
+        let across = (east - west) / f64::from(MAP_WIDTH);
+        let up = (north - south) / f64::from(MAP_HEIGHT);
+        Some(Self {
+            frame: LocalFrame::new(about.to_geo(Vec2::new((west + east) / 2.0, (south + north) / 2.0))),
+            metres_per_pixel: across.max(up).max(0.2) / (1.0 - 2.0 * MARGIN),
+        })
+    }
+
+    fn place(&self, p: LatLon) -> (f32, f32) {
+        let v = self.frame.to_local(p) * (1.0 / self.metres_per_pixel);
+        (MAP_WIDTH / 2.0 + v.e as f32, HEADER + MAP_HEIGHT / 2.0 - v.n as f32)
+    }
+
+    /// A track as pixels, without points closer than one pixel.
+    fn line(&self, track: &Track) -> Vec<(f32, f32)> {
+        let mut line: Vec<(f32, f32)> = Vec::new();
+        for p in track.points() {
+            let (x, y) = self.place(p.position);
+            if line.last().is_none_or(|(a, b)| (x - a).hypot(y - b) >= 1.0) {
+                line.push((x, y));
+            }
+        }
+        line
+    }
+}
+
+fn draw_ground(canvas: &mut Canvas, record: &Record, view: &View) {
+    let (width, height) = ((MAP_WIDTH / SHADE_SCALE) as u32, (MAP_HEIGHT / SHADE_SCALE) as u32);
+    let spacing_m = view.metres_per_pixel * f64::from(SHADE_SCALE);
+    if let Some(ground) = hillshade::picture(record.terrain.as_ref(), &view.frame, spacing_m, width, height) {
+        canvas.picture(&ground, 0.0, HEADER, SHADE_SCALE);
+    }
+}
+
+fn outline(view: &View, area: &Area) -> Vec<(f32, f32)> {
+    area.outline.iter().map(|p| view.place(*p)).collect()
+}
+
+fn draw_area(canvas: &mut Canvas, view: &View, area: &Area) {
+    let points = outline(view, area);
+    canvas.polygon(&points, AREA.faded(22));
+    canvas.outline(&points, Pen::solid(PAPER.faded(200), 4.5));
+    canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
+}
+
+/// Labels stand at the top of their area, one below the other where areas overlap.
+fn label_areas(canvas: &mut Canvas, record: &Record, view: &View) {
+    let mut taken: Vec<(f32, f32)> = Vec::new();
+    for area in &record.areas {
+        let Some((x, mut y)) = outline(view, area).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            continue;
+        };
+        y -= 14.0;
+        while taken.iter().any(|(tx, ty)| (tx - x).abs() < 130.0 && (ty - y).abs() < 19.0) {
+            y -= 20.0;
+        }
+        taken.push((x, y));
+        canvas.text((x, y), Anchor::Middle, &area.label, Type::bold(17.0, AREA).on(PAPER));
+    }
+}
+
+fn draw_tracks(canvas: &mut Canvas, record: &Record, view: &View) {
+    let planned = view.line(&record.planned);
+    if record.flown.points().is_empty() {
+        canvas.line(&planned, Pen::solid(PAPER.faded(190), 5.5));
+        canvas.line(&planned, Pen::solid(PLANNED, 2.6));
+        return;
+    }
+    canvas.line(&planned, Pen::solid(PLANNED.faded(150), 7.0));
+    canvas.line(&view.line(&record.flown), Pen::solid(FLOWN, 1.9));
+}
+
+fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
+    let (x, y) = view.place(place.position);
+    if !(4.0..MAP_WIDTH - 4.0).contains(&x) || !(HEADER + 4.0..HEIGHT - 4.0).contains(&y) {
+        return;
+    }
+    match place.kind {
+        PlaceKind::Fix => {
+            canvas.polygon(&[(x, y - 7.0), (x + 6.5, y + 4.5), (x - 6.5, y + 4.5)], PAPER);
+            canvas.outline(&[(x, y - 7.0), (x + 6.5, y + 4.5), (x - 6.5, y + 4.5)], Pen::solid(FIX, 1.8));
+        }
+        PlaceKind::Runway { heading_deg, length_m } => {
+            let end = view.place(place.position.destination(heading_deg, length_m));
+            canvas.line(&[(x, y), end], Pen::solid(PAPER, 11.0));
+            canvas.line(&[(x, y), end], Pen::solid(RUNWAY, 7.5));
+            canvas.line(&[(x, y), end], Pen::dashed(PAPER, 1.2, [6.0, 4.0]));
+        }
+    }
+    let text = Type::bold(16.0, FIX).on(PAPER);
+    if x > MAP_WIDTH - 120.0 {
+        canvas.text((x - 13.0, y), Anchor::Right, &place.label, text);
+    } else {
+        canvas.text((x + 13.0, y + 2.0), Anchor::Left, &place.label, text);
+    }
+}
+
+fn draw_time_marks(canvas: &mut Canvas, track: &Track, view: &View) {
+    let Some(start) = track.points().first() else { return };
+    let marks = (track.duration_s() / 60.0) as u32 / TIME_MARK_MIN;
+    for minute in (1..=marks).map(|i| i * TIME_MARK_MIN) {
+        let time_s = start.time_s + f64::from(minute) * 60.0;
+        let (Some(before), Some(here)) = (track.at(time_s - 2.0), track.at(time_s)) else { continue };
+        let ((ax, ay), (x, y)) = (view.place(before.position), view.place(here.position));
+        let length = (x - ax).hypot(y - ay).max(0.01);
+        let (dx, dy) = ((x - ax) / length, (y - ay) / length);
+        arrow(canvas, (x, y), (dx, dy));
+        canvas.text(
+            (x - dy * 20.0, y + dx * 20.0),
+            Anchor::Middle,
+            &format!("{minute} min"),
+            Type::plain(14.0, TEXT).on(PAPER),
+        );
+    }
+}
+
+/// A small arrow head in the direction of flight.
+fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32)) {
+    let (tip, back, half) = (9.0, 6.0, 6.0);
+    let points = [
+        (x + dx * tip, y + dy * tip),
+        (x - dx * back - dy * half, y - dy * back + dx * half),
+        (x - dx * back + dy * half, y - dy * back - dx * half),
+    ];
+    canvas.polygon(&points, FLOWN);
+    canvas.outline(&points, Pen::solid(PAPER, 1.2));
+}
+
+/// Numbered discs where important things happened; the panel says what they are.
+fn draw_happenings(canvas: &mut Canvas, record: &Record, view: &View) {
+    let mut taken: Vec<(f32, f32)> = Vec::new();
+    for (i, happening) in record.happenings.iter().filter(|h| h.important).enumerate() {
+        let Some(point) = record.main_track().at(happening.time_s) else { continue };
+        let (x, mut y) = view.place(point.position);
+        while taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 24.0) {
+            y -= 24.0;
+        }
+        taken.push((x, y));
+        numbered(canvas, (x, y), i + 1);
+    }
+}
+
+/// A disc with a number.
+pub fn numbered(canvas: &mut Canvas, at: (f32, f32), number: usize) {
+    canvas.disc(at, 12.5, PAPER);
+    canvas.disc(at, 11.0, MARK);
+    canvas.text(at, Anchor::Middle, &number.to_string(), Type::bold(14.0, PAPER));
+}
+
+fn draw_scale(canvas: &mut Canvas, view: &View) {
+    let length_m = round_length_m(view.metres_per_pixel * 260.0);
+    let length = (length_m / view.metres_per_pixel) as f32;
+    let (x, y) = (26.0, HEIGHT - 30.0);
+    canvas.rectangle(x - 14.0, y - 32.0, length + 28.0, 50.0, PAPER.faded(215));
+    canvas.rectangle(x, y, length / 2.0, 6.0, TEXT);
+    canvas.outline(&[(x, y), (x + length, y), (x + length, y + 6.0), (x, y + 6.0)], Pen::solid(TEXT, 1.2));
+    let text = if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") };
+    canvas.text((x, y - 15.0), Anchor::Left, "0", Type::plain(15.0, TEXT));
+    canvas.text((x + length, y - 15.0), Anchor::Right, &text, Type::plain(15.0, TEXT));
+}
+
+/// The greatest of 1, 2, 5, 10, … not above `most`.
+fn round_length_m(most: f64) -> f64 {
+    let decade = 10f64.powf(most.max(1.0).log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|k| k * decade).find(|m| *m <= most).unwrap_or(decade)
+}
+
+fn draw_north(canvas: &mut Canvas) {
+    let (x, y) = (MAP_WIDTH - 36.0, HEADER + 42.0);
+    canvas.disc((x, y), 25.0, PAPER.faded(215));
+    canvas.polygon(&[(x, y - 19.0), (x + 7.0, y + 4.0), (x, y), (x - 7.0, y + 4.0)], TEXT);
+    canvas.text((x, y + 13.0), Anchor::Middle, "N", Type::bold(14.0, TEXT));
+}
+
+fn draw_header(canvas: &mut Canvas, record: &Record) {
+    canvas.rectangle(0.0, 0.0, WIDTH, HEADER, PAPER);
+    canvas.line(&[(0.0, HEADER), (WIDTH, HEADER)], Pen::solid(RULE, 1.5));
+    canvas.text((26.0, 28.0), Anchor::Left, &record.title, Type::bold(30.0, TEXT));
+    canvas.text((26.0, 57.0), Anchor::Left, &record.notes.join("  ·  "), Type::plain(16.0, QUIET));
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    #[test]
+    fn scale_bars_have_round_lengths() {
+        for (most, length) in
+            [(1.0, 1.0), (4.9, 2.0), (5.0, 5.0), (999.0, 500.0), (2600.0, 2000.0), (0.0, 1.0)]
+        {
+            assert_eq!(round_length_m(most), length, "{most}");
+        }
+    }
+
+    #[test]
+    fn everything_shown_is_inside_the_map() {
+        let record = crate::report::record::tests::record();
+        let view = View::of(&record).unwrap();
+        for p in record.planned.points().iter().chain(record.flown.points()) {
+            let (x, y) = view.place(p.position);
+            assert!((0.0..MAP_WIDTH).contains(&x) && (HEADER..HEIGHT).contains(&y));
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The report of a flight: what was flown beside what was planned, as pictures and tables.
+//!
+//! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
+//! `deviation` and `coverage` measure, `tables` writes. Nothing here needs a display.
+
+mod canvas;
+mod coverage;
+mod deviation;
+mod hillshade;
+mod map;
+mod panel;
+mod profile;
+mod record;
+mod style;
+mod tables;
+
+pub use coverage::Coverage;
+pub use deviation::{PassageReport, Statistics};
+pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
+
+use std::path::Path;
+
+/// What was measured, for whoever judges the flight.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    /// One row per passage of a leg, in the order of flight.
+    pub passages: Vec<PassageReport>,
+    /// One row per area that was scanned.
+    pub coverages: Vec<Coverage>,
+}
+
+impl Findings {
+    /// Measures a record.
+    pub fn of(record: &Record) -> Self {
+        let deviations = deviation::signed(&record.planned, &record.flown);
+        Self {
+            passages: deviation::by_passage(record, &deviations),
+            coverages: record.areas.iter().filter_map(|a| coverage::of(a, &record.flown)).collect(),
+        }
+    }
+
+    /// The passage with the greatest deviation among those whose leg type is `kind`.
+    pub fn worst(&self, kind: &str) -> Option<&PassageReport> {
+        self.passages
+            .iter()
+            .filter(|p| p.passage.kind == kind && p.cross_track.is_some())
+            .max_by(|a, b| a.worst_m().total_cmp(&b.worst_m()))
+    }
+}
+
+/// Writes `map.png`, `profile.png`, `legs.csv`, `report.md`, `report.html` and `events.jsonl` into `folder`, which
+/// is made if need be; gives what was measured.
+///
+/// # Errors
+/// The folder can't be written, or there is nothing to draw.
+pub fn write(record: &Record, folder: &Path) -> anyhow::Result<Findings> {
+    use anyhow::Context;
+    std::fs::create_dir_all(folder).with_context(|| {
+        format!("can't make the report folder {}: choose another with --report", folder.display())
+    })?;
+    let findings = Findings::of(record);
+    let save = |name: &str, bytes: Vec<u8>| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes)
+            .with_context(|| format!("can't write {}: is the disk full?", path.display()))
+    };
+    save("map.png", map::png(record, &findings)?)?;
+    save("profile.png", profile::png(record)?)?;
+    save("legs.csv", tables::csv(&findings).into_bytes())?;
+    save("report.md", tables::markdown(record, &findings).into_bytes())?;
+    save("report.html", tables::html(record, &findings).into_bytes())?;
+    save("events.jsonl", tables::events(record).into_bytes())?;
+    Ok(findings)
+}

@@ -1,0 +1,170 @@
+//! The panel beside the map: legend, happenings, what was measured, the verdict.
+
+use super::canvas::{Anchor, Canvas, Pen, Type};
+use super::map::numbered;
+use super::record::Record;
+use super::style::*;
+use super::{Findings, tables};
+
+const LINE: f32 = 24.0;
+const SIZE: f32 = 15.0;
+
+/// Where the next line goes.
+struct Cursor<'a> {
+    canvas: &'a mut Canvas,
+    left: f32,
+    right: f32,
+    y: f32,
+    bottom: f32,
+}
+
+/// Draws into the box `(left, top, right, bottom)`, pixels.
+pub fn draw(
+    canvas: &mut Canvas,
+    record: &Record,
+    findings: &Findings,
+    (left, top, right, bottom): (f32, f32, f32, f32),
+) {
+    canvas.rectangle(left, top, right - left, bottom - top, PAPER);
+    canvas.line(&[(left, top), (left, bottom)], Pen::solid(RULE, 1.5));
+    let mut cursor =
+        Cursor { canvas, left: left + 22.0, right: right - 20.0, y: top + 30.0, bottom: bottom - 16.0 };
+    legend(&mut cursor, record);
+    summary(&mut cursor, record, findings);
+    verdict(&mut cursor, record);
+    happenings(&mut cursor, record);
+}
+
+impl Cursor<'_> {
+    fn heading(&mut self, text: &str) {
+        self.canvas.text((self.left, self.y), Anchor::Left, text, Type::bold(17.0, TEXT));
+        self.y += LINE + 2.0;
+    }
+
+    /// A line in parts that fit the width; at the panel's end nothing is drawn any more.
+    fn paragraph(&mut self, indent: f32, text: &str, kind: Type) {
+        for line in self.wrapped(text, kind.size, self.right - self.left - indent) {
+            if self.has_room() {
+                self.canvas.text((self.left + indent, self.y), Anchor::Left, &line, kind);
+            }
+            self.y += LINE - 3.0;
+        }
+        self.y += 3.0;
+    }
+
+    fn has_room(&self) -> bool {
+        self.y <= self.bottom
+    }
+
+    fn wrapped(&self, text: &str, size: f32, width: f32) -> Vec<String> {
+        let mut lines = vec![String::new()];
+        for word in text.split_whitespace() {
+            let last = lines.last().cloned().unwrap_or_default();
+            let longer = if last.is_empty() { word.to_owned() } else { format!("{last} {word}") };
+            if last.is_empty() || self.canvas.text_width(&longer, size) <= width {
+                lines.pop();
+                lines.push(longer);
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+        lines
+    }
+
+    fn row(&mut self, name: &str, value: &str) {
+        self.canvas.text((self.left, self.y), Anchor::Left, name, Type::plain(SIZE, QUIET));
+        self.canvas.text((self.right, self.y), Anchor::Right, value, Type::plain(SIZE, TEXT));
+        self.y += LINE;
+    }
+
+    /// A legend entry: a sample of a line and its meaning.
+    fn sample(&mut self, pens: &[Pen], text: &str) {
+        let (x, y) = (self.left, self.y);
+        for pen in pens {
+            self.canvas.line(&[(x, y), (x + 38.0, y)], *pen);
+        }
+        self.canvas.text((x + 52.0, y), Anchor::Left, text, Type::plain(SIZE, TEXT));
+        self.y += LINE;
+    }
+}
+
+fn legend(cursor: &mut Cursor, record: &Record) {
+    cursor.heading("Legend");
+    if record.flown.points().is_empty() {
+        cursor.sample(&[Pen::solid(PLANNED, 2.6)], "path that will be flown");
+    } else {
+        cursor.sample(&[Pen::solid(PLANNED.faded(150), 7.0)], "previewed path");
+        cursor.sample(&[Pen::solid(FLOWN, 1.9)], "flown track, a mark every 5 minutes");
+    }
+    if !record.areas.is_empty() {
+        cursor.sample(&[Pen::dashed(AREA, 2.4, [9.0, 5.0])], "area to be scanned");
+    }
+    cursor.sample(
+        &[Pen::solid(RUNWAY, 7.5), Pen::dashed(PAPER, 1.2, [6.0, 4.0])],
+        "runway",
+    );
+    cursor.sample(&[Pen::solid(CONTOUR, 1.4)], "contour, every 100 m");
+    cursor.y += 12.0;
+}
+
+fn summary(cursor: &mut Cursor, record: &Record, findings: &Findings) {
+    let track = record.main_track();
+    cursor.heading(if record.flown.points().is_empty() { "Preview" } else { "Flight" });
+    cursor.row("time", &tables::clock(track.duration_s()));
+    cursor
+        .row("way over the ground", &format!("{:.1} km", track.distance_m(0..track.points().len()) / 1000.0));
+    cursor.row("passages of legs", &track.passages().len().to_string());
+    for kind in ["TF", "RF"] {
+        if let Some(worst) = findings.worst(kind) {
+            cursor.row(&format!("greatest deviation, {kind}"), &format!("{:.1} m", worst.worst_m()));
+        }
+    }
+    for coverage in &findings.coverages {
+        cursor.row(&format!("seen of {}", coverage.label), &format!("{:.2} %", coverage.share * 100.0));
+    }
+    cursor.y += 12.0;
+}
+
+fn verdict(cursor: &mut Cursor, record: &Record) {
+    if record.verdict.is_empty() {
+        return;
+    }
+    let good = record.verdict.iter().all(|(holds, _)| *holds);
+    cursor.heading(if good { "Flown as planned" } else { "Not flown as planned" });
+    for (holds, text) in &record.verdict {
+        tick(cursor, *holds);
+        cursor.paragraph(24.0, text, Type::plain(SIZE, if *holds { TEXT } else { BAD }));
+    }
+    cursor.y += 12.0;
+}
+
+/// A tick or a cross, drawn: the font has neither.
+fn tick(cursor: &mut Cursor, holds: bool) {
+    if !cursor.has_room() {
+        return;
+    }
+    let (x, y) = (cursor.left + 7.0, cursor.y);
+    if holds {
+        cursor.canvas.line(&[(x - 6.0, y), (x - 1.5, y + 4.5), (x + 6.5, y - 5.0)], Pen::solid(GOOD, 2.4));
+    } else {
+        cursor.canvas.line(&[(x - 5.0, y - 5.0), (x + 5.0, y + 5.0)], Pen::solid(BAD, 2.4));
+        cursor.canvas.line(&[(x - 5.0, y + 5.0), (x + 5.0, y - 5.0)], Pen::solid(BAD, 2.4));
+    }
+}
+
+fn happenings(cursor: &mut Cursor, record: &Record) {
+    let start = record.main_track().points().first().map_or(0.0, |p| p.time_s);
+    let important: Vec<_> = record.happenings.iter().filter(|h| h.important).collect();
+    if important.is_empty() {
+        return;
+    }
+    cursor.heading("What happened");
+    for (i, happening) in important.iter().enumerate() {
+        if cursor.has_room() {
+            numbered(cursor.canvas, (cursor.left + 10.0, cursor.y), i + 1);
+        }
+        let text = format!("{}  {}", tables::clock(happening.time_s - start), happening.text);
+        cursor.paragraph(32.0, &text, Type::plain(SIZE, TEXT));
+        cursor.y += 5.0;
+    }
+}

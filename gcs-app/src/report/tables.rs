@@ -1,0 +1,229 @@
+//! The report's texts: leg table as CSV, Markdown and HTML, events as JSON lines.
+
+use super::record::Record;
+use super::{Findings, PassageReport};
+use std::fmt::Write;
+
+const COLUMNS: [&str; 10] = [
+    "leg",
+    "type",
+    "stage",
+    "iteration",
+    "entered",
+    "time",
+    "planned",
+    "distance",
+    "deviation RMS / 95 % / max",
+    "passage",
+];
+
+/// `m:ss`, or `h:mm:ss` from an hour on.
+pub fn clock(seconds: f64) -> String {
+    let s = seconds.max(0.0).round() as u64;
+    let (h, m, s) = (s / 3600, s / 60 % 60, s % 60);
+    if h > 0 { format!("{h}:{m:02}:{s:02}") } else { format!("{m}:{s:02}") }
+}
+
+/// One row per passage, plain numbers in seconds and metres.
+pub fn csv(findings: &Findings) -> String {
+    let mut text = String::from(
+        "leg,type,stage,iterations,reverse,occurrence,start_s,time_s,planned_time_s,distance_m,cross_track_rms_m,cross_track_p95_m,cross_track_max_m\n",
+    );
+    for row in &findings.passages {
+        let key = &row.passage.key;
+        let cross = row
+            .cross_track
+            .map_or(",,".to_owned(), |s| format!("{:.2},{:.2},{:.2}", s.rms_m, s.p95_m, s.max_m));
+        let planned = row.planned_time_s.map_or(String::new(), |s| format!("{s:.1}"));
+        let (leg, stage, loops) = (quoted(&key.leg), quoted(&row.passage.stage), quoted(&key.iterations));
+        text += &format!(
+            "{leg},{},{stage},{loops},{},{},{:.1},{:.1},{planned},{:.1},{cross}\n",
+            row.passage.kind,
+            key.reverse,
+            key.occurrence + 1,
+            row.start_s,
+            row.time_s,
+            row.distance_m
+        );
+    }
+    text
+}
+
+/// RFC 4180; a leading sign that a spreadsheet would take for a formula is defused.
+fn quoted(field: &str) -> String {
+    let formula = field.starts_with(['=', '+', '-', '@']);
+    let field = if formula { format!("'{field}") } else { field.to_owned() };
+    if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field }
+}
+
+fn cells(row: &PassageReport) -> [String; 10] {
+    let key = &row.passage.key;
+    let cross = row
+        .cross_track
+        .map_or("not planned".to_owned(), |s| format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m));
+    [
+        key.leg.clone(),
+        row.passage.kind.to_owned(),
+        row.passage.stage.clone(),
+        format!("{}{}", key.iterations, if key.reverse { " ←" } else { "" }),
+        clock(row.start_s),
+        clock(row.time_s),
+        row.planned_time_s.map_or("–".to_owned(), clock),
+        format!("{:.2} km", row.distance_m / 1000.0),
+        cross,
+        (key.occurrence + 1).to_string(),
+    ]
+}
+
+/// For people, and for diffs.
+pub fn markdown(record: &Record, findings: &Findings) -> String {
+    let mut text = format!(
+        "# {}\n\n{}\n\n![map](map.png)\n\n![profile](profile.png)\n",
+        record.title,
+        record.notes.join(" · ")
+    );
+    if !record.verdict.is_empty() {
+        text += "\n## Verdict\n\n";
+        for (holds, sentence) in &record.verdict {
+            text += &format!("- {} {sentence}\n", if *holds { "✓" } else { "✗" });
+        }
+    }
+    text += "\n## Legs\n\n";
+    text += &format!("| {} |\n|{}\n", COLUMNS.join(" | "), "---|".repeat(COLUMNS.len()));
+    for row in &findings.passages {
+        text += &format!("| {} |\n", cells(row).map(|c| c.replace('|', "\\|")).join(" | "));
+    }
+    if !findings.coverages.is_empty() {
+        text += "\n## Coverage\n\n| area | pass | size | seen |\n|---|---|---|---|\n";
+        for c in &findings.coverages {
+            text += &format!(
+                "| {} | {} | {:.2} km² | {:.2} % |\n",
+                c.label,
+                c.passage,
+                c.area_m2 / 1e6,
+                c.share * 100.0
+            );
+        }
+    }
+    text += "\n## What happened\n\n";
+    for happening in &record.happenings {
+        text += &format!("- {} {}\n", clock(happening.time_s), happening.text);
+    }
+    text
+}
+
+const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\">\n<style>\
+body{font:15px/1.5 system-ui,sans-serif;color:#1f2933;background:#faf9f6;max-width:1200px;margin:2em auto;padding:0 1em}\
+img{width:100%;border:1px solid #c9ced4}table{border-collapse:collapse;width:100%}\
+th,td{text-align:left;padding:.3em .7em;border-bottom:1px solid #c9ced4}td{font-variant-numeric:tabular-nums}\
+.good::before{content:'✓ ';color:#15803d}.bad::before{content:'✗ ';color:#b91c1c}.bad{color:#b91c1c}ul{list-style:none;padding:0}\
+</style>\n";
+
+/// The same with the pictures, for a browser.
+pub fn html(record: &Record, findings: &Findings) -> String {
+    let title = escaped(&record.title);
+    let mut text = format!(
+        "{HEAD}<title>{title}</title>\n<h1>{title}</h1>\n<p>{}</p>\n",
+        escaped(&record.notes.join(" · "))
+    );
+    text += "<ul>\n";
+    for (holds, sentence) in &record.verdict {
+        text +=
+            &format!("<li class=\"{}\">{}</li>\n", if *holds { "good" } else { "bad" }, escaped(sentence));
+    }
+    text += "</ul>\n<img src=\"map.png\" alt=\"map of the flight\">\n<img src=\"profile.png\" alt=\"altitude profile\">\n<h2>Legs</h2>\n";
+    text += &table(&COLUMNS.map(str::to_owned), findings.passages.iter().map(cells));
+    if !findings.coverages.is_empty() {
+        text += "<h2>Coverage</h2>\n";
+        let rows = findings.coverages.iter().map(|c| {
+            [
+                c.label.clone(),
+                c.passage.to_string(),
+                format!("{:.2} km²", c.area_m2 / 1e6),
+                format!("{:.2} %", c.share * 100.0),
+            ]
+        });
+        text += &table(&["area", "pass", "size", "seen"].map(str::to_owned), rows);
+    }
+    text += "<h2>What happened</h2>\n";
+    text += &table(
+        &["time", "what"].map(str::to_owned),
+        record.happenings.iter().map(|h| [clock(h.time_s), h.text.clone()]),
+    );
+    text
+}
+
+fn table<const N: usize>(head: &[String; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let row = |tag: &str, cells: &[String; N]| {
+        let cells = cells.iter().fold(String::new(), |mut text, cell| {
+            // writing to a String never fails
+            let _ = write!(text, "<{tag}>{}</{tag}>", escaped(cell));
+            text
+        });
+        format!("<tr>{cells}</tr>\n")
+    };
+    let body: String = rows.map(|r| row("td", &r)).collect();
+    format!("<table>\n{}{body}</table>\n", row("th", head))
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// One JSON object a line: `time_s`, `text` and what the service said.
+pub fn events(record: &Record) -> String {
+    record
+        .happenings
+        .iter()
+        .map(|h| {
+            format!("{}\n", serde_json::json!({"time_s": h.time_s, "text": h.text, "details": h.details}))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::report;
+
+    #[test]
+    fn clocks() {
+        for (s, text) in [(0.0, "0:00"), (59.6, "1:00"), (61.0, "1:01"), (3661.0, "1:01:01"), (-5.0, "0:00")]
+        {
+            assert_eq!(clock(s), text);
+        }
+    }
+
+    #[test]
+    fn hostile_names_stay_text() {
+        assert_eq!(quoted("=1+1"), "'=1+1");
+        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(escaped("<script>&\""), "&lt;script&gt;&amp;&quot;");
+    }
+
+    #[test]
+    fn a_whole_report_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = report::record::tests::record();
+        let findings = report::write(&record, folder.path()).unwrap();
+        assert_eq!(findings.passages.len(), record.flown.passages().len());
+        assert!(findings.worst("TF").unwrap().worst_m() > 3.0 && findings.worst("RF").is_none());
+        for name in ["map.png", "profile.png"] {
+            let bytes = std::fs::read(folder.path().join(name)).unwrap();
+            assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{name}: {} bytes", bytes.len());
+        }
+        let lines = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap().lines().count();
+        assert_eq!(lines("legs.csv"), findings.passages.len() + 1);
+        assert_eq!(lines("events.jsonl"), record.happenings.len());
+        let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+        assert!(page.contains("sweep") && page.contains("class=\"bad\""));
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_named() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let error = report::write(&report::record::tests::record(), &file.path().join("sub")).unwrap_err();
+        assert!(format!("{error:#}").contains("--report"), "{error:#}");
+    }
+}
