@@ -100,7 +100,7 @@ pub(super) fn local_corner(
     }
     // the frame's series mean nothing far away: ask whether it is near before using them
     let distance_m = frame.origin().distance_m(p);
-    if distance_m > crate::local::RADIUS_M {
+    if distance_m > frame.radius_m() {
         return Err(PolygonError::TooFar { ring, corner, distance_m });
     }
     Ok(frame.to_local(p))
