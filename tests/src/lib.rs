@@ -1,1 +1,3 @@
-//! System tests over the real binaries.
+//! System tests over the real binaries: what the tests in `tests/` share.
+
+pub mod plans;

@@ -1,0 +1,139 @@
+//! A small mission around any runway, so that the same flight can be flown wherever an autopilot is.
+
+use geometry::LatLon;
+
+/// A runway with free sky around it.
+#[derive(Debug, Clone, Copy)]
+pub struct Field {
+    /// Where the take-off begins and the landing ends.
+    pub threshold: LatLon,
+    /// Metres above sea level.
+    pub elevation_m: f64,
+    /// Take-off and landing direction, degrees true.
+    pub heading_deg: f64,
+}
+
+impl Field {
+    /// Position `ahead_m` metres along the runway's direction from the threshold and `right_m` to its right.
+    pub fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
+        self.threshold
+            .destination(self.heading_deg, ahead_m)
+            .destination(self.heading_deg + 90.0, right_m)
+    }
+
+    /// `lat="…" lon="…"` of such a position.
+    fn place(&self, ahead_m: f64, right_m: f64) -> String {
+        let p = self.at(ahead_m, right_m);
+        format!("lat=\"{:.7}\" lon=\"{:.7}\"", p.lat_deg, p.lon_deg)
+    }
+
+    /// The mission: take-off, a departure with an RF, three sweeps over a spot that can move, an intersection after
+    /// each, home and landing; one emergency plan each for plan, mission stage and the leg `far`.
+    ///
+    /// `way_back_m` moves the way home further out: two values give two plans for an update in flight.
+    pub fn mission(&self, way_back_m: f64) -> String {
+        let centre = self.at(1700.0, 300.0);
+        let spot = self.at(-600.0, 1400.0);
+        let (heading, elevation) = (self.heading_deg, self.elevation_m);
+        format!(
+            r#"<?xml version="1.0" encoding="UTF-8"?>
+<flightPlan xmlns="urn:legwork:flight-plan:1" name="System test" aircraft="trainer">
+  <runways>
+    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>
+  </runways>
+  <variables>
+    <variable name="spot" type="position" initial="{spot_lat:.7} {spot_lon:.7}"/>
+    <variable name="reach" type="number" unit="m" initial="350" min="200" max="900"/>
+    <variable name="found" type="bool" initial="false"/>
+  </variables>
+  <mainPlan emergency="home">
+    <stage id="to" type="take-off" runway="R" altitude="60" altitudeReference="home"/>
+    <stage id="dep" type="departure" altitude="120" altitudeReference="home">
+      <TF id="out" {out}/>
+      <RF id="round" {round} centreLat="{centre_lat:.7}" centreLon="{centre_lon:.7}" turn="right"/>
+      <TF id="far" {far} emergency="near-home"/>
+    </stage>
+    <stage id="watch" type="mission" emergency="field" altitude="120" altitudeReference="home">
+      <iterative id="loop" form="forward" count="3" until="found" turn="right">
+        <scan id="sweep" spacing="200" overshoot="0">
+          <area centre="= spot" radius="= reach"/>
+        </scan>
+        <intersection id="ask" default="on" decideBefore="15s">
+          <branch id="on" label="Sweep again"/>
+          <branch id="look" label="Close look" next="close"/>
+        </intersection>
+        <TF id="mark" {mark} next="end"/>
+        <orbit id="close" radius="250" turns="1" turn="right"><centre at="= spot"/></orbit>
+        <TF id="end" {end}/>
+      </iterative>
+    </stage>
+    <stage id="arr" type="arrival" altitude="120" altitudeReference="home">
+      <DF id="back" {back}/>
+      <TF id="downwind" {downwind} altitude="90" altitudeReference="home"/>
+    </stage>
+    <stage id="app" type="approach">
+      <TF id="final" {last} altitude="70" altitudeReference="home"/>
+    </stage>
+    <stage id="ldg" type="land" runway="R"/>
+  </mainPlan>
+  <emergencyPlans>
+    {home}
+    {near}
+    {field}
+  </emergencyPlans>
+</flightPlan>
+"#,
+            threshold = self.place(0.0, 0.0),
+            out = self.place(1700.0, 0.0),
+            round = self.place(1700.0, 600.0),
+            far = self.place(-600.0, 600.0),
+            mark = self.place(-1500.0, 1400.0),
+            end = self.place(-1600.0, 800.0),
+            back = self.place(-way_back_m, -700.0),
+            downwind = self.place(-1500.0, -500.0),
+            last = self.place(-1000.0, 0.0),
+            centre_lat = centre.lat_deg,
+            centre_lon = centre.lon_deg,
+            spot_lat = spot.lat_deg,
+            spot_lon = spot.lon_deg,
+            home = self.emergency("home", 700.0),
+            near = self.emergency("near-home", 800.0),
+            field = self.emergency("field", 900.0),
+        )
+    }
+
+    /// An emergency plan by way of a point of its own, so that a test sees which one is flown.
+    fn emergency(&self, id: &str, left_m: f64) -> String {
+        format!(
+            r#"<emergencyPlan id="{id}" runway="R">
+      <stage id="{id}-way" type="arrival" altitude="100" altitudeReference="home">
+        <DF id="{id}-df" {direct}/>
+        <TF id="{id}-final" {last} altitude="70" altitudeReference="home"/>
+      </stage>
+      <stage id="{id}-land" type="land" runway="R"/>
+    </emergencyPlan>"#,
+            direct = self.place(-1600.0, -left_m),
+            last = self.place(-1000.0, 0.0),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIELD: Field =
+        Field { threshold: LatLon::new(36.4905, -84.2710), elevation_m: 322.0, heading_deg: 52.0 };
+
+    #[test]
+    fn the_mission_can_be_flown() {
+        for way_back in [1800.0, 2400.0] {
+            let reading = flight_plan::read(FIELD.mission(way_back).as_bytes());
+            assert!(reading.problems.is_empty(), "{:?}", reading.problems);
+            let profile = aircraft::Profile::default();
+            let flat = terrain::Flat(FIELD.elevation_m);
+            let problems = flight_plan::compile(reading.plan, &profile, &flat).err();
+            assert!(problems.is_none(), "{problems:#?}");
+        }
+    }
+}
