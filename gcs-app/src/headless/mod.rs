@@ -1,4 +1,11 @@
-//! What works without a window: check, preview and expand a plan.
+//! What works without a window: check, expand and preview a plan. For scripts and continuous checks.
+//!
+//! Exit status: 0 the plan is good (warnings allowed), 1 it has errors or can't be flown, 2 wrong usage or files.
+
+mod check;
+mod source;
+
+pub use source::Source;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,8 +15,12 @@ use std::process::ExitCode;
 pub enum Command {
     /// Say what is wrong with a plan.
     Check {
-        /// The plan.
-        file: PathBuf,
+        /// The plan and its surroundings.
+        #[command(flatten)]
+        source: Source,
+        /// One JSON document instead of lines.
+        #[arg(long)]
+        json: bool,
     },
     /// Draw what would be flown.
     Preview {
@@ -23,7 +34,13 @@ pub enum Command {
     },
 }
 
-/// Carries a command out; 0 good, 1 problems, 2 usage or files.
-pub fn run(_command: &Command) -> anyhow::Result<ExitCode> {
-    Ok(ExitCode::from(2))
+/// Carries a command out.
+///
+/// # Errors
+/// Files that can't be read or written, options that make no sense (exit status 2).
+pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
+    match command {
+        Command::Check { source, json } => check::run(source, *json),
+        _ => Ok(ExitCode::from(2)),
+    }
 }

@@ -1,0 +1,78 @@
+//! `legwork check`: everything that is wrong with a plan.
+
+use super::Source;
+use flight_plan::Problem;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Prints the problems, as lines `file:line:column: severity [code] subject: message` or as one JSON document; 0
+/// if the plan may be flown, else 1.
+///
+/// # Errors
+/// A file can't be read.
+pub fn run(source: &Source, json: bool) -> anyhow::Result<ExitCode> {
+    let loaded = source.load()?;
+    let problems = loaded.problems();
+    if json {
+        println!("{:#}", document(&source.file, &problems));
+    } else {
+        print(&source.file, &problems);
+    }
+    Ok(status(&problems))
+}
+
+/// Prints problems for people, and how many there are.
+pub fn print(file: &Path, problems: &[Problem]) {
+    for problem in problems {
+        println!("{}:{}{problem}", file.display(), if problem.location.is_some() { "" } else { " " });
+    }
+    let errors = problems.iter().filter(|p| p.is_error()).count();
+    match (errors, problems.len() - errors) {
+        (0, 0) => println!("{}: good, no problems", file.display()),
+        (0, warnings) => println!("{}: may be flown; {warnings} warnings", file.display()),
+        (errors, warnings) => {
+            println!("{}: must not be flown; {errors} errors, {warnings} warnings", file.display())
+        }
+    }
+}
+
+/// 0 if none of them forbids flying, else 1.
+pub fn status(problems: &[Problem]) -> ExitCode {
+    ExitCode::from(u8::from(problems.iter().any(Problem::is_error)))
+}
+
+fn document(file: &Path, problems: &[Problem]) -> serde_json::Value {
+    let rows: Vec<_> = problems
+        .iter()
+        .map(|p| {
+            serde_json::json!({
+                "code": p.code,
+                "severity": p.severity,
+                "subject": p.subject,
+                "line": p.location.map(|l| l.line),
+                "column": p.location.map(|l| l.column),
+                "message": p.message,
+            })
+        })
+        .collect();
+    let good = !problems.iter().any(Problem::is_error);
+    serde_json::json!({"file": file.display().to_string(), "good": good, "problems": rows})
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    #[test]
+    fn a_bad_plan_has_status_1_and_places() {
+        let (_file, source) = source(b"<flightPlan xmlns=\"urn:legwork:flight-plan:1\" name=\"x\" aircraft=\"trainer\">\n<oops/>\n</flightPlan>");
+        let problems = source.load().unwrap().problems();
+        assert_eq!(format!("{:?}", status(&problems)), format!("{:?}", ExitCode::from(1)));
+        let json = document(&source.file, &problems);
+        assert_eq!(json["good"], false);
+        assert!(json["problems"].as_array().unwrap().iter().any(|p| p["line"] == 2), "{json:#}");
+        assert_eq!(format!("{:?}", run(&source, true).unwrap()), format!("{:?}", ExitCode::from(1)));
+    }
+}

@@ -1,0 +1,156 @@
+//! A plan from a file, with the aircraft and the terrain it is meant for.
+
+use crate::assets;
+use aircraft::Profile;
+use anyhow::Context;
+use flight_plan::{Problem, Program, Reading};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use terrain::{Terrain, Tile, Tiles};
+
+/// Greatest elevation tile there is, bytes (1″), and a little more, so that a longer file is seen as such.
+const MAX_TILE_BYTES: u64 = 26_000_000;
+
+/// Where a plan and its surroundings come from.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Source {
+    /// The plan (XML).
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Elevation tiles (SRTM .hgt, named after their corner) instead of the bundled one.
+    #[arg(long, value_name = "HGT")]
+    pub terrain: Vec<PathBuf>,
+    /// Performance profile of the aircraft (JSON) instead of the one the plan names.
+    #[arg(long, value_name = "JSON")]
+    pub aircraft: Option<PathBuf>,
+}
+
+/// A plan that was read, whatever it is worth.
+pub struct Loaded {
+    /// The plan and what is wrong with its document.
+    pub reading: Reading,
+    /// The aircraft, or why there is none.
+    pub profile: Result<Profile, String>,
+    /// The ground.
+    pub terrain: Arc<dyn Terrain>,
+}
+
+impl Source {
+    /// Reads the files.
+    ///
+    /// # Errors
+    /// A file can't be read, or an elevation tile or profile is none.
+    pub fn load(&self) -> anyhow::Result<Loaded> {
+        // one byte more than is allowed: the reader then says that it is too long
+        let document = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
+        let reading = flight_plan::read(&document);
+        let profile = match &self.aircraft {
+            Some(path) => Ok(profile_from(path)?),
+            None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),
+        };
+        Ok(Loaded { reading, profile, terrain: self.load_terrain()? })
+    }
+
+    fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
+        if self.terrain.is_empty() {
+            return Ok(assets::demo_terrain());
+        }
+        let mut tiles = Tiles::new();
+        for path in &self.terrain {
+            let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
+            let bytes = read_at_most(path, MAX_TILE_BYTES)?;
+            tiles.add(Tile::from_hgt(name, &bytes).with_context(|| path.display().to_string())?);
+        }
+        Ok(Arc::new(tiles))
+    }
+}
+
+impl Loaded {
+    /// Everything that is wrong: document, plan, aircraft.
+    pub fn problems(&self) -> Vec<Problem> {
+        let mut problems = self.reading.problems.clone();
+        match &self.profile {
+            Err(reason) => problems.push(Problem::error("unknown-aircraft", reason.clone())),
+            // a broken document gives a plan full of holes: its problems come first
+            Ok(_) if self.reading.has_errors() => {}
+            Ok(profile) => {
+                let mut found = flight_plan::check(&self.reading.plan, profile, self.terrain.as_ref());
+                self.reading.places.locate(&mut found);
+                problems.extend(found);
+            }
+        }
+        problems
+    }
+
+    /// The plan ready to be flown, and its aircraft.
+    ///
+    /// # Errors
+    /// All problems, if one of them forbids flying.
+    pub fn compile(&self) -> Result<(Program, Profile), Vec<Problem>> {
+        let problems = self.problems();
+        match &self.profile {
+            Ok(profile) if !problems.iter().any(Problem::is_error) => {
+                let plan = self.reading.plan.clone();
+                let program = flight_plan::compile(plan, profile, self.terrain.as_ref())?;
+                Ok((program, profile.clone()))
+            }
+            _ => Err(problems),
+        }
+    }
+}
+
+fn profile_from(path: &Path) -> anyhow::Result<Profile> {
+    let json = String::from_utf8(read_at_most(path, 1_000_000)?)
+        .context("the aircraft profile is not UTF-8 text")?;
+    Profile::from_json(&json).with_context(|| path.display().to_string())
+}
+
+/// The file's first `limit` bytes at most.
+fn read_at_most(path: &Path, limit: u64) -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
+        .with_context(|| format!("can't read {}", path.display()))?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    /// A source that is a file of this text.
+    pub(crate) fn source(text: &[u8]) -> (tempfile::NamedTempFile, Source) {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        let source = Source { file: file.path().to_owned(), ..Source::default() };
+        (file, source)
+    }
+
+    #[test]
+    fn files_that_are_not_there_or_not_what_they_should_be() {
+        let missing = Source { file: "no/such/plan.xml".into(), ..Source::default() };
+        let error = missing.load().map(|_| ()).unwrap_err();
+        assert!(format!("{error:#}").contains("no/such/plan.xml"), "{error:#}");
+
+        let (file, good) = source(b"<flightPlan/>");
+        let bad_tile = Source { terrain: vec![file.path().to_owned()], ..good.clone() };
+        assert!(bad_tile.load().is_err(), "a plan is no elevation tile");
+        let bad_aircraft = Source { aircraft: Some(file.path().to_owned()), ..good };
+        assert!(bad_aircraft.load().is_err(), "a plan is no profile");
+    }
+
+    #[test]
+    fn garbage_is_a_problem_and_never_compiles() {
+        for garbage in
+            [&b""[..], b"\xff\xfe\0\0", b"<a", b"<!DOCTYPE x [<!ENTITY a \"b\">]><x>&a;</x>", b"{}"]
+        {
+            let (_file, source) = source(garbage);
+            let loaded = source.load().unwrap();
+            assert!(loaded.problems().iter().any(Problem::is_error), "{garbage:?}");
+            assert!(loaded.compile().is_err(), "{garbage:?}");
+        }
+    }
+}
