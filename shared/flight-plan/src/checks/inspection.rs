@@ -194,9 +194,28 @@ impl<'a> Inspection<'a> {
             if section.replace(of) != Some(of) {
                 arrival = Arrival::default();
             }
-            let first = if stage.kind == StageKind::TakeOff { Arrival::default() } else { arrival };
-            arrival = self.trace_list(&stage.legs, stage, of, &mut Vec::new(), first);
+            arrival = match stage.kind {
+                StageKind::TakeOff => Arrival { point: self.climb_out(stage), step: None },
+                _ => self.trace_list(&stage.legs, stage, of, &mut Vec::new(), arrival),
+            };
         }
+    }
+
+    /// Where a take-off ends: straight on from the runway's end, at the best climb.
+    fn climb_out(&self, stage: &Stage) -> Option<Point> {
+        let runway = self.plan.runway(stage.runway.as_ref()?).filter(|r| r.threshold.is_valid())?;
+        let metres = self.number(&stage.altitude.as_ref()?.metres)?;
+        let height_m = match stage.altitude.as_ref()?.reference {
+            AltitudeReference::Amsl => metres - runway.elevation_amsl_m,
+            AltitudeReference::Agl | AltitudeReference::Home => metres,
+        };
+        let climb_s = height_m.max(0.0) / self.profile.max_climb_mps.max(0.1);
+        let way_m = runway.length_m + climb_s * self.profile.cruise_airspeed_mps;
+        if !way_m.is_finite() || !runway.heading_deg.is_finite() {
+            return None;
+        }
+        let position = runway.threshold.destination(runway.heading_deg, way_m);
+        Some(Point { position, altitude_amsl_m: Some(runway.elevation_amsl_m + height_m) })
     }
 
     fn trace_list(
