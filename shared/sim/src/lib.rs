@@ -1,1 +1,23 @@
 //! Shell around a pure core: a simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does.
+//!
+//! [`core`] is the simulator without sockets, clock or threads; [`spawn`] puts it on a thread with a
+//! link. It is part of the product: plans are tried on it, and it can be given faults.
+//!
+//! What it imitates: ArduPlane's modes, arming, mission list and protocol, parameters, rates of telemetry and
+//! answers. What it leaves out: terrain, a geofence, rally points, a radio-control transmitter, log download; its
+//! dead reckoning without satellites is perfect, and telemetry comes at 10 Hz at most.
+
+// ArduPlane and its clients still speak much that the dialect calls deprecated
+#![allow(deprecated)]
+
+pub mod config;
+pub mod core;
+pub mod frame;
+mod link;
+mod shell;
+
+pub use config::{Config, Control, Link};
+pub use core::autopilot::Home;
+pub use core::faults::{Fault, FaultRequest};
+pub use core::mode::Mode;
+pub use shell::{Handle, TrackPoint, Truth, spawn};

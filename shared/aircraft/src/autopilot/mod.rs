@@ -106,6 +106,13 @@ impl Guidance {
         }
     }
 
+    /// Another airspeed towards the current target, m/s.
+    pub fn set_airspeed(&mut self, airspeed_mps: f64) {
+        if let Some(leg) = &mut self.leg {
+            leg.target.airspeed_mps = airspeed_mps;
+        }
+    }
+
     /// The target being flown to.
     pub fn target(&self) -> Option<&Target> {
         self.leg.as_ref().map(|leg| &leg.target)

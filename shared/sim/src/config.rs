@@ -1,0 +1,157 @@
+//! How a simulator is set up, and what can be asked of it while it runs.
+
+use crate::core::autopilot::Home;
+use crate::core::faults::FaultRequest;
+use aircraft::{Profile, Wind};
+use geometry::LatLon;
+use std::net::SocketAddr;
+use std::str::FromStr;
+
+/// How it is reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// Listens for one TCP client at a time, as ArduPilot's simulator does.
+    Tcp(SocketAddr),
+    /// Listens for datagrams; answers everybody who sends a good frame.
+    Udp(SocketAddr),
+    /// Sends datagrams to a ground station from the start, and listens to it alone.
+    UdpOut(SocketAddr),
+}
+
+/// Everything that can be chosen.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// How it is reached.
+    pub link: Link,
+    /// Where it stands at the start.
+    pub home: Home,
+    /// The wind.
+    pub wind: Wind,
+    /// What flies.
+    pub profile: Profile,
+    /// Simulated seconds per second. 0: as fast as the lockstep partner lets it (1 without one).
+    pub speed: f64,
+    /// Ask a partner for leave before every step.
+    pub lockstep: bool,
+    /// Faults from the start.
+    pub faults: Vec<FaultRequest>,
+    /// For the faults' dice.
+    pub seed: u64,
+    /// Simulated seconds between points of the track log.
+    pub track_interval_s: f64,
+}
+
+impl Default for Config {
+    /// The trainer on runway R05 of the example mission, no wind, real time, any free TCP port of the loopback.
+    fn default() -> Self {
+        Self {
+            link: Link::Tcp(SocketAddr::from(([127, 0, 0, 1], 0))),
+            home: Home {
+                position: LatLon::new(36.4905, -84.2710),
+                altitude_amsl_m: 322.0,
+                heading_deg: 52.0,
+            },
+            wind: Wind::CALM,
+            profile: Profile::default(),
+            speed: 1.0,
+            lockstep: false,
+            faults: Vec::new(),
+            seed: 1,
+            track_interval_s: 0.5,
+        }
+    }
+}
+
+/// What can be asked of a running simulator.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Control {
+    /// A fault, now or at its time.
+    Inject(FaultRequest),
+    /// No more faults of that name.
+    Clear(String),
+    /// Another wind.
+    Wind(Wind),
+    /// The end.
+    Stop,
+}
+
+impl FromStr for Control {
+    type Err = String;
+
+    /// One line: `fault FAULT`, `clear NAME`, `wind DIRECTION,SPEED` or `stop`.
+    fn from_str(line: &str) -> Result<Self, String> {
+        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        match word {
+            "fault" => rest.trim().parse().map(Control::Inject).map_err(|e| format!("{e}")),
+            "clear" => Ok(Control::Clear(rest.trim().to_owned())),
+            "wind" => parse_wind(rest).map(Control::Wind),
+            "stop" | "quit" => Ok(Control::Stop),
+            _ => Err(format!(
+                "{word:?} is no command; write: fault FAULT, clear NAME, wind DIRECTION,SPEED or stop"
+            )),
+        }
+    }
+}
+
+/// `LAT,LON,ALT,HEADING`: degrees, degrees, metres AMSL, degrees true.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_home(text: &str) -> Result<Home, String> {
+    let wrong = || format!("{text:?} is no home; write LAT,LON,ALT,HEADING, as 36.4905,-84.2710,322,52");
+    let [lat, lon, altitude_amsl_m, heading_deg] = numbers(text).ok_or_else(wrong)?;
+    let position = LatLon::new(lat, lon);
+    if !position.is_valid() || !(-500.0..9000.0).contains(&altitude_amsl_m) {
+        return Err(wrong());
+    }
+    Ok(Home { position, altitude_amsl_m, heading_deg })
+}
+
+/// `DIRECTION,SPEED`: where it comes from in degrees true, m/s.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_wind(text: &str) -> Result<Wind, String> {
+    match numbers(text) {
+        Some([from_deg, speed_mps]) if (0.0..=50.0).contains(&speed_mps) => {
+            Ok(Wind::from_direction(from_deg, speed_mps))
+        }
+        _ => Err(format!(
+            "{text:?} is no wind; write DIRECTION,SPEED, as 270,5 (degrees it comes from, m/s up to 50)"
+        )),
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let parsed: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>().ok().filter(|n| n.is_finite()))
+        .collect::<Option<_>>()?;
+    parsed.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn lines_of_the_control_protocol() {
+        assert_eq!("stop".parse(), Ok(Control::Stop));
+        assert_eq!("clear silence\n".parse(), Ok(Control::Clear("silence".into())));
+        assert_eq!("wind 270,5".parse(), Ok(Control::Wind(Wind::from_direction(270.0, 5.0))));
+        assert!(matches!(" fault engine-out@3 ".parse(), Ok(Control::Inject(_))));
+        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "dance"] {
+            assert!(bad.parse::<Control>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn homes() {
+        let home = parse_home("36.4905, -84.2710, 322, 52").unwrap();
+        assert_eq!(home, Config::default().home);
+        for bad in ["", "1,2,3", "91,0,0,0", "1,2,1e9,0", "a,b,c,d", "1,2,3,4,5"] {
+            assert!(parse_home(bad).is_err(), "{bad}");
+        }
+    }
+}

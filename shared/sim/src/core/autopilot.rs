@@ -1,0 +1,478 @@
+//! The autopilot around the aircraft: modes, arming, the mission being flown. Knows no message.
+
+use super::item::{Datum, Item, Kind};
+use super::mode::Mode;
+use super::params::Params;
+use super::run::{Phase, Run};
+use super::transfer::Mission;
+use aircraft::{Action, Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
+use geometry::LatLon;
+
+/// Home: where it was switched on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Home {
+    /// Where.
+    pub position: LatLon,
+    /// Elevation, metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Which way it stands, degrees true.
+    pub heading_deg: f64,
+}
+
+/// How bad a notice is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// Something fails.
+    Critical,
+    /// Something is not as asked.
+    Warning,
+    /// For the record.
+    Info,
+}
+
+/// A text for the ground (at most 50 characters are sent).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    /// How bad.
+    pub severity: Severity,
+    /// What.
+    pub text: String,
+}
+
+/// The autopilot and its aircraft.
+#[derive(Debug)]
+pub struct Autopilot {
+    /// The aircraft it flies.
+    pub aircraft: Aircraft,
+    /// The wind it flies in.
+    pub wind: Wind,
+    /// Where home is.
+    pub home: Home,
+    /// Its settings.
+    pub params: Params,
+    /// The mission list.
+    pub mission: Mission,
+    /// The place in it.
+    pub run: Run,
+    /// What guidance last said.
+    pub guided: Option<Guided>,
+    /// Satellite navigation works.
+    pub gps_ok: bool,
+    mode: Mode,
+    armed: bool,
+    guidance: Guidance,
+    speed_mps: Option<f64>,
+    take_off_done: bool,
+    standing_s: f64,
+    notices: Vec<Notice>,
+    reached: Vec<u16>,
+}
+
+impl Autopilot {
+    /// On the ground at home, disarmed, in MANUAL.
+    pub fn new(profile: Profile, home: Home, wind: Wind) -> Self {
+        let aircraft =
+            Aircraft::on_runway(profile.clone(), home.position, home.altitude_amsl_m, home.heading_deg);
+        Self {
+            aircraft,
+            wind,
+            home,
+            params: Params::new(&profile),
+            mission: Mission::new(Item::home(home.position, home.altitude_amsl_m)),
+            run: Run::new(),
+            guided: None,
+            gps_ok: true,
+            mode: Mode::Manual,
+            armed: false,
+            guidance: Guidance::new(profile),
+            speed_mps: None,
+            take_off_done: false,
+            standing_s: 0.0,
+            notices: Vec::new(),
+            reached: Vec::new(),
+        }
+    }
+
+    /// The present mode.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Armed.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// What was to be said since the last call.
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Items reached since the last call.
+    pub fn take_reached(&mut self) -> Vec<u16> {
+        std::mem::take(&mut self.reached)
+    }
+
+    /// Says something to the ground. Unread notices beyond a hundred are dropped.
+    pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        if self.notices.len() < 100 {
+            self.notices.push(Notice { severity, text: text.into() });
+        }
+    }
+
+    /// What the pre-arm check has against flying.
+    pub fn prearm_problem(&self) -> Option<&'static str> {
+        let checks = self.params.value("ARMING_CHECK") > 0.0;
+        match () {
+            () if !checks => None,
+            () if !self.gps_ok => Some("GPS: no fix"),
+            () if self.battery_pct() <= self.params.value("BATT_CRT_PCT") => Some("Battery is too low"),
+            () if !self.aircraft.engine().healthy => Some("Engine failed"),
+            () => None,
+        }
+    }
+
+    /// Energy left, per cent.
+    pub fn battery_pct(&self) -> f64 {
+        100.0 * self.aircraft.battery().share()
+    }
+
+    /// Arms; false (and says why) if the pre-arm check fails and `force` is off.
+    pub fn arm(&mut self, force: bool) -> bool {
+        if let Some(problem) = self.prearm_problem().filter(|_| !force && !self.armed) {
+            self.say(Severity::Critical, format!("PreArm: {problem}"));
+            return false;
+        }
+        if !self.armed {
+            self.armed = true;
+            self.standing_s = 0.0;
+            if self.run.phase == Phase::Complete {
+                self.run.reset();
+            }
+            self.say(Severity::Info, "Throttle armed");
+            // what was waiting for the engine starts from here
+            self.enter(self.mode);
+        }
+        true
+    }
+
+    /// Disarms; in the air only if `force`d.
+    pub fn disarm(&mut self, force: bool) -> bool {
+        if !self.aircraft.state().on_ground && !force {
+            return false;
+        }
+        if self.armed {
+            self.armed = false;
+            self.say(Severity::Info, "Throttle disarmed");
+        }
+        true
+    }
+
+    /// Changes the mode; false if it can't be entered now.
+    pub fn set_mode(&mut self, mode: Mode) -> bool {
+        if mode == Mode::Auto && self.mission.items().len() < 2 {
+            self.say(Severity::Warning, "Mode change to AUTO failed: no mission");
+            return false;
+        }
+        if mode != self.mode {
+            if self.mode == Mode::Auto && self.run.phase == Phase::Running {
+                self.run.phase = Phase::Stopped;
+            }
+            self.enter(mode);
+        }
+        true
+    }
+
+    fn enter(&mut self, mode: Mode) {
+        self.mode = mode;
+        self.take_off_done = false;
+        match mode {
+            Mode::Auto => self.start_mission(),
+            Mode::ReturnToLaunch => {
+                let target = self.return_target();
+                self.guidance.direct(self.aircraft.state(), target);
+            }
+            Mode::Loiter | Mode::Guided | Mode::TakeOff => {
+                let target = self.loiter_here();
+                self.guidance.direct(self.aircraft.state(), target);
+            }
+            Mode::Manual | Mode::Circle | Mode::FlyByWireA => {}
+        }
+    }
+
+    /// Goes on where the mission was stopped; from the start if it never ran or is complete.
+    fn start_mission(&mut self) {
+        let from = match self.run.phase {
+            Phase::Complete => 1,
+            Phase::Stopped | Phase::Running => self.run.current.max(1),
+        };
+        self.fly_item(from, true);
+    }
+
+    /// Makes an item the current one: at once in AUTO, else when AUTO is entered. False: no such item.
+    pub fn set_current(&mut self, seq: u16) -> bool {
+        if usize::from(seq) >= self.mission.items().len() {
+            return false;
+        }
+        if self.mode == Mode::Auto {
+            self.fly_item(seq, true);
+        } else {
+            self.run.reset();
+            self.run.current = seq;
+        }
+        true
+    }
+
+    /// Clears the mission; refused while it is being flown.
+    pub fn clear_mission(&mut self) -> bool {
+        if (self.armed && self.mode == Mode::Auto) || !self.mission.clear() {
+            return false;
+        }
+        self.run.reset();
+        true
+    }
+
+    /// GUIDED: circle a point. `altitude_m` is over `datum`.
+    pub fn reposition(&mut self, position: LatLon, altitude_m: f64, datum: Datum, radius_m: f64) {
+        if self.mode != Mode::Guided {
+            self.set_mode(Mode::Guided);
+        }
+        let target = Target {
+            position,
+            altitude_amsl_m: self.amsl_m(altitude_m, datum),
+            airspeed_mps: self.airspeed_mps(),
+            action: self.circle_action(radius_m),
+            fly_over: false,
+        };
+        self.guidance.direct(self.aircraft.state(), target);
+    }
+
+    /// GUIDED: another altitude, m AMSL. False in any other mode.
+    pub fn change_altitude(&mut self, altitude_amsl_m: f64) -> bool {
+        match self.guidance.target().copied() {
+            Some(target) if self.mode == Mode::Guided => {
+                self.guidance.direct(self.aircraft.state(), Target { altitude_amsl_m, ..target });
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// DO_CHANGE_SPEED: −2 resets, −1 keeps; false if out of range.
+    pub fn change_speed(&mut self, mps: f64) -> bool {
+        let limits = self.params.value("AIRSPEED_MIN")..=self.params.value("AIRSPEED_MAX");
+        if mps == -2.0 {
+            self.speed_mps = None;
+        } else if limits.contains(&mps) {
+            self.speed_mps = Some(mps);
+        } else if mps != -1.0 {
+            return false;
+        }
+        true
+    }
+
+    /// The airspeed being asked for.
+    pub fn airspeed_mps(&self) -> f64 {
+        self.speed_mps.unwrap_or_else(|| self.params.value("AIRSPEED_CRUISE"))
+    }
+
+    /// Flies for `dt_s` seconds.
+    pub fn step(&mut self, dt_s: f64) {
+        let mut demand = if self.armed { self.demand() } else { Demand::default() };
+        // without power it comes down, and the only ground known is home's
+        if !self.aircraft.engine().healthy || self.aircraft.battery().energy_left_j <= 0.0 {
+            demand.ground_amsl_m.get_or_insert(self.home.altitude_amsl_m);
+        }
+        self.aircraft.step(dt_s, &demand, &self.wind);
+        self.disarm_when_landed(dt_s, &demand);
+    }
+
+    fn demand(&mut self) -> Demand {
+        let cruise = Demand { airspeed_mps: self.airspeed_mps(), ..Demand::default() };
+        match self.mode {
+            Mode::Auto => self.fly_mission(),
+            Mode::TakeOff => self.take_off(),
+            _ if self.aircraft.state().on_ground => Demand::default(),
+            Mode::Circle => Demand { bank_rad: 0.35, ..cruise },
+            Mode::Manual | Mode::FlyByWireA => cruise,
+            Mode::ReturnToLaunch | Mode::Loiter | Mode::Guided => self.follow(None).demand,
+        }
+    }
+
+    fn follow(&mut self, next: Option<Target>) -> Guided {
+        let guided = self.guidance.step(self.aircraft.state(), next.as_ref());
+        self.guided = Some(guided);
+        guided
+    }
+
+    /// One step of the mission: at most one item is reached in it.
+    fn fly_mission(&mut self) -> Demand {
+        let next = self.run.upcoming(self.mission.items());
+        let next = next.map(|item| self.target(&item));
+        // the speed may have been changed by command since the item became active
+        self.guidance.set_airspeed(self.airspeed_mps());
+        let guided = self.follow(next);
+        if guided.reached && self.run.phase == Phase::Running {
+            self.item_reached();
+        }
+        guided.demand
+    }
+
+    fn item_reached(&mut self) {
+        let seq = self.run.current;
+        let landed = matches!(self.run.active, Some(Item { kind: Kind::Land, .. }));
+        self.reached.push(seq);
+        if landed {
+            self.run.phase = Phase::Complete;
+            self.say(Severity::Info, format!("Landed at item {seq}"));
+            return;
+        }
+        self.fly_item(seq.saturating_add(1), false);
+    }
+
+    /// Flies the first item to be flown from `from` on: from where it is, or along the line from the last.
+    fn fly_item(&mut self, from: u16, direct: bool) {
+        let walk = self.run.advance(self.mission.items(), from);
+        for (seq, item) in walk.passed {
+            if let Kind::Speed { mps } = item.kind {
+                // out of range: ignored without a word, as on the real thing
+                self.change_speed(mps);
+            }
+            // the real thing reports one item a time, and what is done in passing comes last
+            self.reached.pop();
+            self.reached.push(seq);
+        }
+        let Some((seq, item)) = walk.next else {
+            self.say(Severity::Info, "Mission complete, changing mode to RTL");
+            self.set_mode(Mode::ReturnToLaunch);
+            return;
+        };
+        if item.kind == Kind::ReturnToLaunch {
+            self.set_mode(Mode::ReturnToLaunch);
+            return;
+        }
+        let target = self.target(&item);
+        if direct {
+            self.guidance.direct(self.aircraft.state(), target);
+        } else {
+            self.guidance.proceed(self.aircraft.state(), target);
+        }
+        self.say(Severity::Info, format!("Mission: {seq} {}", name_of(item.kind)));
+    }
+
+    fn take_off(&mut self) -> Demand {
+        if self.take_off_done {
+            return self.follow(None).demand;
+        }
+        let heading_deg = self.aircraft.state().heading_deg();
+        let climbing = matches!(self.guidance.target().map(|t| t.action), Some(Action::TakeOff { .. }));
+        if !climbing {
+            let altitude_amsl_m = self.home.altitude_amsl_m + self.params.value("TKOFF_ALT");
+            let action = Action::TakeOff { heading_deg };
+            let target = Target { altitude_amsl_m, action, ..self.loiter_here() };
+            self.guidance.direct(self.aircraft.state(), target);
+        }
+        let guided = self.follow(None);
+        if guided.reached {
+            self.take_off_done = true;
+            let target = self.loiter_here();
+            self.guidance.direct(self.aircraft.state(), target);
+            self.say(Severity::Info, "Takeoff complete");
+        }
+        guided.demand
+    }
+
+    /// On the ground, at rest, with nothing to start for: after a while the engine is made safe.
+    fn disarm_when_landed(&mut self, dt_s: f64, demand: &Demand) {
+        let s = self.aircraft.state();
+        let waiting = self.mode != Mode::Auto && self.mode != Mode::TakeOff;
+        let at_rest = s.on_ground && s.ground_speed_mps() < 0.3 && demand.airspeed_mps <= 0.0;
+        let done = self.run.phase == Phase::Complete || !waiting || self.powerless();
+        self.standing_s = if self.armed && at_rest && done { self.standing_s + dt_s } else { 0.0 };
+        if self.standing_s > self.params.value("LAND_DISARMDELAY") {
+            self.disarm(false);
+        }
+    }
+
+    fn powerless(&self) -> bool {
+        !self.aircraft.engine().healthy || self.aircraft.battery().energy_left_j <= 0.0
+    }
+
+    fn amsl_m(&self, altitude_m: f64, datum: Datum) -> f64 {
+        match datum {
+            Datum::Amsl => altitude_m,
+            Datum::Home => self.home.altitude_amsl_m + altitude_m,
+        }
+    }
+
+    fn circle_action(&self, radius_m: f64) -> Action {
+        let own = self.params.value("WP_LOITER_RAD");
+        Action::Loiter { radius_m: if radius_m == 0.0 { own } else { radius_m } }
+    }
+
+    fn loiter_here(&self) -> Target {
+        let s = self.aircraft.state();
+        Target {
+            position: s.position,
+            altitude_amsl_m: s.altitude_amsl_m,
+            airspeed_mps: self.airspeed_mps(),
+            action: self.circle_action(0.0),
+            fly_over: false,
+        }
+    }
+
+    fn return_target(&self) -> Target {
+        let height_m = self.params.value("RTL_ALTITUDE");
+        let here = self.loiter_here();
+        let altitude_amsl_m =
+            if height_m < 0.0 { here.altitude_amsl_m } else { self.home.altitude_amsl_m + height_m };
+        Target {
+            position: self.home.position,
+            altitude_amsl_m,
+            action: self.circle_action(self.params.value("RTL_RADIUS")),
+            ..here
+        }
+    }
+
+    /// What guidance is to do for an item.
+    fn target(&self, item: &Item) -> Target {
+        let s = self.aircraft.state();
+        let nowhere = item.position == LatLon::new(0.0, 0.0);
+        let position = if nowhere { s.position } else { item.position };
+        let action = match item.kind {
+            Kind::TakeOff => Action::TakeOff { heading_deg: s.heading_deg() },
+            Kind::Loiter { radius_m } => self.circle_action(radius_m),
+            Kind::Land => Action::Land { heading_deg: self.landing_heading_deg(position) },
+            _ => Action::Fly,
+        };
+        Target {
+            position,
+            altitude_amsl_m: self.amsl_m(item.altitude_m, item.datum),
+            airspeed_mps: self.airspeed_mps(),
+            action,
+            fly_over: item.kind == Kind::Waypoint { over: true },
+        }
+    }
+
+    /// It lands in the direction in which it comes from the item before.
+    fn landing_heading_deg(&self, touch_down: LatLon) -> f64 {
+        let from = match self.guidance.target() {
+            Some(Target { position, action: Action::Fly, .. }) => *position,
+            _ => self.aircraft.state().position,
+        };
+        from.bearing_deg(touch_down)
+    }
+}
+
+fn name_of(kind: Kind) -> &'static str {
+    match kind {
+        Kind::TakeOff => "Takeoff",
+        Kind::Waypoint { .. } => "WP",
+        Kind::Loiter { .. } => "LoiterUnlim",
+        Kind::Land => "Land",
+        Kind::ReturnToLaunch => "RTL",
+        Kind::Jump { .. } => "Jump",
+        Kind::Speed { .. } => "ChangeSpeed",
+        Kind::LandStart => "LandStart",
+    }
+}

@@ -1,0 +1,301 @@
+//! Faults on request: what is broken when, and a link that loses, doubles and swaps frames.
+
+use std::fmt;
+use std::str::FromStr;
+
+const NS_PER_S: f64 = 1e9;
+/// Requests kept at most; more are refused.
+const MOST_REQUESTS: usize = 64;
+
+/// Something that goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// Share of the frames lost, each way, 0..=1.
+    PacketLoss(f64),
+    /// Share of the frames that come twice, 0..=1.
+    Duplicate(f64),
+    /// Share of the frames that come after the next one, 0..=1.
+    Reorder(f64),
+    /// No satellite fix (dead reckoning goes on; arming is refused).
+    GpsLoss,
+    /// The engine gives nothing.
+    EngineOut,
+    /// The battery drops to 15 % at once (it does not recover).
+    LowBattery,
+    /// The radio is silent both ways.
+    Silence,
+}
+
+impl Fault {
+    fn name(self) -> &'static str {
+        match self {
+            Fault::PacketLoss(_) => "packet-loss",
+            Fault::Duplicate(_) => "duplicate",
+            Fault::Reorder(_) => "reorder",
+            Fault::GpsLoss => "gps-loss",
+            Fault::EngineOut => "engine-out",
+            Fault::LowBattery => "low-battery",
+            Fault::Silence => "silence",
+        }
+    }
+}
+
+/// A fault with its time: `name[=share][@second[+seconds]]`, as `packet-loss=0.2`, `engine-out@300`,
+/// `silence@120+10`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaultRequest {
+    /// What.
+    pub fault: Fault,
+    /// From when, simulated seconds; `None`: from when it is asked for.
+    pub at_s: Option<f64>,
+    /// For how long, simulated seconds; `None`: for good.
+    pub for_s: Option<f64>,
+}
+
+impl fmt::Display for FaultRequest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.fault.name())?;
+        if let Fault::PacketLoss(share) | Fault::Duplicate(share) | Fault::Reorder(share) = self.fault {
+            write!(f, "={share}")?;
+        }
+        if let Some(at) = self.at_s {
+            write!(f, "@{at}")?;
+        }
+        if let Some(duration) = self.for_s {
+            write!(f, "+{duration}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a fault request can't be understood.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), gps-loss, \
+     engine-out, low-battery, silence, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+)]
+pub struct FaultSyntax(String);
+
+impl FromStr for FaultRequest {
+    type Err = FaultSyntax;
+
+    fn from_str(text: &str) -> Result<Self, FaultSyntax> {
+        let bad = || FaultSyntax(text.to_owned());
+        let number = |t: &str| {
+            t.parse::<f64>().ok().filter(|n| n.is_finite() && (0.0..1e9).contains(n)).ok_or_else(bad)
+        };
+        let (rest, for_s) = match text.split_once('+') {
+            Some((rest, duration)) => (rest, Some(number(duration)?)),
+            None => (text, None),
+        };
+        let (rest, at_s) = match rest.split_once('@') {
+            Some((rest, at)) => (rest, Some(number(at)?)),
+            None => (rest, None),
+        };
+        let (name, share) = match rest.split_once('=') {
+            Some((name, share)) => (name, Some(number(share)?)),
+            None => (rest, None),
+        };
+        let fault = match (name, share.filter(|s| *s <= 1.0), share) {
+            ("packet-loss", Some(share), _) => Fault::PacketLoss(share),
+            ("duplicate", Some(share), _) => Fault::Duplicate(share),
+            ("reorder", Some(share), _) => Fault::Reorder(share),
+            ("gps-loss", _, None) => Fault::GpsLoss,
+            ("engine-out", _, None) => Fault::EngineOut,
+            ("low-battery", _, None) => Fault::LowBattery,
+            ("silence", _, None) => Fault::Silence,
+            _ => return Err(bad()),
+        };
+        Ok(Self { fault, at_s, for_s })
+    }
+}
+
+/// What is wrong now.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effects {
+    /// Share of frames lost.
+    pub loss: f64,
+    /// Share of frames doubled.
+    pub duplicate: f64,
+    /// Share of frames swapped with the next.
+    pub reorder: f64,
+    /// No satellite fix.
+    pub gps_lost: bool,
+    /// No engine power.
+    pub engine_out: bool,
+    /// Nothing sent or heard.
+    pub silent: bool,
+    /// The battery dropped.
+    pub low_battery: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Scheduled {
+    fault: Fault,
+    from_ns: u64,
+    until_ns: u64,
+}
+
+/// All that was asked for.
+#[derive(Debug, Default)]
+pub struct Schedule(Vec<Scheduled>);
+
+impl Schedule {
+    /// Adds a request; false if there are too many already.
+    pub fn add(&mut self, request: FaultRequest, now_ns: u64) -> bool {
+        if self.0.len() >= MOST_REQUESTS {
+            return false;
+        }
+        let from_ns = request.at_s.map_or(now_ns, |s| (s * NS_PER_S) as u64);
+        let until_ns = request.for_s.map_or(u64::MAX, |s| from_ns.saturating_add((s * NS_PER_S) as u64));
+        self.0.push(Scheduled { fault: request.fault, from_ns, until_ns });
+        true
+    }
+
+    /// Forgets every request for the kind of fault that has this name; false if there was none.
+    pub fn clear(&mut self, name: &str) -> bool {
+        let before = self.0.len();
+        self.0.retain(|s| s.fault.name() != name);
+        self.0.len() < before
+    }
+
+    /// What is wrong at a time.
+    pub fn effects(&self, now_ns: u64) -> Effects {
+        let mut effects = Effects::default();
+        for s in self.0.iter().filter(|s| (s.from_ns..s.until_ns).contains(&now_ns)) {
+            match s.fault {
+                Fault::PacketLoss(share) => effects.loss = share,
+                Fault::Duplicate(share) => effects.duplicate = share,
+                Fault::Reorder(share) => effects.reorder = share,
+                Fault::GpsLoss => effects.gps_lost = true,
+                Fault::EngineOut => effects.engine_out = true,
+                Fault::LowBattery => effects.low_battery = true,
+                Fault::Silence => effects.silent = true,
+            }
+        }
+        effects
+    }
+}
+
+/// A small reproducible generator (Steele, Lea and Flood, *SplitMix*, 2014).
+#[derive(Debug, Clone)]
+pub struct Dice(u64);
+
+impl Dice {
+    /// From a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// True with that probability.
+    pub fn roll(&mut self, probability: f64) -> bool {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        let unit = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
+        unit < probability
+    }
+}
+
+/// One direction of a bad link. Holds at most one frame back.
+#[derive(Debug)]
+pub struct BadLink<T> {
+    held: Option<T>,
+}
+
+impl<T: Clone> BadLink<T> {
+    /// Nothing held back.
+    pub fn new() -> Self {
+        Self { held: None }
+    }
+
+    /// What comes out when a frame goes in.
+    pub fn pass(&mut self, effects: &Effects, dice: &mut Dice, frame: T) -> Vec<T> {
+        if effects.silent || dice.roll(effects.loss) {
+            return Vec::new();
+        }
+        let twice = dice.roll(effects.duplicate);
+        if self.held.is_none() && dice.roll(effects.reorder) {
+            self.held = Some(frame);
+            return Vec::new();
+        }
+        let mut out = vec![frame.clone()];
+        if twice {
+            out.push(frame);
+        }
+        out.extend(self.held.take());
+        out
+    }
+
+    /// What was held back for too long.
+    pub fn release(&mut self) -> Option<T> {
+        self.held.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn requests_are_read_and_written() {
+        for text in [
+            "packet-loss=0.2",
+            "duplicate=0.1@5",
+            "reorder=1",
+            "gps-loss@120",
+            "engine-out",
+            "low-battery@1.5+2",
+            "silence@120+10",
+        ] {
+            let request: FaultRequest = text.parse().unwrap();
+            assert_eq!(request.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_the_syntax() {
+        for text in [
+            "",
+            "fire",
+            "packet-loss",
+            "packet-loss=2",
+            "packet-loss=NaN",
+            "gps-loss=1",
+            "silence@-1",
+            "silence@1+x",
+        ] {
+            let error = text.parse::<FaultRequest>().unwrap_err().to_string();
+            assert!(error.contains("silence@120+10"), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn faults_begin_and_end_in_time_and_can_be_cleared() {
+        let mut schedule = Schedule::default();
+        schedule.add("silence@10+5".parse().unwrap(), 0);
+        schedule.add("engine-out".parse().unwrap(), 3_000_000_000);
+        let at = |schedule: &Schedule, s: u64| schedule.effects(s * 1_000_000_000);
+        assert_eq!(at(&schedule, 2), Effects::default());
+        assert!(at(&schedule, 4).engine_out && !at(&schedule, 9).silent);
+        assert!(at(&schedule, 10).silent && at(&schedule, 14).silent && !at(&schedule, 15).silent);
+        assert!(schedule.clear("engine-out") && !schedule.clear("engine-out"));
+        assert_eq!(at(&schedule, 20), Effects::default());
+    }
+
+    #[test]
+    fn a_bad_link_loses_doubles_and_swaps_about_as_much_as_asked() {
+        let effects = Effects { loss: 0.2, duplicate: 0.1, reorder: 0.1, ..Effects::default() };
+        let (mut link, mut dice) = (BadLink::new(), Dice::new(7));
+        let out: Vec<u32> = (0..10_000).flat_map(|i| link.pass(&effects, &mut dice, i)).collect();
+        let mut distinct = out.clone();
+        distinct.sort_unstable();
+        distinct.dedup();
+        let swapped = out.windows(2).filter(|w| w[1] < w[0]).count();
+        assert!((7_800..8_200).contains(&distinct.len()), "{}", distinct.len());
+        assert!((600..1_000).contains(&(out.len() - distinct.len())));
+        assert!((600..900).contains(&swapped), "{swapped}");
+    }
+}

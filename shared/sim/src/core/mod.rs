@@ -1,0 +1,297 @@
+//! The pure core: simulated time goes on by [`Simulator::step`], frames come in by
+//! [`Simulator::receive`], frames to be sent are fetched by [`Simulator::take_outgoing`].
+
+pub mod autopilot;
+mod commands;
+pub mod faults;
+mod inbox;
+pub mod item;
+pub mod mode;
+pub mod params;
+pub mod run;
+pub mod streams;
+pub mod telemetry;
+pub mod transfer;
+
+use crate::frame::{self, Body, Frame};
+use autopilot::{Autopilot, Home, Severity};
+use faults::{BadLink, Dice, Effects, FaultRequest, Schedule};
+use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity};
+use std::collections::BTreeMap;
+use streams::Streams;
+
+/// Simulated time of a step, nanoseconds.
+pub const STEP_NS: u64 = 100_000_000;
+const STEP_S: f64 = STEP_NS as f64 / 1e9;
+/// Peers served at most.
+pub const MOST_PEERS: usize = 8;
+/// Id of `TIMESYNC`, which no fault touches: time has to go on.
+const TIMESYNC_ID: u32 = 111;
+/// Share of the battery that the low-battery fault leaves.
+const LOW_BATTERY_SHARE: f64 = 0.15;
+
+/// A partner on a link; the shell gives the numbers out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Peer(pub u32);
+
+/// Bytes to be sent: one whole frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outgoing {
+    /// To whom.
+    pub to: Peer,
+    /// The frame.
+    pub bytes: Vec<u8>,
+}
+
+/// How the link did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Frames heard.
+    pub heard: u64,
+    /// Frames for somebody else, or of no use.
+    pub ignored: u64,
+    /// Frames handed out for sending.
+    pub sent: u64,
+}
+
+/// The simulator: an autopilot, its link and its faults.
+#[derive(Debug)]
+pub struct Simulator {
+    /// The autopilot and its aircraft.
+    pub autopilot: Autopilot,
+    now_ns: u64,
+    peers: BTreeMap<Peer, Streams>,
+    schedule: Schedule,
+    effects: Effects,
+    dice: Dice,
+    inward: BadLink<(Peer, Frame)>,
+    outward: BadLink<Outgoing>,
+    outgoing: Vec<Outgoing>,
+    sequence: u8,
+    sync_answers: Vec<(Peer, i64)>,
+    counters: Counters,
+    battery_level: usize,
+}
+
+impl Simulator {
+    /// At home on the ground, time 0.
+    pub fn new(profile: aircraft::Profile, home: Home, wind: aircraft::Wind, seed: u64) -> Self {
+        Self {
+            autopilot: Autopilot::new(profile, home, wind),
+            now_ns: 0,
+            peers: BTreeMap::new(),
+            schedule: Schedule::default(),
+            effects: Effects::default(),
+            dice: Dice::new(seed),
+            inward: BadLink::new(),
+            outward: BadLink::new(),
+            outgoing: Vec::new(),
+            sequence: 0,
+            sync_answers: Vec::new(),
+            counters: Counters::default(),
+            battery_level: 0,
+        }
+    }
+
+    /// Simulated time, nanoseconds.
+    pub fn now_ns(&self) -> u64 {
+        self.now_ns
+    }
+
+    /// How the link did so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// A partner appears: it gets telemetry from now on. False: there are too many already.
+    pub fn connect(&mut self, peer: Peer) -> bool {
+        if self.peers.len() >= MOST_PEERS && !self.peers.contains_key(&peer) {
+            return false;
+        }
+        let now_ns = self.now_ns;
+        self.peers.entry(peer).or_insert_with(|| Streams::new(now_ns));
+        true
+    }
+
+    /// A partner is gone.
+    pub fn disconnect(&mut self, peer: Peer) {
+        self.peers.remove(&peer);
+    }
+
+    /// Asks for a fault; false if there are too many already.
+    pub fn inject(&mut self, request: FaultRequest) -> bool {
+        self.schedule.add(request, self.now_ns)
+    }
+
+    /// Ends every fault of a name; false if there was none.
+    pub fn clear_fault(&mut self, name: &str) -> bool {
+        self.schedule.clear(name)
+    }
+
+    /// A frame from a partner, answered at once (unless a fault is in the way).
+    pub fn receive(&mut self, peer: Peer, frame: Frame) {
+        if !self.peers.contains_key(&peer) {
+            return;
+        }
+        self.counters.heard += 1;
+        if is_timesync(&frame) {
+            self.handle(peer, &frame);
+            return;
+        }
+        let effects = self.effects;
+        for (peer, frame) in self.inward.pass(&effects, &mut self.dice, (peer, frame)) {
+            self.handle(peer, &frame);
+        }
+    }
+
+    /// One step: faults, flight, mission protocol, then everything that is due to be told.
+    pub fn step(&mut self) {
+        self.now_ns += STEP_NS;
+        if let Some((peer, frame)) = self.inward.release() {
+            self.handle(peer, &frame);
+        }
+        if let Some(outgoing) = self.outward.release() {
+            self.outgoing.push(outgoing);
+        }
+        self.apply_faults();
+        let before = self.autopilot.run.current;
+        self.autopilot.step(STEP_S);
+        if let Some((party, reply)) = self.autopilot.mission.tick(self.now_ns) {
+            self.mission_reply(party, reply);
+        }
+        self.watch_battery();
+        self.tell_events(before);
+        self.tell_streams();
+    }
+
+    /// The question of the lockstep, to every partner; no fault touches it.
+    pub fn ask_time(&mut self) {
+        let question = telemetry::timesync(0, self.now_ns as i64);
+        for peer in self.peers.keys().copied().collect::<Vec<_>>() {
+            self.emit_always(peer, &question);
+        }
+    }
+
+    /// Answers to [`Simulator::ask_time`] since the last call: who, and to which time.
+    pub fn take_sync_answers(&mut self) -> Vec<(Peer, i64)> {
+        std::mem::take(&mut self.sync_answers)
+    }
+
+    /// What is to be sent since the last call.
+    pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
+        self.counters.sent += self.outgoing.len() as u64;
+        std::mem::take(&mut self.outgoing)
+    }
+
+    fn apply_faults(&mut self) {
+        let (old, new) = (self.effects, self.schedule.effects(self.now_ns));
+        self.effects = new;
+        self.autopilot.gps_ok = !new.gps_lost;
+        self.autopilot.aircraft.set_engine_healthy(!new.engine_out);
+        if new.low_battery && !old.low_battery {
+            self.autopilot.aircraft.set_battery_share(LOW_BATTERY_SHARE);
+        }
+        let changes = [
+            (old.gps_lost, new.gps_lost, "GPS: fix lost", "GPS: fix is back"),
+            (old.engine_out, new.engine_out, "Engine failure", "Engine runs again"),
+        ];
+        for (was, is, begins, ends) in changes {
+            match (was, is) {
+                (false, true) => self.autopilot.say(Severity::Critical, begins),
+                (true, false) => self.autopilot.say(Severity::Info, ends),
+                _ => {}
+            }
+        }
+    }
+
+    /// Says once when the battery becomes low, and once when critical.
+    fn watch_battery(&mut self) {
+        let pct = self.autopilot.battery_pct();
+        let levels = ["BATT_LOW_PCT", "BATT_CRT_PCT"];
+        let level = levels.iter().filter(|name| pct <= self.autopilot.params.value(name)).count();
+        if level > self.battery_level {
+            let word = if level == 1 { "low" } else { "critical" };
+            self.autopilot.say(Severity::Warning, format!("Battery 1 is {word} {pct:.0}%"));
+        }
+        self.battery_level = level;
+    }
+
+    fn tell_events(&mut self, current_before: u16) {
+        for seq in self.autopilot.take_reached() {
+            self.broadcast(&telemetry::item_reached(seq));
+        }
+        if self.autopilot.run.current != current_before {
+            self.broadcast(&telemetry::mission_current(&self.autopilot));
+        }
+        for notice in self.autopilot.take_notices() {
+            let severity = match notice.severity {
+                Severity::Critical => MavSeverity::MAV_SEVERITY_CRITICAL,
+                Severity::Warning => MavSeverity::MAV_SEVERITY_WARNING,
+                Severity::Info => MavSeverity::MAV_SEVERITY_INFO,
+            };
+            self.broadcast(&telemetry::statustext(severity, &notice.text));
+        }
+    }
+
+    fn tell_streams(&mut self) {
+        let mut due = Vec::new();
+        for (peer, streams) in &mut self.peers {
+            due.extend(streams.due(self.now_ns).into_iter().map(|id| (*peer, id)));
+        }
+        for (peer, id) in due {
+            if let Some(message) = telemetry::message(&self.autopilot, self.now_ns, id) {
+                self.send(peer, &message);
+            }
+        }
+    }
+
+    fn streams_of(&mut self, peer: Peer) -> Option<&mut Streams> {
+        self.peers.get_mut(&peer)
+    }
+
+    fn set_current(&mut self, seq: u16) -> bool {
+        let known = self.autopilot.set_current(seq);
+        if known {
+            self.broadcast(&telemetry::mission_current(&self.autopilot));
+        }
+        known
+    }
+
+    fn broadcast(&mut self, message: &MavMessage) {
+        for peer in self.peers.keys().copied().collect::<Vec<_>>() {
+            self.send(peer, message);
+        }
+    }
+
+    /// Sends a message, as far as the faults let it through.
+    fn send(&mut self, to: Peer, message: &MavMessage) {
+        let bytes = frame::encode(self.next_sequence(), message);
+        self.emit(Outgoing { to, bytes });
+    }
+
+    fn emit(&mut self, outgoing: Outgoing) {
+        let effects = self.effects;
+        let passed = self.outward.pass(&effects, &mut self.dice, outgoing);
+        self.outgoing.extend(passed);
+    }
+
+    fn emit_always(&mut self, to: Peer, message: &MavMessage) {
+        let bytes = frame::encode(self.next_sequence(), message);
+        self.outgoing.push(Outgoing { to, bytes });
+    }
+
+    fn next_sequence(&mut self) -> u8 {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.sequence
+    }
+}
+
+fn is_timesync(frame: &Frame) -> bool {
+    match &frame.body {
+        Body::Known(message) => matches!(**message, MavMessage::TIMESYNC(_)),
+        Body::Strange { id, .. } => *id == TIMESYNC_ID,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,644 @@
+//! The core as a ground station sees it: transcripts, flights and faults, without a socket.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use super::item::{Item, degrees_e7};
+use super::mode::Mode;
+use super::*;
+use crate::config::Config;
+use crate::frame::{Decoder, Sender};
+use aircraft::{Profile, Wind};
+use geometry::LatLon;
+use mavlink::dialects::ardupilotmega::*;
+use proptest::prelude::*;
+
+const GROUND: Sender = Sender { system: 255, component: 190 };
+const PEER: Peer = Peer(1);
+
+/// A ground station and the simulator it talks to.
+struct Ground {
+    sim: Simulator,
+    decoder: Decoder,
+    heard: Vec<MavMessage>,
+}
+
+impl Ground {
+    fn new(wind: Wind) -> Self {
+        let mut sim = Simulator::new(Profile::default(), Config::default().home, wind, 1);
+        assert!(sim.connect(PEER));
+        Self { sim, decoder: Decoder::default(), heard: Vec::new() }
+    }
+
+    fn home(&self) -> LatLon {
+        self.sim.autopilot.home.position
+    }
+
+    fn listen(&mut self) {
+        for outgoing in self.sim.take_outgoing() {
+            self.decoder.push(&outgoing.bytes, |frame| match frame.body {
+                Body::Known(message) => self.heard.push(*message),
+                Body::Strange { .. } => {}
+            });
+        }
+    }
+
+    /// Says something and returns what is answered at once.
+    fn say(&mut self, message: MavMessage) -> Vec<MavMessage> {
+        self.listen();
+        let before = self.heard.len();
+        self.sim.receive(PEER, Frame::new(GROUND, message));
+        self.listen();
+        self.heard[before..].to_vec()
+    }
+
+    /// Steps until `done`, at most `limit_s`; false if it never was.
+    fn fly_until(&mut self, limit_s: f64, mut done: impl FnMut(&Simulator) -> bool) -> bool {
+        for _ in 0..(limit_s * 10.0) as usize {
+            self.sim.step();
+            self.listen();
+            if done(&self.sim) {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn command(&mut self, command: MavCmd, params: [f32; 7]) -> MavResult {
+        let [param1, param2, param3, param4, param5, param6, param7] = params;
+        let long = COMMAND_LONG_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            param5,
+            param6,
+            param7,
+            command,
+            target_system: 1,
+            target_component: 1,
+            confirmation: 0,
+        };
+        self.say(MavMessage::COMMAND_LONG(long))
+            .iter()
+            .find_map(|m| match m {
+                MavMessage::COMMAND_ACK(ack) if ack.command == command => Some(ack.result),
+                _ => None,
+            })
+            .unwrap()
+    }
+
+    fn arm(&mut self) -> MavResult {
+        self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1., 0., 0., 0., 0., 0., 0.])
+    }
+
+    fn mode(&mut self, mode: Mode) -> MavResult {
+        let number = mode.number() as f32;
+        self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1., number, 0., 0., 0., 0., 0.])
+    }
+
+    /// The ACK of an exchange, if one was sent.
+    fn ack(messages: &[MavMessage]) -> Option<MavMissionResult> {
+        messages.iter().find_map(|m| match m {
+            MavMessage::MISSION_ACK(ack) => Some(ack.mavtype),
+            _ => None,
+        })
+    }
+
+    fn item(&mut self, wire: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
+        Self::ack(&self.say(MavMessage::MISSION_ITEM_INT(wire.clone())))
+    }
+
+    fn count(&mut self, count: u16) -> Option<MavMissionResult> {
+        let count = MISSION_COUNT_DATA { count, target_system: 1, ..MISSION_COUNT_DATA::DEFAULT };
+        Self::ack(&self.say(MavMessage::MISSION_COUNT(count)))
+    }
+
+    fn partial(&mut self, start_index: i16, end_index: i16) -> Option<MavMissionResult> {
+        Self::ack(&self.say(MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
+            start_index,
+            end_index,
+            ..MISSION_WRITE_PARTIAL_LIST_DATA::DEFAULT
+        })))
+    }
+
+    /// Uploads a whole mission after home, streamed.
+    fn upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) {
+        self.count(items.len() as u16 + 1);
+        let home = Item::home(self.home(), 322.0).wire;
+        let mut last = self.item(&MISSION_ITEM_INT_DATA { seq: 0, ..home });
+        for (i, wire) in items.iter().enumerate() {
+            last = self.item(&MISSION_ITEM_INT_DATA { seq: i as u16 + 1, ..wire.clone() });
+        }
+        assert_eq!(last, Some(MavMissionResult::MAV_MISSION_ACCEPTED));
+    }
+
+    fn texts(&self) -> Vec<String> {
+        let text = |m: &MavMessage| match m {
+            MavMessage::STATUSTEXT(t) => Some(t.text.to_str().unwrap().to_owned()),
+            _ => None,
+        };
+        self.heard.iter().filter_map(text).collect()
+    }
+
+    fn reached(&self) -> Vec<u16> {
+        let seq = |m: &MavMessage| match m {
+            MavMessage::MISSION_ITEM_REACHED(r) => Some(r.seq),
+            _ => None,
+        };
+        self.heard.iter().filter_map(seq).collect()
+    }
+
+    fn position(&self) -> LatLon {
+        self.sim.autopilot.aircraft.state().position
+    }
+}
+
+fn wire(command: MavCmd, position: LatLon, height_m: f32) -> MISSION_ITEM_INT_DATA {
+    MISSION_ITEM_INT_DATA {
+        x: degrees_e7(position.lat_deg),
+        y: degrees_e7(position.lon_deg),
+        z: height_m,
+        command,
+        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        target_system: 1,
+        target_component: 1,
+        autocontinue: 1,
+        ..MISSION_ITEM_INT_DATA::DEFAULT
+    }
+}
+
+fn waypoint(position: LatLon) -> MISSION_ITEM_INT_DATA {
+    wire(MavCmd::MAV_CMD_NAV_WAYPOINT, position, 120.0)
+}
+
+fn take_off() -> MISSION_ITEM_INT_DATA {
+    wire(MavCmd::MAV_CMD_NAV_TAKEOFF, LatLon::new(0.0, 0.0), 60.0)
+}
+
+fn jump(to: u16, repeat: f32) -> MISSION_ITEM_INT_DATA {
+    let base = wire(MavCmd::MAV_CMD_DO_JUMP, LatLon::new(0.0, 0.0), 0.0);
+    MISSION_ITEM_INT_DATA { param1: to.into(), param2: repeat, ..base }
+}
+
+fn speed(mps: f32) -> MISSION_ITEM_INT_DATA {
+    let base = wire(MavCmd::MAV_CMD_DO_CHANGE_SPEED, LatLon::new(0.0, 0.0), 0.0);
+    MISSION_ITEM_INT_DATA { param2: mps, ..base }
+}
+
+/// A circuit that ends with a landing at home, in runway direction.
+fn circuit(home: LatLon) -> Vec<MISSION_ITEM_INT_DATA> {
+    let upwind = home.destination(52.0, 1500.0);
+    let crosswind = upwind.destination(322.0, 700.0);
+    let downwind = crosswind.destination(232.0, 4000.0);
+    let last = home.destination(232.0, 1300.0);
+    let mut final_fix = waypoint(last);
+    final_fix.z = 90.0;
+    vec![
+        take_off(),
+        waypoint(upwind),
+        waypoint(crosswind),
+        waypoint(downwind),
+        waypoint(downwind.destination(142.0, 700.0)),
+        final_fix,
+        wire(MavCmd::MAV_CMD_NAV_LAND, home, 0.0),
+    ]
+}
+
+fn airborne_in_auto(items: &[MISSION_ITEM_INT_DATA], wind: Wind) -> Ground {
+    let mut ground = Ground::new(wind);
+    ground.upload(items);
+    assert_eq!(ground.arm(), MavResult::MAV_RESULT_ACCEPTED);
+    assert_eq!(ground.mode(Mode::Auto), MavResult::MAV_RESULT_ACCEPTED);
+    assert!(ground.fly_until(120.0, |sim| sim.autopilot.run.current == 2));
+    ground
+}
+
+#[test]
+fn a_whole_flight_from_take_off_to_disarmed() {
+    for wind in [Wind::CALM, Wind::from_direction(270.0, 5.0)] {
+        let mut ground = Ground::new(wind);
+        let home = ground.home();
+        ground.upload(&circuit(home));
+        assert_eq!(ground.mode(Mode::Auto), MavResult::MAV_RESULT_ACCEPTED);
+        ground.fly_until(5.0, |_| false);
+        assert_eq!(ground.position(), home, "moved before it was armed");
+        assert_eq!(ground.arm(), MavResult::MAV_RESULT_ACCEPTED);
+        assert!(ground.fly_until(900.0, |sim| !sim.autopilot.is_armed()), "{wind:?}");
+        assert_eq!(ground.reached(), [1, 2, 3, 4, 5, 6, 7]);
+        assert!(ground.position().distance_m(home) < 300.0);
+        assert!(ground.sim.autopilot.aircraft.state().on_ground);
+    }
+}
+
+#[test]
+fn a_ring_is_flown_across_the_wrap_while_passed_slots_are_overwritten() {
+    let home = Config::default().home.position;
+    let corner = |i: u32| home.destination(40.0, 2000.0 + 1500.0 * f64::from(i));
+    let mut items = vec![take_off()];
+    items.extend((0..4).map(|i| waypoint(corner(i))));
+    items.push(jump(2, -1.0));
+    let mut ground = airborne_in_auto(&items, Wind::CALM);
+    let mut passed = Vec::new();
+    for i in 0..9_u32 {
+        let seq = 2 + (i % 4) as u16;
+        assert!(ground.fly_until(120.0, |sim| sim.autopilot.run.current != seq));
+        passed.push(seq);
+        // the slot just passed gets the waypoint four further on
+        assert_eq!(ground.partial(seq as i16, seq as i16), None);
+        let next = MISSION_ITEM_INT_DATA { seq, ..waypoint(corner(i + 4)) };
+        assert_eq!(ground.item(&next), Some(MavMissionResult::MAV_MISSION_ACCEPTED));
+    }
+    assert_eq!(passed, [2, 3, 4, 5, 2, 3, 4, 5, 2]);
+    assert!(home.distance_m(ground.position()) > 2000.0 + 1500.0 * 7.5);
+    assert_eq!(ground.sim.autopilot.mode(), Mode::Auto);
+}
+
+#[test]
+fn overwriting_the_active_item_does_nothing_until_it_is_set_current() {
+    let home = Config::default().home.position;
+    let (old, new) = (home.destination(52.0, 5000.0), home.destination(320.0, 5000.0));
+    let items = [take_off(), waypoint(old), waypoint(old.destination(52.0, 5000.0))];
+    let mut ground = airborne_in_auto(&items, Wind::CALM);
+    ground.partial(2, 2);
+    ground.item(&MISSION_ITEM_INT_DATA { seq: 2, ..waypoint(new) });
+    ground.fly_until(30.0, |_| false);
+    assert!(ground.position().distance_m(old) < home.distance_m(old) - 600.0, "left the old target");
+    let set = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
+    assert_eq!(ground.command(set, [2., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_ACCEPTED);
+    assert!(
+        ground.fly_until(400.0, |sim| { sim.autopilot.aircraft.state().position.distance_m(new) < 200.0 })
+    );
+    assert_eq!(ground.command(set, [9., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_FAILED);
+}
+
+#[test]
+fn when_items_run_out_it_returns_and_circles_home_without_landing() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&[take_off(), waypoint(home.destination(52.0, 2500.0))], Wind::CALM);
+    assert!(ground.fly_until(200.0, |sim| sim.autopilot.mode() == Mode::ReturnToLaunch));
+    ground.fly_until(300.0, |_| false);
+    for _ in 0..40 {
+        ground.fly_until(5.0, |_| false);
+        let off = ground.position().distance_m(home) - 137.0;
+        assert!(off.abs() < 15.0, "{off}");
+    }
+    let height = ground.sim.autopilot.aircraft.state().altitude_amsl_m - 322.0;
+    assert!((height - 100.0).abs() < 2.0, "{height}");
+    // appended to, AUTO starts again at item 1
+    ground.mode(Mode::Auto);
+    assert_eq!(ground.sim.autopilot.run.current, 1);
+}
+
+#[test]
+fn a_shorter_list_finishes_the_old_target_and_then_returns() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    assert!(ground.fly_until(200.0, |sim| sim.autopilot.run.current == 3));
+    ground.upload(&[take_off()]);
+    assert_eq!(ground.sim.autopilot.mode(), Mode::Auto);
+    assert!(ground.fly_until(200.0, |sim| sim.autopilot.mode() == Mode::ReturnToLaunch));
+    let crosswind = home.destination(52.0, 1500.0).destination(322.0, 700.0);
+    assert!(ground.position().distance_m(crosswind) < 150.0);
+}
+
+#[test]
+fn an_aborted_upload_is_cancelled_after_eight_seconds_with_ack_15() {
+    let mut ground = Ground::new(Wind::CALM);
+    ground.count(5);
+    ground.item(&MISSION_ITEM_INT_DATA { seq: 0, ..waypoint(LatLon::new(36.0, -84.0)) });
+    ground.fly_until(7.8, |_| false);
+    assert_eq!(Ground::ack(&ground.heard), None);
+    ground.fly_until(0.4, |_| false);
+    let cancelled = MavMissionResult::MAV_MISSION_OPERATION_CANCELLED;
+    assert_eq!(Ground::ack(&ground.heard), Some(cancelled));
+    let asked = ground.heard.iter().filter(|m| matches!(m, MavMessage::MISSION_REQUEST(_))).count();
+    assert!((7..=10).contains(&asked), "asked {asked} times");
+}
+
+#[test]
+fn a_speed_item_persists_and_only_it_is_reported_as_reached() {
+    let home = Config::default().home.position;
+    let items = [
+        take_off(),
+        waypoint(home.destination(52.0, 2500.0)),
+        speed(20.0),
+        speed(99.0),
+        waypoint(home.destination(52.0, 6500.0)),
+        waypoint(home.destination(52.0, 16500.0)),
+    ];
+    let mut ground = airborne_in_auto(&items, Wind::CALM);
+    assert!(ground.fly_until(300.0, |sim| sim.autopilot.run.current == 6));
+    assert_eq!(ground.reached(), [1, 4, 5]);
+    let airspeed = ground.sim.autopilot.aircraft.state().airspeed_mps;
+    assert!((airspeed - 20.0).abs() < 0.1, "{airspeed}");
+    let change = MavCmd::MAV_CMD_DO_CHANGE_SPEED;
+    for (mps, result) in [(60.0, MavResult::MAV_RESULT_FAILED), (-2.0, MavResult::MAV_RESULT_ACCEPTED)] {
+        assert_eq!(ground.command(change, [0., mps, 0., 0., 0., 0., 0.]), result);
+    }
+    ground.fly_until(20.0, |_| false);
+    assert!((ground.sim.autopilot.aircraft.state().airspeed_mps - 25.0).abs() < 0.1);
+}
+
+#[test]
+fn clear_all_is_refused_while_armed_in_auto() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    let clear = || MavMessage::MISSION_CLEAR_ALL(MISSION_CLEAR_ALL_DATA::DEFAULT);
+    let refused = Some(MavMissionResult::MAV_MISSION_ERROR);
+    assert_eq!(Ground::ack(&ground.say(clear())), refused);
+    ground.mode(Mode::Loiter);
+    let accepted = Some(MavMissionResult::MAV_MISSION_ACCEPTED);
+    assert_eq!(Ground::ack(&ground.say(clear())), accepted);
+    assert_eq!(ground.sim.autopilot.mission.items().len(), 1);
+    assert_eq!(ground.mode(Mode::Auto), MavResult::MAV_RESULT_FAILED);
+}
+
+#[test]
+fn the_mission_reads_back_as_it_was_written() {
+    let mut ground = Ground::new(Wind::CALM);
+    let items = circuit(ground.home());
+    ground.upload(&items);
+    let list = MavMessage::MISSION_REQUEST_LIST(MISSION_REQUEST_LIST_DATA::DEFAULT);
+    let answer = ground.say(list);
+    assert!(matches!(&answer[..], [MavMessage::MISSION_COUNT(c)] if c.count == 8), "{answer:?}");
+    for (i, sent) in items.iter().enumerate() {
+        let seq = i as u16 + 1;
+        let ask = MISSION_REQUEST_INT_DATA { seq, ..MISSION_REQUEST_INT_DATA::DEFAULT };
+        match &ground.say(MavMessage::MISSION_REQUEST_INT(ask))[..] {
+            [MavMessage::MISSION_ITEM_INT(item)] => {
+                assert_eq!((item.seq, item.x, item.y, item.z), (seq, sent.x, sent.y, sent.z));
+                assert_eq!(item.command, sent.command);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn reposition_circles_the_point_the_way_it_was_asked() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::from_direction(10.0, 5.0));
+    let point = home.destination(90.0, 1500.0);
+    let mut go = COMMAND_INT_DATA {
+        param1: -1.0,
+        param2: 0.0,
+        param3: 180.0,
+        param4: 1.0,
+        x: degrees_e7(point.lat_deg),
+        y: degrees_e7(point.lon_deg),
+        z: 150.0,
+        command: MavCmd::MAV_CMD_DO_REPOSITION,
+        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        target_system: 1,
+        target_component: 1,
+        ..COMMAND_INT_DATA::DEFAULT
+    };
+    let result = |answer: Vec<MavMessage>| match &answer[..] {
+        [MavMessage::COMMAND_ACK(ack)] => ack.result,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(result(ground.say(MavMessage::COMMAND_INT(go.clone()))), MavResult::MAV_RESULT_DENIED);
+    go.param2 = 1.0;
+    assert_eq!(result(ground.say(MavMessage::COMMAND_INT(go))), MavResult::MAV_RESULT_ACCEPTED);
+    ground.fly_until(200.0, |_| false);
+    assert_eq!(ground.sim.autopilot.mode(), Mode::Guided);
+    let off = ground.position().distance_m(point) - 180.0;
+    assert!(off.abs() < 12.0, "{off}");
+    assert!(ground.sim.autopilot.aircraft.state().bank_rad < 0.0, "not counter-clockwise");
+}
+
+#[test]
+fn commands_are_answered_whatever_they_are() {
+    let mut ground = Ground::new(Wind::CALM);
+    let cases = [
+        (MavCmd::MAV_CMD_DO_SET_SERVO, [0.; 7], MavResult::MAV_RESULT_UNSUPPORTED),
+        (MavCmd::MAV_CMD_REQUEST_MESSAGE, [148., 0., 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_ACCEPTED),
+        (MavCmd::MAV_CMD_REQUEST_MESSAGE, [9999., 0., 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_FAILED),
+        (
+            MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+            [30., 1e5, 0., 0., 0., 0., 0.],
+            MavResult::MAV_RESULT_ACCEPTED,
+        ),
+        (MavCmd::MAV_CMD_DO_SET_MODE, [1., 77., 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_FAILED),
+        (MavCmd::MAV_CMD_DO_SET_MODE, [1., f32::NAN, 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_FAILED),
+        (MavCmd::MAV_CMD_DO_REPOSITION, [0.; 7], MavResult::MAV_RESULT_COMMAND_INT_ONLY),
+        (MavCmd::MAV_CMD_NAV_TAKEOFF, [0.; 7], MavResult::MAV_RESULT_FAILED),
+    ];
+    for (command, params, result) in cases {
+        assert_eq!(ground.command(command, params), result, "{command:?}");
+    }
+}
+
+#[test]
+fn a_command_the_dialect_does_not_know_is_unsupported() {
+    let mut ground = Ground::new(Wind::CALM);
+    let mut payload = vec![0_u8; 32];
+    payload[28..30].copy_from_slice(&60_001_u16.to_le_bytes());
+    payload[30] = 1;
+    ground.sim.receive(PEER, Frame { sender: GROUND, body: Body::Strange { id: 76, payload } });
+    let out = ground.sim.take_outgoing();
+    let bytes = &out.last().unwrap().bytes;
+    assert_eq!(&bytes[10..13], [0x61, 0xEA, MavResult::MAV_RESULT_UNSUPPORTED as u8]);
+}
+
+#[test]
+fn arming_needs_satellites_unless_forced_and_disarming_needs_the_ground() {
+    let mut ground = Ground::new(Wind::CALM);
+    ground.sim.inject("gps-loss+5".parse().unwrap());
+    ground.fly_until(1.0, |_| false);
+    assert_eq!(ground.arm(), MavResult::MAV_RESULT_FAILED);
+    ground.fly_until(1.0, |_| false);
+    assert!(ground.texts().iter().any(|t| t == "PreArm: GPS: no fix"), "{:?}", ground.texts());
+    ground.fly_until(5.0, |_| false);
+    assert_eq!(ground.arm(), MavResult::MAV_RESULT_ACCEPTED);
+    let home = ground.home();
+    let mut flying = airborne_in_auto(&circuit(home), Wind::CALM);
+    let disarm = |ground: &mut Ground, force| {
+        ground.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [0., force, 0., 0., 0., 0., 0.])
+    };
+    assert_eq!(disarm(&mut flying, 0.0), MavResult::MAV_RESULT_FAILED);
+    assert_eq!(disarm(&mut flying, 21196.0), MavResult::MAV_RESULT_ACCEPTED);
+}
+
+#[test]
+fn take_off_mode_climbs_and_circles() {
+    let mut ground = Ground::new(Wind::CALM);
+    ground.arm();
+    let height = [0., 0., 0., 0., 0., 0., 80.];
+    assert_eq!(ground.command(MavCmd::MAV_CMD_NAV_TAKEOFF, height), MavResult::MAV_RESULT_ACCEPTED);
+    ground.fly_until(120.0, |_| false);
+    let s = *ground.sim.autopilot.aircraft.state();
+    assert!((s.altitude_amsl_m - 402.0).abs() < 4.0, "{}", s.altitude_amsl_m);
+    assert!(s.position.distance_m(ground.home()) < 1500.0 && s.bank_rad.abs() > 0.1);
+}
+
+#[test]
+fn parameters_are_listed_read_and_set() {
+    let mut ground = Ground::new(Wind::CALM);
+    let list = PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 };
+    let all = ground.say(MavMessage::PARAM_REQUEST_LIST(list)).len();
+    assert_eq!(all, ground.sim.autopilot.params.len());
+    let set = |name: &str, param_value| {
+        MavMessage::PARAM_SET(PARAM_SET_DATA {
+            param_value,
+            target_system: 1,
+            target_component: 1,
+            param_id: name.into(),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+        })
+    };
+    let value = |answer: &[MavMessage]| match answer {
+        [MavMessage::PARAM_VALUE(v)] => v.param_value,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(value(&ground.say(set("RTL_ALTITUDE", 150.0))), 150.0);
+    assert_eq!(value(&ground.say(set("RTL_ALTITUDE", f32::NAN))), 150.0);
+    assert!(ground.say(set("NO_SUCH", 1.0)).is_empty());
+}
+
+#[test]
+fn engine_out_glides_to_the_ground_and_disarms() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    assert!(ground.fly_until(300.0, |sim| sim.autopilot.run.current == 4));
+    ground.sim.inject("engine-out".parse().unwrap());
+    assert!(ground.fly_until(300.0, |sim| !sim.autopilot.is_armed()));
+    assert!(ground.texts().iter().any(|t| t == "Engine failure"));
+    assert!(ground.sim.autopilot.aircraft.state().on_ground);
+}
+
+#[test]
+fn low_battery_is_told_once() {
+    let mut ground = Ground::new(Wind::CALM);
+    ground.sim.inject("low-battery@2".parse().unwrap());
+    ground.fly_until(10.0, |_| false);
+    let told = ground.texts().iter().filter(|t| t.contains("Battery 1 is low")).count();
+    assert_eq!(told, 1);
+    assert!((14.0..=15.0).contains(&ground.sim.autopilot.battery_pct()));
+}
+
+#[test]
+fn silence_stops_everything_but_time() {
+    let mut ground = Ground::new(Wind::CALM);
+    ground.sim.inject("silence@1+5".parse().unwrap());
+    ground.fly_until(1.0, |_| false);
+    ground.heard.clear();
+    ground.fly_until(3.0, |_| false);
+    assert_eq!(ground.heard, []);
+    assert!(ground.say(MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT)).is_empty());
+    ground.sim.ask_time();
+    let question = ground.say(telemetry::timesync(0, 77));
+    assert_eq!(question.len(), 1, "its own question must be answered: {question:?}");
+    assert!(matches!(&ground.heard[0], MavMessage::TIMESYNC(t) if t.tc1 == 0));
+    ground.say(telemetry::timesync(1, 4_000_000_000));
+    assert_eq!(ground.sim.take_sync_answers(), [(PEER, 4_000_000_000)]);
+    ground.fly_until(3.0, |_| false);
+    assert!(ground.heard.iter().any(|m| matches!(m, MavMessage::HEARTBEAT(_))));
+}
+
+#[test]
+fn packet_loss_of_a_fifth_delays_an_upload_but_does_not_break_it() {
+    let mut ground = Ground::new(Wind::CALM);
+    for fault in ["packet-loss=0.2", "duplicate=0.1", "reorder=0.1"] {
+        ground.sim.inject(fault.parse().unwrap());
+    }
+    ground.fly_until(0.2, |_| false);
+    let items = circuit(ground.home());
+    let total = items.len() as u16 + 1;
+    for attempt in 0.. {
+        assert!(attempt < 50, "no upload in 50 attempts");
+        ground.heard.clear();
+        ground.count(total);
+        // answers what it is asked for, as slow clients do
+        for _ in 0..300 {
+            let asked = ground.heard.drain(..).filter_map(|m| match m {
+                MavMessage::MISSION_REQUEST(r) => Some(Ok(r.seq)),
+                MavMessage::MISSION_ACK(a) => Some(Err(a.mavtype)),
+                _ => None,
+            });
+            let asked: Vec<_> = asked.collect();
+            if asked.contains(&Err(MavMissionResult::MAV_MISSION_ACCEPTED)) {
+                assert_eq!(ground.sim.autopilot.mission.items().len(), usize::from(total));
+                return;
+            }
+            for seq in asked.into_iter().flatten() {
+                let home = Item::home(ground.home(), 322.0).wire;
+                let item = seq.checked_sub(1).map_or(&home, |i| &items[usize::from(i)]);
+                let answer = MISSION_ITEM_INT_DATA { seq, ..item.clone() };
+                ground.sim.receive(PEER, Frame::new(GROUND, MavMessage::MISSION_ITEM_INT(answer)));
+            }
+            ground.sim.step();
+            ground.listen();
+        }
+    }
+}
+
+#[test]
+fn telemetry_tells_what_is_flown() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::from_direction(270.0, 5.0));
+    ground.heard.clear();
+    ground.fly_until(2.0, |_| false);
+    let s = *ground.sim.autopilot.aircraft.state();
+    let mut kinds = std::collections::BTreeSet::new();
+    for m in &ground.heard {
+        kinds.insert(mavlink::Message::message_id(m));
+        match m {
+            MavMessage::HEARTBEAT(h) => {
+                assert_eq!(h.custom_mode, 10);
+                assert!(h.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED));
+            }
+            MavMessage::GLOBAL_POSITION_INT(p) => {
+                let at = LatLon::new(f64::from(p.lat) * 1e-7, f64::from(p.lon) * 1e-7);
+                assert!(at.distance_m(s.position) < 80.0);
+            }
+            MavMessage::WIND(w) => assert!((w.direction - 270.0).abs() < 0.1 && w.speed == 5.0),
+            MavMessage::RPM(r) => assert!(r.rpm1 > 3000.0),
+            MavMessage::NAV_CONTROLLER_OUTPUT(n) => assert!(n.xtrack_error.abs() < 200.0),
+            _ => {}
+        }
+    }
+    for id in [0, 1, 2, 24, 29, 30, 33, 42, 62, 74, 147, 168, 225, 226, 245, 11030] {
+        assert!(kinds.contains(&id), "no message {id} in two seconds");
+    }
+}
+
+#[test]
+fn an_hour_in_the_air_is_quick() {
+    let home = Config::default().home.position;
+    let mut items = vec![take_off()];
+    items.extend((0..4).map(|i| waypoint(home.destination(90.0 * f64::from(i), 3000.0))));
+    items.push(jump(2, -1.0));
+    let mut ground = airborne_in_auto(&items, Wind::from_direction(200.0, 5.0));
+    let began = std::time::Instant::now();
+    ground.fly_until(3600.0, |_| false);
+    assert_eq!(ground.sim.autopilot.mode(), Mode::Auto);
+    // unoptimised, on a busy machine; the point is that it is not real time
+    assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    /// Hostile items and commands: nothing panics, the list stays within its size, the aircraft on Earth.
+    #[test]
+    fn whatever_is_sent_it_stays_sane(
+        bytes in prop::collection::vec((any::<u16>(), prop::collection::vec(any::<u8>(), 0..60)), 1..60),
+    ) {
+        let mut ground = Ground::new(Wind::CALM);
+        ground.upload(&circuit(Config::default().home.position));
+        ground.arm();
+        ground.mode(Mode::Auto);
+        let ids = [11, 20, 21, 23, 37, 38, 39, 40, 41, 43, 44, 45, 47, 51, 66, 73, 75, 76, 86, 111];
+        for (pick, mut payload) in bytes {
+            let id = ids[usize::from(pick) % ids.len()];
+            payload.resize(60, 1);
+            let version = mavlink::MavlinkVersion::V2;
+            let parsed = <MavMessage as mavlink::Message>::parse(version, id, &payload);
+            let body = parsed.map_or(Body::Strange { id, payload }, |m| Body::Known(Box::new(m)));
+            ground.sim.receive(PEER, Frame { sender: GROUND, body });
+            ground.sim.step();
+            ground.listen();
+        }
+        prop_assert!(ground.sim.autopilot.mission.items().len() <= transfer::MAX_ITEMS);
+        prop_assert!(ground.position().is_valid());
+    }
+}
