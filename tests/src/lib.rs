@@ -1,3 +1,5 @@
 //! System tests over the real binaries: what the tests in `tests/` share.
 
+pub mod binaries;
 pub mod plans;
+pub mod rig;

@@ -16,7 +16,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "gcs-app",
         &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal", "onboard-agent", "sim"],
     ),
-    ("system-tests", &["geometry"]),
+    ("system-tests", &["geometry", "usal"]),
 ];
 
 /// Outside crates that stay behind one wall each.

@@ -1,0 +1,97 @@
+//! The real programs: built once, started, listened to, ended.
+
+use anyhow::{Context, bail};
+use std::{
+    io::{BufRead, BufReader},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+    sync::{LazyLock, mpsc},
+    time::{Duration, Instant},
+};
+
+/// Folder of the binaries, built with the profile of this test.
+static BINARIES: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| build().map_err(|e| format!("{e:#}")));
+
+fn build() -> anyhow::Result<PathBuf> {
+    let test = std::env::current_exe().context("where am I?")?;
+    let folder = test.ancestors().nth(2).context("target folder")?.to_owned();
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["build", "--quiet", "-p", "sim", "-p", "onboard-agent", "--bins"]);
+    if folder.ends_with("release") {
+        cargo.arg("--release");
+    }
+    cargo.current_dir(env!("CARGO_MANIFEST_DIR"));
+    anyhow::ensure!(cargo.status().context("cargo")?.success(), "the binaries don't build");
+    Ok(folder)
+}
+
+/// How long a program may take to say something on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A running program; killed when dropped.
+pub struct Program {
+    name: &'static str,
+    child: Child,
+    lines: mpsc::Receiver<String>,
+}
+
+impl Program {
+    /// Starts a binary. Its standard error goes to the test's.
+    pub fn start(name: &'static str, arguments: &[&str]) -> anyhow::Result<Self> {
+        let folder = BINARIES.as_ref().map_err(|e| anyhow::anyhow!("{e}"))?;
+        let mut child = Command::new(folder.join(name))
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .with_context(|| format!("starting {name}"))?;
+        let output = child.stdout.take().context("standard output")?;
+        let (sender, lines) = mpsc::channel();
+        std::thread::spawn(move || {
+            for line in BufReader::new(output).lines().map_while(Result::ok) {
+                if sender.send(line).is_err() {
+                    // nobody waits for a line any more: keep the pipe empty
+                    continue;
+                }
+            }
+        });
+        Ok(Self { name, child, lines })
+    }
+
+    /// What follows `prefix` on the first line that has it.
+    pub fn wait_for(&self, prefix: &str) -> anyhow::Result<String> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            let Ok(line) = self.lines.recv_timeout(left) else {
+                bail!("{} never said {prefix:?}", self.name)
+            };
+            if let Some((_, rest)) = line.split_once(prefix) {
+                return Ok(rest.trim().to_owned());
+            }
+        }
+    }
+
+    /// SIGKILL, as by a crash.
+    pub fn kill(&mut self) -> anyhow::Result<()> {
+        self.child.kill().context("kill")?;
+        self.child.wait().context("wait")?;
+        Ok(())
+    }
+
+    /// Writes a line to its standard input.
+    pub fn tell(&mut self, line: &str) -> anyhow::Result<()> {
+        use std::io::Write;
+        let input = self.child.stdin.as_mut().context("standard input")?;
+        writeln!(input, "{line}").context("telling")?;
+        input.flush().context("telling")
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // it may have ended already
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

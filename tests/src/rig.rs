@@ -1,0 +1,293 @@
+//! A whole system on loopback, whose time goes on only when the test says so.
+
+use crate::binaries::Program;
+use crate::plans::Field;
+use anyhow::{Context, bail, ensure};
+use geometry::LatLon;
+use std::{path::Path, sync::Arc, time::Duration};
+use usal::{
+    Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber,
+    contract::{
+        Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus,
+        Position, ProposalReport, Propose, TimedGatewayEvent,
+    },
+    topics::{fp_manager, gateway},
+};
+
+/// Where the simulator stands.
+pub const FIELD: Field =
+    Field { threshold: LatLon::new(36.4905, -84.2710), elevation_m: 322.0, heading_deg: 52.0 };
+
+const VEHICLE: &str = "test";
+const CALL: Duration = Duration::from_secs(20);
+/// Wall-clock time in which a part of the system must do something.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What happened so far, and what is known.
+#[derive(Default)]
+pub struct Seen {
+    /// Simulated seconds.
+    pub time_s: f64,
+    /// The FP Manager's events.
+    pub plan: Vec<PlanEvent>,
+    /// The gateway's events.
+    pub gateway: Vec<GatewayEvent>,
+}
+
+impl Seen {
+    /// Legs entered, in order.
+    pub fn legs(&self) -> Vec<&str> {
+        self.plan
+            .iter()
+            .filter_map(|event| match event {
+                PlanEvent::LegEntered { place } => Some(place.leg.as_str()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The aircraft has been on this leg.
+    pub fn entered(&self, leg: &str) -> bool {
+        self.legs().contains(&leg)
+    }
+
+    /// The gateway went through this state.
+    pub fn went_to(&self, state: GatewayState) -> bool {
+        self.gateway.iter().any(|e| matches!(e, GatewayEvent::StateChanged { to, .. } if *to == state))
+    }
+
+    /// It took off and stands again.
+    pub fn landed(&self) -> bool {
+        let flown = self.gateway.iter().skip_while(
+            |e| !matches!(e, GatewayEvent::StateChanged { to: GatewayState::Nav | GatewayState::TakeOff, .. }),
+        );
+        flown.into_iter().any(|e| matches!(e, GatewayEvent::StateChanged { to: GatewayState::Stop, .. }))
+    }
+}
+
+/// Simulator, gateway, FP Manager, and the test as a ground station and clock participant.
+pub struct Rig {
+    /// The simulator.
+    pub simulator: Program,
+    /// The gateway's process.
+    pub gateway: Program,
+    /// The FP Manager's process.
+    pub fp_manager: Program,
+    /// What happened.
+    pub seen: Seen,
+    endpoint: String,
+    state: tempfile::TempDir,
+    ground: Option<Ground>,
+}
+
+/// The test's side of the contract.
+struct Ground {
+    session: Session,
+    clock: Participant,
+    plan_events: EventSubscriber<FpManagerEvent>,
+    gateway_events: EventSubscriber<TimedGatewayEvent>,
+    status: VariableSubscriber<PlanStatus>,
+    state: VariableSubscriber<GatewayStatus>,
+    position: VariableSubscriber<Position>,
+    navigation: VariableSubscriber<Navigation>,
+}
+
+impl Ground {
+    async fn open(endpoint: &str) -> anyhow::Result<Self> {
+        let session = Session::open(Config::client(VEHICLE, endpoint)).await?;
+        Ok(Self {
+            plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
+            gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,
+            status: session.follow(fp_manager::STATUS)?,
+            state: session.follow(gateway::STATE)?,
+            position: session.follow(gateway::POSITION)?,
+            navigation: session.follow(gateway::NAVIGATION)?,
+            clock: Participant::join(&session, "test")?,
+            session,
+        })
+    }
+}
+
+impl Rig {
+    /// Starts everything; further arguments go to the simulator.
+    pub async fn start(simulator_arguments: &[&str]) -> anyhow::Result<Self> {
+        let mut arguments = vec!["--tcp", "127.0.0.1:0", "--lockstep"];
+        arguments.extend(simulator_arguments);
+        let simulator = Program::start("legwork-sim", &arguments)?;
+        let autopilot = format!("tcp:{}", simulator.wait_for("listening on tcp ")?);
+        let state = tempfile::tempdir()?;
+        let folder = |name: &str| state.path().join(name).display().to_string();
+        let gateway = Program::start(
+            "onboard-agent",
+            &[
+                "gateway", "--vehicle", VEHICLE, "--listen", "tcp/127.0.0.1:0", "--simulated", "--autopilot",
+                &autopilot, "--state-dir", &folder("gateway"),
+            ],
+        )?;
+        let endpoint = gateway.wait_for("listening on ")?;
+        let fp_manager = start_fp_manager(&endpoint, state.path())?;
+        let ground = Some(Ground::open(&endpoint).await?);
+        Ok(Self { simulator, gateway, fp_manager, seen: Seen::default(), endpoint, state, ground })
+    }
+
+    /// Puts a plan forward and makes it the active one.
+    pub async fn load(&self, xml: &str) -> anyhow::Result<ProposalReport> {
+        let report = self.propose(xml).await?;
+        ensure!(report.acceptable, "not acceptable: {:?}", report.problems);
+        self.command(Command::Commit { hash: report.hash.clone(), entry: None }).await?;
+        Ok(report)
+    }
+
+    /// Puts a plan forward.
+    pub async fn propose(&self, xml: &str) -> anyhow::Result<ProposalReport> {
+        let request = Propose { xml: xml.to_owned(), seen_revision: None };
+        Ok(self.ground()?.session.call(fp_manager::PROPOSE, &request, CALL).await?)
+    }
+
+    /// Gives the FP Manager a command.
+    pub async fn command(&self, command: Command) -> anyhow::Result<()> {
+        self.ground()?.session.call(fp_manager::COMMAND, &command, CALL).await?;
+        Ok(())
+    }
+
+    /// Loads the mission and starts it; comes back when the aircraft is airborne.
+    pub async fn fly_mission(&mut self) -> anyhow::Result<()> {
+        self.until("the autopilot is there", 60.0, |rig, _| {
+            rig.gateway_status().is_some_and(|s| s.state == GatewayState::Stop)
+        })
+        .await?;
+        self.load(&FIELD.mission(1800.0)).await?;
+        self.command(Command::Start).await?;
+        self.until("airborne", 120.0, |rig, _| rig.position().is_some_and(|p| !p.on_ground)).await
+    }
+
+    /// Lets time go on, tick by tick, until the condition holds; an error after so many simulated seconds.
+    pub async fn until(
+        &mut self,
+        what: &str,
+        limit_s: f64,
+        holds: impl Fn(&Rig, &Seen) -> bool,
+    ) -> anyhow::Result<()> {
+        let mut ends_at = None;
+        loop {
+            let ground = self.ground.as_mut().context("no ground station")?;
+            let tick = tokio::time::timeout(PATIENCE, ground.clock.next()).await;
+            let Some(tick) = tick.with_context(|| format!("time stands still; waiting for: {what}"))? else {
+                bail!("the session is closed")
+            };
+            self.seen.time_s = tick.time_s;
+            self.drain();
+            let done = holds(self, &self.seen);
+            let late = tick.time_s > *ends_at.get_or_insert(tick.time_s + limit_s);
+            self.ground()?.clock.acknowledge(tick);
+            if done {
+                return Ok(());
+            }
+            ensure!(!late, "not within {limit_s} simulated seconds: {what}\n{}", self.story());
+        }
+    }
+
+    fn drain(&mut self) {
+        let Some(ground) = self.ground.as_mut() else { return };
+        while let Some(occurrence) = ground.plan_events.try_recv() {
+            if let Occurrence::Event { event, .. } = occurrence {
+                self.seen.plan.push(event.value);
+            }
+        }
+        while let Some(occurrence) = ground.gateway_events.try_recv() {
+            if let Occurrence::Event { event, .. } = occurrence {
+                self.seen.gateway.push(event.value);
+            }
+        }
+    }
+
+    /// The ground station goes away, without a word.
+    pub async fn leave(&mut self) -> anyhow::Result<()> {
+        let ground = self.ground.take().context("no ground station")?;
+        let session = ground.session.clone();
+        drop(ground);
+        session.close().await;
+        Ok(())
+    }
+
+    /// A ground station comes (back).
+    pub async fn come_back(&mut self) -> anyhow::Result<()> {
+        self.seen = Seen::default();
+        self.ground = Some(Ground::open(&self.endpoint).await?);
+        Ok(())
+    }
+
+    /// Starts the FP Manager anew over the state it left.
+    pub fn restart_fp_manager(&mut self) -> anyhow::Result<()> {
+        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path())?;
+        Ok(())
+    }
+
+    fn ground(&self) -> anyhow::Result<&Ground> {
+        self.ground.as_ref().context("no ground station")
+    }
+
+    /// The FP Manager's latest status.
+    pub fn plan_status(&self) -> Option<PlanStatus> {
+        Some(self.ground.as_ref()?.status.latest()?.stamped.value.clone())
+    }
+
+    /// The gateway's latest status.
+    pub fn gateway_status(&self) -> Option<GatewayStatus> {
+        Some(self.ground.as_ref()?.state.latest()?.stamped.value.clone())
+    }
+
+    /// The aircraft's latest position.
+    pub fn position(&self) -> Option<Position> {
+        Some(self.ground.as_ref()?.position.latest()?.stamped.value)
+    }
+
+    /// The buffer.
+    pub fn navigation(&self) -> Option<Navigation> {
+        Some(self.ground.as_ref()?.navigation.latest()?.stamped.value.clone())
+    }
+
+    /// Where things stand, for a failure's message.
+    pub fn story(&self) -> String {
+        format!(
+            "at {:.1} s\nlegs: {:?}\ngateway: {:?}\nstate: {:?}\nplan: {:?}\nnavigation: {:?}",
+            self.seen.time_s,
+            self.seen.legs(),
+            self.seen.gateway.iter().filter(|e| !matches!(e, GatewayEvent::Progress { .. })).collect::<Vec<_>>(),
+            self.gateway_status(),
+            self.plan_status(),
+            self.navigation(),
+        )
+    }
+
+    /// It landed on the runway.
+    pub fn expect_on_runway(&self) -> anyhow::Result<()> {
+        let position = self.position().context("no position")?;
+        let off_m = position.position.distance_m(FIELD.threshold);
+        ensure!(off_m < 600.0, "it stands {off_m:.0} m from the threshold\n{}", self.story());
+        Ok(())
+    }
+}
+
+fn start_fp_manager(endpoint: &str, state: &Path) -> anyhow::Result<Program> {
+    let folder = state.join("fp-manager").display().to_string();
+    Program::start(
+        "onboard-agent",
+        &["fp-manager", "--vehicle", VEHICLE, "--connect", endpoint, "--simulated", "--state-dir", &folder],
+    )
+}
+
+/// A value of the plan's `number` type.
+pub fn number(value: f64) -> usal::contract::VariableValue {
+    usal::contract::VariableValue::Number(value)
+}
+
+/// An identifier.
+pub fn id(text: &str) -> usal::contract::Id {
+    usal::contract::Id::new(text)
+}
+
+/// A plan's hash, as a command wants it.
+pub fn hash(text: &str) -> Arc<str> {
+    text.into()
+}
