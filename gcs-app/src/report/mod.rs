@@ -3,6 +3,7 @@
 //! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
 //! `deviation` and `coverage` measure, `tables` writes. Nothing here needs a display.
 
+pub mod assemble;
 mod canvas;
 mod coverage;
 mod deviation;

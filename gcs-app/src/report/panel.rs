@@ -99,10 +99,7 @@ fn legend(cursor: &mut Cursor, record: &Record) {
     if !record.areas.is_empty() {
         cursor.sample(&[Pen::dashed(AREA, 2.4, [9.0, 5.0])], "area to be scanned");
     }
-    cursor.sample(
-        &[Pen::solid(RUNWAY, 7.5), Pen::dashed(PAPER, 1.2, [6.0, 4.0])],
-        "runway",
-    );
+    cursor.sample(&[Pen::solid(RUNWAY, 7.5), Pen::dashed(PAPER, 1.2, [6.0, 4.0])], "runway");
     cursor.sample(&[Pen::solid(CONTOUR, 1.4)], "contour, every 100 m");
     cursor.y += 12.0;
 }

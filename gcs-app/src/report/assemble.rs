@@ -1,0 +1,233 @@
+//! From what the executor told (in flight or in the preview) to the pieces of a record.
+
+use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
+use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
+use flight_plan::{Env, FlightPlan, FlightState, Id, LegKind, Program, StageKind, VariableValue, Variables};
+use geometry::LatLon;
+
+/// Corners of the polygon that stands for a circle.
+const CIRCLE_CORNERS: u32 = 120;
+
+/// Which passage a place belongs to (its `occurrence` is counted by [`Track::begin`]).
+pub fn key(place: &PlacePointer) -> PassageKey {
+    let pass = |i: &IterationPlace| format!("{} {}", i.leg, i.iteration);
+    PassageKey {
+        leg: place.leg.to_string(),
+        iterations: place.iterations.iter().map(pass).collect::<Vec<_>>().join(", "),
+        reverse: place.reverse,
+        occurrence: 0,
+    }
+}
+
+/// Cuts points, in order of time, into passages where events say that a leg was entered. `plans` are the plan and
+/// its updates: the newest that knows a leg says what it is.
+pub fn track(points: &[TrackPoint], events: &[(f64, Event)], plans: &[&FlightPlan]) -> Track {
+    let mut track = Track::default();
+    let mut entries = events
+        .iter()
+        .filter_map(|(time_s, event)| match event {
+            Event::LegEntered { place } => Some((*time_s, place)),
+            _ => None,
+        })
+        .peekable();
+    for point in points {
+        while let Some((_, place)) = entries.next_if(|(time_s, _)| *time_s <= point.time_s) {
+            let (kind, stage) = nature(place, plans);
+            track.begin(key(place), kind, stage);
+        }
+        track.push(*point);
+    }
+    track
+}
+
+/// Type of a leg and name of its stage. Take-off and landing have no leg: the stage stands for it.
+fn nature(place: &PlacePointer, plans: &[&FlightPlan]) -> (&'static str, String) {
+    let find = |plan: &&FlightPlan| {
+        let stage = plan.stage(&place.stage)?;
+        let leg = plan.leg(&place.leg).map(|c| c.leg.kind_name());
+        let name = if stage.name.is_empty() { stage.id.to_string() } else { stage.name.clone() };
+        Some((leg.unwrap_or_else(|| stage_kind(stage.kind)), name))
+    };
+    plans.iter().rev().find_map(find).unwrap_or(("leg", place.stage.to_string()))
+}
+
+fn stage_kind(kind: StageKind) -> &'static str {
+    match kind {
+        StageKind::TakeOff => "take-off",
+        StageKind::Land => "land",
+        StageKind::Departure
+        | StageKind::EnRoute
+        | StageKind::Mission
+        | StageKind::Arrival
+        | StageKind::Approach => "stage",
+    }
+}
+
+/// Fixes and runways of a plan.
+pub fn places(plan: &FlightPlan) -> Vec<Place> {
+    let fixes = plan.fixes.iter().map(|f| Place {
+        label: f.id.to_string(),
+        position: f.position,
+        kind: PlaceKind::Fix,
+    });
+    let runways = plan.runways.iter().map(|r| Place {
+        label: r.id.to_string(),
+        position: r.threshold,
+        kind: PlaceKind::Runway { heading_deg: r.heading_deg, length_m: r.length_m },
+    });
+    fixes.chain(runways).collect()
+}
+
+/// The areas that the scans of a track had to cover: each with the variables' values at the end of its passage.
+pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<Area> {
+    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.kind == "scan");
+    scans
+        .filter_map(|(i, passage)| {
+            let range = track.range(i);
+            let end_s = track.points().get(range.end).map_or(f64::INFINITY, |p| p.time_s);
+            let (outline, spacing_m) =
+                outline(program, &Id::new(&passage.key.leg), &variables_at(program, events, end_s))?;
+            let label = match passage.key.iterations.is_empty() {
+                true => passage.key.leg.clone(),
+                false => format!("{}, {}", passage.key.leg, passage.key.iterations),
+            };
+            Some(Area { label, outline, spacing_m, passage: passage.key.clone() })
+        })
+        .collect()
+}
+
+fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> Variables {
+    let mut variables = Variables::initial(&program.plan);
+    for (_, event) in events.iter().filter(|(t, _)| *t < time_s) {
+        if let Event::VariableChanged { name, value } = event {
+            // the executor had accepted it, for this plan or the one before the update
+            let _ = variables.set(&program.plan, name, value.clone());
+        }
+    }
+    variables
+}
+
+fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<LatLon>, f64)> {
+    let LegKind::Scan(scan) = &program.leg(leg)?.kind else { return None };
+    let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
+    let spacing_m = program.eval_number(&scan.spacing_m, &env).ok()?;
+    let corners = match &scan.area {
+        flight_plan::Area::Polygon { corners, .. } => corners.clone(),
+        flight_plan::Area::Circle { centre, radius_m } => {
+            let centre = program.eval_place(centre, &env).ok()?;
+            let radius_m = program.eval_number(radius_m, &env).ok()?;
+            let bearing = |i: u32| f64::from(i) * 360.0 / f64::from(CIRCLE_CORNERS);
+            (0..CIRCLE_CORNERS).map(|i| centre.destination(bearing(i), radius_m)).collect()
+        }
+    };
+    Some((corners, spacing_m))
+}
+
+/// An event for people: a sentence, and whether it deserves a number on the map.
+pub fn happening(time_s: f64, event: &Event) -> Happening {
+    let (text, important) = sentence(event);
+    let details = serde_json::to_value(event).unwrap_or_default();
+    Happening { time_s, text, important, details }
+}
+
+fn sentence(event: &Event) -> (String, bool) {
+    match event {
+        Event::LegEntered { place } => (format!("leg {}", key(place)), false),
+        Event::IterationFinished { leg, finished, of } => {
+            let of = of.map_or(String::new(), |n| format!(" of at most {n}"));
+            (format!("pass {finished}{of} of {leg} finished"), false)
+        }
+        Event::DecisionRequested(request) => {
+            (format!("decision asked for at {}, {:.0} s ahead", request.leg, request.time_left_s), false)
+        }
+        Event::DecisionTaken { leg, branch, by } => (format!("decided at {leg}: {branch} (by {by})"), true),
+        Event::VariableChanged { name, value } => (format!("{name} = {}", shown(value)), true),
+        Event::PatternRefused { leg, reason } => (format!("pattern of {leg} refused: {reason}"), true),
+        Event::PlanActivated { hash, revision } => {
+            (format!("plan {} active, revision {revision}", hash.get(..8).unwrap_or(hash)), *revision > 1)
+        }
+        Event::EmergencyStarted { cause, plan, .. } => {
+            (format!("emergency ({cause:?}): flying {plan}"), true)
+        }
+        Event::EmergencyUnanswered { cause } => {
+            (format!("emergency ({cause:?}) without a plan for it"), true)
+        }
+        Event::PhaseChanged { phase } => (phase_name(*phase).to_owned(), false),
+        Event::WaypointsRejected { leg, reason } => {
+            let leg = leg.as_ref().map_or(String::new(), |l| format!(" of {l}"));
+            (format!("waypoints{leg} refused: {reason}"), true)
+        }
+    }
+}
+
+fn phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Idle => "idle",
+        Phase::Flying => "flying",
+        Phase::Holding => "holding",
+        Phase::AwaitingDecision => "waiting for a decision",
+        Phase::Finished => "plan finished",
+    }
+}
+
+fn shown(value: &VariableValue) -> String {
+    match value {
+        VariableValue::Bool(b) => b.to_string(),
+        VariableValue::Number(n) => format!("{n}"),
+        VariableValue::Text(t) => format!("{t:?}"),
+        VariableValue::Position(p) => format!("{:.4} {:.4}", p.lat_deg, p.lon_deg),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use flight_exec::Branching;
+
+    const HOME: LatLon = LatLon::new(36.3, -84.2);
+
+    fn place(leg: &str, iterations: &[(&str, u64)]) -> PlacePointer {
+        let pass = |(leg, iteration): &(&str, u64)| IterationPlace {
+            leg: Id::new(leg),
+            iteration: *iteration,
+            of: Some(9),
+            reverse: false,
+        };
+        PlacePointer {
+            plan: Branching::Main,
+            stage: "watch".into(),
+            leg: Id::new(leg),
+            iterations: iterations.iter().map(pass).collect(),
+            reverse: false,
+            distance_m: 0.0,
+        }
+    }
+
+    #[test]
+    fn passages_begin_where_legs_are_entered() {
+        let points: Vec<TrackPoint> = (0..30)
+            .map(|i| TrackPoint { time_s: f64::from(i), position: HOME, altitude_amsl_m: 0.0 })
+            .collect();
+        let entered =
+            |t: f64, leg: &str, passes: &[(&str, u64)]| (t, Event::LegEntered { place: place(leg, passes) });
+        let events = [
+            entered(0.0, "a", &[]),
+            (3.0, Event::PhaseChanged { phase: Phase::Flying }),
+            entered(9.5, "b", &[("loop", 1)]),
+            entered(20.0, "b", &[("loop", 2)]),
+            entered(25.0, "b", &[("loop", 2)]),
+        ];
+        let track = track(&points, &events, &[]);
+        let keys: Vec<String> = track.passages().iter().map(|p| p.key.to_string()).collect();
+        assert_eq!(keys, ["a", "b (loop 1)", "b (loop 2)", "b (loop 2) #2"]);
+        assert_eq!((0..4).map(|i| track.range(i)).collect::<Vec<_>>(), [0..10, 10..20, 20..25, 25..30]);
+    }
+
+    #[test]
+    fn values_are_told_as_people_write_them() {
+        let changed = |value| sentence(&Event::VariableChanged { name: "v".into(), value }).0;
+        assert_eq!(changed(VariableValue::Number(800.0)), "v = 800");
+        assert_eq!(changed(VariableValue::Position(HOME)), "v = 36.3000 -84.2000");
+    }
+}
