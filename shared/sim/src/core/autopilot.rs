@@ -280,7 +280,7 @@ impl Autopilot {
     pub fn step(&mut self, dt_s: f64) {
         let mut demand = if self.armed { self.demand() } else { Demand::default() };
         // without power it comes down, and the only ground known is home's
-        if !self.aircraft.engine().healthy || self.aircraft.battery().energy_left_j <= 0.0 {
+        if self.powerless() {
             demand.ground_amsl_m.get_or_insert(self.home.altitude_amsl_m);
         }
         self.aircraft.step(dt_s, &demand, &self.wind);
@@ -386,7 +386,8 @@ impl Autopilot {
     fn disarm_when_landed(&mut self, dt_s: f64, demand: &Demand) {
         let s = self.aircraft.state();
         let waiting = self.mode != Mode::Auto && self.mode != Mode::TakeOff;
-        let at_rest = s.on_ground && s.ground_speed_mps() < 0.3 && demand.airspeed_mps <= 0.0;
+        let driven = demand.airspeed_mps > 0.0 && !self.powerless();
+        let at_rest = s.on_ground && s.ground_speed_mps() < 0.3 && !driven;
         let done = self.run.phase == Phase::Complete || !waiting || self.powerless();
         self.standing_s = if self.armed && at_rest && done { self.standing_s + dt_s } else { 0.0 };
         if self.standing_s > self.params.value("LAND_DISARMDELAY") {

@@ -265,7 +265,7 @@ fn overwriting_the_active_item_does_nothing_until_it_is_set_current() {
     let set = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
     assert_eq!(ground.command(set, [2., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_ACCEPTED);
     assert!(
-        ground.fly_until(400.0, |sim| { sim.autopilot.aircraft.state().position.distance_m(new) < 200.0 })
+        ground.fly_until(400.0, |sim| { sim.autopilot.aircraft.state().position.distance_m(new) < 450.0 })
     );
     assert_eq!(ground.command(set, [9., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_FAILED);
 }
