@@ -145,3 +145,111 @@ impl RadiusToFix {
         course_change_deg(self.arc.end_course_deg(), departure_course_deg)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::testing::HERE;
+    use proptest::prelude::*;
+
+    fn arc(radius_m: f64, sweep_deg: f64) -> PathElement {
+        PathElement::Arc { centre: HERE, radius_m, start_bearing_deg: 20.0, sweep_deg }
+    }
+
+    /// Nearest and farthest distance from the centre of the chords through an arc's vertices.
+    fn chord_distances_m(arc: &PathElement, vertices: &[LatLon]) -> (f64, f64) {
+        let mut all = vec![arc.start()];
+        all.extend_from_slice(vertices);
+        let mut range = (f64::INFINITY, 0.0_f64);
+        for pair in all.windows(2) {
+            let chord = PathElement::Line { from: pair[0], to: pair[1] };
+            let near_m = chord.nearest(HERE).separation_m;
+            range = (range.0.min(near_m), range.1.max(HERE.distance_m(pair[1])));
+        }
+        range
+    }
+
+    #[test]
+    fn segments_of_half_circles() {
+        for (radius_m, tolerance_m, inscribed, balanced) in
+            [(250.0, 2.0, 13, 9), (250.0, 1.0, 18, 13), (500.0, 2.0, 18, 13)]
+        {
+            let count = |how: Flattening| how.segments(radius_m, -180.0, tolerance_m);
+            assert_eq!(count(Flattening::Inscribed), inscribed);
+            assert_eq!(count(Flattening::Balanced), balanced);
+            assert_eq!(flatten(&arc(radius_m, 180.0), Flattening::Inscribed, tolerance_m).len(), inscribed);
+        }
+    }
+
+    #[test]
+    fn circumscribed_vertices_make_fly_bys_of_the_arc() {
+        let arc = arc(250.0, 140.0);
+        let mut corners = vec![arc.start()];
+        corners.extend(flatten(&arc, Flattening::Circumscribed, 3.0));
+        for c in corners.windows(3) {
+            if let Some(PathElement::Arc { centre, .. }) = crate::turn::fly_by(c[0], c[1], c[2], 250.0) {
+                assert!(centre.distance_m(HERE) < 0.01);
+            }
+        }
+        let middle = corners.len() / 2;
+        assert!(
+            crate::turn::fly_by(corners[middle - 1], corners[middle], corners[middle + 1], 249.9).is_some()
+        );
+    }
+
+    #[test]
+    fn silly_tolerances_are_survived() {
+        for tolerance_m in [0.0, -1.0, 1e-300, f64::NAN, f64::INFINITY, 1e9] {
+            for how in [Flattening::Inscribed, Flattening::Balanced, Flattening::Circumscribed] {
+                for radius_m in [250.0, 0.0, f64::NAN] {
+                    let points = flatten(&arc(radius_m, 360.0), how, tolerance_m);
+                    assert!(!points.is_empty() && points.len() <= MAX_SEGMENTS + 2);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn radius_to_fix_tells_what_is_wrong() {
+        let start = HERE.destination(0.0, 400.0);
+        let good = RadiusToFix::new(start, HERE.destination(90.0, 400.0), HERE, Turn::Right);
+        assert!(good.radius_mismatch_m.abs() < 1e-6);
+        assert!(good.kink_at_start_deg(90.0).abs() < 0.01);
+        assert!((good.kink_at_start_deg(88.0) - 2.0).abs() < 0.01);
+        assert!((good.kink_at_end_deg(183.0) - 3.0).abs() < 0.01);
+        let bad = RadiusToFix::new(start, HERE.destination(90.0, 407.0), HERE, Turn::Left);
+        assert!((bad.radius_mismatch_m - 7.0).abs() < 1e-6);
+        assert!((bad.arc.length_m() - 400.0 * 1.5 * std::f64::consts::PI).abs() < 1e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn chords_stay_within_the_tolerance(
+            radius_m in 20.0..2000.0, sweep_deg in -360.0..360.0, share in 0.001..0.2,
+        ) {
+            let (tolerance_m, arc) = (radius_m * share, arc(radius_m, sweep_deg));
+            let slack = 1e-3 + 1e-6 * radius_m;
+            for (how, inside, outside) in [
+                (Flattening::Inscribed, tolerance_m, 0.0),
+                (Flattening::Balanced, tolerance_m, tolerance_m),
+                (Flattening::Circumscribed, 0.0, tolerance_m),
+            ] {
+                let vertices = flatten(&arc, how, tolerance_m);
+                prop_assert_eq!(*vertices.last().unwrap(), arc.end());
+                let (near, far) = chord_distances_m(&arc, &vertices);
+                prop_assert!(near >= radius_m - inside - slack, "{how:?} inside by {}", radius_m - near);
+                prop_assert!(far <= radius_m + outside + slack, "{how:?} outside by {}", far - radius_m);
+            }
+        }
+
+        #[test]
+        fn balanced_needs_hardly_more_than_its_segments(
+            radius_m in 20.0..2000.0, sweep_deg in 1.0..360.0, share in 0.001..0.1,
+        ) {
+            let count = flatten(&arc(radius_m, sweep_deg), Flattening::Balanced, radius_m * share).len();
+            let segments = Flattening::Balanced.segments(radius_m, sweep_deg, radius_m * share);
+            prop_assert!(count <= segments + 1, "{count} {segments}");
+        }
+    }
+}

@@ -98,3 +98,143 @@ pub fn normalise_180(deg: f64) -> f64 {
     let r = (deg + 180.0).rem_euclid(360.0) - 180.0;
     if r == -180.0 && deg > 0.0 { 180.0 } else { r }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use proptest::prelude::*;
+
+    /// From GeographicLib's published test set (Karney, geodesic test cases):
+    /// lat1, lon1, azi1, lat2, lon2, azi2, s12.
+    const PUBLISHED: [[f64; 7]; 7] = [
+        [-21.97856, 142.59065, -32.44456876433189, 41.84138, 98.56635, -41.84359951440466, 8394328.894657671],
+        [
+            -66.99028,
+            112.2363,
+            173.73491240878403,
+            -12.70631,
+            285.90344,
+            2.512956620913668,
+            11150344.2312080241,
+        ],
+        [
+            -17.42761,
+            173.34268,
+            -159.033557661192928,
+            -15.84784,
+            5.93557,
+            -20.787484651536988,
+            16076603.1631180673,
+        ],
+        [-68.82867, -74.28391, 93.774347763114881, -50.63005, -8.36685, 34.65564085411343, 3956936.926063544],
+        [
+            -19.79938,
+            -174.47484,
+            71.167275780171533,
+            -11.99349,
+            -154.35109,
+            65.589099775199228,
+            2319004.8601169389,
+        ],
+        [
+            -87.85331,
+            85.66836,
+            -65.120313040242748,
+            66.48646,
+            16.09921,
+            -4.888658719272296,
+            17286615.3147144645,
+        ],
+        [
+            1.74708,
+            128.32011,
+            -101.584843631173858,
+            -11.16617,
+            11.87109,
+            -86.325793296437476,
+            12942901.1241347408,
+        ],
+    ];
+
+    #[test]
+    fn published_geodesics() {
+        for [lat1, lon1, azi1, lat2, lon2, azi2, s12] in PUBLISHED {
+            let (a, b) = (LatLon::new(lat1, lon1), LatLon::new(lat2, normalise_180(lon2)));
+            let way = a.inverse(b);
+            assert!((way.distance_m - s12).abs() < 1e-6, "{way:?}");
+            assert!((way.bearing_start_deg - normalise_360(azi1)).abs() < 1e-10, "{way:?}");
+            assert!((way.bearing_end_deg - normalise_360(azi2)).abs() < 1e-10, "{way:?}");
+            let there = a.direct(azi1, s12);
+            assert!(there.position.distance_m(b) < 1e-6, "{there:?}");
+            assert!((there.bearing_end_deg - normalise_360(azi2)).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn across_the_antimeridian_and_over_a_pole() {
+        let way = LatLon::new(0.0, 179.5).inverse(LatLon::new(0.0, -179.5));
+        assert!((way.distance_m - 111_319.490_793).abs() < 1e-3);
+        assert_eq!(way.bearing_start_deg, 90.0);
+        let over = LatLon::new(89.9, 0.0).direct(0.0, 22_338.78);
+        assert!((over.position.lat_deg - 89.9).abs() < 1e-4);
+        assert!((over.position.lon_deg.abs() - 180.0).abs() < 1e-9);
+        assert!((over.bearing_end_deg - 180.0).abs() < 1e-9);
+        let west = LatLon::new(10.0, -179.99).destination(270.0, 5_000.0);
+        assert!(west.is_valid() && west.lon_deg > 179.9);
+    }
+
+    #[test]
+    fn garbage_is_no_position_and_does_not_panic() {
+        for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300] {
+            assert!(!LatLon::new(bad, 0.0).is_valid());
+            assert!(!LatLon::new(0.0, bad).is_valid());
+            let _ = LatLon::new(bad, bad).inverse(LatLon::new(0.0, bad));
+            let _ = LatLon::new(0.0, bad).direct(bad, bad);
+            let _ = (normalise_180(bad), normalise_360(bad));
+        }
+        assert!(!LatLon::new(90.000_001, 0.0).is_valid());
+    }
+
+    #[test]
+    fn angles_are_brought_into_range() {
+        for (deg, in_360, in_180) in [
+            (0.0, 0.0, 0.0),
+            (-90.0, 270.0, -90.0),
+            (360.0, 0.0, 0.0),
+            (540.0, 180.0, 180.0),
+            (-540.0, 180.0, -180.0),
+            (719.0, 359.0, -1.0),
+            (-1e-20, 0.0, -1e-20),
+        ] {
+            assert_eq!((normalise_360(deg), normalise_180(deg)), (in_360, in_180), "{deg}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn inverse_undoes_direct(
+            lat in -90.0..90.0, lon in -180.0..180.0, bearing in 0.0..360.0, metres in 1.0..500_000.0,
+        ) {
+            let from = LatLon::new(lat, lon);
+            let to = from.direct(bearing, metres);
+            let back = from.inverse(to.position);
+            prop_assert!((back.distance_m - metres).abs() < 1e-6);
+            let turn = normalise_180(back.bearing_start_deg - bearing);
+            prop_assert!(turn.to_radians().abs() * metres < 1e-5, "{turn}");
+            prop_assert!(from.destination(back.bearing_start_deg, metres).distance_m(to.position) < 1e-5);
+        }
+
+        #[test]
+        fn interpolation_divides_the_geodesic(
+            lat1 in -89.0..89.0, lat2 in -89.0..89.0, lon in -180.0..180.0, share in 0.0..1.0,
+        ) {
+            let (a, b) = (LatLon::new(lat1, 170.0), LatLon::new(lat2, lon));
+            let whole = a.distance_m(b);
+            prop_assume!(whole < 15e6);
+            let p = a.interpolate(b, share);
+            prop_assert!((a.distance_m(p) - whole * share).abs() < 1e-4);
+            prop_assert!((p.distance_m(b) - whole * (1.0 - share)).abs() < 1e-4);
+        }
+    }
+}

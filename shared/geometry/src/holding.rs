@@ -166,3 +166,121 @@ fn small_angle_rad(angle_rad: f64) -> f64 {
     let forward = forward_angle_rad(angle_rad);
     if forward > PI { forward - 2.0 * PI } else { forward }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::testing::{HERE, assert_joins, assert_smooth, length_m};
+    use proptest::prelude::*;
+
+    fn eastbound(turn: Turn, leg_m: f64) -> Racetrack {
+        Racetrack { fix: HERE, inbound_course_deg: 90.0, turn, leg_m, radius_m: 137.0 }
+    }
+
+    #[test]
+    fn the_lap_of_a_minute_at_25_mps() {
+        let track = eastbound(Turn::Right, 25.0 * 60.0);
+        assert_eq!((track.lap_m() / 10.0).round(), 386.0);
+        assert_eq!((track.lap_m() / 25.0).round(), 154.0);
+        assert!((length_m(&track.lap()) - track.lap_m()).abs() < 0.01);
+    }
+
+    #[test]
+    fn entries_by_sector_and_mirrored() {
+        // e = inbound course − arrival track, for right turns
+        for (e, kind) in [
+            (0.0, Entry::Direct),
+            (69.9, Entry::Direct),
+            (70.1, Entry::Parallel),
+            (180.0, Entry::Parallel),
+            (-177.1, Entry::Parallel),
+            (-176.9, Entry::Teardrop),
+            (-110.1, Entry::Teardrop),
+            (-109.9, Entry::Direct),
+            (-45.0, Entry::Direct),
+        ] {
+            for turn in [Turn::Right, Turn::Left] {
+                let arrival = 90.0 - turn.sign() * e;
+                assert_eq!(eastbound(turn, 500.0).entry_kind(arrival), kind, "{turn:?} {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_lap_lies_on_the_holding_side() {
+        for (turn, bearing) in [(Turn::Right, 180.0), (Turn::Left, 0.0)] {
+            let lap = eastbound(turn, 800.0).lap();
+            let abeam = lap[0].end();
+            assert!((HERE.distance_m(abeam) - 274.0).abs() < 0.01);
+            assert!((HERE.bearing_deg(abeam) - bearing).abs() < 0.1);
+        }
+    }
+
+    #[test]
+    fn a_teardrop_flies_thirty_degrees_off_the_outbound_course() {
+        for (turn, expected) in [(Turn::Right, 240.0), (Turn::Left, 300.0)] {
+            let track = eastbound(turn, 1500.0);
+            let path = track.entry(90.0 + turn.sign() * 140.0);
+            let line = path.iter().find(|e| matches!(e, PathElement::Line { .. })).unwrap();
+            assert!(course_change_deg(line.start_course_deg(), expected).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn arriving_inbound_flies_one_lap() {
+        let track = eastbound(Turn::Left, 600.0);
+        assert!((length_m(&track.entry(90.0)) - track.lap_m()).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_turn_round_turns_as_told_and_is_short() {
+        for turn in [Turn::Left, Turn::Right] {
+            let path = turn_round(HERE, 30.0, turn, 100.0);
+            assert_smooth(&path, 100.0);
+            assert_joins(&path, (HERE, 30.0), (HERE, 210.0));
+            let longest = path
+                .iter()
+                .filter_map(|e| match e {
+                    PathElement::Arc { sweep_deg, .. } => Some(*sweep_deg),
+                    PathElement::Line { .. } => None,
+                })
+                .max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            assert!((longest.unwrap() - 225.0 * turn.sign()).abs() < 1e-6);
+            assert!(length_m(&path) < 9.6 * 100.0, "{}", length_m(&path));
+        }
+    }
+
+    #[test]
+    fn garbage_does_not_panic() {
+        for bad in [f64::NAN, f64::INFINITY, -5.0, 0.0] {
+            let track = Racetrack {
+                leg_m: bad,
+                radius_m: bad,
+                inbound_course_deg: bad,
+                ..eastbound(Turn::Left, 1.0)
+            };
+            let _ = (track.lap(), track.entry(bad), track.entry(0.0));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_entry_is_smooth_and_comes_back_inbound(
+            inbound in 0.0..360.0, arrival in 0.0..360.0, right in any::<bool>(),
+            leg_m in 0.0..3000.0, radius_m in 40.0..400.0, lat in -80.0..80.0,
+        ) {
+            let turn = if right { Turn::Right } else { Turn::Left };
+            let fix = LatLon::new(lat, -180.0);
+            let track = Racetrack { fix, inbound_course_deg: inbound, turn, leg_m, radius_m };
+            for path in [track.entry(arrival), track.lap()] {
+                assert_smooth(&path, radius_m);
+            }
+            assert_joins(&track.entry(arrival), (fix, arrival), (fix, inbound));
+            assert_joins(&track.lap(), (fix, inbound), (fix, inbound));
+            // bounded: never more than the legs and three turns' worth
+            let bound_m = 2.0 * leg_m + 22.0 * radius_m;
+            prop_assert!(length_m(&track.entry(arrival)) < bound_m);
+        }
+    }
+}

@@ -11,6 +11,8 @@ pub mod path;
 mod plane;
 pub mod polygon;
 pub mod scan;
+#[cfg(test)]
+mod testing;
 pub mod turn;
 
 pub use arc::Flattening;

@@ -215,3 +215,151 @@ fn right_triangle(hypotenuse_m: f64, angle_rad: f64) -> (f64, f64) {
 pub fn course_change_deg(from_deg: f64, to_deg: f64) -> f64 {
     normalise_180(normalise_360(to_deg - from_deg))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use crate::testing::HERE;
+    use proptest::prelude::*;
+
+    fn line(bearing_deg: f64, length_m: f64) -> PathElement {
+        PathElement::Line { from: HERE, to: HERE.destination(bearing_deg, length_m) }
+    }
+
+    fn arc(start_bearing_deg: f64, sweep_deg: f64) -> PathElement {
+        PathElement::Arc { centre: HERE, radius_m: 250.0, start_bearing_deg, sweep_deg }
+    }
+
+    fn any_element() -> impl Strategy<Value = PathElement> {
+        let lines = (0.0..360.0, 1.0..500_000.0).prop_map(|(b, l)| line(b, l));
+        let arcs = (0.0..360.0, 1.0..359.0_f64, any::<bool>())
+            .prop_map(|(b, s, left)| arc(b, if left { -s } else { s }));
+        prop_oneof![lines, arcs]
+    }
+
+    #[test]
+    fn courses_of_arcs() {
+        // centre, start bearing, sweep → start course, end course
+        for (bearing, sweep, start, end) in [
+            (270.0, 90.0, 0.0, 90.0),
+            (90.0, -90.0, 0.0, 270.0),
+            (0.0, 180.0, 90.0, 270.0),
+            (0.0, -450.0, 270.0, 180.0),
+        ] {
+            let arc = arc(bearing, sweep);
+            assert!(course_change_deg(arc.start_course_deg(), start).abs() < 0.01);
+            assert!(course_change_deg(arc.end_course_deg(), end).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn an_arc_between_positions_takes_the_stated_way() {
+        let (north, east) = (HERE.destination(0.0, 300.0), HERE.destination(90.0, 300.0));
+        for (turn, sweep) in [(Turn::Right, 90.0), (Turn::Left, -270.0)] {
+            let PathElement::Arc { sweep_deg, .. } = PathElement::arc_between(HERE, north, east, turn) else {
+                panic!("no arc");
+            };
+            assert!((sweep_deg - sweep).abs() < 1e-6, "{sweep_deg}");
+        }
+    }
+
+    #[test]
+    fn left_is_negative() {
+        let eastward = line(90.0, 1000.0);
+        let middle = eastward.point_at(500.0);
+        for (bearing, offset_m) in [(0.0, -20.0), (180.0, 20.0)] {
+            let near = eastward.nearest(middle.destination(bearing, 20.0));
+            assert!((near.cross_track_m - offset_m).abs() < 1e-3, "{near:?}");
+        }
+        let clockwise = arc(0.0, 90.0);
+        let outside = clockwise.nearest(HERE.destination(45.0, 260.0));
+        assert!((outside.cross_track_m + 10.0).abs() < 1e-6, "{outside:?}");
+        let anticlockwise = arc(0.0, -90.0);
+        let outside = anticlockwise.nearest(HERE.destination(315.0, 260.0));
+        assert!((outside.cross_track_m - 10.0).abs() < 1e-6, "{outside:?}");
+    }
+
+    #[test]
+    fn beyond_the_ends_the_end_is_nearest() {
+        let element = line(30.0, 1000.0);
+        let before = element.nearest(HERE.destination(210.0, 70.0));
+        assert_eq!(before.distance_m, 0.0);
+        assert!((before.separation_m - 70.0).abs() < 1e-6);
+        let after = element.nearest(HERE.destination(30.0, 1070.0));
+        assert!((after.distance_m - 1000.0).abs() < 1e-6);
+        assert!((after.separation_m - 70.0).abs() < 1e-6);
+        let quarter = arc(0.0, 90.0);
+        let past = quarter.nearest(HERE.destination(100.0, 250.0));
+        assert!((past.distance_m - quarter.length_m()).abs() < 1e-9);
+        assert!((past.separation_m - past_end_m(10.0)).abs() < 1e-3, "{past:?}");
+    }
+
+    /// Chord of the angle by which an arc of 250 m is overshot.
+    fn past_end_m(angle_deg: f64) -> f64 {
+        500.0 * (angle_deg.to_radians() / 2.0).sin()
+    }
+
+    #[test]
+    fn a_line_without_length_is_a_point() {
+        let point = PathElement::Line { from: HERE, to: HERE };
+        let p = HERE.destination(45.0, 100.0);
+        assert!((point.nearest(p).separation_m - 100.0).abs() < 1e-6);
+        assert!(point.point_at(5.0).distance_m(HERE) < 1e-6);
+    }
+
+    #[test]
+    fn garbage_does_not_panic() {
+        for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+            for element in [
+                PathElement::Line { from: HERE, to: LatLon::new(bad, bad) },
+                PathElement::Arc { centre: HERE, radius_m: bad, start_bearing_deg: bad, sweep_deg: bad },
+            ] {
+                let _ = (element.length_m(), element.point_at(bad), element.reversed());
+                let _ = element.nearest(LatLon::new(bad, 0.0));
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn points_beside_an_element_are_found(
+            element in any_element(), share in 0.001..0.999, offset_m in -200.0..200.0,
+        ) {
+            let along_m = element.length_m() * share;
+            let on = element.pose_at(along_m);
+            let p = on.position.destination(on.bearing_end_deg + 90.0, offset_m);
+            let near = element.nearest(p);
+            prop_assert!((near.distance_m - along_m).abs() < 2e-3, "{near:?} {along_m}");
+            prop_assert!((near.cross_track_m - offset_m).abs() < 1e-3, "{near:?} {offset_m}");
+            prop_assert!((near.separation_m - offset_m.abs()).abs() < 1e-3, "{near:?}");
+        }
+
+        #[test]
+        fn backwards_is_the_same_ground(element in any_element(), share in 0.0..1.0) {
+            let (back, length_m) = (element.reversed(), element.length_m());
+            let there = element.pose_at(length_m * share);
+            let again = back.pose_at(length_m * (1.0 - share));
+            prop_assert!(there.position.distance_m(again.position) < 1e-4);
+            let turn = course_change_deg(there.bearing_end_deg, again.bearing_end_deg);
+            prop_assert!(turn.abs() > 179.99);
+            prop_assert!((back.length_m() - length_m).abs() < 1e-6);
+            prop_assert!(back.end().distance_m(element.start()) < 1e-4);
+        }
+
+        #[test]
+        fn nothing_of_a_long_line_is_nearer_than_the_nearest(
+            bearing in 0.0..360.0, away in 0.0..360.0, far_m in 0.0..400_000.0,
+        ) {
+            let element = line(bearing, 500_000.0);
+            let p = element.point_at(200_000.0).destination(away, far_m);
+            let near = element.nearest(p);
+            let found = element.point_at(near.distance_m);
+            prop_assert!((found.distance_m(p) - near.separation_m).abs() < 1e-2);
+            for step in [-1000.0, -50.0, 50.0, 1000.0] {
+                let other = element.point_at(near.distance_m + step);
+                prop_assert!(other.distance_m(p) > near.separation_m - 1e-3);
+            }
+        }
+    }
+}

@@ -249,3 +249,6 @@ fn push_line(path: &mut Vec<PathElement>, from: LatLon, to: LatLon) {
         path.push(PathElement::Line { from, to });
     }
 }
+
+#[cfg(test)]
+mod tests;

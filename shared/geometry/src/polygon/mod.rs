@@ -107,3 +107,6 @@ fn crosses_odd(edges: impl Iterator<Item = (Vec2, Vec2)>, p: Vec2) -> bool {
         % 2
         == 1
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

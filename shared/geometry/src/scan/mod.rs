@@ -140,7 +140,7 @@ impl Lines {
     fn new((left_m, right_m): (f64, f64), spacing_m: f64) -> Result<Self, ScanError> {
         let width_m = right_m - left_m;
         // forgives rounding: a width of 10 spacings has 10 lines
-        let count = (width_m / spacing_m - 1e-9).ceil().max(1.0);
+        let count = (width_m / spacing_m * (1.0 - 1e-12) - 1e-9).ceil().max(1.0);
         if count > MAX_LINES {
             return Err(ScanError::TooManyLines(spacing_m));
         }
@@ -281,3 +281,6 @@ impl ScanParameters {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,315 @@
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+use super::*;
+use crate::polygon::tests::star;
+use crate::testing::HERE;
+use proptest::prelude::*;
+
+fn parameters(spacing_m: f64) -> ScanParameters {
+    ScanParameters {
+        spacing_m,
+        heading_deg: None,
+        overshoot_m: 0.0,
+        entry: Entry::Corner(Corner::StartLeft),
+        turn_radius_m: 0.0,
+    }
+}
+
+fn polygon(corners: &[(f64, f64)]) -> Polygon {
+    Polygon::new(corners.iter().map(|&(e, n)| Vec2::new(e, n)).collect(), vec![]).unwrap()
+}
+
+/// 1000 m to the east, 400 m to the north.
+fn rectangle() -> Polygon {
+    polygon(&[(0.0, 0.0), (1000.0, 0.0), (1000.0, 400.0), (0.0, 400.0)])
+}
+
+/// A bay open to the north between two arms.
+fn u_shape() -> Polygon {
+    polygon(&[
+        (0.0, 0.0),
+        (900.0, 0.0),
+        (900.0, 600.0),
+        (600.0, 600.0),
+        (600.0, 200.0),
+        (300.0, 200.0),
+        (300.0, 600.0),
+        (0.0, 600.0),
+    ])
+}
+
+fn all(scan: &Scan) -> Vec<Segment> {
+    scan.segments(0..scan.tracks()).collect()
+}
+
+fn scanned(segments: &[Segment]) -> Vec<(Vec2, Vec2)> {
+    segments.iter().filter(|s| s.scanning).map(|s| (s.from, s.to)).collect()
+}
+
+#[test]
+fn a_rectangle_is_flown_along_its_long_side() {
+    let scan = Scan::new(&rectangle(), &parameters(100.0)).unwrap();
+    assert!((scan.heading_deg() - 90.0).abs() < 1e-9);
+    assert_eq!(scan.tracks(), 4);
+    let ends: Vec<_> =
+        all(&scan).iter().map(|s| [s.from.e, s.from.n, s.to.e, s.to.n].map(f64::round)).collect();
+    // along 90°, left is north
+    assert_eq!(
+        ends,
+        [
+            [0.0, 350.0, 1000.0, 350.0],
+            [1000.0, 250.0, 0.0, 250.0],
+            [0.0, 150.0, 1000.0, 150.0],
+            [1000.0, 50.0, 0.0, 50.0],
+        ]
+    );
+}
+
+#[test]
+fn first_and_last_line_are_half_a_spacing_inside() {
+    // width, spacing → distances of the lines from the left edge
+    for (spacing_m, expected) in [
+        (100.0, vec![50.0, 150.0, 250.0, 350.0]),
+        (150.0, vec![75.0, 225.0, 325.0]),
+        (399.0, vec![199.5, 200.5]),
+        (400.0, vec![200.0]),
+        (5000.0, vec![200.0]),
+    ] {
+        let scan = Scan::new(&rectangle(), &parameters(spacing_m)).unwrap();
+        let lines: Vec<f64> = all(&scan).iter().map(|s| 400.0 - s.from.n).collect();
+        assert_eq!(lines.len(), expected.len());
+        for (line, expected) in lines.iter().zip(expected) {
+            assert!((line - expected).abs() < 1e-6, "{spacing_m}: {lines:?}");
+        }
+    }
+}
+
+#[test]
+fn the_four_corners() {
+    for (corner, e, n) in [
+        (Corner::StartLeft, 0.0, 350.0),
+        (Corner::StartRight, 0.0, 50.0),
+        (Corner::EndLeft, 1000.0, 350.0),
+        (Corner::EndRight, 1000.0, 50.0),
+    ] {
+        let expected = Vec2::new(e, n);
+        for entry in [Entry::Corner(corner), Entry::Nearest(expected * 1.2)] {
+            let p = ScanParameters { entry, heading_deg: Some(90.0), ..parameters(100.0) };
+            let first = Scan::new(&rectangle(), &p).unwrap().segments(0..1).next().unwrap();
+            assert!((first.from - expected).length() < 1e-6, "{entry:?} {first:?}");
+        }
+    }
+}
+
+#[test]
+fn gaps_are_marked_as_transit() {
+    let p = ScanParameters { heading_deg: Some(90.0), ..parameters(100.0) };
+    let scan = Scan::new(&u_shape(), &p).unwrap();
+    let first: Vec<Segment> = scan.segments(0..1).collect();
+    let pieces: Vec<_> = first.iter().map(|s| (s.from.e.round(), s.to.e.round(), s.scanning)).collect();
+    assert_eq!(pieces, [(0.0, 300.0, true), (300.0, 600.0, false), (600.0, 900.0, true)]);
+    let back: Vec<Segment> = scan.segments(1..2).collect();
+    let pieces: Vec<_> = back.iter().map(|s| (s.from.e.round(), s.to.e.round(), s.scanning)).collect();
+    assert_eq!(pieces, [(900.0, 600.0, true), (600.0, 300.0, false), (300.0, 0.0, true)]);
+}
+
+#[test]
+fn overshoot_closes_what_is_narrower_than_itself() {
+    let p = ScanParameters { heading_deg: Some(90.0), overshoot_m: 160.0, ..parameters(100.0) };
+    let scan = Scan::new(&u_shape(), &p).unwrap();
+    let first: Vec<Segment> = scan.segments(0..1).collect();
+    assert_eq!(first.len(), 1);
+    assert!((first[0].from.e + 160.0).abs() < 1e-6 && (first[0].to.e - 1060.0).abs() < 1e-6);
+}
+
+#[test]
+fn bad_parameters_are_refused() {
+    let bads = [f64::NAN, f64::INFINITY, -1.0];
+    let base = parameters(100.0);
+    let refused = |p: ScanParameters| Scan::new(&rectangle(), &p).expect_err("should be refused");
+    for bad in bads.into_iter().chain([0.0]) {
+        assert!(matches!(refused(ScanParameters { spacing_m: bad, ..base }), ScanError::Spacing(_)));
+    }
+    for bad in bads {
+        assert!(matches!(refused(ScanParameters { overshoot_m: bad, ..base }), ScanError::Overshoot(_)));
+        assert!(matches!(refused(ScanParameters { turn_radius_m: bad, ..base }), ScanError::TurnRadius(_)));
+    }
+    let p = ScanParameters { heading_deg: Some(f64::NAN), ..base };
+    assert!(matches!(refused(p), ScanError::Heading(_)));
+    let p = ScanParameters { entry: Entry::Nearest(Vec2::new(f64::NAN, 0.0)), ..base };
+    assert_eq!(refused(p), ScanError::EntryPoint);
+    assert!(matches!(refused(parameters(1e-300)), ScanError::TooManyLines(_)));
+}
+
+#[test]
+fn interleaving_leaves_room_for_the_turns() {
+    for (turn_radius_m, step) in [(0.0, 1), (50.0, 1), (51.0, 2), (137.0, 3)] {
+        let p = ScanParameters { turn_radius_m, ..parameters(100.0) };
+        let long = polygon(&[(0.0, 0.0), (9000.0, 0.0), (9000.0, 4000.0), (0.0, 4000.0)]);
+        let scan = Scan::new(&long, &p).unwrap();
+        assert_eq!(scan.interleave(), step);
+        let lines: Vec<u64> = (0..scan.tracks()).map(|t| scan.line_of_track(t)).collect();
+        let tight = lines.windows(2).filter(|w| w[0].abs_diff(w[1]) < step).count();
+        assert!(tight < step as usize, "only changes of pass may be tight: {lines:?}");
+    }
+}
+
+#[test]
+fn a_million_million_lines_are_no_list() {
+    let scan = Scan::new(&rectangle(), &parameters(4e-10)).unwrap();
+    assert_eq!(scan.tracks(), 1_000_000_000_000);
+    let track = scan.nearest_track(Vec2::new(500.0, 200.0), |_| true).unwrap();
+    let segment = scan.segments(track..scan.tracks()).next().unwrap();
+    assert!((segment.from.n - 200.0).abs() < 1e-6);
+}
+
+#[test]
+fn waypoints_begin_each_track_once() {
+    let p = ScanParameters { heading_deg: Some(90.0), ..parameters(100.0) };
+    let scan = Scan::new(&u_shape(), &p).unwrap();
+    let frame = LocalFrame::new(HERE);
+    let waypoints: Vec<_> = scan.waypoints(frame, 0..scan.tracks()).collect();
+    // four tracks across both arms, two below the bay
+    assert_eq!(waypoints.len(), 4 * 4 + 2 * 2);
+    let first: Vec<bool> = waypoints.iter().take(5).map(|w| w.scanning).collect();
+    assert_eq!(first, [false, true, false, true, false]);
+    let mut back: Vec<_> = scan.waypoints(frame, 0..scan.tracks()).backwards().collect();
+    back.reverse();
+    assert!(back.iter().zip(&waypoints).all(|(b, w)| b.position == w.position && b.track == w.track));
+    assert_eq!(back.len(), waypoints.len());
+}
+
+#[test]
+fn the_nearest_wanted_track() {
+    let p = ScanParameters { heading_deg: Some(90.0), ..parameters(100.0) };
+    let scan = Scan::new(&rectangle(), &p).unwrap();
+    let at = Vec2::new(-500.0, 260.0);
+    assert_eq!(scan.nearest_track(at, |_| true), Some(1));
+    assert_eq!(scan.nearest_track(at, |t| t != 1), Some(0));
+    assert_eq!(scan.nearest_track(at, |t| t > 2), Some(3));
+    assert_eq!(scan.nearest_track(at, |_| false), None);
+    assert_eq!(scan.nearest_track(Vec2::new(0.0, -1e9), |_| true), Some(3));
+}
+
+#[test]
+fn coverage_is_a_share() {
+    let area = rectangle();
+    let west_half = [(Vec2::new(0.0, 200.0), Vec2::new(500.0, 200.0))];
+    let share = coverage(&area, west_half, 50.0);
+    // a strip of 500 by 100 and half a disc
+    let expected = (50_000.0 + std::f64::consts::PI * 2500.0 / 2.0) / 400_000.0;
+    assert!((share - expected).abs() < 1e-3, "{share} {expected}");
+    let diagonal = [(Vec2::new(0.0, 0.0), Vec2::new(1000.0, 400.0))];
+    let share = coverage(&area, diagonal, 20.0);
+    // at each corner, the half strip's end that is outside: 20² / 2 · (1 / 0.4 + 0.4)
+    let outside = 20.0 * 20.0 * (2.5 + 0.4) / 2.0;
+    let expected = (1000.0_f64.hypot(400.0) * 40.0 - 2.0 * outside) / 400_000.0;
+    assert!((share - expected).abs() < 1e-4, "{share} {expected}");
+    assert_eq!(coverage(&area, [], 50.0), 0.0);
+    assert!((coverage(&area, diagonal, 5000.0) - 1.0).abs() < 1e-12);
+    let nowhere = [(Vec2::new(f64::NAN, 0.0), Vec2::new(0.0, f64::INFINITY))];
+    assert_eq!(coverage(&area, nowhere, 50.0), 0.0);
+}
+
+/// A star outline, shrunk to a hole inside itself now and then.
+fn area() -> impl Strategy<Value = Polygon> {
+    (star(), any::<bool>()).prop_map(|(outer, holed)| {
+        let hole = outer.iter().map(|&c| c * 0.4).collect();
+        let holes = if holed { vec![hole] } else { vec![] };
+        Polygon::new(outer, holes).unwrap()
+    })
+}
+
+fn any_parameters() -> impl Strategy<Value = ScanParameters> {
+    let heading = prop::option::of(0.0..360.0);
+    (40.0..400.0, heading, 0.0..300.0, 0_usize..4, 0.0..400.0).prop_map(
+        |(spacing_m, heading_deg, overshoot_m, corner, turn_radius_m)| ScanParameters {
+            spacing_m,
+            heading_deg,
+            overshoot_m,
+            entry: Entry::Corner(Corner::ALL[corner]),
+            turn_radius_m,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn an_overshoot_of_half_the_spacing_covers_everything(area in area(), p in any_parameters()) {
+        let p = ScanParameters { overshoot_m: p.spacing_m / 2.0, ..p };
+        let scan = Scan::new(&area, &p).unwrap();
+        let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
+        prop_assert!(share > 0.999_999, "{share}");
+    }
+
+    /// What a slanted edge of length l may cost without overshoot is l · spacing / 8, and a
+    /// spike between two lines no more than twice that.
+    #[test]
+    fn without_overshoot_little_is_lost_along_the_edges(area in area(), p in any_parameters()) {
+        let p = ScanParameters { overshoot_m: 0.0, ..p };
+        let scan = Scan::new(&area, &p).unwrap();
+        let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
+        let perimeter_m: f64 = area.edges().map(|(a, b)| (b - a).length()).sum();
+        let lost_m2 = (1.0 - share) * area.area_m2();
+        prop_assert!(lost_m2 < perimeter_m * p.spacing_m / 4.0, "{share}");
+    }
+
+    #[test]
+    fn without_overshoot_a_survey_of_convex_fields_covers_them(
+        angles in prop::collection::vec(0.0..360.0, 5..12), p in any_parameters(),
+    ) {
+        let corners = angles.iter().map(|a: &f64| Vec2::from_bearing_rad(a.to_radians()) * 2000.0);
+        let mut corners: Vec<Vec2> = corners.collect();
+        corners.sort_by(|a, b| a.bearing_rad().total_cmp(&b.bearing_rad()));
+        corners.dedup_by(|a, b| (*a - *b).length() < 300.0);
+        prop_assume!(corners.len() > 3);
+        let area = Polygon::new(corners, vec![]).unwrap();
+        prop_assume!(area.width_m(area.narrowest_heading_deg()) > 1000.0);
+        let p = ScanParameters { overshoot_m: 0.0, spacing_m: 20.0, ..p };
+        let scan = Scan::new(&area, &p).unwrap();
+        let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
+        prop_assert!(share > 0.995, "{share}");
+    }
+
+    #[test]
+    fn nothing_is_scanned_farther_outside_than_the_overshoot(area in area(), p in any_parameters()) {
+        let scan = Scan::new(&area, &p).unwrap();
+        for s in all(&scan).iter().filter(|s| s.scanning) {
+            for i in 0..=20 {
+                let point = s.from + (s.to - s.from) * (f64::from(i) / 20.0);
+                let outside_m = area.distance_outside_m(point);
+                prop_assert!(outside_m <= p.overshoot_m + 1e-6, "{outside_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_line_is_flown_once_and_found_again(area in area(), p in any_parameters()) {
+        let scan = Scan::new(&area, &p).unwrap();
+        let mut lines: Vec<u64> = (0..scan.tracks()).map(|t| scan.line_of_track(t)).collect();
+        for (track, &line) in lines.iter().enumerate() {
+            prop_assert_eq!(scan.track_of_line(line), track as u64);
+        }
+        lines.sort_unstable();
+        prop_assert!(lines.iter().enumerate().all(|(i, &line)| line == i as u64));
+    }
+
+    #[test]
+    fn starting_anywhere_gives_the_same_tracks(area in area(), p in any_parameters(), at in 0.0..1.0) {
+        let scan = Scan::new(&area, &p).unwrap();
+        let track = (at * scan.tracks() as f64) as u64;
+        let rest: Vec<Segment> = scan.segments(track..scan.tracks()).collect();
+        let skipped: Vec<Segment> = all(&scan).into_iter().skip_while(|s| s.track < track).collect();
+        prop_assert_eq!(rest, skipped);
+    }
+
+    #[test]
+    fn backwards_is_the_same_segments_turned_round(area in area(), p in any_parameters()) {
+        let scan = Scan::new(&area, &p).unwrap();
+        let mut back: Vec<Segment> = scan.segments(0..scan.tracks()).backwards().collect();
+        back.reverse();
+        let turned = back.into_iter().map(|s| Segment { from: s.to, to: s.from, ..s });
+        prop_assert_eq!(turned.collect::<Vec<_>>(), all(&scan));
+    }
+}
