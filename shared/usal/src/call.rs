@@ -23,6 +23,8 @@ use zenoh::query::{ConsolidationMode, Reply};
 
 /// Pause before a request that reached nobody is tried again.
 const RETRY: Duration = Duration::from_millis(50);
+/// Share of the deadline that is left for the answer, at most.
+const ANSWER_TIME: Duration = Duration::from_millis(50);
 /// Our deadline comes first; only then the network gives up.
 const GRACE: Duration = Duration::from_millis(500);
 
@@ -90,7 +92,7 @@ impl Session {
         let payload = codec::encode(request, Format::Cbor)?;
         Ok(Request {
             inner: Arc::downgrade(&self.inner),
-            selector: format!("{key}?id={};timeout_ms={}", self.request_id(), timeout.as_millis()),
+            id: self.request_id(),
             name: key.to_string(),
             payload: payload.into(),
             timeout,
@@ -101,7 +103,7 @@ impl Session {
 
 struct Request {
     inner: Weak<Inner>,
-    selector: String,
+    id: String,
     name: String,
     payload: ZBytes,
     timeout: Duration,
@@ -113,9 +115,11 @@ impl Request {
     fn attempt(&self, left: Duration) -> Result<mpsc::Receiver<Reply>, CallError> {
         let inner = self.inner.upgrade().ok_or(CallError::Closed)?;
         let (sender, receiver) = mpsc::channel(1);
+        // what is executed should still be answered in time
+        let execute_within = left - (left / 10).min(ANSWER_TIME);
         inner
             .zenoh
-            .get(&self.selector)
+            .get(format!("{}?id={};timeout_ms={}", self.name, self.id, execute_within.as_millis()))
             .payload(self.payload.clone())
             .encoding(Format::Cbor.encoding())
             .consolidation(ConsolidationMode::None)

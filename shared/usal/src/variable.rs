@@ -12,6 +12,7 @@ use crate::{Format, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
@@ -21,7 +22,7 @@ use zenoh::handlers::CallbackDrop;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::{Publisher, Subscriber};
 use zenoh::qos::{CongestionControl, Priority};
-use zenoh::query::{Query, Queryable};
+use zenoh::query::{ConsolidationMode, Query, Queryable, Reply};
 use zenoh::sample::{Sample, SampleKind};
 
 /// One priority for all that must stay in order on a connection: variables, events, requests
@@ -30,6 +31,9 @@ pub(crate) const PRIORITY: Priority = Priority::RealTime;
 
 /// How long a late joiner waits for the last value.
 const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
+/// How often it asks again, and the pause before, if it reached nobody.
+const QUERY_ATTEMPTS: u32 = 40;
+const QUERY_PAUSE: Duration = Duration::from_millis(50);
 
 type Last = Arc<Mutex<Option<ZBytes>>>;
 
@@ -173,7 +177,7 @@ impl Session {
             .history(true)
             .callback(move |sample| {
                 if sample.kind() == SampleKind::Put {
-                    ask_last(&inner, &key, &sender);
+                    ask_last(&inner, &key, &sender, QUERY_ATTEMPTS);
                 }
             })
             .wait()
@@ -193,9 +197,11 @@ fn token_name(variable: &str) -> String {
 
 fn answer_last(query: &Query, last: &Last) {
     let bytes = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let Some(bytes) = bytes else { return };
-    let reply = query.reply(query.key_expr().clone(), bytes).encoding(Format::Cbor.encoding());
-    if let Err(e) = reply.wait() {
+    let sent = match bytes {
+        Some(bytes) => query.reply(query.key_expr().clone(), bytes).encoding(Format::Cbor.encoding()).wait(),
+        None => query.reply_err("no value yet").wait(),
+    };
+    if let Err(e) = sent {
         tracing::debug!("answering with the last value: {e}");
     }
 }
@@ -203,28 +209,52 @@ fn answer_last(query: &Query, last: &Last) {
 type Cell<T> = Arc<watch::Sender<Option<Arc<Received<T>>>>>;
 
 /// Asks the publisher for its last value; an answer is good only while nothing newer came in.
-fn ask_last<T>(inner: &Weak<Inner>, key: &str, cell: &Cell<T>)
+/// Repeated while nobody is reached: a token is seen up to 0.1 s before the way to its owner is known.
+fn ask_last<T>(inner: &Weak<Inner>, key: &str, cell: &Cell<T>, attempts_left: u32)
 where
     T: DeserializeOwned + Send + Sync + 'static,
 {
     let Some(session) = inner.upgrade() else { return };
     let asked = Instant::now();
-    let (inner, cell) = (inner.clone(), cell.clone());
-    let callback = move |reply: zenoh::query::Reply| {
-        if let Ok(sample) = reply.result() {
-            accept(&inner, &cell, sample, Some(asked));
+    let answered = Arc::new(AtomicBool::new(false));
+    let callback = {
+        let (inner, cell, answered) = (inner.clone(), cell.clone(), answered.clone());
+        move |reply: Reply| {
+            answered.store(true, Ordering::Relaxed);
+            if let Ok(sample) = reply.result() {
+                accept(&inner, &cell, sample, Some(asked));
+            }
+        }
+    };
+    let drop = {
+        let (inner, key, cell) = (inner.clone(), key.to_owned(), cell.clone());
+        move || {
+            if !answered.load(Ordering::Relaxed) && attempts_left > 0 {
+                ask_again(inner.clone(), key.clone(), cell.clone(), attempts_left - 1);
+            }
         }
     };
     let query = session
         .zenoh
         .get(key)
-        .consolidation(zenoh::query::ConsolidationMode::None)
+        .consolidation(ConsolidationMode::None)
         .timeout(QUERY_TIMEOUT)
         .priority(PRIORITY)
-        .with(CallbackDrop { callback, drop: || {} });
+        .with(CallbackDrop { callback, drop });
     if let Err(e) = query.wait() {
         session.health.unsent(key, &e.to_string());
     }
+}
+
+fn ask_again<T>(inner: Weak<Inner>, key: String, cell: Cell<T>, attempts_left: u32)
+where
+    T: DeserializeOwned + Send + Sync + 'static,
+{
+    let Some(session) = inner.upgrade() else { return };
+    session.runtime.spawn(async move {
+        tokio::time::sleep(QUERY_PAUSE).await;
+        ask_last(&inner, &key, &cell, attempts_left);
+    });
 }
 
 fn accept<T>(inner: &Weak<Inner>, cell: &Cell<T>, sample: &Sample, asked: Option<Instant>)

@@ -1,0 +1,358 @@
+//! Sessions over loopback: what each primitive promises, with the faults that threaten it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+use usal::contract::*;
+use usal::topics::{self, fp_manager, gateway};
+use usal::{CallError, Occurrence, Session, SessionError, Start};
+use zenoh::bytes::Encoding;
+
+fn air(airspeed_mps: f64) -> Air {
+    Air { airspeed_mps, wind_east_mps: 0.0, wind_north_mps: 0.0, pressure_hpa: 1000.0, temperature_c: 15.0 }
+}
+
+fn low(waypoints: usize) -> TimedGatewayEvent {
+    Stamped { time_s: 0.0, validity_s: 1.0, value: GatewayEvent::BufferLow { waypoints, seconds: 1.0 } }
+}
+
+/// The numbers of the events up to `last`; panics at a gap.
+async fn numbers(events: &mut usal::EventSubscriber<TimedGatewayEvent>, last: usize) -> Vec<usize> {
+    let mut seen = Vec::new();
+    while seen.last() != Some(&last) {
+        match within(events.recv()).await.expect("session open") {
+            Occurrence::Event { event, .. } => match event.value {
+                GatewayEvent::BufferLow { waypoints, .. } => seen.push(waypoints),
+                other => panic!("{other:?}"),
+            },
+            Occurrence::Gap { missed } => panic!("{missed} events lost after {seen:?}"),
+        }
+    }
+    seen
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn late_joiner_gets_the_last_value() {
+    let net = Net::open().await;
+    let publisher = net.hub.publish(gateway::AIR).unwrap();
+    publisher.set(1.0, 2.0, &air(20.0));
+    publisher.set(2.0, 2.0, &air(21.0));
+    let late = net.client().await;
+    let mut subscriber = late.follow(gateway::AIR).unwrap();
+    let received = within(subscriber.changed()).await.unwrap();
+    assert_eq!(received.stamped, Stamped { time_s: 2.0, validity_s: 2.0, value: air(21.0) });
+    assert!(received.age() < DEADLINE);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn variables_pass_from_client_to_client_through_the_hub() {
+    let net = Net::open().await;
+    let (a, b) = (net.client().await, net.client().await);
+    let mut subscriber = b.follow(fp_manager::HEARTBEAT).unwrap();
+    let publisher = a.publish(fp_manager::HEARTBEAT).unwrap();
+    for count in 1..=20 {
+        publisher.set(0.0, 1.0, &Heartbeat { count, plan: None });
+    }
+    until(async || subscriber.changed().await.unwrap().stamped.value.count == 20).await;
+    assert_eq!(subscriber.latest().unwrap().stamped.value.count, 20);
+    assert!(subscriber.take_new().is_none());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn hub_absent_a_client_opens_at_once_and_connects_when_it_comes() {
+    let endpoint = free_endpoint();
+    let started = Instant::now();
+    let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+    assert!(started.elapsed() < Duration::from_secs(1), "{:?}", started.elapsed());
+    assert!(!client.is_connected().await);
+    let mut subscriber = client.follow(gateway::AIR).unwrap();
+    let call = client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+    let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    hub.publish(gateway::AIR).unwrap().set(0.0, 1.0, &air(5.0));
+    let mut server = hub.serve(gateway::REQUEST).unwrap();
+    within(server.recv()).await.unwrap().answer(Ok(Empty {}));
+    within(call).await.unwrap();
+    let publisher = hub.publish(gateway::AIR).unwrap();
+    publisher.set(0.0, 1.0, &air(6.0));
+    until(async || subscriber.changed().await.unwrap().stamped.value == air(6.0)).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn hub_killed_and_restarted_everybody_finds_back() {
+    let endpoint = free_endpoint();
+    let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    let (a, b) = (client(&endpoint).await, client(&endpoint).await);
+    let emitter = a.emitter(gateway::EVENTS).unwrap();
+    let mut events = b.listen(gateway::EVENTS, Start::Remembered).unwrap();
+    let mut presence = b.presence().unwrap();
+    let _alive = a.announce(topics::FP_MANAGER).unwrap();
+    emitter.emit(&low(1));
+    assert_eq!(numbers(&mut events, 1).await, [1]);
+    until_alive(&mut presence, topics::FP_MANAGER, true).await;
+    hub.close().await;
+    until_alive(&mut presence, topics::FP_MANAGER, false).await;
+    for n in 2..=50 {
+        emitter.emit(&low(n));
+    }
+    let _hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    until_alive(&mut presence, topics::FP_MANAGER, true).await;
+    assert_eq!(numbers(&mut events, 50).await, (2..=50).collect::<Vec<_>>());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn event_subscriber_beginning_now_still_misses_nothing_in_an_outage() {
+    let endpoint = free_endpoint();
+    let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    let (a, b) = (client(&endpoint).await, client(&endpoint).await);
+    let emitter = a.emitter(gateway::EVENTS).unwrap();
+    let mut events = b.listen(gateway::EVENTS, Start::Now).unwrap();
+    // from when it is heard of, nothing may be missing
+    let mut last = 0;
+    until(async || {
+        last += 1;
+        emitter.emit(&low(last));
+        tokio::task::yield_now().await;
+        events.try_recv().is_some()
+    })
+    .await;
+    if last > 1 {
+        last += 1;
+        emitter.emit(&low(last));
+        numbers(&mut events, last).await;
+    }
+    hub.close().await;
+    for n in last + 1..=last + 1000 {
+        emitter.emit(&low(n));
+    }
+    let _hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    let missed = numbers(&mut events, last + 1000).await;
+    assert_eq!(missed, (last + 1..=last + 1000).collect::<Vec<_>>());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn late_joiner_gets_the_remembered_events_in_order() {
+    let net = Net::open().await;
+    let emitter = net.hub.emitter(gateway::EVENTS).unwrap();
+    for n in 1..=1500 {
+        emitter.emit(&low(n));
+    }
+    let client = net.client().await;
+    let mut events = client.listen(gateway::EVENTS, Start::Remembered).unwrap();
+    assert_eq!(numbers(&mut events, 1500).await, (1..=1500).collect::<Vec<_>>());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_request_gets_its_answer_or_its_refusal() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let client = net.client().await;
+    let service = tokio::spawn(async move {
+        while let Some(incoming) = server.recv().await {
+            let answer = match incoming.request {
+                GatewayRequest::Hold => Ok(Empty {}),
+                _ => Err(Refusal { code: "not-now".into(), reason: "land first".into() }),
+            };
+            incoming.answer(answer);
+        }
+    });
+    assert_eq!(within(client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE)).await, Ok(Empty {}));
+    let refused = within(client.call(gateway::REQUEST, &GatewayRequest::Launch, DEADLINE)).await.unwrap_err();
+    assert_eq!(refused.to_string(), "not-now: land first");
+    service.abort();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn silent_service_the_caller_hears_of_it_at_the_deadline() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let client = net.client().await;
+    let started = Instant::now();
+    let call = client.call(gateway::REQUEST, &GatewayRequest::Hold, Duration::from_millis(300));
+    let held = within(server.recv()).await.unwrap();
+    let result = within(call).await;
+    assert!(matches!(result, Err(CallError::Timeout { .. })), "{result:?}");
+    assert!(started.elapsed() >= Duration::from_millis(300));
+    drop(held);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn absent_service_is_said_to_be_unreachable() {
+    let net = Net::open().await;
+    let client = net.client().await;
+    let mut call = client.call(fp_manager::COMMAND, &Command::Start, Duration::from_millis(200));
+    let result = loop {
+        match call.try_take() {
+            Some(result) => break result,
+            None => tokio::task::yield_now().await,
+        }
+    };
+    assert!(matches!(result, Err(CallError::Unreachable { .. })), "{result:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn request_whose_deadline_has_passed_is_not_executed() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let client = net.client().await;
+    let missed = within(client.call(gateway::REQUEST, &GatewayRequest::Launch, Duration::from_millis(500))).await;
+    assert!(missed.is_err());
+    let call = client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+    let incoming = within(server.recv()).await.unwrap();
+    assert_eq!(incoming.request, GatewayRequest::Hold);
+    incoming.answer(Ok(Empty {}));
+    within(call).await.unwrap();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn repeated_request_ids_are_executed_once() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let executed = Arc::new(AtomicUsize::new(0));
+    let count = executed.clone();
+    let service = tokio::spawn(async move {
+        while let Some(incoming) = server.recv().await {
+            count.fetch_add(1, Ordering::SeqCst);
+            incoming.answer(Ok(Empty {}));
+        }
+    });
+    let outside = outside_client(&net.endpoint).await;
+    for (id, total) in [("7", 1), ("7", 1), ("8", 2), ("7", 2)] {
+        let reply = ask(&outside, "gateway", "request", id, br#"{"request":"hold"}"#, Encoding::APPLICATION_JSON).await;
+        assert_eq!(reply.unwrap(), "{}");
+        assert_eq!(executed.load(Ordering::SeqCst), total, "id {id}");
+    }
+    for n in 0..600 {
+        ask(&outside, "gateway", "request", &format!("n{n}"), br#"{"request":"hold"}"#, Encoding::APPLICATION_JSON)
+            .await
+            .unwrap();
+    }
+    assert_eq!(executed.load(Ordering::SeqCst), 602);
+    service.abort();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn request_given_up_by_the_service_is_answered_all_the_same() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let client = net.client().await;
+    let call = client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+    drop(within(server.recv()).await.unwrap());
+    match within(call).await {
+        Err(CallError::Refused(refusal)) => assert_eq!(refusal.code, "unanswered"),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn more_requests_than_fit_are_refused_as_busy() {
+    let net = Net::open().await;
+    let _server = net.hub.serve(gateway::REQUEST).unwrap();
+    let client = net.client().await;
+    let calls: Vec<_> =
+        (0..80).map(|_| client.call(gateway::REQUEST, &GatewayRequest::Hold, Duration::from_secs(2))).collect();
+    let mut busy = 0;
+    for call in calls {
+        if let Err(CallError::Refused(refusal)) = within(call).await {
+            assert_eq!(refusal.code, "busy");
+            busy += 1;
+        }
+    }
+    assert_eq!(busy, 80 - 64);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn garbage_request_is_refused_with_what_is_wrong() {
+    let net = Net::open().await;
+    let _server = net.hub.serve(fp_manager::COMMAND).unwrap();
+    let outside = outside_client(&net.endpoint).await;
+    let cases: [(&[u8], Encoding); 4] = [
+        (br#"{"command":"explode"}"#, Encoding::APPLICATION_JSON),
+        (b"{", Encoding::APPLICATION_JSON),
+        (b"\xff\xff\xff", Encoding::APPLICATION_CBOR),
+        (b"", Encoding::ZENOH_BYTES),
+    ];
+    for (payload, encoding) in cases {
+        let refusal = ask(&outside, "fp-manager", "command", "", payload, encoding.clone()).await.unwrap_err();
+        assert!(refusal.contains("bad-request"), "{refusal}");
+    }
+    assert_eq!(net.hub.health().undecodable, 4);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn garbage_payload_is_counted_and_ignored() {
+    let net = Net::open().await;
+    let outside = outside_client(&net.endpoint).await;
+    let mut subscriber = net.hub.follow(gateway::AIR).unwrap();
+    let mut events = net.hub.listen(gateway::EVENTS, Start::Now).unwrap();
+    put(&outside, "gateway/variable/air", b"\x00garbage", Encoding::APPLICATION_CBOR).await;
+    put(&outside, "gateway/variable/air", b"[]", Encoding::APPLICATION_JSON).await;
+    put(&outside, "gateway/event/events", b"nonsense", Encoding::TEXT_PLAIN).await;
+    let good = serde_json::to_vec(&Stamped { time_s: 0.0, validity_s: 1.0, value: air(9.0) }).unwrap();
+    put(&outside, "gateway/variable/air", &good, Encoding::APPLICATION_JSON).await;
+    assert_eq!(within(subscriber.changed()).await.unwrap().stamped.value, air(9.0));
+    until(async || net.hub.health().undecodable == 3).await;
+    assert!(events.try_recv().is_none());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn describe_answers_in_json_to_anyone() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve_description(topics::GATEWAY).unwrap();
+    let service = tokio::spawn(async move {
+        while let Some(incoming) = server.recv().await {
+            incoming.answer(Ok(usal::gateway_description()));
+        }
+    });
+    let outside = outside_client(&net.endpoint).await;
+    let text = ask(&outside, "gateway", "describe", "", b"", Encoding::APPLICATION_JSON).await.unwrap();
+    let description: usal::Description = serde_json::from_str(&text).unwrap();
+    assert_eq!(description, usal::gateway_description());
+    service.abort();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn service_that_dies_is_gone_from_the_presence() {
+    let net = Net::open().await;
+    let mut presence = net.hub.presence().unwrap();
+    let client = net.client().await;
+    let alive = client.announce(topics::FP_MANAGER).unwrap();
+    until_alive(&mut presence, topics::FP_MANAGER, true).await;
+    drop(alive);
+    until_alive(&mut presence, topics::FP_MANAGER, false).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn vehicles_do_not_hear_each_other() {
+    let net = Net::open().await;
+    let other = Session::open(usal::Config::client("uav2", &net.endpoint)).await.unwrap();
+    let own = net.client().await;
+    let mut own_air = own.follow(gateway::AIR).unwrap();
+    let other_air = other.follow(gateway::AIR).unwrap();
+    net.hub.publish(gateway::AIR).unwrap().set(0.0, 1.0, &air(1.0));
+    let publisher = net.hub.publish(gateway::AIR).unwrap();
+    publisher.set(0.0, 1.0, &air(2.0));
+    until(async || own_air.changed().await.unwrap().stamped.value == air(2.0)).await;
+    assert!(other_air.latest().is_none());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn unusable_names_and_endpoints_are_refused_with_advice() {
+    let bad_name = Session::open(usal::Config::client("uav/1", "tcp/127.0.0.1:1")).await;
+    assert!(matches!(bad_name, Err(SessionError::Key(_))), "{bad_name:?}");
+    let bad_endpoint = Session::open(usal::Config::hub("uav1", "nonsense")).await;
+    assert!(matches!(bad_endpoint, Err(SessionError::Endpoint { .. })), "{bad_endpoint:?}");
+    let net = Net::open().await;
+    let taken = Session::open(usal::Config::hub("uav1", &net.endpoint)).await.unwrap_err().to_string();
+    assert!(taken.contains("nothing else listens"), "{taken}");
+}
+
+#[test]
+fn single_threaded_runtime_is_refused_instead_of_panicking() {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    let result = runtime.block_on(Session::open(usal::Config::client("uav1", "tcp/127.0.0.1:1")));
+    assert!(matches!(result, Err(SessionError::Runtime)));
+}
