@@ -10,7 +10,20 @@ pub type Time = std::time::Duration;
 
 /// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
 /// updates, emergencies and restarts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Default,
+    Serialize,
+    Deserialize,
+    schemars::JsonSchema,
+)]
 #[serde(transparent)]
 pub struct Token(pub u64);
 
@@ -268,7 +281,9 @@ pub struct ProposalReport {
 }
 
 /// Correlates a request with its one answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(transparent)]
 pub struct RequestId(pub u64);
 
@@ -306,7 +321,8 @@ pub enum Input {
         /// Why.
         reason: String,
     },
-    /// The gateway entered or left a mode in which it does not take waypoints (Safe, Manual).
+    /// True: the gateway entered a mode in which it controls the flight itself and takes no waypoints
+    /// (Safe, Manual). False: it left it; everything ahead is fed again with new tokens.
     GatewayControls(bool),
 }
 

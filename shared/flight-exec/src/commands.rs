@@ -1,0 +1,222 @@
+//! What people and services ask for: each command is done or refused with a reason.
+
+use crate::api::{Command, Event, Output, Phase, Refusal};
+use crate::cursor::{Cursor, Doing};
+use crate::executor::{Executor, refusal};
+use crate::handed::Handed;
+use flight_plan::{Id, LegKind, VariableValue};
+
+/// Most loops whose counts are set by command at a time.
+const MOST_COUNTS: usize = 64;
+
+impl Executor {
+    pub(crate) fn command(&mut self, command: Command, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        match command {
+            Command::Start => self.start(out),
+            Command::Hold => self.hold_by_command(out),
+            Command::Resume => self.resume(out),
+            Command::SkipLeg => self.skip_leg(out),
+            Command::GoTo { leg } => self.go_to(&leg, out),
+            Command::SetCount { leg, count } => self.set_count(leg, count, out),
+            Command::Decide { leg, branch } => self.decide(&leg, &branch, out),
+            Command::SetVariable { name, value } => self.set_variable(name, value, out),
+            Command::Emergency { cause, plan } => self.emergency(cause, plan, out),
+            Command::ReturnToMain { leg } => self.return_to_main(&leg, out),
+            Command::Commit { hash, entry } => self.commit(&hash, entry.as_ref(), out),
+        }
+    }
+
+    fn start(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        if self.is_flying() {
+            return Err(refusal(
+                "already-flying",
+                "a plan is being flown: hold, go to a leg, or commit another plan",
+            ));
+        }
+        let Some(program) = self.program.clone() else {
+            return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
+        };
+        if program.stages(None).is_empty() {
+            return Err(refusal("empty-plan", "the main plan has no stage: add one"));
+        }
+        self.state.started_s = Some(self.state.clock_s);
+        self.state.emergency = None;
+        self.state.decisions.clear();
+        self.state.requested.clear();
+        self.state.counts.clear();
+        self.state.tail = None;
+        let cursor = Cursor::start(None, self.here(), self.state.last_passage);
+        self.enter_phase(Phase::Flying, out);
+        self.jump(cursor, out);
+        Ok(())
+    }
+
+    fn hold_by_command(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        self.flying_program()?;
+        if self.state.phase == Phase::Holding {
+            return Err(refusal("already-holding", "it holds already: resume to go on"));
+        }
+        self.hold(out);
+        Ok(())
+    }
+
+    /// Holds here and remembers the place.
+    pub(crate) fn hold(&mut self, out: &mut Vec<Output>) {
+        self.state.held_at = self.state.aircraft.as_ref().map(|a| a.position);
+        self.enter_phase(Phase::Holding, out);
+        out.push(Output::Hold);
+    }
+
+    fn resume(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        if self.state.phase != Phase::Holding {
+            return Err(refusal("not-holding", "it doesn't hold: there is nothing to resume"));
+        }
+        self.enter_phase(Phase::Flying, out);
+        if let Some(rejoin) = self.rejoin() {
+            self.state.handed.push_front(rejoin);
+        }
+        self.state.held_at = None;
+        self.refeed(out);
+        Ok(())
+    }
+
+    /// A waypoint where the hold was given, so that the leg is gone on with there and not cut.
+    fn rejoin(&self) -> Option<Handed> {
+        let front = self.state.handed.front().filter(|h| !h.is_loiter())?;
+        let held_at = self.state.held_at?;
+        let left_m = crate::path::distance_m(held_at, front.waypoint.position);
+        let stop_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
+        let straight = matches!(front.waypoint.action, crate::api::Action::Fly);
+        let under_way = self.state.announced == Some(front.passage);
+        if left_m < stop_m || !straight || !under_way {
+            return None;
+        }
+        let mut rejoin = front.clone();
+        rejoin.waypoint.position = held_at;
+        rejoin.waypoint.fly_over = false;
+        rejoin.waypoint.end_of_plan = false;
+        rejoin.end_m = (front.end_m - left_m).max(front.leg_start_m);
+        rejoin.end_s = front.end_s - left_m / front.waypoint.airspeed_mps.max(1.0);
+        rejoin.pinned = true;
+        Some(rejoin)
+    }
+
+    fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        self.flying_program()?;
+        let after = self.bookmark(1).or(self.state.tail.as_ref()).cloned();
+        let Some(mut cursor) = after.filter(|_| !self.state.handed.is_empty()) else {
+            return Err(refusal("nothing-to-skip", "no leg is being flown: wait for the next one"));
+        };
+        if matches!(cursor.doing, Doing::Waiting) {
+            return Err(refusal("decision-needed", "it waits for a decision: decide, or go to a leg"));
+        }
+        cursor.abandon_leg();
+        cursor.move_path_to(self.here_at_level_of(&cursor));
+        let mut probe = cursor.clone();
+        let ends = self.world().is_none_or(|w| matches!(probe.next(&w), crate::cursor::Step::Ended { .. }));
+        if ends {
+            return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
+        }
+        self.jump(cursor, out);
+        Ok(())
+    }
+
+    /// The aircraft's place, with the altitude and speed that legs without their own inherit.
+    fn here_at_level_of(&self, cursor: &Cursor) -> crate::path::PathState {
+        let mut here = self.here();
+        here.last.level = cursor.path.last.level;
+        here
+    }
+
+    fn go_to(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        let section = self.state.tail.as_ref().and_then(|t| t.section);
+        let cursor = self.cursor_at(leg, section)?;
+        self.jump(cursor, out);
+        Ok(())
+    }
+
+    /// A cursor at the beginning of a leg of a section, its path starting at the aircraft.
+    pub(crate) fn cursor_at(&self, leg: &Id, section: Option<usize>) -> Result<Cursor, Refusal> {
+        let program = self.flying_program()?;
+        let unknown = || {
+            let reason = format!("the plan being flown has no leg `{leg}`: name one of its legs");
+            refusal("unknown-leg", reason)
+        };
+        let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
+        let world = self.world().ok_or_else(unknown)?;
+        let now = self.bookmark(1).or(self.state.tail.as_ref()).ok_or_else(unknown)?;
+        let mut cursor = now.moved_to(target, &world);
+        cursor.move_path_to(self.here_at_level_of(now));
+        Ok(cursor)
+    }
+
+    fn set_count(&mut self, leg: Id, count: u64, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        let program = self.flying_program()?;
+        if !matches!(program.leg(&leg).map(|l| &l.kind), Some(LegKind::Iterative { .. })) {
+            return Err(refusal("unknown-leg", format!("`{leg}` is no iterative leg of the plan: name one")));
+        }
+        if count == 0 {
+            return Err(refusal("bad-count", "the least count is 1; skip the leg to leave it at once"));
+        }
+        let active = self.place().is_some_and(|p| p.iterations.iter().any(|i| i.leg == leg));
+        if !active {
+            let reason = format!("loop `{leg}` is not being flown: set its count when the aircraft is in it");
+            return Err(refusal("not-in-loop", reason));
+        }
+        self.state.counts.retain(|(id, _)| *id != leg);
+        self.state.counts.truncate(MOST_COUNTS - 1);
+        self.state.counts.push((leg, count));
+        self.replan(out);
+        Ok(())
+    }
+
+    fn set_variable(&mut self, name: Id, value: VariableValue, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        let Some(program) = self.program.clone() else {
+            return Err(refusal(
+                "no-plan",
+                "there is no plan, so there are no variables: commit a plan first",
+            ));
+        };
+        let set = self.state.variables.set(&program.plan, &name, value.clone());
+        set.map_err(|e| refusal("bad-variable", e.to_string()))?;
+        out.push(Output::Event(Event::VariableChanged { name, value }));
+        let earliest_s = self.state.last_refresh_s.map_or(0.0, |last| last + self.config.debounce_s);
+        self.state.refresh_due_s = Some(self.state.clock_s.max(earliest_s));
+        Ok(())
+    }
+
+    /// The variables have changed: regenerates the pattern being flown and everything beyond it.
+    ///
+    /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no pattern
+    /// are refused by an event while the old pattern goes on.
+    pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
+        self.state.refresh_due_s = None;
+        self.state.last_refresh_s = Some(self.state.clock_s);
+        let keep = self.alterable_from().max(1).min(self.state.handed.len());
+        let (Some(mut cursor), Some(world)) = (self.bookmark(keep).cloned(), self.world()) else { return };
+        let leg = cursor.leg(&world).map(|l| l.id.clone());
+        match cursor.refresh_pattern(&world) {
+            Ok(true) => {
+                for handed in self.state.handed.iter_mut().take(keep) {
+                    handed.pinned = true;
+                }
+                self.replan_with(keep, cursor, false, out);
+            }
+            Ok(false) => self.replan(out),
+            Err(why) => {
+                self.tell_refused(leg.unwrap_or_else(|| Id::new("plan")), why.to_string(), out);
+                self.replan(out);
+            }
+        }
+    }
+}
+
+impl Cursor {
+    /// Leaves the leg it is in, whatever is left of it.
+    pub(crate) fn abandon_leg(&mut self) {
+        if !matches!(self.doing, Doing::Ended | Doing::Arriving) {
+            self.doing = if self.doing == Doing::Turning { Doing::Turning } else { Doing::Flying };
+            self.expansion = None;
+        }
+    }
+}

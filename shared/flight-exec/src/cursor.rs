@@ -1,0 +1,292 @@
+//! Where the expansion is in the program: a small value that gives waypoint after waypoint.
+//!
+//! A clone of a cursor is a bookmark: the same cursor in the same [`World`] gives the same waypoints. The executor keeps one
+//! before each waypoint it hands out, and goes back to it when something beyond must change.
+
+mod control;
+mod enter;
+mod place;
+
+use crate::api::{Action, Time};
+use crate::choice::Choice;
+use crate::expand::{Expansion, Point};
+use crate::path::{Level, Passing, PathState, distance_and_course};
+use crate::world::World;
+use flight_plan::{Id, Leg, Stage};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// So many steps without a single waypoint: a loop that flies nothing.
+const MOST_SILENT_STEPS: usize = 2000;
+
+/// A place in the program and the end of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cursor {
+    /// `None`: main plan; else the emergency plan's index.
+    pub section: Option<usize>,
+    /// The stage's index.
+    pub stage: usize,
+    /// Loops around the leg, outermost first.
+    pub loops: Vec<LoopFrame>,
+    /// The leg's index in the innermost list.
+    pub index: usize,
+    /// What it is doing there.
+    pub doing: Doing,
+    /// The end of the path.
+    pub path: PathState,
+    /// The end of the path when this passage began.
+    pub leg_start: PathState,
+    /// Altitude of this passage.
+    pub level: Level,
+    /// Airspeed of this passage, m/s.
+    pub airspeed_mps: f64,
+    /// Number of this passage; unique in a flight.
+    pub passage: u64,
+    /// Points of the expansion that have been given out.
+    pub given: u64,
+    /// The points of this passage (kept aside in a snapshot).
+    #[serde(skip)]
+    pub expansion: Option<Arc<Expansion>>,
+    /// How often each intersection was passed.
+    pub crossings: Vec<(Id, u64)>,
+}
+
+/// What a cursor is doing at its leg.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Doing {
+    /// About to begin it.
+    Arriving,
+    /// Giving out its points.
+    Flying,
+    /// On the full turn at the end of a pass of the innermost loop.
+    Turning,
+    /// Waiting in a loiter for a decision.
+    Waiting,
+    /// The plan is over.
+    Ended,
+}
+
+/// One loop around the cursor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoopFrame {
+    /// Index of the iterative leg in its own list.
+    pub index: usize,
+    /// The pass being flown, from 1: arrivals so far plus one.
+    pub iteration: u64,
+    /// This pass goes backwards.
+    pub reverse: bool,
+    /// The loop as a whole is flown backwards: its passes end at the body's start.
+    pub mirrored: bool,
+    /// Legs of the body passed on the last forward pass, in order.
+    pub trail: Arc<Vec<Visit>>,
+    /// On a pass back: how many of the trail's legs are still to be flown.
+    pub back: usize,
+    /// Where the path was when the loop was entered.
+    pub entered: Passing,
+}
+
+/// A leg passed on a forward pass, remembered for the way back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Visit {
+    /// Its index in its list.
+    pub index: usize,
+    /// Where the path was before it.
+    pub start: Passing,
+    /// Where the path was after it.
+    pub end: Passing,
+    /// The trail inside it, if it is a loop.
+    pub inner: Option<Arc<Vec<Visit>>>,
+    /// What was flown, if it is a pattern.
+    pub flown: Option<Arc<Expansion>>,
+}
+
+/// A waypoint on its way out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Emission {
+    /// Where, how high (AMSL, metres), how fast (m/s), what.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Airspeed towards it, m/s.
+    pub airspeed_mps: f64,
+    /// What to do there.
+    pub action: Action,
+    /// Cross it before turning.
+    pub fly_over: bool,
+    /// Choices made since the waypoint before it.
+    pub choices: Vec<Choice>,
+    /// If choices were made: the cursor after them.
+    pub sealed: Option<Box<Cursor>>,
+    /// Legs that couldn't be flown, and why.
+    pub refused: Vec<(Id, String)>,
+}
+
+/// What comes next.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// A waypoint.
+    Waypoint(Box<Emission>),
+    /// Nothing: the plan is over.
+    Ended {
+        /// Choices made since the last waypoint.
+        choices: Vec<Choice>,
+        /// Legs that couldn't be flown, and why.
+        refused: Vec<(Id, String)>,
+    },
+    /// Nothing: it waits in a loiter for a decision.
+    Waiting,
+    /// Nothing: a loop flies no waypoint at all.
+    Stalled,
+}
+
+impl Cursor {
+    /// At the beginning of the main plan (`None`) or an emergency plan, the path ending at `path`.
+    pub fn start(section: Option<usize>, path: PathState, passage: u64) -> Self {
+        Self {
+            section,
+            stage: 0,
+            loops: Vec::new(),
+            index: 0,
+            doing: Doing::Arriving,
+            path,
+            leg_start: path,
+            level: path.last.level,
+            airspeed_mps: path.last.airspeed_mps,
+            passage,
+            given: 0,
+            expansion: None,
+            crossings: Vec::new(),
+        }
+    }
+
+    /// The next waypoint.
+    pub fn next(&mut self, world: &World) -> Step {
+        let mut choices = Vec::new();
+        let mut refused = Vec::new();
+        for _ in 0..MOST_SILENT_STEPS {
+            if let Some(point) = self.peek_point(world, &mut choices) {
+                let sealed = (!choices.is_empty()).then(|| Box::new(self.clone()));
+                let emission = self.emit(point, world);
+                return Step::Waypoint(Box::new(Emission { choices, sealed, refused, ..emission }));
+            }
+            match self.doing {
+                Doing::Ended => return Step::Ended { choices, refused },
+                Doing::Waiting => return Step::Waiting,
+                Doing::Arriving => self.arrive(world, &mut choices, &mut refused),
+                Doing::Flying => self.leave(world),
+                Doing::Turning => self.doing = Doing::Arriving,
+            }
+        }
+        Step::Stalled
+    }
+
+    /// The expansion's next point, if there is one; a holding is left here when its choice says so.
+    fn peek_point(&mut self, world: &World, choices: &mut Vec<Choice>) -> Option<Point> {
+        if self.doing != Doing::Flying && self.doing != Doing::Turning {
+            return None;
+        }
+        let expansion = self.expansion.as_ref()?;
+        if let Expansion::Holding(racetrack) = expansion.as_ref()
+            && !racetrack.once
+            && let Some(lap) = racetrack.crossing(self.given)
+        {
+            let choice = self.leave_holding(lap, world);
+            let leaves = matches!(choice, Choice::Hold { leaves: true, .. });
+            choices.push(choice);
+            if leaves {
+                return None;
+            }
+        }
+        self.expansion.as_ref()?.point(self.given)
+    }
+
+    fn emit(&mut self, point: Point, world: &World) -> Emission {
+        let level = point.level.unwrap_or(self.level);
+        let altitude_amsl_m = world.amsl_m(level, point.position);
+        let from = self.path.last.position;
+        let (length_m, course_deg) = distance_and_course(from, point.position);
+        let time_s = length_m / self.airspeed_mps.max(1.0);
+        let gap_m = altitude_amsl_m - self.path.predicted_amsl_m;
+        let climbed_m =
+            gap_m.clamp(-world.profile.max_descent_mps * time_s, world.profile.max_climb_mps * time_s);
+        self.path = PathState {
+            last: Passing {
+                position: point.position,
+                level,
+                airspeed_mps: self.airspeed_mps,
+                fly_over: point.fly_over,
+            },
+            course_deg: if length_m > 0.5 { course_deg } else { self.path.course_deg },
+            predicted_amsl_m: match point.action {
+                Action::TakeOff { .. } => altitude_amsl_m,
+                _ => self.path.predicted_amsl_m + climbed_m,
+            },
+            distance_m: self.path.distance_m + length_m,
+            time_s: self.path.time_s + time_s,
+        };
+        self.given += 1;
+        if matches!(point.action, Action::Loiter { .. }) {
+            self.doing = Doing::Waiting;
+        }
+        Emission {
+            position: point.position,
+            altitude_amsl_m,
+            airspeed_mps: self.airspeed_mps,
+            action: point.action,
+            fly_over: point.fly_over,
+            choices: Vec::new(),
+            sealed: None,
+            refused: Vec::new(),
+        }
+    }
+
+    /// The stages it is in.
+    fn stages<'a>(&self, world: &World<'a>) -> &'a [Stage] {
+        world.program.stages(self.section)
+    }
+
+    /// The stage it is in.
+    pub fn current_stage<'a>(&self, world: &World<'a>) -> Option<&'a Stage> {
+        self.stages(world).get(self.stage)
+    }
+
+    /// The innermost list of legs.
+    pub fn list<'a>(&self, world: &World<'a>) -> &'a [Leg] {
+        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
+        for frame in &self.loops {
+            list = list.get(frame.index).map_or(&[][..], Leg::body);
+        }
+        list
+    }
+
+    /// The leg it is at; `None` at a take-off, a landing or the end of a list.
+    pub fn leg<'a>(&self, world: &World<'a>) -> Option<&'a Leg> {
+        self.list(world).get(self.index)
+    }
+
+    /// True while it gives out points backwards.
+    pub fn is_reverse(&self) -> bool {
+        self.loops.last().is_some_and(|f| f.reverse)
+    }
+
+    /// True if no point of the present passage is left, so that the next step decides what follows.
+    pub fn at_the_end_of_its_leg(&self) -> bool {
+        self.expansion.as_ref().is_none_or(|e| e.len().is_none_or(|n| self.given >= n))
+    }
+
+    /// Moves the end of the path to where the aircraft is: what follows is flown from there.
+    pub fn move_path_to(&mut self, here: PathState) {
+        self.path = PathState { distance_m: self.path.distance_m, time_s: self.path.time_s, ..here };
+    }
+
+    /// How often an intersection has been passed.
+    pub fn crossings_of(&self, leg: &Id) -> u64 {
+        self.crossings.iter().find(|(id, _)| id == leg).map_or(0, |(_, n)| *n)
+    }
+}
+
+/// Duration in seconds, for [`flight_plan::FlightState::time_s`].
+pub fn flight_time_s(started: Option<Time>, now: Time) -> f64 {
+    started.map_or(0.0, |s| crate::world::seconds_between(s, now))
+}

@@ -1,0 +1,268 @@
+//! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
+
+use super::{Cursor, Doing, LoopFrame, Visit};
+use crate::choice::{By, Choice};
+use crate::expand::track::{SAME_PLACE_M, turn_round};
+use crate::expand::{Expansion, Point};
+use crate::path::distance_m;
+use crate::world::World;
+use flight_plan::{Branch, Id, IterativeForm, Leg, LegKind};
+use std::sync::Arc;
+
+/// Most intersections whose passings are counted apart.
+const MOST_CROSSINGS_KEPT: usize = 256;
+
+impl Cursor {
+    /// The leg's points are all given out: on to what follows.
+    pub(super) fn leave(&mut self, world: &World) {
+        let flown = self.expansion.take();
+        let list = self.list(world);
+        let Some(leg) = list.get(self.index).filter(|_| !self.is_performed_stage(world)) else {
+            return self.next_stage(world);
+        };
+        if self.is_reverse() {
+            self.step_back();
+        } else {
+            let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. });
+            self.remember(world, flown.filter(|_| pattern), None);
+            self.index = successor(list, leg, self.index);
+            self.doing = Doing::Arriving;
+        }
+    }
+
+    fn step_back(&mut self) {
+        if let Some(frame) = self.loops.last_mut() {
+            frame.back = frame.back.saturating_sub(1);
+        }
+        self.doing = Doing::Arriving;
+    }
+
+    /// Take-off and landing have no legs: the stage itself is flown.
+    pub(super) fn is_performed_stage(&self, world: &World) -> bool {
+        use flight_plan::StageKind::{Land, TakeOff};
+        self.current_stage(world).is_some_and(|s| matches!(s.kind, TakeOff | Land))
+    }
+
+    pub(super) fn next_stage(&mut self, world: &World) {
+        self.stage += 1;
+        self.loops.clear();
+        self.index = 0;
+        let over = self.stage >= self.stages(world).len();
+        self.doing = if over { Doing::Ended } else { Doing::Arriving };
+    }
+
+    /// Keeps what a pass back would need; erases the trail since the last visit of the same leg, so that jumps back can't
+    /// make it grow.
+    fn remember(&mut self, world: &World, flown: Option<Arc<Expansion>>, inner: Option<Arc<Vec<Visit>>>) {
+        if !self.goes_back_later(world) {
+            return;
+        }
+        let (index, start, end) = (self.index, self.leg_start.last, self.path.last);
+        if let Some(frame) = self.loops.last_mut() {
+            let trail = Arc::make_mut(&mut frame.trail);
+            let again = trail.iter().position(|v| v.index == index).unwrap_or(trail.len());
+            trail.truncate(again);
+            trail.push(Visit { index, start, end, inner, flown });
+        }
+    }
+
+    fn goes_back_later(&self, world: &World) -> bool {
+        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
+        self.loops.iter().any(|frame| {
+            let Some(leg) = list.get(frame.index) else { return false };
+            list = leg.body();
+            frame.mirrored || matches!(leg.kind, LegKind::Iterative { form: IterativeForm::Reverse, .. })
+        })
+    }
+
+    /// The innermost list is at its end in the direction of flight.
+    pub(super) fn end_of_list(&mut self, world: &World, choices: &mut Vec<Choice>) {
+        let Some(frame) = self.loops.last() else {
+            return self.next_stage(world);
+        };
+        let parent = self.parent_list(world);
+        let Some(leg) = parent.get(frame.index) else {
+            return self.next_stage(world);
+        };
+        let LegKind::Iterative { form, count, until, turn, .. } = &leg.kind else {
+            return self.next_stage(world);
+        };
+        if frame.reverse == frame.mirrored {
+            let inside = world.in_iteration(frame.iteration);
+            let own = count.as_ref().and_then(|c| inside.number(c).ok());
+            let of = world.count_of(&leg.id).or(own.map(|n| n.max(1.0) as u64));
+            let done = of.is_some_and(|n| frame.iteration >= n)
+                || until.as_ref().is_some_and(|condition| inside.holds(condition));
+            let arrival = frame.iteration;
+            choices.push(Choice::Loop { leg: leg.id.clone(), arrival, of, again: !done });
+            if done {
+                return self.leave_loop(world);
+            }
+        }
+        self.next_pass(leg, *form, *turn, world);
+    }
+
+    fn next_pass(&mut self, leg: &Leg, form: IterativeForm, turn: flight_plan::TurnDirection, world: &World) {
+        let Some(frame) = self.loops.last_mut() else { return };
+        if frame.reverse == frame.mirrored {
+            frame.iteration = frame.iteration.saturating_add(1);
+        }
+        let turns = form == IterativeForm::Reverse;
+        if turns {
+            frame.reverse = !frame.reverse;
+        }
+        frame.back = frame.trail.len();
+        if !frame.reverse {
+            frame.trail = Arc::default();
+        }
+        self.index = 0;
+        self.doing = Doing::Arriving;
+        if turns && frame_flies(leg) {
+            self.begin_turn_round(turn, world);
+        } else if self.is_reverse() {
+            self.connect_to_the_end();
+        }
+    }
+
+    fn begin_turn_round(&mut self, turn: flight_plan::TurnDirection, world: &World) {
+        self.expansion = Some(Arc::new(turn_round(&self.path, turn, self.airspeed_mps, world)));
+        self.begin_passage(Doing::Turning);
+    }
+
+    /// A pass back begins where the forward pass ended; a form-B loop that is flown backwards has to go there first.
+    pub(super) fn connect_to_the_end(&mut self) {
+        let Some(end) = self.loops.last().and_then(|f| f.trail.last()).map(|v| v.end) else { return };
+        if distance_m(end.position, self.path.last.position) > SAME_PLACE_M {
+            self.level = end.level;
+            self.airspeed_mps = end.airspeed_mps;
+            let point = Point { fly_over: end.fly_over, ..Point::fly(end.position) };
+            self.expansion = Some(Arc::new(Expansion::Points(vec![point])));
+            self.begin_passage(Doing::Turning);
+        }
+    }
+
+    pub(super) fn begin_passage(&mut self, doing: Doing) {
+        self.passage += 1;
+        self.given = 0;
+        self.leg_start = self.path;
+        self.doing = doing;
+    }
+
+    fn parent_list<'a>(&self, world: &World<'a>) -> &'a [Leg] {
+        let outer = self.loops.len().saturating_sub(1);
+        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
+        for frame in self.loops.iter().take(outer) {
+            list = list.get(frame.index).map_or(&[][..], Leg::body);
+        }
+        list
+    }
+
+    fn leave_loop(&mut self, world: &World) {
+        let Some(LoopFrame { index, trail, entered, .. }) = self.loops.pop() else { return };
+        self.index = index;
+        self.leg_start.last = entered;
+        let list = self.list(world);
+        let Some(leg) = list.get(index) else { return self.next_stage(world) };
+        if self.is_reverse() {
+            self.step_back();
+        } else {
+            self.remember(world, None, Some(trail));
+            self.index = successor(list, leg, index);
+            self.doing = Doing::Arriving;
+        }
+    }
+
+    /// A fork or merge: which way on.
+    pub(super) fn cross(&mut self, leg: &Leg, world: &World, choices: &mut Vec<Choice>) {
+        let LegKind::Intersection { branches, default, .. } = &leg.kind else { return };
+        self.leg_start = self.path;
+        self.remember(world, None, None);
+        let list = self.list(world);
+        if branches.len() < 2 {
+            let target = branches.first().and_then(|b| b.next.as_ref());
+            self.index = target.and_then(|id| index_of(list, id)).unwrap_or(self.index + 1);
+            return;
+        }
+        let crossing = self.crossings_of(&leg.id) + 1;
+        let chosen = choose(&leg.id, crossing, branches, default.as_ref(), &self.inside(world));
+        let (branch, by) = chosen.map_or((None, By::Default), |(b, by)| (Some(b), by));
+        let name = branch.map(|b| b.id.clone());
+        choices.push(Choice::Branch { leg: leg.id.clone(), crossing, branch: name, by });
+        match branch {
+            Some(branch) => {
+                self.count_crossing(&leg.id);
+                let target = branch.next.as_ref().and_then(|id| index_of(list, id));
+                self.index = target.unwrap_or(self.index + 1);
+            }
+            None => self.wait_here(world),
+        }
+    }
+
+    fn wait_here(&mut self, world: &World) {
+        let radius_m = world.turn_radius_m(self.airspeed_mps);
+        let action = crate::api::Action::Loiter { radius_m };
+        let point = Point { action, ..Point::fly(self.path.last.position) };
+        self.expansion = Some(Arc::new(Expansion::Points(vec![point])));
+        self.begin_passage(Doing::Flying);
+    }
+
+    fn count_crossing(&mut self, leg: &Id) {
+        match self.crossings.iter_mut().find(|(id, _)| id == leg) {
+            Some((_, n)) => *n += 1,
+            None => {
+                self.crossings.push((leg.clone(), 1));
+                let surplus = self.crossings.len().saturating_sub(MOST_CROSSINGS_KEPT);
+                self.crossings.drain(..surplus);
+            }
+        }
+    }
+
+    /// The world as the innermost loop sees it.
+    pub(super) fn inside<'a>(&self, world: &World<'a>) -> World<'a> {
+        world.in_iteration(self.loops.last().map_or(0, |f| f.iteration))
+    }
+
+    /// At a crossing of the fix of a holding to altitude: is it high (or low) enough?
+    ///
+    /// Ahead of the aircraft the predicted altitude decides; when the aircraft is there, its own.
+    pub(super) fn leave_holding(&self, lap: u64, world: &World) -> Choice {
+        let leg = self.leg(world).map_or_else(|| Id::new(""), |l| l.id.clone());
+        let target_m = world.amsl_m(self.level, self.path.last.position);
+        let climbing = target_m >= self.leg_start.predicted_amsl_m;
+        let ahead = distance_m(world.flight.position, self.path.last.position);
+        let near_m = 2.0 * world.turn_radius_m(self.airspeed_mps) + 10.0;
+        let really_there = world.arriving && ahead < near_m;
+        let altitude_m = if really_there { world.flight.altitude_amsl_m } else { self.path.predicted_amsl_m };
+        let left_m = if climbing { target_m - altitude_m } else { altitude_m - target_m };
+        Choice::Hold { leg, lap, leaves: left_m <= world.config.altitude_tolerance_m }
+    }
+}
+
+fn frame_flies(leg: &Leg) -> bool {
+    !leg.body().is_empty()
+}
+
+fn successor(list: &[Leg], leg: &Leg, index: usize) -> usize {
+    leg.next.as_ref().and_then(|id| index_of(list, id)).unwrap_or(index + 1)
+}
+
+fn index_of(list: &[Leg], id: &Id) -> Option<usize> {
+    list.iter().position(|l| l.id == *id)
+}
+
+/// Explicit decision, first condition that holds, default: in this order.
+fn choose<'a>(
+    leg: &Id,
+    crossing: u64,
+    branches: &'a [Branch],
+    default: Option<&Id>,
+    world: &World,
+) -> Option<(&'a Branch, By)> {
+    let named = |id: &Id| branches.iter().find(|b| b.id == *id);
+    let taken = world.decisions.iter().find(|d| d.leg == *leg && d.crossing == crossing);
+    if let Some(found) = taken.and_then(|d| Some((named(&d.branch)?, d.by))) {
+        return Some(found);
+    }
+    let by_condition = branches.iter().find(|b| b.when.as_ref().is_some_and(|c| world.holds(c)));
+    by_condition.map(|b| (b, By::Condition)).or_else(|| Some((named(default?)?, By::Default)))
+}

@@ -1,0 +1,180 @@
+//! Beginning a leg.
+
+use super::{Cursor, Doing, LoopFrame, Step, Visit};
+use crate::choice::Choice;
+use crate::expand::track::{Approach, expand};
+use crate::expand::{ExpandError, Expansion, runway};
+use crate::world::World;
+use flight_plan::{Id, Leg, LegKind, StageKind};
+use geometry::LatLon;
+use std::sync::Arc;
+
+impl Cursor {
+    /// At the beginning of a stage or a leg: what is it?
+    pub(super) fn arrive(
+        &mut self,
+        world: &World,
+        choices: &mut Vec<Choice>,
+        refused: &mut Vec<(Id, String)>,
+    ) {
+        if self.is_performed_stage(world) {
+            return self.perform_stage(world, refused);
+        }
+        if let Some(frame) = self.loops.last().filter(|f| f.reverse) {
+            match frame.back.checked_sub(1).and_then(|i| frame.trail.get(i)).cloned() {
+                Some(visit) => self.begin_backward(&visit, world, refused),
+                None => self.end_of_list(world, choices),
+            }
+            return;
+        }
+        let Some(leg) = self.leg(world) else {
+            return self.end_of_list(world, choices);
+        };
+        match &leg.kind {
+            LegKind::Iterative { .. } => self.enter_loop(false, Arc::default()),
+            LegKind::Intersection { .. } => self.cross(leg, world, choices),
+            _ => self.begin(leg, None, world, refused),
+        }
+    }
+
+    fn begin_backward(&mut self, visit: &Visit, world: &World, refused: &mut Vec<(Id, String)>) {
+        self.index = visit.index;
+        let Some(leg) = self.leg(world) else {
+            return self.leave(world);
+        };
+        match (&leg.kind, &visit.inner) {
+            (LegKind::Iterative { .. }, Some(inner)) if !inner.is_empty() => {
+                self.enter_loop(true, inner.clone());
+                self.connect_to_the_end();
+            }
+            // nothing in it was flown on the way out
+            (LegKind::Iterative { .. }, _) => self.leave(world),
+            _ => self.begin(leg, Some(visit), world, refused),
+        }
+    }
+
+    fn enter_loop(&mut self, mirrored: bool, trail: Arc<Vec<Visit>>) {
+        self.loops.push(LoopFrame {
+            index: self.index,
+            iteration: 1,
+            reverse: mirrored,
+            mirrored,
+            back: trail.len(),
+            trail,
+            entered: self.path.last,
+        });
+        self.index = 0;
+    }
+
+    fn perform_stage(&mut self, world: &World, refused: &mut Vec<(Id, String)>) {
+        let Some(stage) = self.current_stage(world) else {
+            return self.next_stage(world);
+        };
+        let points = match stage.kind {
+            StageKind::TakeOff => runway::take_off(stage, world),
+            _ => runway::land(stage, &self.path, world),
+        };
+        self.airspeed_mps = world.airspeed_mps(&[], stage);
+        self.fly_or_refuse(&stage.id, points.map(Expansion::Points), refused);
+    }
+
+    fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, refused: &mut Vec<(Id, String)>) {
+        let inside = self.inside(world);
+        self.set_level_and_speed(visit, &inside);
+        let onward = self.onward(leg, world);
+        let approach =
+            Approach { path: &self.path, airspeed_mps: self.airspeed_mps, reversed: visit, onward };
+        let expansion = expand(leg, &approach, &inside);
+        self.fly_or_refuse(&leg.id, expansion, refused);
+    }
+
+    fn fly_or_refuse(
+        &mut self,
+        id: &Id,
+        expansion: Result<Expansion, ExpandError>,
+        refused: &mut Vec<(Id, String)>,
+    ) {
+        let expansion = expansion.unwrap_or_else(|why| {
+            refused.push((id.clone(), why.to_string()));
+            Expansion::Points(Vec::new())
+        });
+        self.expansion = Some(Arc::new(expansion));
+        self.begin_passage(Doing::Flying);
+    }
+
+    /// Backwards, altitude and speed are those of the waypoint that is flown to.
+    fn set_level_and_speed(&mut self, visit: Option<&Visit>, world: &World) {
+        if let Some(visit) = visit {
+            self.level = visit.start.level;
+            self.airspeed_mps = visit.start.airspeed_mps;
+        } else if let Some(stage) = self.current_stage(world) {
+            let chain = self.chain(world);
+            self.level = world.level(&chain, stage, self.path.last.level);
+            self.airspeed_mps = world.airspeed_mps(&chain, stage);
+        }
+    }
+
+    /// Loops around the leg and the leg itself, outermost first.
+    pub(crate) fn chain<'a>(&self, world: &World<'a>) -> Vec<&'a Leg> {
+        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
+        let mut chain = Vec::with_capacity(self.loops.len() + 1);
+        for index in self.loops.iter().map(|f| f.index).chain([self.index]) {
+            let Some(leg) = list.get(index) else { break };
+            chain.push(leg);
+            list = leg.body();
+        }
+        chain
+    }
+
+    /// For an orbit: where the path goes afterwards. Looked up by a cursor that skips it; an orbit after an orbit is
+    /// approached as it comes.
+    fn onward(&self, leg: &Leg, world: &World) -> Option<LatLon> {
+        if world.looking_ahead || !matches!(leg.kind, LegKind::Orbit { .. }) {
+            return None;
+        }
+        let mut ahead = self.clone();
+        ahead.doing = Doing::Flying;
+        ahead.expansion = None;
+        let world = World { looking_ahead: true, ..*world };
+        match ahead.next(&world) {
+            Step::Waypoint(emission) => Some(emission.position),
+            _ => None,
+        }
+    }
+
+    /// Rebuilds the pattern it is in the middle of with the values of now. `Ok(true)`: it is another one.
+    ///
+    /// # Errors
+    /// The new values make no pattern; the old one stays.
+    pub fn refresh_pattern(&mut self, world: &World) -> Result<bool, ExpandError> {
+        let inside = self.inside(world);
+        let (Some(leg), Some(old)) = (self.leg(world), self.expansion.clone()) else {
+            return Ok(false);
+        };
+        if self.doing != Doing::Flying || self.given == 0 {
+            return Ok(false);
+        }
+        let fresh = match old.as_ref() {
+            Expansion::Scan(sweep) => sweep.regenerated(leg, self.given, &self.path, &inside)?,
+            Expansion::Orbit(_) => {
+                let approach = Approach {
+                    path: &self.leg_start,
+                    airspeed_mps: self.airspeed_mps,
+                    reversed: None,
+                    onward: self.onward(leg, world),
+                };
+                Some(expand(leg, &approach, &inside)?)
+            }
+            _ => None,
+        };
+        let Some(fresh) = fresh.filter(|f| f != old.as_ref()) else {
+            return Ok(false);
+        };
+        // a regenerated scan begins anew at the place where the path is
+        if matches!(fresh, Expansion::Scan(_)) {
+            self.given = 0;
+        }
+        self.expansion = Some(Arc::new(fresh));
+        Ok(true)
+    }
+}

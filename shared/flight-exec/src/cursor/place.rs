@@ -1,0 +1,94 @@
+//! Places: telling people where a cursor is, and putting a cursor at a leg.
+
+use super::{Cursor, Doing, LoopFrame};
+use crate::api::{Branching, IterationPlace, PlacePointer};
+use crate::world::World;
+use flight_plan::{Id, LegKind, LegPath, Program};
+use std::sync::Arc;
+
+impl Cursor {
+    /// Where it is, for people; the distance is left at zero.
+    pub fn place(&self, world: &World) -> PlacePointer {
+        let stage = self.current_stage(world).map_or_else(|| Id::new(""), |s| s.id.clone());
+        let chain = self.chain(world);
+        let turning = self.doing == Doing::Turning;
+        let innermost = chain.get(self.loops.len().saturating_sub(1)).filter(|_| turning);
+        let leg = innermost.or(chain.get(self.loops.len())).map_or_else(|| stage.clone(), |l| l.id.clone());
+        PlacePointer {
+            plan: self.branching(world.program),
+            stage,
+            leg,
+            iterations: self.iterations(world),
+            reverse: self.is_reverse(),
+            distance_m: 0.0,
+        }
+    }
+
+    /// Main plan or which emergency plan.
+    pub fn branching(&self, program: &Program) -> Branching {
+        let plan = self.section.and_then(|i| program.plan.emergency_plans.get(i));
+        plan.map_or(Branching::Main, |p| Branching::Emergency(p.id.clone()))
+    }
+
+    fn iterations(&self, world: &World) -> Vec<IterationPlace> {
+        let chain = self.chain(world);
+        let of = |frame: &LoopFrame, leg: &flight_plan::Leg| {
+            let LegKind::Iterative { count, .. } = &leg.kind else { return None };
+            let inside = world.in_iteration(frame.iteration);
+            let own = count.as_ref().and_then(|c| inside.number(c).ok()).map(|n| n.max(1.0) as u64);
+            world.count_of(&leg.id).or(own)
+        };
+        let named = self.loops.iter().zip(chain);
+        named
+            .map(|(frame, leg)| IterationPlace {
+                leg: leg.id.clone(),
+                iteration: frame.iteration,
+                of: of(frame, leg),
+                reverse: frame.reverse,
+            })
+            .collect()
+    }
+
+    /// The innermost-first identifiers of its loops, with their frames.
+    pub fn loop_ids(&self, world: &World) -> Vec<Id> {
+        self.chain(world).into_iter().take(self.loops.len()).map(|leg| leg.id.clone()).collect()
+    }
+
+    /// The same path, at the beginning of another leg (or stage). Loops that stay around it keep their counters, the
+    /// others begin with their first pass.
+    pub fn moved_to(&self, target: &LegPath, world: &World) -> Cursor {
+        let known = self.loop_ids(world);
+        self.placed_at(target, &known, world.program)
+    }
+
+    /// As [`Cursor::moved_to`] in a program that may be another one: `known` names this cursor's loops.
+    pub fn placed_at(&self, target: &LegPath, known: &[Id], program: &Program) -> Cursor {
+        let chain = program.chain(target);
+        let outer = target.indices.split_last().map_or(&[][..], |(_, outer)| outer);
+        let same_section = self.section == target.emergency_plan;
+        let loops = outer.iter().zip(chain).map(|(index, leg)| {
+            let old = known.iter().position(|id| *id == leg.id).filter(|_| same_section);
+            let old = old.and_then(|i| self.loops.get(i));
+            LoopFrame {
+                index: *index,
+                iteration: old.map_or(1, |f| f.iteration),
+                reverse: false,
+                mirrored: false,
+                trail: Arc::default(),
+                back: 0,
+                entered: self.path.last,
+            }
+        });
+        Cursor {
+            section: target.emergency_plan,
+            stage: target.stage,
+            loops: loops.collect(),
+            index: target.indices.last().copied().unwrap_or(0),
+            doing: Doing::Arriving,
+            expansion: None,
+            given: 0,
+            leg_start: self.path,
+            ..self.clone()
+        }
+    }
+}

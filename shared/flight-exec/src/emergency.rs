@@ -1,0 +1,102 @@
+//! Emergencies: an alternative plan at once, more severe causes only, back to the main plan by command.
+
+use crate::api::{Event, Output, Refusal};
+use crate::cursor::Cursor;
+use crate::executor::{Emergency, Executor, refusal};
+use flight_plan::{Cause, Id};
+
+impl Executor {
+    pub(crate) fn emergency(
+        &mut self,
+        cause: Cause,
+        plan: Option<Id>,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
+        self.flying_program()?;
+        self.check_escalation(cause)?;
+        let from_leg = match &self.state.emergency {
+            Some(running) => running.from_leg.clone(),
+            None => self.main_leg(),
+        };
+        let Some(index) = self.resolve(cause, plan.as_ref(), from_leg.as_ref())? else {
+            out.push(Output::Event(Event::EmergencyUnanswered { cause }));
+            let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
+            return Err(refusal("no-emergency-plan", reason));
+        };
+        self.switch_to(index, cause, from_leg, out);
+        Ok(())
+    }
+
+    /// During an emergency only a more severe cause counts.
+    fn check_escalation(&self, cause: Cause) -> Result<(), Refusal> {
+        match &self.state.emergency {
+            Some(running) if cause <= running.cause => {
+                let reason = format!(
+                    "emergency plan `{}` is being flown for {:?}: only a more severe cause replaces it",
+                    running.plan, running.cause
+                );
+                Err(refusal("not-more-severe", reason))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The emergency plan's index: the named one, else the one in force for the leg and the cause.
+    fn resolve(&self, cause: Cause, named: Option<&Id>, leg: Option<&Id>) -> Result<Option<usize>, Refusal> {
+        let program = self.flying_program()?;
+        let index_of = |id: &Id| program.plan.emergency_plans.iter().position(|p| p.id == *id);
+        if let Some(id) = named {
+            let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
+            return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
+        }
+        let in_force = leg.and_then(|leg| program.emergency_for(leg, cause));
+        Ok(in_force.and_then(|plan| index_of(&plan.id)))
+    }
+
+    fn switch_to(&mut self, index: usize, cause: Cause, from_leg: Option<Id>, out: &mut Vec<Output>) {
+        let Some(program) = self.program.clone() else { return };
+        let Some(plan) = program.plan.emergency_plans.get(index).map(|p| p.id.clone()) else { return };
+        let goes_on = self.state.emergency.as_ref().is_some_and(|running| running.plan == plan);
+        let event = Event::EmergencyStarted { cause, plan: plan.clone(), from_leg: from_leg.clone() };
+        out.push(Output::Event(event));
+        self.state.emergency = Some(Emergency { cause, plan, from_leg });
+        if goes_on {
+            return;
+        }
+        let cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
+        self.leave_hold(out);
+        self.jump(cursor, out);
+    }
+
+    /// An emergency doesn't wait for a resume.
+    fn leave_hold(&mut self, out: &mut Vec<Output>) {
+        self.state.held_at = None;
+        self.enter_phase(crate::api::Phase::Flying, out);
+    }
+
+    pub(crate) fn return_to_main(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        self.flying_program()?;
+        if self.state.emergency.is_none() {
+            return Err(refusal("no-emergency", "the main plan is being flown: use go-to for another leg"));
+        }
+        let cursor = self.cursor_at(leg, None)?;
+        self.state.emergency = None;
+        self.jump(cursor, out);
+        Ok(())
+    }
+
+    /// Leg of the main plan that is being flown.
+    fn main_leg(&self) -> Option<Id> {
+        self.state.handed.front().map(|h| h.place.leg.clone())
+    }
+
+    /// The plan an emergency without a particular cause would fly now.
+    pub(crate) fn emergency_in_force(&self) -> Option<Id> {
+        let program = self.program.as_ref()?;
+        let leg = match &self.state.emergency {
+            Some(running) => running.from_leg.clone(),
+            None => self.main_leg(),
+        };
+        Some(program.emergency_for(&leg?, Cause::Operator)?.id.clone())
+    }
+}

@@ -1,0 +1,501 @@
+//! The virtual machine: inputs in, outputs out, time as an argument.
+
+use crate::api::{AircraftState, Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
+use crate::config::Config;
+use crate::cursor::Cursor;
+use crate::decision::Decision;
+use crate::handed::{Handed, Onward, Stretch, lay_out};
+use crate::path::{Level, Passing, PathState, distance_m};
+use crate::world::World;
+use aircraft::Profile;
+use flight_plan::{AltitudeReference, Cause, FlightState, Id, Program, Variables};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// The executor: flies a plan by handing out waypoints a bounded way ahead.
+#[derive(Clone)]
+pub struct Executor {
+    pub(crate) config: Config,
+    pub(crate) terrain: Arc<dyn Terrain>,
+    pub(crate) profile: Profile,
+    pub(crate) program: Option<Arc<Program>>,
+    pub(crate) proposed: Option<Arc<Program>>,
+    pub(crate) state: State,
+    last_step: Option<Time>,
+}
+
+/// Everything that a snapshot keeps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct State {
+    pub phase: Phase,
+    pub variables: Variables,
+    pub handed: VecDeque<Handed>,
+    /// Where the path goes on after the last waypoint handed out.
+    pub tail: Option<Cursor>,
+    pub onward: Onward,
+    /// True if choices were made after the last waypoint.
+    pub tail_has_choices: bool,
+    /// Highest token used so far.
+    pub last_token: u64,
+    /// Highest passage number used so far.
+    pub last_passage: u64,
+    /// Passage whose beginning was announced.
+    pub announced: Option<u64>,
+    pub decisions: Vec<Decision>,
+    pub requested: Vec<(Id, u64)>,
+    pub counts: Vec<(Id, u64)>,
+    pub emergency: Option<Emergency>,
+    /// Where the aircraft was when it was told to hold.
+    pub held_at: Option<LatLon>,
+    pub gateway_controls: bool,
+    pub aircraft: Option<AircraftState>,
+    pub revision: u64,
+    /// Seconds of the executor's own clock: goes on from a snapshot.
+    pub clock_s: f64,
+    pub started_s: Option<f64>,
+    pub refresh_due_s: Option<f64>,
+    pub last_refresh_s: Option<f64>,
+    pub review_due_s: f64,
+    /// Last reason a leg couldn't be flown or regenerated, so that it is told once.
+    pub told: Option<(Id, String)>,
+}
+
+/// The emergency being flown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Emergency {
+    pub cause: Cause,
+    pub plan: Id,
+    /// Leg of the main plan on which it was raised.
+    pub from_leg: Option<Id>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            phase: Phase::Idle,
+            variables: Variables::default(),
+            handed: VecDeque::new(),
+            tail: None,
+            onward: Onward::Open,
+            tail_has_choices: false,
+            last_token: 0,
+            last_passage: 0,
+            announced: None,
+            decisions: Vec::new(),
+            requested: Vec::new(),
+            counts: Vec::new(),
+            emergency: None,
+            held_at: None,
+            gateway_controls: false,
+            aircraft: None,
+            revision: 0,
+            clock_s: 0.0,
+            started_s: None,
+            refresh_due_s: None,
+            last_refresh_s: None,
+            review_due_s: 0.0,
+            told: None,
+        }
+    }
+}
+
+/// A refusal.
+pub(crate) fn refusal(code: &str, reason: impl Into<String>) -> Refusal {
+    Refusal { code: code.into(), reason: reason.into() }
+}
+
+impl Executor {
+    /// An executor without a plan.
+    pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
+        let state = State::default();
+        Self { config, terrain, profile, program: None, proposed: None, state, last_step: None }
+    }
+
+    /// One thing happened at `now`; what has to be done about it is appended to `out`.
+    pub fn step(&mut self, now: Time, input: Input, out: &mut Vec<Output>) {
+        self.advance_clock(now);
+        match input {
+            Input::Tick => {}
+            Input::Aircraft(state) => self.state.aircraft = Some(state),
+            Input::Propose { request, program } => self.propose(request, program, out),
+            Input::Command { request, command } => {
+                let result = self.command(command, out);
+                self.answer(request, result, out);
+            }
+            Input::Progress { current } => self.progress(current, out),
+            Input::Rejected { first, reason } => self.rejected(first, reason, out),
+            Input::GatewayControls(controls) => self.gateway_controls(controls, out),
+        }
+        self.look_after(out);
+    }
+
+    /// When to call [`Executor::step`] with a tick, if nothing else happens before.
+    pub fn deadline(&self) -> Option<Time> {
+        let review = (self.is_flying() && self.has_provisional_choices()).then_some(self.state.review_due_s);
+        let refresh = self.state.refresh_due_s.filter(|_| self.is_flying());
+        let due_s = review.into_iter().chain(refresh).fold(f64::INFINITY, f64::min);
+        let wait_s = (due_s - self.state.clock_s).max(0.0);
+        let last = self.last_step?;
+        wait_s.is_finite().then(|| last + Time::from_secs_f64(wait_s.min(3600.0)))
+    }
+
+    /// The active plan.
+    pub fn program(&self) -> Option<&Arc<Program>> {
+        self.program.as_ref()
+    }
+
+    /// The plan that was proposed last and may be committed.
+    pub fn proposed(&self) -> Option<&Arc<Program>> {
+        self.proposed.as_ref()
+    }
+
+    /// Present values of the plan's variables.
+    pub fn variables(&self) -> &Variables {
+        &self.state.variables
+    }
+
+    /// Waypoints handed out and not flown yet, the current one first.
+    pub fn ahead(&self) -> impl Iterator<Item = &crate::api::Waypoint> {
+        self.state.handed.iter().map(|h| &h.waypoint)
+    }
+
+    /// Highest token used so far.
+    pub fn last_token(&self) -> Token {
+        Token(self.state.last_token)
+    }
+
+    fn advance_clock(&mut self, now: Time) {
+        if let Some(last) = self.last_step {
+            self.state.clock_s += crate::world::seconds_between(last, now);
+        }
+        self.last_step = Some(self.last_step.map_or(now, |last| last.max(now)));
+    }
+
+    fn answer(&self, request: RequestId, result: Result<(), Refusal>, out: &mut Vec<Output>) {
+        out.push(Output::Answer { request, result: result.map(|()| Answer::Done) });
+    }
+
+    /// What is due after every input.
+    fn look_after(&mut self, out: &mut Vec<Output>) {
+        if !self.is_flying() {
+            return;
+        }
+        if self.state.refresh_due_s.is_some_and(|due| due <= self.state.clock_s) {
+            self.refresh(out);
+        }
+        if self.state.review_due_s <= self.state.clock_s {
+            self.state.review_due_s = self.state.clock_s + self.config.review_s;
+            self.review(out);
+        }
+        self.fill(out);
+        self.attend_decisions(out);
+    }
+
+    /// Between start and finish, holding or not.
+    pub(crate) fn is_flying(&self) -> bool {
+        matches!(self.state.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
+    }
+
+    pub(crate) fn flying_program(&self) -> Result<Arc<Program>, Refusal> {
+        let program = self.program.clone().filter(|_| self.is_flying());
+        program
+            .ok_or_else(|| refusal("not-flying", "no plan is being flown: commit a plan and start it first"))
+    }
+
+    /// What is changed now must wait to be fed.
+    fn is_muted(&self) -> bool {
+        self.state.phase == Phase::Holding || self.state.gateway_controls
+    }
+
+    pub(crate) fn enter_phase(&mut self, phase: Phase, out: &mut Vec<Output>) {
+        if self.state.phase != phase {
+            self.state.phase = phase;
+            out.push(Output::Event(Event::PhaseChanged { phase }));
+        }
+    }
+
+    /// The world as the cursor sees it; `None` without a plan.
+    pub(crate) fn world(&self) -> Option<World<'_>> {
+        Some(World {
+            program: self.program.as_deref()?,
+            config: &self.config,
+            profile: &self.profile,
+            terrain: self.terrain.as_ref(),
+            variables: &self.state.variables,
+            flight: self.flight_state(),
+            decisions: &self.state.decisions,
+            counts: &self.state.counts,
+            arriving: false,
+            looking_ahead: false,
+        })
+    }
+
+    fn flight_state(&self) -> FlightState {
+        let time_s = self.state.started_s.map_or(0.0, |s| self.state.clock_s - s);
+        let Some(a) = &self.state.aircraft else {
+            return FlightState { time_s, ..FlightState::on_ground(self.home()) };
+        };
+        FlightState {
+            iteration: 0,
+            time_s,
+            altitude_amsl_m: a.altitude_amsl_m,
+            airspeed_mps: a.airspeed_mps,
+            battery: a.battery,
+            fuel: a.battery,
+            wind_mps: a.wind_east_mps.hypot(a.wind_north_mps),
+            position: a.position,
+        }
+    }
+
+    fn home(&self) -> LatLon {
+        let home = self.program.as_ref().and_then(|p| p.plan.home());
+        home.map_or(LatLon::new(0.0, 0.0), |r| r.threshold)
+    }
+
+    /// The aircraft as the end of a path; before its first report, standing at home.
+    pub(crate) fn here(&self) -> PathState {
+        let runway = self.program.as_ref().and_then(|p| p.plan.home());
+        let aircraft = self.state.aircraft.as_ref();
+        let elevation_m = runway.map_or(0.0, |r| r.elevation_amsl_m);
+        let altitude_m = aircraft.map_or(elevation_m, |a| a.altitude_amsl_m);
+        let course_deg = aircraft.map_or(runway.map_or(0.0, |r| r.heading_deg), |a| a.track_deg);
+        PathState {
+            last: Passing {
+                position: aircraft.map_or_else(|| self.home(), |a| a.position),
+                level: Level { metres: altitude_m, reference: AltitudeReference::Amsl },
+                airspeed_mps: self.profile.cruise_airspeed_mps,
+                fly_over: false,
+            },
+            course_deg,
+            predicted_amsl_m: altitude_m,
+            distance_m: self.state.tail.as_ref().map_or(0.0, |t| t.path.distance_m),
+            time_s: self.state.tail.as_ref().map_or(0.0, |t| t.path.time_s),
+        }
+    }
+
+    /// From the aircraft to the waypoint it steers to, metres.
+    pub(crate) fn to_current_m(&self) -> f64 {
+        match (self.state.handed.front(), &self.state.aircraft) {
+            (Some(front), Some(a)) => distance_m(a.position, front.waypoint.position),
+            _ => 0.0,
+        }
+    }
+
+    /// Path from the aircraft to a path length ahead, metres; never negative.
+    pub(crate) fn path_left_m(&self, at_m: f64) -> f64 {
+        let Some(front) = self.state.handed.front() else { return 0.0 };
+        if at_m <= front.before.path.distance_m {
+            return 0.0;
+        }
+        (self.to_current_m() + at_m - front.end_m).max(0.0)
+    }
+
+    /// Tops the horizon up.
+    fn fill(&mut self, out: &mut Vec<Output>) {
+        if self.is_muted() || self.state.onward != Onward::Open {
+            return;
+        }
+        let (count, from_s) = (self.state.handed.len(), self.time_at_aircraft_s());
+        let more = self.horizon(count, from_s);
+        let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
+        let Some(world) = self.world() else { return };
+        let stretch = lay_out(tail, &world, false, more);
+        let end_changes = stretch.handed.is_empty() && stretch.onward == Onward::Ended;
+        if end_changes {
+            return self.replan_last(out);
+        }
+        let first = self.state.handed.len();
+        self.append(stretch, out);
+        self.feed(None, first, out);
+    }
+
+    /// Asks for more until there are enough waypoints and seconds ahead.
+    fn horizon(&self, count: usize, from_s: f64) -> impl Fn(usize, &Cursor) -> bool + use<> {
+        let c = &self.config;
+        let (most, least, horizon_s) =
+            (c.horizon_waypoints.max(4), c.least_waypoints.max(2), c.horizon_s.max(60.0));
+        move |new, cursor| {
+            let ahead = count + new;
+            ahead < most && (ahead < least || cursor.path.time_s - from_s < horizon_s)
+        }
+    }
+
+    /// Flying time of the path where the aircraft is, seconds.
+    fn time_at_aircraft_s(&self) -> f64 {
+        let speed = |h: &Handed| h.waypoint.airspeed_mps.max(1.0);
+        let front = self.state.handed.front();
+        let left_s = front.map_or(0.0, |h| self.to_current_m() / speed(h));
+        let end_s = front.map(|h| h.end_s).or(self.state.tail.as_ref().map(|t| t.path.time_s));
+        end_s.unwrap_or(0.0) - left_s
+    }
+
+    /// Takes a stretch over behind what is handed out, numbering its waypoints.
+    fn append(&mut self, stretch: Stretch, out: &mut Vec<Output>) {
+        for mut handed in stretch.handed {
+            self.state.last_token += 1;
+            handed.waypoint.token = Token(self.state.last_token);
+            self.state.last_passage = self.state.last_passage.max(handed.passage);
+            self.state.handed.push_back(handed);
+        }
+        self.state.tail = Some(stretch.tail);
+        self.state.onward = stretch.onward;
+        self.state.tail_has_choices = !stretch.tail_choices.is_empty();
+        for (leg, reason) in stretch.refused {
+            self.tell_refused(leg, reason, out);
+        }
+        if stretch.onward == Onward::Stalled {
+            self.stalled(out);
+        }
+    }
+
+    pub(crate) fn tell_refused(&mut self, leg: Id, reason: String, out: &mut Vec<Output>) {
+        let told = Some((leg.clone(), reason.clone()));
+        if self.state.told != told {
+            self.state.told = told;
+            out.push(Output::Event(Event::PatternRefused { leg, reason }));
+        }
+    }
+
+    /// A loop without waypoints: nothing will ever follow, so the aircraft holds where its path ends.
+    fn stalled(&mut self, out: &mut Vec<Output>) {
+        let leg = self.state.tail.as_ref().and_then(|t| Some(t.loop_ids(&self.world()?).last()?.clone()));
+        let reason = "this loop flies no waypoint; change its body by a plan update, or go to another leg";
+        let leg = leg.unwrap_or_else(|| Id::new("plan"));
+        self.tell_refused(leg, reason.into(), out);
+        if self.state.handed.is_empty() {
+            self.hold(out);
+        }
+    }
+
+    fn feed(&self, cancel_after: Option<Token>, first: usize, out: &mut Vec<Output>) {
+        let waypoints: Vec<_> = self.state.handed.iter().skip(first).map(|h| h.waypoint.clone()).collect();
+        if !self.is_muted() && (cancel_after.is_some() || !waypoints.is_empty()) {
+            out.push(Output::Feed { cancel_after, waypoints });
+        }
+    }
+
+    /// How many of the waypoints ahead can't be altered: those nearer than the stopping distance (turn and
+    /// latency), and those whose pattern has been regenerated behind them.
+    pub(crate) fn alterable_from(&self) -> usize {
+        let pinned = self.state.handed.iter().rposition(|h| h.pinned).map_or(0, |i| i + 1);
+        pinned.max(self.kept_by_distance())
+    }
+
+    fn kept_by_distance(&self) -> usize {
+        let Some(front) = self.state.handed.front().filter(|h| !h.is_loiter()) else { return 0 };
+        if !matches!(front.waypoint.action, crate::api::Action::Fly) {
+            return 1;
+        }
+        let Some(aircraft) = &self.state.aircraft else { return 1 };
+        let speed_mps = aircraft.ground_speed_mps.max(self.profile.min_airspeed_mps);
+        let stop_m = self.profile.turn_radius_m(speed_mps) + self.config.latency_s * speed_mps;
+        let to_front_m = self.to_current_m();
+        let near = |h: &&Handed| to_front_m + h.end_m - front.end_m <= stop_m;
+        self.state.handed.iter().take_while(near).count()
+    }
+
+    /// Lays the path out anew behind what can't be altered, and feeds what differs.
+    pub(crate) fn replan(&mut self, out: &mut Vec<Output>) {
+        let from = self.alterable_from();
+        if let Some(cursor) = self.bookmark(from).cloned() {
+            self.replan_with(from, cursor, false, out);
+        }
+    }
+
+    fn replan_last(&mut self, out: &mut Vec<Output>) {
+        let last = self.state.handed.len().saturating_sub(1);
+        if let Some(cursor) = self.bookmark(last).cloned() {
+            self.replan_with(last, cursor, false, out);
+        }
+    }
+
+    /// The cursor before waypoint number `index`, or behind the last one.
+    pub(crate) fn bookmark(&self, index: usize) -> Option<&Cursor> {
+        self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref())
+    }
+
+    /// Replaces the waypoints from number `from` on by what `cursor` gives. Waypoints that come out the same keep their
+    /// numbers; one transaction cancels and appends the rest.
+    pub(crate) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
+        let Some(world) = self.world() else { return };
+        let from = from.min(self.state.handed.len());
+        let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
+        let more = self.horizon(from, self.time_at_aircraft_s());
+        let at_least = old.len();
+        let stretch = lay_out(&cursor, &world, arriving, |n, c| n < at_least || more(n, c));
+        let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
+        let tokens: Vec<Token> = old.iter().take(same).map(|h| h.waypoint.token).collect();
+        self.state.handed.truncate(from);
+        let before = self.state.last_token;
+        let appended = stretch.handed.len() - same;
+        self.append(stretch, out);
+        self.keep_tokens(from, &tokens, before);
+        let cancel = (old.len() > same).then(|| self.last_token_before(from + same, &old));
+        if cancel.is_some() || appended > 0 {
+            self.feed(cancel, from + same, out);
+        }
+        self.settle_phase(out);
+    }
+
+    /// Waypoints that stayed the same get their old numbers back; the others count on from `before`.
+    fn keep_tokens(&mut self, from: usize, tokens: &[Token], before: u64) {
+        self.state.last_token = before;
+        for (i, handed) in self.state.handed.iter_mut().skip(from).enumerate() {
+            handed.waypoint.token = match tokens.get(i) {
+                Some(kept) => *kept,
+                None => {
+                    self.state.last_token += 1;
+                    Token(self.state.last_token)
+                }
+            };
+        }
+    }
+
+    /// The token after which everything is cancelled, to replace waypoints from `index` on.
+    fn last_token_before(&self, index: usize, old: &[Handed]) -> Token {
+        match index.checked_sub(1).and_then(|i| self.state.handed.get(i)) {
+            Some(kept) => kept.waypoint.token,
+            None => Token(old.first().map_or(0, |h| h.waypoint.token.0.saturating_sub(1))),
+        }
+    }
+
+    /// Goes from here to wherever `cursor` is: everything not flown is cancelled.
+    pub(crate) fn jump(&mut self, mut cursor: Cursor, out: &mut Vec<Output>) {
+        cursor.passage = self.state.last_passage;
+        self.state.handed.clear();
+        self.state.held_at = None;
+        let Some(world) = self.world() else { return };
+        let more = self.horizon(0, cursor.path.time_s);
+        let stretch = lay_out(&cursor, &world, false, more);
+        self.append(stretch, out);
+        self.feed(Some(Token(0)), 0, out);
+        self.settle_phase(out);
+    }
+
+    /// Sends everything ahead once more, with new numbers: the gateway may have lost it.
+    pub(crate) fn refeed(&mut self, out: &mut Vec<Output>) {
+        for handed in &mut self.state.handed {
+            self.state.last_token += 1;
+            handed.waypoint.token = Token(self.state.last_token);
+        }
+        self.feed(Some(Token(0)), 0, out);
+        self.settle_phase(out);
+    }
+
+    /// Waiting for a decision or not, whatever it steers to.
+    pub(crate) fn settle_phase(&mut self, out: &mut Vec<Output>) {
+        let waits = self.state.handed.front().is_some_and(Handed::is_loiter);
+        match self.state.phase {
+            Phase::Flying if waits => self.enter_phase(Phase::AwaitingDecision, out),
+            Phase::AwaitingDecision if !waits => self.enter_phase(Phase::Flying, out),
+            _ => {}
+        }
+    }
+
+    fn has_provisional_choices(&self) -> bool {
+        self.state.tail_has_choices || self.state.handed.iter().any(|h| !h.choices.is_empty())
+    }
+}

@@ -1,0 +1,74 @@
+//! Take-off and landing: the autopilot performs them, the plan says where and how high.
+
+use super::{ExpandError, Point};
+use crate::api::Action;
+use crate::path::{Level, PathState};
+use crate::world::World;
+use flight_plan::{AltitudeReference, Runway, Stage};
+use geometry::geodesy::normalise_180;
+
+/// Altitude above the runway to climb to, when the stage gives none, metres.
+const CLIMB_OUT_M: f64 = 100.0;
+/// Off the runway's heading by more than this, the final approach gets a point to line up at first, degrees.
+const ALIGNED_DEG: f64 = 30.0;
+
+/// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
+///
+/// # Errors
+/// The stage names no runway of the plan, or its altitude has no value.
+pub fn take_off(stage: &Stage, world: &World) -> Result<Vec<Point>, ExpandError> {
+    let runway = runway(stage, world)?;
+    let above = |metres| Level { metres, reference: AltitudeReference::Amsl };
+    let level = match &stage.altitude {
+        // the ground that a climb-out altitude is above is the runway, not what lies below its end
+        Some(a) => match (world.number(&a.metres)?, a.reference) {
+            (metres, AltitudeReference::Amsl) => above(metres),
+            (metres, _) => above(runway.elevation_amsl_m + metres),
+        },
+        None => above(runway.elevation_amsl_m + CLIMB_OUT_M),
+    };
+    let climb_m = (level.metres - runway.elevation_amsl_m).max(0.0);
+    let speed_mps = world.profile.cruise_airspeed_mps;
+    let way_m = runway.length_m + climb_m / world.profile.max_climb_mps.max(0.1) * speed_mps;
+    let position = runway.threshold.destination(runway.heading_deg, way_m);
+    let action = Action::TakeOff { heading_deg: runway.heading_deg };
+    Ok(vec![Point { position, fly_over: false, action, level: Some(level) }])
+}
+
+/// The final approach and the touch-down point.
+///
+/// # Errors
+/// The stage names no runway of the plan.
+pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>, ExpandError> {
+    let runway = runway(stage, world)?;
+    let final_m = world.config.final_approach_m;
+    let mut points = Vec::new();
+    let gate = on_final(runway, final_m, world);
+    let arrival_deg = path.last.position.bearing_deg(gate.position);
+    if normalise_180(arrival_deg - runway.heading_deg).abs() > ALIGNED_DEG {
+        let radius_m = world.turn_radius_m(path.last.airspeed_mps);
+        points.push(on_final(runway, final_m + 4.0 * radius_m, world));
+    }
+    points.push(gate);
+    points.push(Point {
+        position: runway.threshold,
+        fly_over: true,
+        action: Action::Land { heading_deg: runway.heading_deg },
+        level: Some(Level { metres: runway.elevation_amsl_m, reference: AltitudeReference::Amsl }),
+    });
+    Ok(points)
+}
+
+fn on_final(runway: &Runway, before_m: f64, world: &World) -> Point {
+    let height_m = before_m * world.config.glide_slope_deg.to_radians().tan();
+    let metres = runway.elevation_amsl_m + height_m;
+    Point {
+        level: Some(Level { metres, reference: AltitudeReference::Amsl }),
+        ..Point::fly(runway.threshold.destination(runway.heading_deg + 180.0, before_m))
+    }
+}
+
+fn runway<'a>(stage: &Stage, world: &World<'a>) -> Result<&'a Runway, ExpandError> {
+    let id = stage.runway.as_ref().ok_or(ExpandError::NoRunway)?;
+    world.program.plan.runway(id).ok_or(ExpandError::NoRunway)
+}

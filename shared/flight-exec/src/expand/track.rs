@@ -1,0 +1,172 @@
+//! From a leg of the plan to its points, forwards or in reverse.
+
+use super::{ExpandError, Expansion, Point, arc, holding, orbit, scan};
+use crate::cursor::Visit;
+use crate::path::PathState;
+use crate::world::World;
+use flight_plan::{Holding, HoldingLength, Leg, LegKind, PlanWaypoint, TurnDirection};
+use geometry::LatLon;
+
+/// Nearer than this two positions are the same place, metres.
+pub const SAME_PLACE_M: f64 = 1.0;
+
+/// What a leg needs to know about its place in the path.
+#[derive(Debug, Clone, Copy)]
+pub struct Approach<'a> {
+    /// Where the path is.
+    pub path: &'a PathState,
+    /// Airspeed on the leg, m/s.
+    pub airspeed_mps: f64,
+    /// Its passage forwards, when it is flown in reverse now.
+    pub reversed: Option<&'a Visit>,
+    /// Where the path goes afterwards, if known (orbits).
+    pub onward: Option<LatLon>,
+}
+
+/// The points of a leg.
+///
+/// # Errors
+/// A value that can't be computed, or an impossible geometry.
+pub fn expand(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
+    match approach.reversed {
+        Some(visit) => backward(leg, visit, approach, world),
+        None => forward(leg, approach, world),
+    }
+}
+
+fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
+    let from = approach.path.last.position;
+    Ok(match &leg.kind {
+        LegKind::If(to) => {
+            let to = waypoint(to, world)?;
+            // the path starts here; an aircraft that is elsewhere has to come here first
+            let there = crate::path::distance_m(from, to.position) < SAME_PLACE_M;
+            Expansion::Points(if there { Vec::new() } else { vec![to] })
+        }
+        LegKind::Tf(to) => Expansion::Points(vec![waypoint(to, world)?]),
+        LegKind::Df { to, turn } => direct(waypoint(to, world)?, *turn, approach, world),
+        LegKind::Rf { to, centre, turn } => {
+            let to = waypoint(to, world)?;
+            let tolerance_m = world.config.arc_tolerance_m;
+            Expansion::Points(arc::radius_to_fix(from, to, *centre, *turn, tolerance_m))
+        }
+        LegKind::Hf(holding) => racetrack(holding, 0.0, true, approach, world)?,
+        LegKind::Ha(holding) => racetrack(holding, 0.0, false, approach, world)?,
+        LegKind::Scan(scan) => Expansion::Scan(Box::new(scan::Sweep::new(scan, from, approach, world)?)),
+        LegKind::Orbit { .. } => circle(leg, approach, world)?,
+        LegKind::Iterative { .. } | LegKind::Intersection { .. } => Expansion::Points(Vec::new()),
+    })
+}
+
+fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
+    let start = visit.start;
+    let back = Point { fly_over: start.fly_over, ..Point::fly(start.position) };
+    Ok(match &leg.kind {
+        LegKind::If(_) | LegKind::Iterative { .. } | LegKind::Intersection { .. } => {
+            Expansion::Points(Vec::new())
+        }
+        LegKind::Tf(_) | LegKind::Df { .. } => Expansion::Points(vec![back]),
+        LegKind::Rf { centre, turn, .. } => {
+            let from = approach.path.last.position;
+            let tolerance_m = world.config.arc_tolerance_m;
+            Expansion::Points(arc::radius_to_fix(from, back, *centre, opposite(*turn), tolerance_m))
+        }
+        LegKind::Hf(holding) => racetrack(holding, 180.0, true, approach, world)?,
+        LegKind::Ha(holding) => racetrack(holding, 180.0, false, approach, world)?,
+        LegKind::Scan(_) | LegKind::Orbit { .. } => match &visit.flown {
+            Some(flown) => flown.reversed(back),
+            None => Expansion::Points(vec![back]),
+        },
+    })
+}
+
+/// Straight there; a coded first turn goes round that way when the fix lies on the other side.
+fn direct(to: Point, turn: Option<TurnDirection>, approach: &Approach, world: &World) -> Expansion {
+    use geometry::geodesy::normalise_180;
+    let path = approach.path;
+    let off_deg = normalise_180(path.last.position.bearing_deg(to.position) - path.course_deg);
+    let side = match turn {
+        Some(TurnDirection::Right) if off_deg < 0.0 => 1.0,
+        Some(TurnDirection::Left) if off_deg > 0.0 => -1.0,
+        _ => return Expansion::Points(vec![to]),
+    };
+    let radius_m = world.turn_radius_m(approach.airspeed_mps);
+    let turn_deg = 360.0 - off_deg.abs();
+    let centre = path.last.position.destination(path.course_deg + side * 90.0, radius_m);
+    let round = arc::Arc {
+        centre,
+        radius_m,
+        start_bearing_deg: path.course_deg - side * 90.0,
+        sweep_deg: side * turn_deg,
+    };
+    let mut points: Vec<_> = round.vertices(world.config.arc_tolerance_m).map(Point::fly).collect();
+    points.push(to);
+    Expansion::Points(points)
+}
+
+fn racetrack(
+    holding: &Holding,
+    turned_deg: f64,
+    once: bool,
+    approach: &Approach,
+    world: &World,
+) -> Result<Expansion, ExpandError> {
+    let fix = waypoint(&holding.fix, world)?;
+    let (from, course_deg) = (approach.path.last.position, approach.path.course_deg);
+    let there = crate::path::distance_m(from, fix.position) < SAME_PLACE_M;
+    let arrival_deg = if there { course_deg } else { from.inverse(fix.position).bearing_end_deg };
+    let inbound_deg = match &holding.inbound_course_deg {
+        Some(course) => world.number(course)? + turned_deg,
+        // "as the aircraft arrives" is that at either end
+        None => arrival_deg,
+    };
+    let leg_m = match &holding.leg {
+        HoldingLength::Distance(metres) => world.number(metres)?,
+        HoldingLength::Time(seconds) => world.number(seconds)? * approach.airspeed_mps,
+    };
+    let layout = holding::Layout {
+        fix: fix.position,
+        inbound_deg,
+        turn: holding.turn,
+        leg_m: leg_m.clamp(0.0, 50_000.0),
+        radius_m: world.turn_radius_m(approach.airspeed_mps),
+        tolerance_m: world.config.arc_tolerance_m,
+    };
+    Ok(Expansion::Holding(layout.racetrack(fix, arrival_deg, once)))
+}
+
+fn circle(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
+    let LegKind::Orbit { centre, radius_m, turns, turn } = &leg.kind else {
+        return Ok(Expansion::Points(Vec::new()));
+    };
+    let centre = world.place(centre)?;
+    let values = (centre, world.number(radius_m)?, world.number(turns)?, *turn);
+    let from = approach.path.last.position;
+    let circle = orbit::Circle::new(values, from, approach.onward, world.config.arc_tolerance_m)?;
+    Ok(Expansion::Orbit(circle))
+}
+
+/// The full turn at the end of a pass of a form-A loop.
+pub fn turn_round(path: &PathState, turn: TurnDirection, airspeed_mps: f64, world: &World) -> Expansion {
+    let layout = holding::Layout {
+        fix: path.last.position,
+        inbound_deg: path.course_deg + 180.0,
+        turn,
+        leg_m: 0.0,
+        radius_m: world.turn_radius_m(airspeed_mps),
+        tolerance_m: world.config.arc_tolerance_m,
+    };
+    Expansion::Points(layout.turn_round())
+}
+
+fn waypoint(waypoint: &PlanWaypoint, world: &World) -> Result<Point, ExpandError> {
+    let position = world.place(&waypoint.place)?;
+    Ok(Point { fly_over: waypoint.fly_over, ..Point::fly(position) })
+}
+
+fn opposite(turn: TurnDirection) -> TurnDirection {
+    match turn {
+        TurnDirection::Left => TurnDirection::Right,
+        TurnDirection::Right => TurnDirection::Left,
+    }
+}

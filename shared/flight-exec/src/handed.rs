@@ -1,0 +1,205 @@
+//! Waypoints handed out and not flown yet, each with the bookmark it was made from.
+
+use crate::api::{Action, PlacePointer, Token, Waypoint};
+use crate::choice::Choice;
+use crate::cursor::{Cursor, Emission, Step};
+use crate::path::distance_m;
+use crate::world::World;
+use flight_plan::Id;
+use serde::{Deserialize, Serialize};
+
+/// Two waypoints this close are the same for the autopilot, metres.
+const SAME_M: f64 = 0.5;
+
+/// One waypoint handed out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Handed {
+    /// As it was sent.
+    pub waypoint: Waypoint,
+    /// Where it is in the plan.
+    pub place: PlacePointer,
+    /// The cursor before it, and before the choices that led to it while they are provisional.
+    pub before: Cursor,
+    /// Choices between the waypoint before it and this one; emptied when they are final.
+    pub choices: Vec<Choice>,
+    /// The cursor after those choices.
+    #[serde(skip)]
+    pub sealed: Option<Box<Cursor>>,
+    /// Passage of its leg.
+    pub passage: u64,
+    /// Path length at the beginning of that passage, metres since the start of the flight.
+    pub leg_start_m: f64,
+    /// Path length at this waypoint, metres.
+    pub end_m: f64,
+    /// Flying time at this waypoint, seconds.
+    pub end_s: f64,
+    /// The bookmark no longer gives this waypoint (its pattern was regenerated behind it): never regenerate it.
+    pub pinned: bool,
+}
+
+/// How the path goes on after the last waypoint handed out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Onward {
+    /// More can be handed out.
+    Open,
+    /// The last one ends the plan.
+    Ended,
+    /// The last one is a loiter that waits for a decision.
+    Waiting,
+    /// A loop flies nothing.
+    Stalled,
+}
+
+/// A stretch of path, laid out.
+#[derive(Debug, Clone)]
+pub struct Stretch {
+    /// Its waypoints, without tokens (all zero).
+    pub handed: Vec<Handed>,
+    /// The cursor after the last.
+    pub tail: Cursor,
+    /// How it goes on.
+    pub onward: Onward,
+    /// Choices after the last waypoint.
+    pub tail_choices: Vec<Choice>,
+    /// Legs that couldn't be flown.
+    pub refused: Vec<(Id, String)>,
+}
+
+/// Lays out path from a cursor, as long as `more(count, end of path)` asks for it.
+///
+/// `arriving`: the first step is taken at the aircraft's own place (see [`World::arriving`]).
+pub fn lay_out(
+    from: &Cursor,
+    world: &World,
+    arriving: bool,
+    mut more: impl FnMut(usize, &Cursor) -> bool,
+) -> Stretch {
+    let (handed, tail_choices, refused) = (Vec::new(), Vec::new(), Vec::new());
+    let mut stretch = Stretch { handed, tail: from.clone(), onward: Onward::Open, tail_choices, refused };
+    let mut world = World { arriving, ..*world };
+    while stretch.onward == Onward::Open && more(stretch.handed.len(), &stretch.tail) {
+        let before = stretch.tail.clone();
+        let step = stretch.tail.next(&world);
+        world.arriving = false;
+        stretch.take(step, before, &world);
+    }
+    if stretch.onward == Onward::Open && stretch.tail.at_the_end_of_its_leg() {
+        stretch.look_for_the_end(&world);
+    }
+    stretch
+}
+
+impl Stretch {
+    fn take(&mut self, step: Step, before: Cursor, world: &World) {
+        match step {
+            Step::Waypoint(emission) => {
+                self.handed.push(handed(*emission, before, &self.tail, world, &mut self.refused))
+            }
+            Step::Ended { choices, refused } => {
+                self.tail = before;
+                self.tail_choices = choices;
+                self.refused.extend(refused);
+                self.end(world);
+            }
+            Step::Waiting => self.onward = Onward::Waiting,
+            Step::Stalled => {
+                self.tail = before;
+                self.onward = Onward::Stalled;
+            }
+        }
+    }
+
+    /// The end is marked on the last waypoint; a plan that turns out to be over where the aircraft is gets one there.
+    fn end(&mut self, world: &World) {
+        self.onward = Onward::Ended;
+        if let Some(last) = self.handed.last_mut() {
+            last.waypoint.end_of_plan = true;
+            return;
+        }
+        let path = &self.tail.path;
+        let emission = Emission {
+            position: path.last.position,
+            altitude_amsl_m: world.amsl_m(path.last.level, path.last.position),
+            airspeed_mps: path.last.airspeed_mps,
+            action: Action::Fly,
+            fly_over: true,
+            choices: std::mem::take(&mut self.tail_choices),
+            sealed: Some(Box::new(self.tail.clone())),
+            refused: Vec::new(),
+        };
+        let mut last = handed(emission, self.tail.clone(), &self.tail, world, &mut self.refused);
+        last.waypoint.end_of_plan = true;
+        last.pinned = true;
+        self.handed.push(last);
+    }
+
+    /// The horizon may end just where the plan does; then the mark must not come too late.
+    fn look_for_the_end(&mut self, world: &World) {
+        let mut ahead = self.tail.clone();
+        if let (Step::Ended { choices, .. }, Some(last)) = (ahead.next(world), self.handed.last_mut()) {
+            last.waypoint.end_of_plan = true;
+            self.tail_choices = choices;
+            self.onward = Onward::Ended;
+        }
+    }
+}
+
+fn handed(
+    emission: Emission,
+    before: Cursor,
+    after: &Cursor,
+    world: &World,
+    refused: &mut Vec<(Id, String)>,
+) -> Handed {
+    refused.extend(emission.refused);
+    let place = after.place(world);
+    let waypoint = Waypoint {
+        token: Token(0),
+        position: emission.position,
+        altitude_amsl_m: emission.altitude_amsl_m,
+        airspeed_mps: emission.airspeed_mps,
+        action: emission.action,
+        fly_over: emission.fly_over,
+        leg: place.leg.clone(),
+        end_of_plan: false,
+    };
+    Handed {
+        waypoint,
+        place,
+        before,
+        choices: emission.choices,
+        sealed: emission.sealed,
+        passage: after.passage,
+        leg_start_m: after.leg_start.distance_m,
+        end_m: after.path.distance_m,
+        end_s: after.path.time_s,
+        pinned: false,
+    }
+}
+
+impl Handed {
+    /// It is what the other one is, for the autopilot and for the plan.
+    pub fn is_same_as(&self, other: &Handed) -> bool {
+        let (a, b) = (&self.waypoint, &other.waypoint);
+        a.leg == b.leg
+            && a.action == b.action
+            && (a.fly_over, a.end_of_plan) == (b.fly_over, b.end_of_plan)
+            && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < SAME_M
+            && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05
+            && self.passage == other.passage
+            && distance_m(a.position, b.position) < SAME_M
+    }
+
+    /// Makes the choices before it final.
+    pub fn seal(&mut self) -> Vec<Choice> {
+        if let Some(sealed) = self.sealed.take() {
+            self.before = *sealed;
+        }
+        std::mem::take(&mut self.choices)
+    }
+
+    /// The aircraft circles here until something else is fed.
+    pub fn is_loiter(&self) -> bool {
+        matches!(self.waypoint.action, Action::Loiter { .. })
+    }
+}

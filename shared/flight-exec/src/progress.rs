@@ -1,0 +1,171 @@
+//! What the gateway tells: waypoints flown, refused, control taken and given back.
+
+use crate::api::{Event, Output, Phase, PlacePointer, Token};
+use crate::choice::Choice;
+use crate::cursor::Step;
+use crate::executor::Executor;
+use crate::handed::{Handed, Onward};
+use crate::world::World;
+
+impl Executor {
+    /// The aircraft steers to `current` now.
+    pub(crate) fn progress(&mut self, current: Option<Token>, out: &mut Vec<Output>) {
+        if !self.is_flying() {
+            return;
+        }
+        match current {
+            Some(token) => {
+                let index = self.state.handed.iter().position(|h| h.waypoint.token == token);
+                if let Some(index) = index {
+                    self.fly_past(index, out);
+                    self.arrive_at_current(out);
+                }
+            }
+            None => self.everything_flown(out),
+        }
+    }
+
+    /// Drops waypoints that have been flown; what they led to is announced in order.
+    fn fly_past(&mut self, count: usize, out: &mut Vec<Output>) {
+        for _ in 0..count {
+            if let Some(mut flown) = self.state.handed.pop_front() {
+                self.announce(&mut flown, out);
+            }
+        }
+    }
+
+    /// The choices that led to the current waypoint are due: if they would be others now, the way is changed.
+    fn arrive_at_current(&mut self, out: &mut Vec<Output>) {
+        if self.front_choices_changed()
+            && let Some(cursor) = self.bookmark(0).cloned()
+        {
+            self.replan_with(0, cursor, true, out);
+        }
+        if let Some(mut front) = self.state.handed.pop_front() {
+            self.announce(&mut front, out);
+            self.state.handed.push_front(front);
+        }
+        self.settle_phase(out);
+    }
+
+    fn front_choices_changed(&self) -> bool {
+        let (Some(front), Some(world)) = (self.state.handed.front(), self.world()) else { return false };
+        !front.choices.is_empty()
+            && !front.pinned
+            && choices_changed(front, &World { arriving: true, ..world })
+    }
+
+    /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
+    fn announce(&mut self, handed: &mut Handed, out: &mut Vec<Output>) {
+        if handed.is_loiter() {
+            return self.announce_leg(handed, out);
+        }
+        for choice in handed.seal() {
+            match choice {
+                Choice::Loop { leg, arrival, of, again } => {
+                    if !again {
+                        self.state.counts.retain(|(id, _)| *id != leg);
+                    }
+                    out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
+                }
+                Choice::Branch { leg, crossing, .. } => self.forget_decision(&leg, crossing),
+                Choice::Hold { .. } => {}
+            }
+        }
+        self.announce_leg(handed, out);
+    }
+
+    fn announce_leg(&mut self, handed: &Handed, out: &mut Vec<Output>) {
+        if self.state.announced != Some(handed.passage) {
+            self.state.announced = Some(handed.passage);
+            out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
+        }
+    }
+
+    fn everything_flown(&mut self, out: &mut Vec<Output>) {
+        let finished = self.state.handed.back().is_some_and(|h| h.waypoint.end_of_plan);
+        let count = self.state.handed.len();
+        self.fly_past(count, out);
+        if finished {
+            self.announce_end(out);
+            self.state.emergency = None;
+            self.enter_phase(Phase::Finished, out);
+        }
+    }
+
+    /// Loops that ended together with the plan.
+    fn announce_end(&mut self, out: &mut Vec<Output>) {
+        let (Some(tail), Some(world)) = (self.state.tail.clone(), self.world()) else { return };
+        let mut tail = tail;
+        if let Step::Ended { choices, .. } = tail.next(&world) {
+            for choice in choices {
+                if let Choice::Loop { leg, arrival, of, .. } = choice {
+                    out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
+                }
+            }
+        }
+    }
+
+    /// Reads the conditions of choices ahead again, and changes the way where they have changed.
+    pub(crate) fn review(&mut self, out: &mut Vec<Output>) {
+        let Some(world) = self.world() else { return };
+        let from = self.alterable_from();
+        let ahead = self.state.handed.iter().enumerate().skip(from);
+        let changed = ahead.filter(|(_, h)| !h.choices.is_empty()).find(|(_, h)| choices_changed(h, &world));
+        let changed = changed.map(|(index, _)| index).or_else(|| self.end_changed(&world, from));
+        if let Some((index, cursor)) = changed.and_then(|i| Some((i, self.bookmark(i)?.clone()))) {
+            self.replan_with(index, cursor, false, out);
+        }
+    }
+
+    /// The plan was to end after the last waypoint and now goes on: that waypoint has to lose its mark.
+    fn end_changed(&self, world: &World, from: usize) -> Option<usize> {
+        let last = self.state.handed.len().checked_sub(1).filter(|i| *i >= from)?;
+        let mut tail = self.state.tail.clone()?;
+        let ends = self.state.onward == Onward::Ended && self.state.tail_has_choices;
+        (ends && !matches!(tail.next(world), Step::Ended { .. })).then_some(last)
+    }
+
+    /// A batch was refused: the aircraft holds rather than to run dry.
+    pub(crate) fn rejected(&mut self, first: Token, reason: String, out: &mut Vec<Output>) {
+        let index = self.state.handed.iter().position(|h| h.waypoint.token >= first);
+        let leg = index.and_then(|i| self.state.handed.get(i)).map(|h| h.place.leg.clone());
+        out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
+        let Some((index, cursor)) = index.and_then(|i| Some((i, self.bookmark(i)?.clone()))) else { return };
+        if !self.is_flying() {
+            return;
+        }
+        self.state.handed.truncate(index);
+        self.state.tail = Some(cursor);
+        self.state.onward = Onward::Open;
+        self.hold(out);
+    }
+
+    /// The gateway took control (Safe, Manual) or gave it back: then everything is fed again.
+    pub(crate) fn gateway_controls(&mut self, controls: bool, out: &mut Vec<Output>) {
+        let back = self.state.gateway_controls && !controls;
+        self.state.gateway_controls = controls;
+        if back && self.is_flying() && self.state.phase != Phase::Holding {
+            self.refeed(out);
+        }
+    }
+
+    /// Where the flight is in the plan.
+    pub(crate) fn place(&self) -> Option<PlacePointer> {
+        let front = self.state.handed.front()?;
+        let way_m = front.end_m - self.to_current_m() - front.leg_start_m;
+        Some(PlacePointer { distance_m: way_m.max(0.0), ..front.place.clone() })
+    }
+}
+
+/// The choices that led to a waypoint would be others in this world.
+fn choices_changed(handed: &Handed, world: &World) -> bool {
+    let mut cursor = handed.before.clone();
+    let now = match cursor.next(world) {
+        Step::Waypoint(emission) => emission.choices,
+        Step::Ended { choices, .. } => choices,
+        Step::Waiting | Step::Stalled => return true,
+    };
+    let alike = |(a, b): (&Choice, &Choice)| a.leads_as(b);
+    now.len() != handed.choices.len() || !now.iter().zip(&handed.choices).all(alike)
+}

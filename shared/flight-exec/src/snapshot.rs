@@ -1,0 +1,108 @@
+//! What survives the process: everything the executor knows, without the plan itself.
+
+use crate::config::Config;
+use crate::cursor::Cursor;
+use crate::executor::{Executor, State};
+use crate::expand::Expansion;
+use aircraft::Profile;
+use flight_plan::Program;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// An executor at rest. Restored with the same plan, configuration and profile it hands out the same waypoints.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Hash of the active plan: restore with that one.
+    pub plan: Option<Arc<str>>,
+    state: State,
+    /// Patterns under way, each once, and which of them each bookmark is in.
+    expansions: Vec<Arc<Expansion>>,
+    in_expansion: Vec<Option<usize>>,
+    sealed: Vec<Option<Box<Cursor>>>,
+}
+
+/// Why a snapshot can't be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum RestoreError {
+    /// Another plan.
+    #[error("the snapshot belongs to plan {wanted}, not to {given}: load that plan and restore again")]
+    OtherPlan {
+        /// Its hash in the snapshot.
+        wanted: String,
+        /// The hash of what was given.
+        given: String,
+    },
+    /// Its parts don't fit together.
+    #[error("the snapshot is damaged: set it aside and start the plan anew")]
+    Damaged,
+}
+
+impl Executor {
+    /// Everything needed to come back to this very place.
+    pub fn snapshot(&self) -> Snapshot {
+        let mut expansions: Vec<Arc<Expansion>> = Vec::new();
+        let in_expansion = bookmarks(&self.state).map(|c| index_in(&mut expansions, c)).collect();
+        let sealed = self.state.handed.iter().map(|h| h.sealed.clone()).collect();
+        let plan = self.program.as_ref().map(|p| p.hash.clone());
+        Snapshot { plan, state: self.state.clone(), expansions, in_expansion, sealed }
+    }
+
+    /// The executor as it was, with its plan.
+    ///
+    /// # Errors
+    /// The plan is another one, or the snapshot is damaged.
+    pub fn restore(
+        config: Config,
+        terrain: Arc<dyn Terrain>,
+        profile: Profile,
+        program: Option<Arc<Program>>,
+        snapshot: Snapshot,
+    ) -> Result<Self, RestoreError> {
+        let given = program.as_ref().map(|p| p.hash.clone());
+        if given != snapshot.plan {
+            let name = |hash: Option<Arc<str>>| hash.map_or_else(|| "none".into(), |h| h.to_string());
+            return Err(RestoreError::OtherPlan { wanted: name(snapshot.plan), given: name(given) });
+        }
+        let mut executor = Self::new(config, terrain, profile);
+        executor.program = program;
+        executor.state = revived(snapshot)?;
+        Ok(executor)
+    }
+}
+
+fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
+    let Snapshot { mut state, expansions, in_expansion, sealed, .. } = snapshot;
+    if state.handed.len() != sealed.len() || bookmarks(&state).count() != in_expansion.len() {
+        return Err(RestoreError::Damaged);
+    }
+    for (handed, sealed) in state.handed.iter_mut().zip(sealed) {
+        handed.sealed = sealed;
+    }
+    for (cursor, index) in bookmarks_mut(&mut state).zip(in_expansion) {
+        cursor.expansion = match index {
+            Some(i) => Some(expansions.get(i).cloned().ok_or(RestoreError::Damaged)?),
+            None => None,
+        };
+    }
+    Ok(state)
+}
+
+fn bookmarks(state: &State) -> impl Iterator<Item = &Cursor> {
+    let handed = state.handed.iter().flat_map(|h| [Some(&h.before), h.sealed.as_deref()]);
+    handed.flatten().chain(&state.tail)
+}
+
+fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
+    let handed = state.handed.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
+    handed.flatten().chain(&mut state.tail)
+}
+
+fn index_in(expansions: &mut Vec<Arc<Expansion>>, cursor: &Cursor) -> Option<usize> {
+    let expansion = cursor.expansion.as_ref()?;
+    let known = expansions.iter().position(|e| Arc::ptr_eq(e, expansion));
+    Some(known.unwrap_or_else(|| {
+        expansions.push(expansion.clone());
+        expansions.len() - 1
+    }))
+}

@@ -1,0 +1,26 @@
+//! The executor's state for people and services.
+
+use crate::api::{Phase, Status};
+use crate::executor::Executor;
+
+impl Executor {
+    /// The phase alone: cheaper than the whole status.
+    pub fn status_phase(&self) -> Phase {
+        self.state.phase
+    }
+
+    /// What it is doing and where.
+    pub fn status(&self) -> Status {
+        Status {
+            phase: self.state.phase,
+            plan: self.program.as_ref().map(|p| p.hash.clone()),
+            revision: self.state.revision,
+            place: self.place(),
+            emergency_in_force: self.emergency_in_force(),
+            current: self.state.handed.front().map(|h| h.waypoint.token),
+            outstanding: self.state.handed.len(),
+            decision: self.open_decision(),
+            proposed: self.proposed.as_ref().map(|p| p.hash.clone()),
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! A plan update in flight: proposed, reported on, committed by hash, taken over at the place where the aircraft is.
+
+use crate::api::{Answer, Event, Output, Phase, ProposalReport, Refusal, RequestId};
+use crate::cursor::{Cursor, Doing, LoopFrame, Visit};
+use crate::executor::{Executor, refusal};
+use flight_plan::{FlightPlan, Id, Leg, LegKind, Program, Stage, Variables};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+impl Executor {
+    /// Keeps the proposal and tells what it would do.
+    pub(crate) fn propose(&mut self, request: RequestId, program: Arc<Program>, out: &mut Vec<Output>) {
+        self.proposed = Some(program.clone());
+        let report = self.report(&program);
+        out.push(Output::Answer { request, result: Ok(Answer::Proposal(Box::new(report))) });
+    }
+
+    fn report(&self, program: &Arc<Program>) -> ProposalReport {
+        let empty = FlightPlan::default();
+        let old = self.program.as_ref().map_or(&empty, |p| &p.plan);
+        let (added, removed, changed) = differences(old, &program.plan);
+        let (mut next_leg, mut next_position) = (None, None);
+        let mut problems: Vec<String> = program.warnings.iter().map(|w| w.message.clone()).collect();
+        let mut entry_needed = false;
+        match self.outcome(program) {
+            Ok(after) => {
+                let next = after.state.handed.front();
+                next_leg = next.map(|h| h.place.leg.clone());
+                next_position = next.map(|h| h.waypoint.position);
+            }
+            Err(refused) => {
+                entry_needed = refused.code == "entry-needed";
+                problems.push(refused.reason);
+            }
+        }
+        let acceptable = !program.plan.stages.is_empty();
+        let hash = program.hash.clone();
+        ProposalReport {
+            hash,
+            acceptable,
+            problems,
+            added,
+            removed,
+            changed,
+            next_leg,
+            next_position,
+            entry_needed,
+        }
+    }
+
+    /// What a commit now would lead to: tried on a copy.
+    fn outcome(&self, program: &Arc<Program>) -> Result<Executor, Refusal> {
+        let mut copy = self.clone();
+        let mut unheard = Vec::new();
+        copy.commit(&program.hash, None, &mut unheard)?;
+        if !copy.is_flying() {
+            copy.command(crate::api::Command::Start, &mut unheard)?;
+        }
+        Ok(copy)
+    }
+
+    /// Makes the proposal the active plan.
+    pub(crate) fn commit(
+        &mut self,
+        hash: &str,
+        entry: Option<&Id>,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
+        let proposed = self.proposed.clone().filter(|p| *p.hash == *hash).ok_or_else(|| {
+            refusal("not-proposed", format!("plan {hash} was not the last one proposed: propose it first"))
+        })?;
+        if proposed.plan.stages.is_empty() {
+            return Err(refusal("empty-plan", "the main plan has no stage: add one"));
+        }
+        if !self.is_flying() {
+            self.activate(proposed, out);
+            self.state.handed.clear();
+            self.state.tail = None;
+            self.enter_phase(Phase::Idle, out);
+            return Ok(());
+        }
+        match self.carried_over(&proposed, entry)? {
+            Carried::Enter(cursor) => {
+                self.activate(proposed, out);
+                self.jump(cursor, out);
+            }
+            Carried::On(bookmarks) => self.go_on_in(proposed, bookmarks, out),
+        }
+        Ok(())
+    }
+
+    fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
+        self.state.variables = match &self.program {
+            Some(_) => self.state.variables.carried_over(&program.plan),
+            None => Variables::initial(&program.plan),
+        };
+        self.state.revision += 1;
+        let event = Event::PlanActivated { hash: program.hash.clone(), revision: self.state.revision };
+        self.program = Some(program);
+        self.proposed = None;
+        out.push(Output::Event(event));
+    }
+
+    /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
+    fn go_on_in(&mut self, program: Arc<Program>, bookmarks: Vec<Cursor>, out: &mut Vec<Output>) {
+        let keep = bookmarks.len().saturating_sub(1);
+        self.activate(program, out);
+        for (handed, bookmark) in self.state.handed.iter_mut().zip(&bookmarks).take(keep) {
+            handed.before = bookmark.clone();
+            handed.pinned = true;
+        }
+        let Some(mut cursor) = bookmarks.into_iter().next_back() else { return };
+        if let Some(world) = self.world() {
+            let leg = cursor.leg(&world).map(|l| l.id.clone());
+            let refreshed = cursor.refresh_pattern(&world);
+            if let (Err(why), Some(leg)) = (refreshed, leg) {
+                self.tell_refused(leg, why.to_string(), out);
+            }
+        }
+        self.replan_with(keep, cursor, false, out);
+    }
+
+    fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
+        let (Some(old), Some(world)) = (&self.program, self.world()) else {
+            return Err(refusal("not-flying", "no plan is being flown: start one first"));
+        };
+        if let Some(front) = self.state.handed.front() {
+            let current = &front.place.leg;
+            if new.path(current).is_some() && entry.is_none_or(|e| e == current) {
+                let keep = self.alterable_from();
+                let translate = |i: usize| {
+                    let leg = i.checked_sub(1).and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
+                    self.bookmark(i).map(|c| translated(c, leg, current, old, new, &world))
+                };
+                return Ok(Carried::On((0..=keep).filter_map(translate).collect()));
+            }
+        }
+        let Some(entry) = entry else {
+            let reason = "the leg being flown is not in the new plan: name the leg to enter in the commit";
+            return Err(refusal("entry-needed", reason));
+        };
+        let target = new.path(entry).ok_or_else(|| {
+            refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
+        })?;
+        let now = self
+            .bookmark(1)
+            .or(self.state.tail.as_ref())
+            .ok_or_else(|| refusal("no-place", "wait for the first leg"))?;
+        let mut cursor = now.placed_at(target, &now.loop_ids(&world), new);
+        let mut here = self.here();
+        here.last.level = now.path.last.level;
+        cursor.move_path_to(here);
+        Ok(Carried::Enter(cursor))
+    }
+}
+
+/// How a flight goes over to a new plan.
+enum Carried {
+    /// Directly to an entry leg.
+    Enter(Cursor),
+    /// Bookmarks before each waypoint that stays, and behind the last of them.
+    On(Vec<Cursor>),
+}
+
+/// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
+/// identifiers. If its leg is gone, it is the beginning of `current` (nothing kept before it) or the end of it.
+fn translated(
+    cursor: &Cursor,
+    kept_leg: Option<&Id>,
+    current: &Id,
+    old: &Program,
+    new: &Program,
+    world: &crate::world::World,
+) -> Cursor {
+    let known = cursor.loop_ids(world);
+    let own = cursor.leg(world).map(|l| &l.id).or(cursor.current_stage(world).map(|s| &s.id));
+    let same_kind = |id: &&Id| kind_of(old, id) == kind_of(new, id);
+    let target = own.filter(same_kind).and_then(|id| new.path(id));
+    let Some(target) = target else {
+        let fallback = kept_leg.filter(|id| new.path(id).is_some()).unwrap_or(current);
+        let Some(path) = new.path(fallback) else { return cursor.clone() };
+        let mut placed = cursor.placed_at(path, &known, new);
+        if kept_leg.is_some() {
+            placed.doing = Doing::Flying;
+        }
+        return placed;
+    };
+    let mut moved = cursor.placed_at(target, &known, new);
+    restore_trails(&mut moved, cursor, &known, world, new, target);
+    Cursor {
+        doing: cursor.doing,
+        given: cursor.given,
+        expansion: cursor.expansion.clone(),
+        leg_start: cursor.leg_start,
+        ..moved
+    }
+}
+
+/// Direction and trail of each loop that is still there.
+fn restore_trails(
+    moved: &mut Cursor,
+    old: &Cursor,
+    known: &[Id],
+    world: &crate::world::World,
+    new: &Program,
+    target: &flight_plan::LegPath,
+) {
+    let old_chain = old.chain(world);
+    let new_chain = new.chain(target);
+    for (frame, leg) in moved.loops.iter_mut().zip(new_chain) {
+        let Some(place) = known.iter().position(|id| *id == leg.id) else { continue };
+        let (Some(before), Some(old_leg)) = (old.loops.get(place), old_chain.get(place)) else { continue };
+        *frame = LoopFrame {
+            index: frame.index,
+            trail: Arc::new(remap(&before.trail, old_leg, leg)),
+            ..before.clone()
+        };
+        let flown_back = before.trail.iter().take(before.back);
+        frame.back = remap(&flown_back.cloned().collect::<Vec<_>>(), old_leg, leg).len();
+    }
+}
+
+/// A trail in the new body: legs that are gone are left out.
+fn remap(trail: &[Visit], old: &Leg, new: &Leg) -> Vec<Visit> {
+    let moved = |visit: &Visit| {
+        let leg = old.body().get(visit.index)?;
+        let index = new.body().iter().position(|l| l.id == leg.id)?;
+        let inner = match (&visit.inner, new.body().get(index)) {
+            (Some(inner), Some(new_leg)) => Some(Arc::new(remap(inner, leg, new_leg))),
+            _ => None,
+        };
+        Some(Visit { index, inner, ..visit.clone() })
+    };
+    trail.iter().filter_map(moved).collect()
+}
+
+fn kind_of(program: &Program, id: &Id) -> Option<&'static str> {
+    program.leg(id).map(Leg::kind_name).or(program.path(id).map(|_| "stage"))
+}
+
+/// Legs and stages only in the new plan, only in the old one, and those that differ (a loop's body counts for itself).
+fn differences(old: &FlightPlan, new: &FlightPlan) -> (Vec<Id>, Vec<Id>, Vec<Id>) {
+    let (old_parts, new_parts) = (parts(old), parts(new));
+    let only = |a: &BTreeMap<Id, Part>, b: &BTreeMap<Id, Part>| -> Vec<Id> {
+        a.keys().filter(|id| !b.contains_key(*id)).cloned().collect()
+    };
+    let changed = new_parts.iter().filter(|(id, part)| old_parts.get(*id).is_some_and(|o| o != *part));
+    let changed = changed.map(|(id, _)| id.clone()).collect();
+    (only(&new_parts, &old_parts), only(&old_parts, &new_parts), changed)
+}
+
+/// A leg or stage without what is inside it, in its list.
+#[derive(PartialEq)]
+enum Part {
+    Leg(Box<Leg>, usize),
+    Stage(Box<Stage>),
+}
+
+fn parts(plan: &FlightPlan) -> BTreeMap<Id, Part> {
+    let stages = plan
+        .all_stages()
+        .map(|(_, s)| (s.id.clone(), Part::Stage(Box::new(Stage { legs: Vec::new(), ..s.clone() }))));
+    let legs = plan.all_legs();
+    let legs = legs.iter().map(|c| (c.leg.id.clone(), Part::Leg(Box::new(without_body(c.leg)), c.index)));
+    stages.chain(legs).collect()
+}
+
+fn without_body(leg: &Leg) -> Leg {
+    let kind = match &leg.kind {
+        LegKind::Iterative { form, count, until, turn, .. } => LegKind::Iterative {
+            form: *form,
+            count: count.clone(),
+            until: until.clone(),
+            turn: *turn,
+            body: Vec::new(),
+        },
+        other => other.clone(),
+    };
+    Leg { kind, ..leg.clone() }
+}
