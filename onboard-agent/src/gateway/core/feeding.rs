@@ -1,0 +1,153 @@
+//! The FP Manager joins and feeds waypoints.
+
+use super::Gateway;
+use super::io::{Intent, Output};
+use super::plausibility::{self, Context};
+use super::states::{Trigger, is_safe};
+use crate::gateway::order::Time;
+use usal::contract::{Action, Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
+
+impl Gateway {
+    /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the same
+    /// plan, knows its tokens, and the approach has not begun.
+    pub(super) fn join(&mut self, now: Time, join: Join, out: &mut Vec<Output>) -> JoinAnswer {
+        if let Err(reason) = self.may_join(&join) {
+            return self.join_answer(false, reason);
+        }
+        self.fp_manager.joined(now, join.plan);
+        if self.state == GatewayState::Stop && join.last_token < self.highest {
+            // a new FP Manager on the ground: a new flight
+            self.highest = join.last_token;
+            self.window.clear();
+        }
+        self.recover(out);
+        out.push(Output::Save);
+        self.join_answer(true, String::new())
+    }
+
+    fn may_join(&self, join: &Join) -> Result<(), String> {
+        match self.state {
+            GatewayState::Manual => Err("The pilot flies; join again when he gives back control.".into()),
+            GatewayState::SafeApproach | GatewayState::SafeLand => {
+                Err("Too late: the aircraft is on its way to the runway.".into())
+            }
+            GatewayState::Terminate => Err("The flight was ended by force.".into()),
+            GatewayState::SafeHold | GatewayState::SafeReturn if self.control.safe_commanded => {
+                Err("Safe mode was commanded; only the request `recover` ends it.".into())
+            }
+            GatewayState::SafeHold | GatewayState::SafeReturn => self.knows_the_flight(join),
+            _ => Ok(()),
+        }
+    }
+
+    fn knows_the_flight(&self, join: &Join) -> Result<(), String> {
+        let flown = self.fp_manager.plan.as_ref();
+        if join.plan.is_none() || flown.is_some_and(|p| Some(p) != join.plan.as_ref()) {
+            return Err(
+                "It does not fly the plan of this flight; restore that plan, or use the request `recover`."
+                    .into(),
+            );
+        }
+        if join.last_token < self.window.chain().last().map_or(Token(0), |w| w.token) {
+            return Err("It does not know the waypoints of this flight; restore its state, or use the request `recover`.".into());
+        }
+        Ok(())
+    }
+
+    fn join_answer(&self, accepted: bool, reason: String) -> JoinAnswer {
+        let own = |t: Token| (t.0 > 0).then_some(t);
+        JoinAnswer {
+            accepted,
+            reason,
+            current: self.window.current().and_then(|w| own(w.token)),
+            last: self.window.chain().last().and_then(|w| own(w.token)),
+            highest: self.highest,
+        }
+    }
+
+    /// Gives the aircraft back to the FP Manager: on with the waypoints aboard, or holding until
+    /// it sends some.
+    pub(super) fn recover(&mut self, out: &mut Vec<Output>) {
+        let theirs = self.window.chain().waypoints().any(|w| w.token.0 > 0);
+        match self.state {
+            GatewayState::SafeHold if theirs => {
+                self.control.set_intent(Intent::Fly, self.telemetry.mode);
+                self.change(Trigger::Recovered, "the FP Manager is back", out);
+            }
+            GatewayState::SafeHold | GatewayState::SafeReturn => {
+                self.window.feed(Some(Token(0)), vec![]);
+                self.control.set_intent(Intent::Hold, self.telemetry.mode);
+                self.fp_manager.resume_on_feed = true;
+                self.change(Trigger::RecoveredDry, "the FP Manager is back; waiting for its waypoints", out);
+            }
+            _ => return,
+        }
+        self.control.safe_commanded = false;
+    }
+
+    /// One transaction: taken whole, or the buffer stays as it was.
+    pub(super) fn feed(&mut self, now: Time, feed: Feed, out: &mut Vec<Output>) -> FeedAnswer {
+        if let Err(why) = self.takes_waypoints(now) {
+            return FeedAnswer::NotNow(why);
+        }
+        let faults = self.faults(&feed);
+        if !faults.is_empty() {
+            return FeedAnswer::Refused { faults };
+        }
+        if feed.waypoints.len() > self.window.chain().room(feed.cancel_after) {
+            return FeedAnswer::Full;
+        }
+        self.take(feed, out);
+        FeedAnswer::Accepted
+    }
+
+    fn takes_waypoints(&self, now: Time) -> Result<(), String> {
+        match self.state {
+            GatewayState::SafeHold if self.is_only_dry(now) => Ok(()),
+            s if is_safe(s) => Err("Safe mode flies; join first.".into()),
+            GatewayState::Manual => Err("The pilot flies.".into()),
+            GatewayState::Terminate => Err("The flight was ended by force.".into()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Safe.Hold because the buffer ran dry, with an FP Manager that is alive: waypoints heal it.
+    fn is_only_dry(&self, now: Time) -> bool {
+        !self.control.safe_commanded && !self.fp_manager.is_silent(now, &self.safe)
+    }
+
+    fn faults(&self, feed: &Feed) -> Vec<plausibility::Fault> {
+        let chain = self.window.chain();
+        let terrain = self.settings.terrain.as_deref();
+        let context = Context {
+            profile: &self.settings.profile,
+            terrain,
+            wind_mps: self.telemetry.wind_mps(),
+            highest: self.highest,
+        };
+        let here = self.here(feed);
+        let previous = chain.predecessor(feed.cancel_after).or(here.as_ref());
+        plausibility::faults(&context, None, previous, &feed.waypoints)
+    }
+
+    /// Where the aircraft is, as a waypoint that the batch follows on; in flight only.
+    fn here(&self, feed: &Feed) -> Option<Waypoint> {
+        let position = self.place().filter(|_| self.telemetry.is_airborne())?;
+        let first = feed.waypoints.first()?;
+        Some(Waypoint { position, action: Action::Fly, fly_over: true, ..first.clone() })
+    }
+
+    fn take(&mut self, feed: Feed, out: &mut Vec<Output>) {
+        let last = feed.waypoints.last().map(|w| w.token);
+        self.highest = self.highest.max(last.unwrap_or(Token(0)));
+        self.window.feed(feed.cancel_after, feed.waypoints);
+        self.ended = false;
+        self.low_told = false;
+        if last.is_some() && (self.fp_manager.resume_on_feed || self.state == GatewayState::SafeHold) {
+            self.fp_manager.resume_on_feed = false;
+            self.control.set_intent(Intent::Fly, self.telemetry.mode);
+            self.change(Trigger::Recovered, "the FP Manager sent waypoints", out);
+        }
+        out.push(Output::Save);
+    }
+}

@@ -1,0 +1,100 @@
+//! What goes into the gateway's core and what comes out of it.
+
+use crate::gateway::order::{Order, OrderId, Report};
+use aircraft::Profile;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use terrain::Terrain;
+use usal::contract::{
+    Feed, FeedAnswer, GatewayEvent, GatewayRequest, Join, JoinAnswer, SafeParameters, SafeRunway, Token,
+    Waypoint,
+};
+
+/// What the gateway knows before it starts.
+#[derive(Clone)]
+pub struct Settings {
+    /// The vehicle's name; `Terminate` has to repeat it.
+    pub vehicle: String,
+    /// The aircraft.
+    pub profile: Profile,
+    /// The ground, if known.
+    pub terrain: Option<Arc<dyn Terrain>>,
+}
+
+/// Everything that can happen to the core.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Input {
+    /// Time passed.
+    Tick,
+    /// From the driver.
+    Report(Report),
+    /// The FP Manager is alive, and flies this plan.
+    Heartbeat {
+        /// Hash of the plan.
+        plan: Option<String>,
+    },
+    /// The FP Manager presents itself.
+    Join(u64, Join),
+    /// The FP Manager sends waypoints.
+    Feed(u64, Feed),
+    /// Somebody asks for something.
+    Request(u64, GatewayRequest),
+}
+
+/// What the core wants done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// For the driver.
+    Order(OrderId, Order),
+    /// For everybody.
+    Event(GatewayEvent),
+    /// The one answer to an input with this number.
+    Answer(u64, Answer),
+    /// What must survive a restart has changed: store [`Snapshot`].
+    Save,
+}
+
+/// The answer to an input that has a number.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// To [`Input::Join`].
+    Join(JoinAnswer),
+    /// To [`Input::Feed`].
+    Feed(FeedAnswer),
+    /// To [`Input::Request`]: taken, or why not. What comes of it is seen in the state, once the
+    /// autopilot has confirmed it.
+    Request(Result<(), String>),
+}
+
+/// What the autopilot is meant to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Intent {
+    /// Whatever it or its pilot likes.
+    Nothing,
+    /// Fly the list.
+    Fly,
+    /// Circle.
+    Hold,
+    /// Follow a direct command.
+    Direct,
+    /// Go home by its own means: no runway is known to us.
+    Return,
+}
+
+/// What survives a restart of the gateway.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// The stored runways.
+    pub runways: Vec<SafeRunway>,
+    /// When Safe mode acts.
+    pub safe: SafeParameters,
+    /// Highest token accepted in this flight.
+    pub highest: Token,
+    /// What the autopilot was meant to do.
+    pub intent: Intent,
+    /// The buffer, the waypoint steered to first.
+    pub waypoints: Vec<Waypoint>,
+    /// Hash of the plan that was flown.
+    pub plan: Option<String>,
+}

@@ -1,0 +1,319 @@
+//! Pure: the gateway's state machine. No IO, clock or randomness: time is an argument.
+//!
+//! `step` takes one thing that happened and gives what is to be done about it. Every step ends
+//! with the same round: alarms, what the autopilot is seen to do, what the FP Manager is heard to
+//! do, then the orders that follow. The state tells what was confirmed, the intent what is wanted.
+
+mod alarms;
+mod control;
+mod feeding;
+mod io;
+mod plausibility;
+mod requests;
+mod safe;
+mod states;
+mod supervise;
+mod telemetry;
+#[cfg(test)]
+mod tests;
+mod views;
+
+pub use io::{Answer, Input, Intent, Output, Settings, Snapshot};
+pub use telemetry::{Telemetry, Timed};
+
+use super::order::{Mode, Order, OrderId, Report, Time};
+use super::window::Window;
+use alarms::{Alarms, Conduct};
+use control::Control;
+use geometry::LatLon;
+use states::{Trigger, is_flying, is_safe};
+use std::time::Duration;
+use supervise::FpManager;
+use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRunway, Token};
+
+/// Silent for so long on the ground: the autopilot is off.
+const OFF_AFTER: Duration = Duration::from_secs(10);
+/// The list may be flown elsewhere for so long before the aircraft is brought back.
+const ASTRAY_FOR: Duration = Duration::from_secs(2);
+
+/// The gateway. See the module's text.
+pub struct Gateway {
+    settings: Settings,
+    state: GatewayState,
+    cause: String,
+    telemetry: Telemetry,
+    alarms: Alarms,
+    window: Window,
+    control: Control,
+    fp_manager: FpManager,
+    safe: SafeParameters,
+    runways: Vec<SafeRunway>,
+    highest: Token,
+    /// The last waypoint that ends the plan was flown.
+    ended: bool,
+    /// What was last told as progress.
+    told: Option<Option<Token>>,
+    low_told: bool,
+    astray_since: Option<Time>,
+    /// A flight was met in the air: what was known of it.
+    adopting: Option<Snapshot>,
+}
+
+impl Gateway {
+    /// A gateway that has heard nothing yet. `restored`: what an earlier one stored.
+    pub fn new(settings: Settings, restored: Option<Snapshot>) -> Self {
+        let known = restored.clone();
+        Self {
+            settings,
+            state: GatewayState::Off,
+            cause: "the autopilot was not heard yet".into(),
+            telemetry: Telemetry::default(),
+            alarms: Alarms::default(),
+            window: Window::default(),
+            control: Control::default(),
+            fp_manager: FpManager::default(),
+            safe: known.as_ref().map_or_else(SafeParameters::default, |k| k.safe),
+            runways: known.map_or_else(Vec::new, |k| k.runways),
+            highest: Token(0),
+            ended: false,
+            told: None,
+            low_told: false,
+            astray_since: None,
+            adopting: restored,
+        }
+    }
+
+    /// Takes in what happened; what is to be done goes to `out`.
+    pub fn step(&mut self, now: Time, input: Input, out: &mut Vec<Output>) {
+        match input {
+            Input::Tick => {}
+            Input::Report(report) => self.report(now, report, out),
+            Input::Heartbeat { plan } => self.fp_manager.heard(now, plan),
+            Input::Join(request, join) => {
+                let answer = self.join(now, join, out);
+                out.push(Output::Answer(request, Answer::Join(answer)));
+            }
+            Input::Feed(request, feed) => {
+                let answer = self.feed(now, feed, out);
+                out.push(Output::Answer(request, Answer::Feed(answer)));
+            }
+            Input::Request(request, asked) => {
+                let result = self.request(now, asked, out);
+                out.push(Output::Answer(request, Answer::Request(result)));
+            }
+        }
+        self.round(now, out);
+    }
+
+    fn round(&mut self, now: Time, out: &mut Vec<Output>) {
+        self.watch(now, out);
+        self.observe(now, out);
+        self.supervise(now, out);
+        self.steer(now, out);
+        self.tell(out);
+    }
+
+    /// When `step` has to be called again even if nothing happens.
+    pub fn deadline(&self) -> Option<Time> {
+        let waits = [
+            self.fp_manager.silent_at(&self.safe),
+            self.control.safe_since.map(|s| s + seconds(self.safe.t2_s)),
+            self.control.retry_at,
+            self.telemetry.heard.map(|h| h + OFF_AFTER),
+        ];
+        waits.into_iter().flatten().min()
+    }
+
+    /// What must survive a restart.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            runways: self.runways.clone(),
+            safe: self.safe,
+            highest: self.highest,
+            intent: self.control.intent,
+            waypoints: self.window.chain().waypoints().cloned().collect(),
+            plan: self.fp_manager.plan.clone(),
+        }
+    }
+
+    fn report(&mut self, now: Time, report: Report, out: &mut Vec<Output>) {
+        self.telemetry.take(now, &report);
+        match report {
+            Report::Current(seq) => self.current(now, seq),
+            Report::Done(id) => self.control.done(id, &mut self.window),
+            Report::Failed(id, why) => self.failed(now, id, why, out),
+            Report::List(id, list) => self.adopt(id, &list, out),
+            Report::Rebooted => self.window.invalidate(),
+            Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
+            _ => {}
+        }
+    }
+
+    fn current(&mut self, now: Time, seq: u16) {
+        self.control.current_seq = Some(seq);
+        let ends = self.window.chain().last().is_some_and(|w| w.end_of_plan);
+        self.window.reported(seq);
+        self.ended |= ends && self.window.at_guard();
+        if !self.window.is_astray(seq) || !self.is_in_auto() {
+            self.astray_since = None;
+            return;
+        }
+        let since = *self.astray_since.get_or_insert(now);
+        if now.saturating_sub(since) > ASTRAY_FOR {
+            self.astray_since = None;
+            self.window.bring_back();
+        }
+    }
+
+    fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
+        let launch = self.control.failed(now, id, &mut self.window);
+        if launch && self.state == GatewayState::Stop {
+            self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+            self.cause = format!("launch refused by the autopilot: {why}");
+            out.push(Output::Save);
+        }
+    }
+
+    /// Takes over a flight that was met in the air, if the list that it flies is one of ours.
+    fn adopt(&mut self, id: OrderId, list: &[super::order::Item], out: &mut Vec<Output>) {
+        self.control.forget(id);
+        let known = self.adopting.take();
+        let intent = known.as_ref().map_or(Intent::Fly, |k| k.intent);
+        let waypoints = known.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
+        let current = self.control.current_seq.unwrap_or(0);
+        if self.window.adopt(list, current, waypoints) {
+            self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
+            self.control.set_intent(intent, self.telemetry.mode);
+            out.push(Output::Save);
+        }
+    }
+
+    fn watch(&mut self, now: Time, out: &mut Vec<Output>) {
+        let conduct = Conduct {
+            disobeys_since: self.control.disobeys_since,
+            no_safe_runway: self.control.intent == Intent::Return,
+        };
+        let mut events = vec![];
+        self.alarms.update(now, &self.telemetry, conduct, &mut events);
+        out.extend(events.into_iter().map(Output::Event));
+    }
+
+    fn is_in_auto(&self) -> bool {
+        self.telemetry.armed && self.telemetry.mode == Some(Mode::Auto)
+    }
+
+    /// What the autopilot is seen to do.
+    fn observe(&mut self, now: Time, out: &mut Vec<Output>) {
+        let t = &self.telemetry;
+        let Some(heard) = t.heard else { return };
+        if now.saturating_sub(heard) > OFF_AFTER {
+            return self.change(Trigger::Lost, "the autopilot is silent", out);
+        }
+        self.change(Trigger::Heard, "the autopilot is heard", out);
+        if is_flying(self.state) && self.telemetry.is_landed() {
+            return self.land(out);
+        }
+        if let Some((trigger, cause)) = self.seen() {
+            self.change(trigger, cause, out);
+        }
+    }
+
+    fn seen(&self) -> Option<(Trigger, &'static str)> {
+        let (mode, intent) = (self.telemetry.mode?, self.control.intent);
+        let aloft = is_flying(self.state) || self.telemetry.is_airborne();
+        match mode {
+            Mode::Auto if self.is_in_auto() && self.window.installed() => self.seen_in_auto(),
+            Mode::Loiter if intent == Intent::Hold && aloft => {
+                Some((Trigger::HoldConfirmed, "holding as asked"))
+            }
+            Mode::Guided if intent == Intent::Direct && aloft => {
+                Some((Trigger::DirectConfirmed, "following a direct command"))
+            }
+            _ => None,
+        }
+    }
+
+    fn seen_in_auto(&self) -> Option<(Trigger, &'static str)> {
+        if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
+            return None;
+        }
+        let seen = match self.window.current()?.action {
+            Action::TakeOff { .. } => (Trigger::Departing, "taking off"),
+            Action::Land { .. } => (Trigger::Landing, "steering to the touch-down"),
+            _ if self.window.next_is_land() => (Trigger::Approaching, "the landing comes next"),
+            _ => (Trigger::Cruising, "flying waypoints"),
+        };
+        Some(seen)
+    }
+
+    fn land(&mut self, out: &mut Vec<Output>) {
+        let landing = matches!(self.window.current(), Some(w) if matches!(w.action, Action::Land { .. }));
+        if landing && self.told.is_some() {
+            self.told = Some(None);
+            out.push(Output::Event(GatewayEvent::Progress { current: None }));
+        }
+        self.change(Trigger::Landed, "landed and disarmed", out);
+        self.window.clear();
+        self.control.reset();
+        self.told = None;
+        self.ended = false;
+        out.push(Output::Save);
+    }
+
+    /// Makes a transition, if the table has one; tells it; does what entering the state asks for.
+    fn change(&mut self, trigger: Trigger, cause: &str, out: &mut Vec<Output>) {
+        let Some(to) = states::next(self.state, trigger) else { return };
+        let from = std::mem::replace(&mut self.state, to);
+        self.cause = cause.to_owned();
+        if !is_safe(to) {
+            self.control.safe_since = None;
+        }
+        out.push(Output::Event(GatewayEvent::StateChanged { from, to, cause: cause.to_owned() }));
+    }
+
+    /// Progress, and the level of the buffer.
+    fn tell(&mut self, out: &mut Vec<Output>) {
+        if !is_flying(self.state) || !self.window.installed() {
+            return;
+        }
+        let current = match self.window.current() {
+            // our own waypoints are nobody else's business
+            Some(w) if w.token == Token(0) => return,
+            Some(w) => Some(w.token),
+            None if self.window.at_guard() && !is_safe(self.state) => None,
+            None => return,
+        };
+        if self.told == Some(current) || (self.told.is_none() && current.is_none()) {
+            return;
+        }
+        self.told = Some(current);
+        out.push(Output::Event(GatewayEvent::Progress { current }));
+        out.push(Output::Save);
+        self.tell_level(out);
+    }
+
+    fn tell_level(&mut self, out: &mut Vec<Output>) {
+        let (waypoints, seconds) = self.level();
+        let ends = self.window.chain().last().is_some_and(|w| w.end_of_plan) || self.ended;
+        let low = !ends && (waypoints < views::LOW_WAYPOINTS || seconds < views::LOW_S);
+        if low && !self.low_told {
+            out.push(Output::Event(GatewayEvent::BufferLow { waypoints, seconds }));
+        }
+        self.low_told = low;
+    }
+
+    fn place(&self) -> Option<LatLon> {
+        self.telemetry.fix.map(|(_, f)| f.position)
+    }
+
+    fn order(&mut self, order: Order, out: &mut Vec<Output>) -> OrderId {
+        let id = self.control.next_id();
+        out.push(Output::Order(id, order));
+        id
+    }
+}
+
+/// Seconds as a duration; nonsense gives zero.
+fn seconds(s: f64) -> Duration {
+    Duration::try_from_secs_f64(s).unwrap_or_default()
+}

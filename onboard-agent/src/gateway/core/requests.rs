@@ -1,0 +1,183 @@
+//! What people and services may ask of the gateway.
+
+use super::Gateway;
+use super::io::{Intent, Output};
+use super::safe::is_usable;
+use super::states::{Trigger, is_flying};
+use crate::gateway::order::{Order, Time};
+use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
+
+/// A direct command goes to a place so far ahead, metres.
+const DIRECT_M: f64 = 20_000.0;
+/// Most runways that are stored.
+const MOST_RUNWAYS: usize = 32;
+
+impl Gateway {
+    /// Does what is asked, or says why not.
+    pub(super) fn request(
+        &mut self,
+        now: Time,
+        asked: GatewayRequest,
+        out: &mut Vec<Output>,
+    ) -> Result<(), String> {
+        match asked {
+            GatewayRequest::Launch => self.launch(out),
+            GatewayRequest::Hold => self.hold(out),
+            GatewayRequest::Resume => self.resume(out),
+            GatewayRequest::Direct { heading_deg, altitude_amsl_m, airspeed_mps } => {
+                self.direct(heading_deg, altitude_amsl_m, airspeed_mps, out)
+            }
+            GatewayRequest::Safe => self.safe_by_command(now, out),
+            GatewayRequest::Recover => self.recover_by_command(now, out),
+            GatewayRequest::SetRunways { runways } => self.set_runways(runways, out),
+            GatewayRequest::SetSafe(safe) => self.set_safe(safe, out),
+            GatewayRequest::Terminate { confirm } => self.terminate(&confirm, out),
+        }
+    }
+
+    fn launch(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
+        match self.state {
+            GatewayState::Stop => {}
+            GatewayState::Off => return Err("The autopilot is not heard; check its link.".into()),
+            s => return Err(format!("Launch is for the ground; the state is {s:?}.")),
+        }
+        match &self.control.capability {
+            Some(Ok(())) => {}
+            Some(Err(why)) => return Err(why.clone()),
+            None => return Err("The autopilot has not said yet what it is; try again.".into()),
+        }
+        if self.window.chain().is_empty() {
+            return Err("There is nothing to fly; start a plan first.".into());
+        }
+        if !self.telemetry.gps.is_some_and(|(_, g)| g.fix_3d) {
+            return Err("There is no GPS fix; wait for it.".into());
+        }
+        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    /// The states in which people and the FP Manager may redirect the aircraft.
+    fn is_free(&self) -> Result<(), String> {
+        match self.state {
+            GatewayState::TakeOff
+            | GatewayState::Nav
+            | GatewayState::Hold
+            | GatewayState::Directed
+            | GatewayState::Approach
+            | GatewayState::Land => Ok(()),
+            s => Err(format!("Not possible while the state is {s:?}.")),
+        }
+    }
+
+    fn hold(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
+        self.is_free()?;
+        self.control.set_intent(Intent::Hold, self.telemetry.mode);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn resume(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
+        if self.state != GatewayState::Manual {
+            self.is_free()?;
+        }
+        if self.window.chain().is_empty() {
+            return Err("There are no waypoints to go on with.".into());
+        }
+        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn direct(
+        &mut self,
+        heading_deg: f64,
+        altitude_amsl_m: f64,
+        airspeed_mps: f64,
+        out: &mut Vec<Output>,
+    ) -> Result<(), String> {
+        self.is_free()?;
+        let place = self.place().ok_or("The position is not known.")?;
+        let profile = &self.settings.profile;
+        let speeds = profile.min_airspeed_mps..=profile.max_airspeed_mps;
+        if !heading_deg.is_finite() || !speeds.contains(&airspeed_mps) {
+            return Err(format!("The airspeed has to be within {speeds:?} m/s, the heading a number."));
+        }
+        let ground_m = self.settings.terrain.as_ref().and_then(|t| t.elevation_m(place)).unwrap_or(-500.0);
+        if !(ground_m + 50.0..=profile.ceiling_amsl_m).contains(&altitude_amsl_m) {
+            return Err(format!(
+                "The altitude has to be within {:.0} and {:.0} m AMSL.",
+                ground_m + 50.0,
+                profile.ceiling_amsl_m
+            ));
+        }
+        self.control.direct = Some((place.destination(heading_deg, DIRECT_M), altitude_amsl_m));
+        self.control.set_intent(Intent::Direct, self.telemetry.mode);
+        self.order_speed(airspeed_mps, out);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn safe_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
+        self.enter_safe(now, true, "by command", out);
+        match self.state {
+            GatewayState::SafeHold => Ok(()),
+            s => Err(format!("Safe mode can't be entered while the state is {s:?}.")),
+        }
+    }
+
+    fn recover_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
+        if !matches!(self.state, GatewayState::SafeHold | GatewayState::SafeReturn) {
+            return Err(format!(
+                "Recovery is possible in Safe.Hold and Safe.Return; the state is {:?}.",
+                self.state
+            ));
+        }
+        if self.fp_manager.is_silent(now, &self.safe) {
+            return Err("The FP Manager is silent; start it first.".into());
+        }
+        self.recover(out);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn set_runways(&mut self, runways: Vec<SafeRunway>, out: &mut Vec<Output>) -> Result<(), String> {
+        if runways.len() > MOST_RUNWAYS {
+            return Err(format!("At most {MOST_RUNWAYS} runways are stored."));
+        }
+        if let Some(bad) = runways.iter().find(|r| !is_usable(r, &self.settings.profile)) {
+            let least = self.settings.profile.min_runway_m;
+            return Err(format!(
+                "Runway {} can't be used: its numbers have to be in range and its length at least {least:.0} m.",
+                bad.id
+            ));
+        }
+        self.runways = runways;
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn set_safe(&mut self, safe: SafeParameters, out: &mut Vec<Output>) -> Result<(), String> {
+        let times = (0.5..=60.0).contains(&safe.t1_s) && (0.0..=3600.0).contains(&safe.t2_s);
+        if !times || !(40.0..=500.0).contains(&safe.return_height_m) {
+            return Err("T1 has to be 0.5 to 60 s, T2 0 to 3600 s, the return height 40 to 500 m.".into());
+        }
+        self.safe = safe;
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn terminate(&mut self, confirm: &str, out: &mut Vec<Output>) -> Result<(), String> {
+        if confirm != self.settings.vehicle {
+            return Err("To end the flight by force, repeat the vehicle's name in `confirm`.".into());
+        }
+        if !is_flying(self.state) && !self.telemetry.armed {
+            return Err("There is no flight to end.".into());
+        }
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        self.order(Order::Terminate, out);
+        self.change(Trigger::Terminated, "by command", out);
+        out.push(Output::Save);
+        Ok(())
+    }
+}

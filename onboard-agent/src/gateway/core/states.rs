@@ -1,0 +1,196 @@
+//! The states and their one transition table.
+
+use usal::contract::GatewayState;
+
+/// What can make the state change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Trigger {
+    /// The autopilot is heard.
+    Heard,
+    /// The autopilot was silent for long, standing on the ground.
+    Lost,
+    /// It flies the list, and steers to a take-off.
+    Departing,
+    /// It flies the list, and steers to a waypoint.
+    Cruising,
+    /// It flies the list, and a landing follows the waypoint steered to.
+    Approaching,
+    /// It flies the list, and steers to a landing.
+    Landing,
+    /// On the ground, disarmed.
+    Landed,
+    /// It circles, as we asked.
+    HoldConfirmed,
+    /// It follows our direct command.
+    DirectConfirmed,
+    /// Its mode was changed, and not by us.
+    PilotTook,
+    /// Safe mode has to act.
+    SafeNeeded,
+    /// Safe.Hold has lasted T2.
+    ReturnDue,
+    /// The FP Manager is back and has waypoints aboard.
+    Recovered,
+    /// The FP Manager is back and has to send waypoints first.
+    RecoveredDry,
+    /// The flight is to be ended by force.
+    Terminated,
+}
+
+/// All triggers, for exhaustive tests.
+#[cfg(test)]
+pub const TRIGGERS: [Trigger; 15] = [
+    Trigger::Heard,
+    Trigger::Lost,
+    Trigger::Departing,
+    Trigger::Cruising,
+    Trigger::Approaching,
+    Trigger::Landing,
+    Trigger::Landed,
+    Trigger::HoldConfirmed,
+    Trigger::DirectConfirmed,
+    Trigger::PilotTook,
+    Trigger::SafeNeeded,
+    Trigger::ReturnDue,
+    Trigger::Recovered,
+    Trigger::RecoveredDry,
+    Trigger::Terminated,
+];
+
+/// All states, for exhaustive tests.
+#[cfg(test)]
+pub const STATES: [GatewayState; 14] = [
+    GatewayState::Off,
+    GatewayState::Stop,
+    GatewayState::TakeOff,
+    GatewayState::Nav,
+    GatewayState::Hold,
+    GatewayState::Directed,
+    GatewayState::Manual,
+    GatewayState::Approach,
+    GatewayState::Land,
+    GatewayState::SafeHold,
+    GatewayState::SafeReturn,
+    GatewayState::SafeApproach,
+    GatewayState::SafeLand,
+    GatewayState::Terminate,
+];
+
+/// The state that follows; `None`: the trigger means nothing there.
+pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
+    use GatewayState::*;
+    use Trigger::*;
+    let to = match (from, trigger) {
+        // ended by force: nothing follows but a new start of the gateway
+        (Terminate, _) => return None,
+        (_, Terminated) => Terminate,
+
+        (Off, Heard) => Stop,
+        (Stop, Lost) => Off,
+
+        // the ground, and how the flight begins (an armed autopilot may be met in flight)
+        (Stop, Departing) => TakeOff,
+        (Stop, Cruising) => Nav,
+        (Stop, Approaching) => Approach,
+        (Stop, Landing) => Land,
+        (Stop, HoldConfirmed) => Hold,
+        (Stop, PilotTook) => Manual,
+        (Off | Stop, _) => return None,
+
+        // the end of the flight; the human pilot; both from anywhere in the air
+        (_, Landed) => Stop,
+        (Manual, PilotTook) => return None,
+        (_, PilotTook) => Manual,
+
+        // flying the FP Manager's waypoints
+        (Hold | Directed | Manual, Departing) => TakeOff,
+        (TakeOff | Hold | Directed | Manual | Approach | Land, Cruising) => Nav,
+        (TakeOff | Nav | Hold | Directed | Manual | Land, Approaching) => Approach,
+        (TakeOff | Nav | Hold | Directed | Manual | Approach, Landing) => Land,
+        (TakeOff | Nav | Directed | Approach | Land, HoldConfirmed) => Hold,
+        (TakeOff | Nav | Hold | Approach | Land, DirectConfirmed) => Directed,
+
+        // Safe mode; a take-off and a landing are finished first
+        (Nav | Hold | Directed | Approach, SafeNeeded) => SafeHold,
+        (SafeHold, ReturnDue) => SafeReturn,
+        (SafeReturn, Approaching) => SafeApproach,
+        (SafeReturn | SafeApproach, Landing) => SafeLand,
+        (SafeHold, Recovered) => Nav,
+        (SafeHold | SafeReturn, RecoveredDry) => Hold,
+        _ => return None,
+    };
+    Some(to)
+}
+
+/// In the air, or about to be.
+pub fn is_flying(state: GatewayState) -> bool {
+    !matches!(state, GatewayState::Off | GatewayState::Stop | GatewayState::Terminate)
+}
+
+/// Safe mode.
+pub fn is_safe(state: GatewayState) -> bool {
+    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn};
+    matches!(state, SafeHold | SafeReturn | SafeApproach | SafeLand)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// One line per state: the triggers that mean something and where they lead, in the order of
+    /// [`TRIGGERS`]; `.` is nothing.
+    const TABLE: &str = "
+    Off          Stop . . . . . . . . . . . . . Terminate
+    Stop         . Off TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
+    TakeOff      . . . Nav Approach Land Stop Hold Directed Manual . . . . Terminate
+    Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
+    Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . Terminate
+    Directed     . . TakeOff Nav Approach Land Stop Hold . Manual SafeHold . . . Terminate
+    Manual       . . TakeOff Nav Approach Land Stop . . . . . . . Terminate
+    Approach     . . . Nav . Land Stop Hold Directed Manual SafeHold . . . Terminate
+    Land         . . . Nav Approach . Stop Hold Directed Manual . . . . Terminate
+    SafeHold     . . . . . . Stop . . Manual . SafeReturn Nav Hold Terminate
+    SafeReturn   . . . . SafeApproach SafeLand Stop . . Manual . . . Hold Terminate
+    SafeApproach . . . . . SafeLand Stop . . Manual . . . . Terminate
+    SafeLand     . . . . . . Stop . . Manual . . . . Terminate
+    Terminate    . . . . . . . . . . . . . . .
+    ";
+
+    #[test]
+    fn every_pair_of_state_and_trigger_is_as_in_the_table() {
+        let rows: Vec<Vec<&str>> = TABLE
+            .lines()
+            .map(|l| l.split_whitespace().collect::<Vec<_>>())
+            .filter(|r| !r.is_empty())
+            .collect();
+        assert_eq!(rows.len(), STATES.len());
+        for (state, row) in STATES.iter().zip(&rows) {
+            assert_eq!(format!("{state:?}"), row[0]);
+            assert_eq!(row.len(), TRIGGERS.len() + 1, "{state:?}");
+            for (trigger, expected) in TRIGGERS.iter().zip(&row[1..]) {
+                let to = next(*state, *trigger).map_or(".".to_owned(), |s| format!("{s:?}"));
+                assert_eq!(&to, expected, "{state:?} on {trigger:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_state_can_be_reached_and_every_airborne_one_can_be_left_by_the_pilot() {
+        let mut reached = BTreeSet::from(["Off".to_owned()]);
+        for from in STATES {
+            reached.extend(TRIGGERS.iter().filter_map(|t| next(from, *t)).map(|s| format!("{s:?}")));
+            let to = next(from, Trigger::PilotTook);
+            let free = (is_flying(from) || from == GatewayState::Stop) && from != GatewayState::Manual;
+            assert_eq!(to == Some(GatewayState::Manual), free, "{from:?}");
+        }
+        assert_eq!(reached.len(), STATES.len());
+    }
+
+    #[test]
+    fn no_trigger_leads_from_a_state_to_itself() {
+        for (from, trigger) in STATES.iter().flat_map(|s| TRIGGERS.map(|t| (*s, t))) {
+            assert_ne!(next(from, trigger), Some(from), "{trigger:?}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Is the FP Manager alive, has it enough waypoints aboard, and what if not: Safe mode.
+
+use super::io::{Intent, Output};
+use super::safe::{self, Situation};
+use super::states::Trigger;
+use super::{Gateway, seconds};
+use crate::gateway::order::{Mode, Time};
+use usal::contract::{GatewayState, SafeParameters, Token};
+
+/// What is known of the FP Manager.
+#[derive(Debug, Clone, Default)]
+pub struct FpManager {
+    /// Last sign of life.
+    last_heard: Option<Time>,
+    /// When the gateway began to listen, in flight.
+    expected_since: Option<Time>,
+    /// Hash of the plan it flies.
+    pub plan: Option<String>,
+    /// It was given the aircraft back with an empty buffer.
+    pub resume_on_feed: bool,
+}
+
+impl FpManager {
+    /// A heartbeat. One that comes after a silence does not end Safe mode: that takes a join.
+    pub fn heard(&mut self, now: Time, plan: Option<String>) {
+        self.last_heard = Some(now);
+        if plan.is_some() {
+            self.plan = plan;
+        }
+    }
+
+    /// It presented itself and was accepted.
+    pub fn joined(&mut self, now: Time, plan: Option<String>) {
+        self.heard(now, plan);
+        self.resume_on_feed = false;
+    }
+
+    /// Age of the last sign of life, seconds.
+    pub fn age_s(&self, now: Time) -> Option<f64> {
+        self.last_heard.map(|t| now.saturating_sub(t).as_secs_f64())
+    }
+
+    /// When it will have been silent for T1.
+    pub fn silent_at(&self, safe: &SafeParameters) -> Option<Time> {
+        self.last_heard.max(self.expected_since).map(|t| t + seconds(safe.t1_s))
+    }
+
+    /// Silent for T1, or never heard.
+    pub fn is_silent(&self, now: Time, safe: &SafeParameters) -> bool {
+        self.silent_at(safe).is_none_or(|t| now >= t)
+    }
+}
+
+impl Gateway {
+    /// Safe mode, and the steps within it.
+    pub(super) fn supervise(&mut self, now: Time, out: &mut Vec<Output>) {
+        match self.state {
+            GatewayState::Nav | GatewayState::Hold | GatewayState::Directed => {
+                self.fp_manager.expected_since.get_or_insert(now);
+                if self.fp_manager.is_silent(now, &self.safe) {
+                    self.enter_safe(now, false, "the FP Manager is silent", out);
+                } else if self.is_dry() {
+                    self.enter_safe(now, false, "the waypoints ran dry before the end of the plan", out);
+                }
+            }
+            GatewayState::SafeHold => {
+                let due = self.control.safe_since.is_some_and(|s| now >= s + seconds(self.safe.t2_s));
+                if due {
+                    self.return_home(out);
+                }
+            }
+            GatewayState::Off | GatewayState::Stop => self.fp_manager.expected_since = None,
+            _ => {}
+        }
+    }
+
+    /// The guard is circled although the plan did not end.
+    fn is_dry(&self) -> bool {
+        self.window.at_guard() && !self.ended && self.control.intent == Intent::Fly && self.is_in_auto()
+    }
+
+    /// Safe.Hold, if the state allows it.
+    pub(super) fn enter_safe(&mut self, now: Time, commanded: bool, cause: &str, out: &mut Vec<Output>) {
+        let before = self.state;
+        self.change(Trigger::SafeNeeded, cause, out);
+        if self.state == before {
+            return;
+        }
+        self.control.safe_since = Some(now);
+        self.control.safe_commanded = commanded;
+        self.control.set_intent(Intent::Hold, self.telemetry.mode);
+        out.push(Output::Save);
+    }
+
+    fn return_home(&mut self, out: &mut Vec<Output>) {
+        self.control.safe_since = None;
+        let Some((_, fix)) = self.telemetry.fix else { return self.return_by_itself(out) };
+        let situation = Situation {
+            position: fix.position,
+            altitude_amsl_m: fix.altitude_amsl_m,
+            air: self.telemetry.air.map(|(_, a)| a),
+            battery: self.telemetry.battery(),
+            profile: &self.settings.profile,
+            terrain: self.settings.terrain.as_deref(),
+        };
+        let Some(runway) = safe::choose(&self.runways, &situation) else {
+            return self.return_by_itself(out);
+        };
+        let cause = format!("returning to runway {}", runway.id);
+        let path = safe::path(runway, &self.safe, &situation);
+        self.window.feed(Some(Token(0)), path);
+        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        self.change(Trigger::ReturnDue, &cause, out);
+        out.push(Output::Save);
+    }
+
+    /// No runway is known within reach (or no position): the autopilot's own return.
+    fn return_by_itself(&mut self, out: &mut Vec<Output>) {
+        self.control.set_intent(Intent::Return, self.telemetry.mode);
+        let cause = format!("no runway known within reach: {} by the autopilot", Mode::Return);
+        self.change(Trigger::ReturnDue, &cause, out);
+        out.push(Output::Save);
+    }
+}

@@ -1,0 +1,110 @@
+//! The latest that the autopilot said about everything, with its time.
+
+use crate::gateway::order::{Fix, Mode, Report, Time};
+use geometry::LatLon;
+use usal::contract::{Air, Attitude, Engine, Gps, Position, Power};
+
+/// A value and when it came.
+pub type Timed<T> = Option<(Time, T)>;
+
+/// Velocities below this have no direction, m/s.
+const STANDING_MPS: f64 = 0.5;
+
+/// See the module's text.
+#[derive(Debug, Clone, Default)]
+pub struct Telemetry {
+    /// Last sign of life.
+    pub heard: Option<Time>,
+    /// Mode, once heard.
+    pub mode: Option<Mode>,
+    /// Armed.
+    pub armed: bool,
+    /// Position and velocity.
+    pub fix: Timed<Fix>,
+    /// When the position last differed from the one before.
+    pub moved: Option<Time>,
+    /// Attitude.
+    pub attitude: Timed<Attitude>,
+    /// Air data.
+    pub air: Timed<Air>,
+    /// GPS quality.
+    pub gps: Timed<Gps>,
+    /// Engine.
+    pub engine: Timed<Engine>,
+    /// Energy.
+    pub power: Timed<Power>,
+    /// Take-off place and its altitude AMSL.
+    pub home: Option<(LatLon, f64)>,
+    /// Stands on the ground, if it says.
+    pub on_ground: Option<bool>,
+}
+
+impl Telemetry {
+    /// Takes in a report.
+    pub fn take(&mut self, now: Time, report: &Report) {
+        match report {
+            Report::Heard { mode, armed } => {
+                self.heard = Some(now);
+                self.mode = Some(*mode);
+                self.armed = *armed;
+            }
+            Report::Fix(fix) => {
+                if self.fix.is_none_or(|(_, old)| old.position != fix.position) {
+                    self.moved = Some(now);
+                }
+                self.fix = Some((now, *fix));
+            }
+            Report::Attitude(v) => self.attitude = Some((now, *v)),
+            Report::Air(v) => self.air = Some((now, *v)),
+            Report::Gps(v) => self.gps = Some((now, *v)),
+            Report::Engine(v) => self.engine = Some((now, *v)),
+            Report::Power(v) => self.power = Some((now, *v)),
+            Report::Home { position, altitude_amsl_m } => {
+                self.home = Some((*position, *altitude_amsl_m));
+            }
+            Report::OnGround(v) => self.on_ground = Some(*v),
+            _ => {}
+        }
+    }
+
+    /// In the air, as far as is known.
+    pub fn is_airborne(&self) -> bool {
+        self.armed && self.on_ground != Some(true)
+    }
+
+    /// Surely on the ground with the engine off.
+    pub fn is_landed(&self) -> bool {
+        self.heard.is_some() && !self.armed && self.on_ground != Some(false)
+    }
+
+    /// Wind speed, m/s; 0 while unknown.
+    pub fn wind_mps(&self) -> f64 {
+        self.air.map_or(0.0, |(_, a)| a.wind_east_mps.hypot(a.wind_north_mps))
+    }
+
+    /// Share of the energy left; 1 while unknown.
+    pub fn battery(&self) -> f64 {
+        self.power.map_or(1.0, |(_, p)| p.battery)
+    }
+
+    /// The variable `position`.
+    pub fn position(&self) -> Timed<Position> {
+        let (time, fix) = self.fix?;
+        let ground_speed_mps = fix.north_mps.hypot(fix.east_mps);
+        let heading_deg = self.attitude.map_or(0.0, |(_, a)| a.heading_deg);
+        let moving = ground_speed_mps > STANDING_MPS;
+        let track = fix.east_mps.atan2(fix.north_mps).to_degrees();
+        let position = Position {
+            position: fix.position,
+            altitude_amsl_m: fix.altitude_amsl_m,
+            altitude_home_m: fix.altitude_home_m,
+            velocity_north_mps: fix.north_mps,
+            velocity_east_mps: fix.east_mps,
+            velocity_down_mps: fix.down_mps,
+            track_deg: if moving { geometry::geodesy::normalise_360(track) } else { heading_deg },
+            ground_speed_mps,
+            on_ground: self.on_ground.unwrap_or(!self.armed),
+        };
+        Some((time, position))
+    }
+}

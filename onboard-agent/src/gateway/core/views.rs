@@ -1,0 +1,104 @@
+//! What the gateway publishes about itself.
+
+use super::telemetry::Telemetry;
+use super::{Gateway, seconds};
+use crate::gateway::order::Time;
+use crate::gateway::window::CAPACITY;
+use geometry::{LatLon, LocalFrame};
+use usal::contract::{GatewayState, GatewayStatus, Navigation, Token};
+
+/// Low-water mark of the buffer.
+pub const LOW_WAYPOINTS: usize = 3;
+/// Low-water mark of the buffer, seconds of flight.
+pub const LOW_S: f64 = 10.0;
+/// Ground speed below which times make no sense, m/s.
+const SLOWEST_MPS: f64 = 3.0;
+
+impl Gateway {
+    /// What it is doing.
+    pub fn state(&self) -> GatewayState {
+        self.state
+    }
+
+    /// The autopilot's latest values.
+    pub fn telemetry(&self) -> &Telemetry {
+        &self.telemetry
+    }
+
+    /// What has to be told at once when it changes: waypoint steered to, state, armed, alarms.
+    pub fn conduct(&self) -> (Option<Token>, GatewayState, bool, usize) {
+        let current = self.window.current().map(|w| w.token);
+        (current, self.state, self.telemetry.armed, self.alarms.raised().len())
+    }
+
+    /// The variable `state`.
+    pub fn status(&self, now: Time) -> GatewayStatus {
+        let age = |t: Option<Time>| t.map(|t| now.saturating_sub(t).as_secs_f64());
+        let left = self.control.safe_since.map(|s| (s + seconds(self.safe.t2_s)).saturating_sub(now));
+        GatewayStatus {
+            state: self.state,
+            cause: self.cause.clone(),
+            armed: self.telemetry.armed,
+            autopilot_mode: self.telemetry.mode.map_or("unknown".into(), |m| m.to_string()),
+            autopilot_age_s: age(self.telemetry.heard).unwrap_or(f64::MAX),
+            fp_manager_age_s: self.fp_manager.age_s(now),
+            safe_return_in_s: left.map(|l| l.as_secs_f64()),
+            alarms: self.alarms.raised(),
+        }
+    }
+
+    /// The variable `navigation`.
+    pub fn navigation(&self) -> Navigation {
+        let chain = self.window.chain();
+        let own = |t: Token| (t.0 > 0).then_some(t);
+        let (buffer_waypoints, buffer_s) = self.level();
+        let to = chain.active().map(|w| w.position);
+        let distance_m = to.zip(self.place()).map_or(0.0, |(a, b)| a.distance_m(b));
+        Navigation {
+            current: chain.active().and_then(|w| own(w.token)),
+            next: chain.second().and_then(|w| own(w.token)),
+            last: chain.last().and_then(|w| own(w.token)),
+            distance_m,
+            eta_s: distance_m / self.speed_mps(),
+            cross_track_m: self.cross_track_m(to),
+            buffer_waypoints,
+            buffer_s,
+            room: CAPACITY.saturating_sub(buffer_waypoints),
+            end_of_plan: self.ended || chain.last().is_some_and(|w| w.end_of_plan),
+        }
+    }
+
+    fn speed_mps(&self) -> f64 {
+        let ground = self.telemetry.fix.map(|(_, f)| f.north_mps.hypot(f.east_mps));
+        let cruise = self.settings.profile.cruise_airspeed_mps;
+        ground.filter(|v| *v > SLOWEST_MPS).unwrap_or(cruise)
+    }
+
+    /// Waypoints and seconds of flight in the buffer.
+    pub(super) fn level(&self) -> (usize, f64) {
+        let mut from = self.place();
+        let (mut count, mut length_m) = (0, 0.0);
+        for w in self.window.chain().waypoints() {
+            length_m += from.map_or(0.0, |f| flat_distance_m(f, w.position));
+            from = Some(w.position);
+            count += 1;
+        }
+        (count, length_m / self.speed_mps())
+    }
+
+    /// Right of the line from the waypoint before to the one steered to, metres.
+    fn cross_track_m(&self, to: Option<LatLon>) -> f64 {
+        let before = self.window.chain().before(self.window.chain().first());
+        let (Some(to), Some(from), Some(here)) = (to, before, self.place()) else { return 0.0 };
+        let frame = LocalFrame::new(here);
+        let (a, b) = (frame.to_local(from.position), frame.to_local(to));
+        let along = b - a;
+        if along.length() < 1.0 { 0.0 } else { along.cross(a) / along.length() }
+    }
+}
+
+/// Good to a per mille over the length of a segment, which is enough for seconds of flight, and ten
+/// times cheaper than the geodesic.
+fn flat_distance_m(a: LatLon, b: LatLon) -> f64 {
+    LocalFrame::new(a).to_local(b).length()
+}

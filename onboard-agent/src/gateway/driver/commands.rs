@@ -1,0 +1,254 @@
+//! Commands: sent until acknowledged, and done when the autopilot shows that it obeyed.
+
+use super::Peer;
+use super::rto::Rto;
+use crate::gateway::order::{Mode, OrderId, Time};
+use geometry::LatLon;
+use mavlink::dialects::ardupilotmega::*;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Times that a command is sent.
+const TRIES: u32 = 8;
+/// An acknowledged command has to show its effect within this.
+const EFFECT: Duration = Duration::from_secs(3);
+/// Commands that wait; more than the core ever gives.
+const LONGEST_QUEUE: usize = 32;
+/// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
+const FORCE: f32 = 21_196.0;
+
+/// A command to be given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Wish {
+    /// Steer to an entry of the list.
+    Current(u16),
+    /// Change mode.
+    Mode(Mode),
+    /// Arm.
+    Arm,
+    /// Airspeed, m/s.
+    Speed(f64),
+    /// Go to a place, metres AMSL.
+    GoTo(LatLon, f64),
+    /// End the flight by the autopilot's own means.
+    Terminate,
+    /// Stop the engine, whatever the state.
+    ForceDisarm,
+}
+
+/// What the autopilot shows that may be the effect of a command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shown {
+    /// The entry it steers to.
+    Current(u16),
+    /// Mode and arming.
+    Mode(Mode, bool),
+}
+
+#[derive(Debug, Clone)]
+struct Given {
+    id: OrderId,
+    wish: Wish,
+    tries: u32,
+    acked: Option<Time>,
+    sent: Time,
+}
+
+/// The queue of commands; one is in flight at a time.
+#[derive(Debug, Clone, Default)]
+pub struct Commands {
+    queue: VecDeque<(OrderId, Wish)>,
+    flight: Option<Given>,
+    rto: Rto,
+}
+
+/// How a command ended.
+pub type Ended = (OrderId, Result<(), String>);
+
+impl Commands {
+    /// Takes a command.
+    pub fn give(&mut self, id: OrderId, wish: Wish) -> Option<Ended> {
+        if self.queue.len() >= LONGEST_QUEUE {
+            return Some((id, Err("too many commands are waiting".into())));
+        }
+        match wish {
+            // what is urgent does not wait behind what is not
+            Wish::Terminate | Wish::ForceDisarm => self.queue.push_front((id, wish)),
+            _ => self.queue.push_back((id, wish)),
+        }
+        None
+    }
+
+    /// When `tick` is due.
+    pub fn deadline(&self) -> Option<Time> {
+        match &self.flight {
+            None => (!self.queue.is_empty()).then_some(Time::ZERO),
+            Some(given) => match given.acked {
+                Some(at) => Some(at + EFFECT),
+                None => self.rto.deadline(),
+            },
+        }
+    }
+
+    /// Time passed: the next command, or the same again.
+    pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
+        let ended = self.check(now, peer, out);
+        if self.flight.is_none()
+            && let Some((id, wish)) = self.queue.pop_front()
+        {
+            self.flight = Some(Given { id, wish, tries: 1, acked: None, sent: now });
+            out.push(encode(wish, 0, peer));
+            self.rto.start(now);
+        }
+        ended
+    }
+
+    fn check(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
+        let given = self.flight.as_mut()?;
+        match given.acked {
+            Some(at) if now >= at + EFFECT => {
+                let why = format!("the autopilot accepted {:?} and did not do it", given.wish);
+                self.end(Err(why))
+            }
+            Some(_) => None,
+            None if !self.rto.expired(now) => None,
+            None if given.tries >= TRIES => {
+                let why = format!("the autopilot did not answer {:?}", given.wish);
+                self.end(Err(why))
+            }
+            None => {
+                given.tries += 1;
+                out.push(encode(given.wish, given.tries as u8 - 1, peer));
+                None
+            }
+        }
+    }
+
+    fn end(&mut self, result: Result<(), String>) -> Option<Ended> {
+        self.flight.take().map(|g| (g.id, result))
+    }
+
+    /// The autopilot answers a command.
+    pub fn acked(&mut self, now: Time, ack: &COMMAND_ACK_DATA) -> Option<Ended> {
+        let given = self.flight.as_mut()?;
+        if ack.command != command(given.wish) || given.acked.is_some() {
+            return None;
+        }
+        if given.tries == 1 {
+            self.rto.sample(now.saturating_sub(given.sent));
+        }
+        match ack.result {
+            MavResult::MAV_RESULT_ACCEPTED if is_seen(given.wish) => {
+                given.acked = Some(now);
+                None
+            }
+            MavResult::MAV_RESULT_ACCEPTED => self.end(Ok(())),
+            MavResult::MAV_RESULT_IN_PROGRESS => None,
+            refused if given.wish == Wish::Terminate => {
+                // not every autopilot is set up for it; the engine can be stopped on all
+                tracing::warn!(?refused, "flight termination refused, disarming by force");
+                given.wish = Wish::ForceDisarm;
+                given.tries = 0;
+                None
+            }
+            refused => {
+                let why = format!("the autopilot refused {:?}: {refused:?}", given.wish);
+                self.end(Err(why))
+            }
+        }
+    }
+
+    /// The autopilot shows something that may be a command's effect.
+    pub fn shown(&mut self, shown: Shown) -> Option<Ended> {
+        let given = self.flight.as_ref().filter(|g| g.acked.is_some())?;
+        let obeyed = match (given.wish, shown) {
+            (Wish::Current(wanted), Shown::Current(seq)) => wanted == seq,
+            (Wish::Mode(wanted), Shown::Mode(mode, _)) => wanted == mode,
+            (Wish::Arm, Shown::Mode(_, armed)) => armed,
+            _ => false,
+        };
+        if obeyed { self.end(Ok(())) } else { None }
+    }
+}
+
+/// The command has an effect that the autopilot shows.
+fn is_seen(wish: Wish) -> bool {
+    matches!(wish, Wish::Current(_) | Wish::Mode(_) | Wish::Arm)
+}
+
+fn command(wish: Wish) -> MavCmd {
+    match wish {
+        Wish::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
+        Wish::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
+        Wish::Arm | Wish::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        Wish::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
+        Wish::GoTo(..) => MavCmd::MAV_CMD_DO_REPOSITION,
+        Wish::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
+    }
+}
+
+/// ArduPlane's number of a mode.
+pub fn mode_number(mode: Mode) -> u32 {
+    match mode {
+        Mode::Auto => 10,
+        Mode::Return => 11,
+        Mode::Loiter => 12,
+        Mode::Guided => 15,
+        Mode::Other(n) => n,
+    }
+}
+
+/// The mode of ArduPlane's number.
+pub fn mode_of(number: u32) -> Mode {
+    match number {
+        10 => Mode::Auto,
+        11 => Mode::Return,
+        12 => Mode::Loiter,
+        15 => Mode::Guided,
+        n => Mode::Other(n),
+    }
+}
+
+fn encode(wish: Wish, confirmation: u8, peer: Peer) -> MavMessage {
+    let (param1, param2, param3) = match wish {
+        Wish::Current(seq) => (f32::from(seq), 0.0, 0.0),
+        // 1: the number is the autopilot's own
+        Wish::Mode(mode) => (1.0, mode_number(mode) as f32, 0.0),
+        Wish::Arm | Wish::Terminate => (1.0, 0.0, 0.0),
+        Wish::ForceDisarm => (0.0, FORCE, 0.0),
+        // 0: airspeed; throttle −1: as it is
+        Wish::Speed(mps) => (0.0, mps as f32, -1.0),
+        Wish::GoTo(place, altitude_amsl_m) => return reposition(place, altitude_amsl_m, peer),
+    };
+    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        param1,
+        param2,
+        param3,
+        param4: 0.0,
+        param5: 0.0,
+        param6: 0.0,
+        param7: 0.0,
+        command: command(wish),
+        target_system: peer.system,
+        target_component: peer.component,
+        confirmation,
+    })
+}
+
+fn reposition(place: LatLon, altitude_amsl_m: f64, peer: Peer) -> MavMessage {
+    MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+        param1: -1.0,
+        param2: 1.0,
+        param3: 0.0,
+        param4: 0.0,
+        x: (place.lat_deg * 1e7).round() as i32,
+        y: (place.lon_deg * 1e7).round() as i32,
+        z: altitude_amsl_m as f32,
+        command: MavCmd::MAV_CMD_DO_REPOSITION,
+        target_system: peer.system,
+        target_component: peer.component,
+        frame: MavFrame::MAV_FRAME_GLOBAL,
+        current: 0,
+        autocontinue: 0,
+    })
+}

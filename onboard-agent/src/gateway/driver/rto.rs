@@ -1,0 +1,87 @@
+//! Adaptive retransmission timeout (Jacobson's estimator, RFC 6298; Karn's rule: no sample from
+//! anything that was sent twice).
+
+use crate::gateway::order::Time;
+use std::time::Duration;
+
+const FIRST: Duration = Duration::from_millis(600);
+const SHORTEST: Duration = Duration::from_millis(250);
+const LONGEST: Duration = Duration::from_millis(3000);
+
+/// The estimator, and the one timer that goes with it.
+#[derive(Debug, Clone, Default)]
+pub struct Rto {
+    smoothed_s: Option<(f64, f64)>,
+    doublings: u32,
+    started: Option<Time>,
+}
+
+impl Rto {
+    /// A round trip was measured.
+    pub fn sample(&mut self, trip: Duration) {
+        let t = trip.as_secs_f64();
+        self.smoothed_s = Some(match self.smoothed_s {
+            None => (t, t / 2.0),
+            Some((mean, spread)) => (0.875 * mean + 0.125 * t, 0.75 * spread + 0.25 * (mean - t).abs()),
+        });
+        self.doublings = 0;
+    }
+
+    /// The present timeout.
+    pub fn timeout(&self) -> Duration {
+        let base = match self.smoothed_s {
+            None => FIRST,
+            Some((mean, spread)) => Duration::try_from_secs_f64(mean + 4.0 * spread).unwrap_or(LONGEST),
+        };
+        (base.max(SHORTEST) * (1 << self.doublings.min(3))).min(LONGEST)
+    }
+
+    /// Starts the timer anew.
+    pub fn start(&mut self, now: Time) {
+        self.started = Some(now);
+    }
+
+    /// Something came through: no more backing off.
+    pub fn progress(&mut self, now: Time) {
+        self.doublings = 0;
+        self.started = Some(now);
+    }
+
+    /// When the timer runs out.
+    pub fn deadline(&self) -> Option<Time> {
+        self.started.map(|s| s + self.timeout())
+    }
+
+    /// It ran out: the timer starts anew with twice the timeout.
+    pub fn expired(&mut self, now: Time) -> bool {
+        let late = self.deadline().is_some_and(|d| now >= d);
+        if late {
+            self.doublings += 1;
+            self.started = Some(now);
+        }
+        late
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_timeout_follows_the_round_trips_and_doubles_when_nothing_comes() {
+        let ms = Duration::from_millis;
+        let mut rto = Rto::default();
+        assert_eq!(rto.timeout(), FIRST);
+        (0..50).for_each(|_| rto.sample(ms(400)));
+        assert!((ms(400)..ms(450)).contains(&rto.timeout()), "{:?}", rto.timeout());
+        rto.start(ms(1000));
+        assert!(!rto.expired(ms(1300)) && rto.expired(ms(1500)));
+        assert!((ms(800)..ms(900)).contains(&rto.timeout()));
+        (0..20).for_each(|i| {
+            rto.expired(ms(10_000 * (i + 1)));
+        });
+        assert_eq!(rto.timeout(), LONGEST);
+        rto.progress(ms(0));
+        assert!(rto.timeout() < ms(450));
+    }
+}

@@ -1,0 +1,175 @@
+//! Telemetry messages to contract values. No field is trusted.
+
+use crate::gateway::order::{Fix, Report, Time};
+use geometry::LatLon;
+use geometry::geodesy::normalise_360;
+use mavlink::dialects::ardupilotmega::*;
+use usal::contract::{Air, Attitude, Engine, Gps, Power};
+
+/// A position that is farther from the last one than this could have been flown, m/s.
+const FASTEST_MPS: f64 = 300.0;
+/// Grace for such a jump, metres.
+const JUMP_M: f64 = 500.0;
+/// After so many jumps in a row to about the same place, it is believed.
+const BELIEVED_AFTER: u32 = 10;
+/// The autopilot's clock went back by more than this: it started anew, ms.
+const REBOOT_MS: u32 = 2000;
+
+/// What is put together from several messages.
+#[derive(Debug, Clone, Default)]
+pub struct Readings {
+    airspeed_mps: f64,
+    wind: (f64, f64),
+    pressure_hpa: f64,
+    temperature_c: f64,
+    throttle: f64,
+    engine_temperature_c: f64,
+    last_fix: Option<(Time, LatLon)>,
+    jumps: u32,
+    boot_ms: Option<u32>,
+}
+
+impl Readings {
+    /// Takes in a message. What makes no sense is counted in `ignored`.
+    pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<Report>, ignored: &mut u64) {
+        let sense = match message {
+            MavMessage::GLOBAL_POSITION_INT(m) => {
+                self.boot(m.time_boot_ms, out);
+                self.fix(now, m).map(|f| out.push(Report::Fix(f)))
+            }
+            MavMessage::ATTITUDE(m) => attitude(m).map(|a| out.push(Report::Attitude(a))),
+            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(Report::Air(a))),
+            MavMessage::WIND(m) => self.wind(m),
+            MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
+            MavMessage::GPS_RAW_INT(m) => Some(out.push(Report::Gps(gps(m)))),
+            MavMessage::SYS_STATUS(m) => power(m).map(|p| out.push(Report::Power(p))),
+            MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push(Report::Engine(e))),
+            MavMessage::EFI_STATUS(m) => self.efi(m),
+            MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(h)),
+            MavMessage::EXTENDED_SYS_STATE(m) => landed(m.landed_state).map(|r| out.push(r)),
+            _ => Some(()),
+        };
+        *ignored += u64::from(sense.is_none());
+    }
+
+    fn boot(&mut self, ms: u32, out: &mut Vec<Report>) {
+        let before = self.boot_ms.replace(ms);
+        if before.is_some_and(|b| ms.saturating_add(REBOOT_MS) < b) {
+            out.push(Report::Rebooted);
+        }
+    }
+
+    fn fix(&mut self, now: Time, m: &GLOBAL_POSITION_INT_DATA) -> Option<Fix> {
+        let position = place(m.lat, m.lon)?;
+        self.is_plausible(now, position).then_some(())?;
+        self.last_fix = Some((now, position));
+        Some(Fix {
+            position,
+            altitude_amsl_m: f64::from(m.alt) / 1e3,
+            altitude_home_m: f64::from(m.relative_alt) / 1e3,
+            north_mps: f64::from(m.vx) / 1e2,
+            east_mps: f64::from(m.vy) / 1e2,
+            down_mps: f64::from(m.vz) / 1e2,
+        })
+    }
+
+    fn is_plausible(&mut self, now: Time, position: LatLon) -> bool {
+        let Some((then, last)) = self.last_fix else { return true };
+        let reach_m = JUMP_M + FASTEST_MPS * now.saturating_sub(then).as_secs_f64();
+        let flat_m = geometry::LocalFrame::new(last).to_local(position).length();
+        let jumped = flat_m > reach_m;
+        self.jumps = if jumped { self.jumps + 1 } else { 0 };
+        !jumped || self.jumps > BELIEVED_AFTER
+    }
+
+    fn hud(&mut self, m: &VFR_HUD_DATA) -> Option<Air> {
+        let airspeed = f64::from(m.airspeed);
+        (airspeed.is_finite() && airspeed >= 0.0).then_some(())?;
+        self.airspeed_mps = airspeed;
+        self.throttle = f64::from(m.throttle.min(100)) / 100.0;
+        Some(Air {
+            airspeed_mps: self.airspeed_mps,
+            wind_east_mps: self.wind.0,
+            wind_north_mps: self.wind.1,
+            pressure_hpa: self.pressure_hpa,
+            temperature_c: self.temperature_c,
+        })
+    }
+
+    /// The message says where the wind comes from.
+    fn wind(&mut self, m: &WIND_DATA) -> Option<()> {
+        let (from, speed) = (f64::from(m.direction).to_radians(), f64::from(m.speed));
+        (from.is_finite() && (0.0..100.0).contains(&speed)).then_some(())?;
+        self.wind = (-speed * from.sin(), -speed * from.cos());
+        Some(())
+    }
+
+    fn pressure(&mut self, m: &SCALED_PRESSURE_DATA) -> Option<()> {
+        m.press_abs.is_finite().then_some(())?;
+        self.pressure_hpa = f64::from(m.press_abs);
+        self.temperature_c = f64::from(m.temperature) / 100.0;
+        Some(())
+    }
+
+    fn engine(&mut self, rpm: f32) -> Option<Engine> {
+        (rpm.is_finite() && rpm >= 0.0).then_some(Engine {
+            rpm: f64::from(rpm),
+            temperature_c: self.engine_temperature_c,
+            throttle: self.throttle,
+        })
+    }
+
+    fn efi(&mut self, m: &EFI_STATUS_DATA) -> Option<()> {
+        m.cylinder_head_temperature.is_finite().then_some(())?;
+        self.engine_temperature_c = f64::from(m.cylinder_head_temperature);
+        Some(())
+    }
+}
+
+/// A valid position; 0, 0 stands for "unknown".
+fn place(lat: i32, lon: i32) -> Option<LatLon> {
+    let position = LatLon::new(f64::from(lat) / 1e7, f64::from(lon) / 1e7);
+    (position.is_valid() && (lat, lon) != (0, 0)).then_some(position)
+}
+
+fn attitude(m: &ATTITUDE_DATA) -> Option<Attitude> {
+    let deg = |rad: f32| f64::from(rad).to_degrees();
+    let all = [m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed];
+    all.iter().all(|v| v.is_finite()).then(|| Attitude {
+        roll_deg: deg(m.roll),
+        pitch_deg: deg(m.pitch),
+        heading_deg: normalise_360(deg(m.yaw)),
+        roll_rate_dps: deg(m.rollspeed),
+        pitch_rate_dps: deg(m.pitchspeed),
+        yaw_rate_dps: deg(m.yawspeed),
+    })
+}
+
+fn gps(m: &GPS_RAW_INT_DATA) -> Gps {
+    Gps {
+        fix_3d: m.fix_type as u32 >= GpsFixType::GPS_FIX_TYPE_3D_FIX as u32,
+        satellites: m.satellites_visible,
+        hdop: f64::from(m.eph) / 100.0,
+    }
+}
+
+fn power(m: &SYS_STATUS_DATA) -> Option<Power> {
+    (0..=100).contains(&m.battery_remaining).then(|| Power {
+        voltage_v: f64::from(m.voltage_battery) / 1e3,
+        current_a: f64::from(m.current_battery) / 1e2,
+        battery: f64::from(m.battery_remaining) / 100.0,
+    })
+}
+
+fn home(m: &HOME_POSITION_DATA) -> Option<Report> {
+    let position = place(m.latitude, m.longitude)?;
+    Some(Report::Home { position, altitude_amsl_m: f64::from(m.altitude) / 1e3 })
+}
+
+fn landed(state: MavLandedState) -> Option<Report> {
+    match state {
+        MavLandedState::MAV_LANDED_STATE_UNDEFINED => None,
+        MavLandedState::MAV_LANDED_STATE_ON_GROUND => Some(Report::OnGround(true)),
+        _ => Some(Report::OnGround(false)),
+    }
+}

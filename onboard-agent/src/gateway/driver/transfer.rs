@@ -1,0 +1,371 @@
+//! The mission protocol, streamed: one transfer at a time.
+//!
+//! Items are sent unasked in a window; the autopilot's requests are its acknowledgements; what it
+//! does not get it asks for again, and we go back to there. A final ack may be lost, late or left
+//! over from an earlier transfer, so it proves nothing: every write is read back, and only what was
+//! read back is claimed.
+
+use super::items::{decode, encode};
+use super::rto::Rto;
+use super::{Peer, mission_type};
+use crate::gateway::order::{Item, ItemKind, Time};
+use crate::gateway::window::matches;
+use mavlink::dialects::ardupilotmega::*;
+
+/// Items in flight.
+const WINDOW: usize = 24;
+/// Timeouts without any progress before a transfer is given up.
+const PATIENCE: u32 = 20;
+/// Times that a list that reads back differently is written again.
+const REWRITES: u32 = 5;
+/// More entries than this is no list.
+const MOST_ITEMS: u16 = 2000;
+
+/// What a transfer is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Job {
+    /// Overwrite a range.
+    Partial,
+    /// Replace the list.
+    Whole,
+    /// Read the list.
+    Read,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Phase {
+    /// Items `..acked` were received; `..sent` were sent.
+    Sending { acked: usize, sent: usize, asked: u32 },
+    /// How long is the list?
+    Counting,
+    /// Entries are read; those that have come.
+    Reading { got: Vec<Option<Item>>, next: usize },
+}
+
+/// How a transfer ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Written and read back alike.
+    Verified,
+    /// The list.
+    List(Vec<Item>),
+    /// Given up; what is on board is unknown.
+    Failed(String),
+}
+
+/// One transfer.
+#[derive(Debug, Clone)]
+pub struct Transfer {
+    job: Job,
+    start: u16,
+    items: Vec<Item>,
+    phase: Phase,
+    rto: Rto,
+    silent: u32,
+    rewrites: u32,
+    went_back: Option<Time>,
+    /// When something was sent whose answer can be timed.
+    probe: Option<Time>,
+}
+
+impl Transfer {
+    /// Begins a transfer; `rto` carries over what is known of the link.
+    pub fn begin(
+        now: Time,
+        job: Job,
+        start: u16,
+        items: Vec<Item>,
+        rto: Rto,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Self {
+        let phase = Phase::Counting;
+        let mut t =
+            Self { job, start, items, phase, rto, silent: 0, rewrites: 0, went_back: None, probe: Some(now) };
+        match job {
+            Job::Read => out.push(request_list(peer)),
+            _ => t.send_from_start(peer, out),
+        }
+        t.rto.start(now);
+        t
+    }
+
+    /// What was learnt of the link.
+    pub fn into_rto(self) -> Rto {
+        self.rto
+    }
+
+    /// When `tick` is due.
+    pub fn deadline(&self) -> Option<Time> {
+        self.rto.deadline()
+    }
+
+    fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+        self.phase = Phase::Sending { acked: 0, sent: 0, asked: 0 };
+        out.push(self.opening(peer));
+        self.send_window(peer, out);
+    }
+
+    fn opening(&self, peer: Peer) -> MavMessage {
+        let count = self.items.len() as u16;
+        match self.job {
+            Job::Whole => MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+                count,
+                target_system: peer.system,
+                target_component: peer.component,
+                mission_type: mission_type(),
+                opaque_id: 0,
+            }),
+            _ => MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
+                start_index: self.start as i16,
+                end_index: (self.start + count.saturating_sub(1)) as i16,
+                target_system: peer.system,
+                target_component: peer.component,
+                mission_type: mission_type(),
+            }),
+        }
+    }
+
+    fn send_window(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+        let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
+        let end = (*acked + WINDOW).min(self.items.len());
+        for (i, item) in self.items.iter().enumerate().take(end).skip(*sent) {
+            out.push(MavMessage::MISSION_ITEM_INT(encode(self.start + i as u16, item, peer)));
+        }
+        *sent = end.max(*sent);
+    }
+
+    /// The autopilot asks for an entry.
+    pub fn requested(&mut self, now: Time, seq: u16, peer: Peer, out: &mut Vec<MavMessage>) {
+        let Some(index) = seq.checked_sub(self.start).map(usize::from) else { return };
+        let Phase::Sending { acked, asked, .. } = &mut self.phase else { return };
+        if index >= self.items.len() || index < *acked {
+            return;
+        }
+        if index > *acked {
+            (*acked, *asked) = (index, 1);
+            self.progressed(now);
+            self.send_window(peer, out);
+            return;
+        }
+        *asked += 1;
+        let again = *asked > 1;
+        if !again {
+            self.progressed(now);
+        } else {
+            self.go_back(now, peer, out);
+        }
+    }
+
+    fn progressed(&mut self, now: Time) {
+        if let Some(sent) = self.probe.take() {
+            self.rto.sample(now.saturating_sub(sent));
+        }
+        self.silent = 0;
+        self.rto.progress(now);
+    }
+
+    /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
+    /// each of a window's remaining items is answered with the same complaint.
+    fn go_back(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 2) {
+            return;
+        }
+        self.went_back = Some(now);
+        self.probe = None;
+        if let Phase::Sending { acked, sent, .. } = &mut self.phase {
+            *sent = *acked;
+        }
+        self.send_window(peer, out);
+        self.rto.start(now);
+    }
+
+    /// The autopilot says how the transfer went, or that something is wrong.
+    pub fn acked(
+        &mut self,
+        now: Time,
+        result: MavMissionResult,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Option<Outcome> {
+        use MavMissionResult::*;
+        match (&self.phase, result) {
+            (Phase::Sending { sent, .. }, MAV_MISSION_ACCEPTED) if *sent == self.items.len() => {
+                self.verify(now, peer, out);
+                None
+            }
+            // not receiving: the end came through and its ack was lost, or the opening was lost
+            (Phase::Sending { sent, acked, .. }, MAV_MISSION_ERROR)
+                if *sent == self.items.len() && *acked > 0 =>
+            {
+                self.verify(now, peer, out);
+                None
+            }
+            (Phase::Sending { acked, asked, .. }, MAV_MISSION_INVALID_SEQUENCE)
+                if *acked > 0 || *asked > 0 =>
+            {
+                self.go_back(now, peer, out);
+                None
+            }
+            (
+                Phase::Sending { .. },
+                MAV_MISSION_ACCEPTED | MAV_MISSION_ERROR | MAV_MISSION_INVALID_SEQUENCE,
+            ) => None,
+            // another station's transfer, or one that the autopilot gave up: wait and begin again
+            (_, MAV_MISSION_DENIED | MAV_MISSION_OPERATION_CANCELLED) => None,
+            (Phase::Sending { .. }, refused) => {
+                Some(Outcome::Failed(format!("the autopilot refused the list: {refused:?}")))
+            }
+            (Phase::Reading { .. } | Phase::Counting, _) => None,
+        }
+    }
+
+    fn verify(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+        self.progressed(now);
+        self.read(now, self.items.len(), peer, out);
+    }
+
+    fn read(&mut self, now: Time, count: usize, peer: Peer, out: &mut Vec<MavMessage>) {
+        self.phase = Phase::Reading { got: vec![None; count], next: 0 };
+        self.probe = Some(now);
+        self.ask(peer, out);
+    }
+
+    /// Asks for what is missing, a window at a time.
+    fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+        let start = self.start;
+        let Phase::Reading { got, next } = &mut self.phase else { return };
+        let have = got.iter().flatten().count();
+        let end = (have + WINDOW).min(got.len());
+        for (i, _) in got.iter().enumerate().take(end).skip(*next).filter(|(_, g)| g.is_none()) {
+            out.push(MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
+                seq: start + i as u16,
+                target_system: peer.system,
+                target_component: peer.component,
+                mission_type: mission_type(),
+            }));
+        }
+        *next = end.max(*next);
+    }
+
+    /// The length of the list.
+    pub fn counted(
+        &mut self,
+        now: Time,
+        count: u16,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Option<Outcome> {
+        if self.phase != Phase::Counting {
+            return None;
+        }
+        if count > MOST_ITEMS {
+            return Some(Outcome::Failed(format!("the autopilot claims a list of {count} entries")));
+        }
+        self.progressed(now);
+        self.read(now, usize::from(count), peer, out);
+        self.complete(now, peer, out)
+    }
+
+    /// An entry came.
+    pub fn item(
+        &mut self,
+        now: Time,
+        data: &MISSION_ITEM_INT_DATA,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Option<Outcome> {
+        let index = usize::from(data.seq.checked_sub(self.start)?);
+        let Phase::Reading { got, .. } = &mut self.phase else { return None };
+        let slot = got.get_mut(index)?;
+        if slot.is_some() {
+            return None;
+        }
+        *slot = Some(decode(data));
+        self.progressed(now);
+        self.ask(peer, out);
+        self.complete(now, peer, out)
+    }
+
+    fn complete(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
+        let Phase::Reading { got, .. } = &self.phase else { return None };
+        let list: Vec<Item> = got.iter().copied().collect::<Option<_>>()?;
+        out.push(thanks(peer));
+        if self.job == Job::Read {
+            return Some(Outcome::List(list));
+        }
+        let differs = self.items.iter().zip(&list).position(|(a, b)| !is_same(a, b));
+        let Some(entry) = differs else { return Some(Outcome::Verified) };
+        self.rewrites += 1;
+        if self.rewrites > REWRITES {
+            let entry = usize::from(self.start) + entry;
+            return Some(Outcome::Failed(format!("entry {entry} reads back differently each time")));
+        }
+        self.send_from_start(peer, out);
+        self.probe = None;
+        self.rto.start(now);
+        None
+    }
+
+    /// Time passed.
+    pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
+        if !self.rto.expired(now) {
+            return None;
+        }
+        self.silent += 1;
+        self.probe = None;
+        if self.silent > PATIENCE {
+            return Some(Outcome::Failed("the autopilot does not answer".into()));
+        }
+        match &mut self.phase {
+            Phase::Counting => out.push(request_list(peer)),
+            Phase::Sending { acked, asked, .. } if *acked == 0 && *asked == 0 => {
+                self.send_from_start(peer, out)
+            }
+            // the end may have come through although nothing says so: look
+            Phase::Sending { acked, .. } if *acked + 1 == self.items.len() && self.silent >= 2 => {
+                self.read(now, self.items.len(), peer, out);
+                self.probe = None;
+            }
+            Phase::Sending { .. } if self.silent % 4 == 0 => self.send_from_start(peer, out),
+            Phase::Sending { acked, sent, .. } => {
+                *sent = *acked;
+                self.send_window(peer, out);
+            }
+            // it may still be waiting for items: then it does not let us read
+            Phase::Reading { got, .. }
+                if self.job != Job::Read && self.silent >= 3 && got.iter().all(Option::is_none) =>
+            {
+                self.send_from_start(peer, out);
+            }
+            Phase::Reading { next, .. } => {
+                *next = 0;
+                self.ask(peer, out);
+            }
+        }
+        None
+    }
+}
+
+/// Alike, as far as an autopilot keeps it; it puts its own home into entry 0.
+fn is_same(wanted: &Item, read: &Item) -> bool {
+    wanted.kind == ItemKind::Home || matches(wanted, read)
+}
+
+fn request_list(peer: Peer) -> MavMessage {
+    MavMessage::MISSION_REQUEST_LIST(MISSION_REQUEST_LIST_DATA {
+        target_system: peer.system,
+        target_component: peer.component,
+        mission_type: mission_type(),
+    })
+}
+
+fn thanks(peer: Peer) -> MavMessage {
+    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: peer.system,
+        target_component: peer.component,
+        mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
+        mission_type: mission_type(),
+        opaque_id: 0,
+    })
+}

@@ -1,0 +1,152 @@
+//! Pure: core and driver together, as they fly. The shell, and the tests, only carry messages.
+
+use super::core::{Answer, Gateway, Input, Output, Settings, Snapshot};
+use super::driver::Driver;
+use super::order::{Report, Time};
+use mavlink::MavHeader;
+use mavlink::dialects::ardupilotmega::MavMessage;
+use usal::contract::GatewayEvent;
+
+/// Core and driver.
+pub struct Station {
+    gateway: Gateway,
+    driver: Driver,
+    events: Vec<GatewayEvent>,
+    answers: Vec<(u64, Answer)>,
+    save: bool,
+    requests: u64,
+}
+
+impl Station {
+    /// A station that has heard nothing. `restored`: what an earlier one stored. `lockstep`: see
+    /// [`Driver::new`].
+    pub fn new(settings: Settings, restored: Option<Snapshot>, lockstep: bool) -> Self {
+        Self {
+            gateway: Gateway::new(settings, restored),
+            driver: Driver::new(lockstep),
+            events: vec![],
+            answers: vec![],
+            save: false,
+            requests: 0,
+        }
+    }
+
+    /// The core, to be looked at.
+    pub fn gateway(&self) -> &Gateway {
+        &self.gateway
+    }
+
+    /// The driver, to be looked at.
+    pub fn driver(&self) -> &Driver {
+        &self.driver
+    }
+
+    /// A message from the link.
+    pub fn receive(&mut self, now: Time, header: MavHeader, message: &MavMessage) {
+        self.driver.receive(now, header, message);
+        self.pump(now);
+    }
+
+    /// Time passed.
+    pub fn tick(&mut self, now: Time) {
+        self.driver.tick(now);
+        self.input(now, Input::Tick);
+    }
+
+    /// Something for the core.
+    pub fn input(&mut self, now: Time, input: Input) {
+        let mut out = vec![];
+        self.gateway.step(now, input, &mut out);
+        self.carry_out(now, out);
+        self.pump(now);
+    }
+
+    /// Something for the core that is answered at once; `with` gets the number of the request.
+    pub fn ask(&mut self, now: Time, with: impl FnOnce(u64) -> Input) -> Option<Answer> {
+        self.requests += 1;
+        let request = self.requests;
+        self.input(now, with(request));
+        let at = self.answers.iter().position(|(id, _)| *id == request)?;
+        Some(self.answers.swap_remove(at).1)
+    }
+
+    fn pump(&mut self, now: Time) {
+        loop {
+            let reports = self.driver.take_reports();
+            if reports.is_empty() {
+                return;
+            }
+            for report in reports {
+                log(&report);
+                let mut out = vec![];
+                self.gateway.step(now, Input::Report(report), &mut out);
+                self.carry_out(now, out);
+            }
+        }
+    }
+
+    fn carry_out(&mut self, now: Time, out: Vec<Output>) {
+        for output in out {
+            match output {
+                Output::Order(id, order) => {
+                    tracing::debug!(?id, ?order, "order");
+                    self.driver.order(now, id, order);
+                }
+                Output::Event(event) => self.events.push(event),
+                Output::Answer(request, answer) => self.answers.push((request, answer)),
+                Output::Save => self.save = true,
+            }
+        }
+    }
+
+    /// Messages to be sent.
+    pub fn take_messages(&mut self) -> Vec<MavMessage> {
+        self.driver.take_messages()
+    }
+
+    /// The header for the next message.
+    pub fn header(&self, sequence: u8) -> MavHeader {
+        self.driver.header(sequence)
+    }
+
+    /// Events to be told.
+    pub fn take_events(&mut self) -> Vec<GatewayEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// What is to be stored, if it changed.
+    pub fn take_snapshot(&mut self) -> Option<Snapshot> {
+        std::mem::take(&mut self.save).then(|| self.gateway.snapshot())
+    }
+
+    /// A step of the simulator that waits for its answer: its time, ns.
+    pub fn take_step(&mut self) -> Option<i64> {
+        self.driver.take_step()
+    }
+
+    /// Answers a step.
+    pub fn answer_step(&mut self, step_ns: i64) {
+        self.driver.answer_step(step_ns);
+    }
+
+    /// Says that we are here, whatever the time: for a simulator that waits to be spoken to.
+    pub fn hello(&mut self) {
+        self.driver.hello();
+    }
+
+    /// When `tick` is due at the latest.
+    pub fn deadline(&self) -> Time {
+        let driver = self.driver.deadline();
+        self.gateway.deadline().map_or(driver, |d| d.min(driver))
+    }
+}
+
+fn log(report: &Report) {
+    match report {
+        Report::Failed(id, why) => tracing::warn!(?id, why, "order failed"),
+        Report::Rebooted => tracing::warn!("the autopilot started anew"),
+        Report::Capability(Ok(kind)) => tracing::info!(kind, "autopilot"),
+        Report::Capability(Err(why)) => tracing::error!(why, "autopilot"),
+        _ => {}
+    }
+}

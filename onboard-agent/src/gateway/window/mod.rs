@@ -1,0 +1,332 @@
+//! Pure: unlimited waypoints on an autopilot's small list.
+//!
+//! The autopilot holds a ring: entry 0 home, entry 1 a loiter over home (where an autopilot that
+//! restarts its list begins), entries 2 to [`LAST_SLOT`] the ring, then a jump back to 2. A waypoint's
+//! *position* counts up for ever; its slot is `2 + position mod RING`.
+//!
+//! What is wanted is a **chain**: the waypoint being steered to, those after it, and behind the last
+//! one a **guard**, a loiter that never ends. The window compares the chain with what it knows to be
+//! on board and makes one write at a time, always the one that keeps the aircraft safe whatever
+//! happens next:
+//!
+//! 1. what differs first is not a guard: put a guard there (one entry, so atomic). What lies beyond
+//!    can't be reached any more;
+//! 2. it is a guard: bring what lies *behind* it in order, up to the new guard;
+//! 3. that is in order: replace the guard by the waypoint (one entry, so atomic).
+//!
+//! So the aircraft never steers to a cancelled waypoint that it was not already steering to, and a
+//! link that dies at any instant leaves a chain that ends in a loiter. A write of unknown outcome
+//! just makes its slots unknown, and the same three rules heal them.
+
+mod chain;
+mod ring;
+#[cfg(test)]
+mod tests;
+
+pub use chain::{CAPACITY, Chain};
+pub use ring::{JUMP_SLOT, LAST_SLOT, RING, guard_after, matches, slot};
+
+use super::order::{Item, Order};
+use ring::{Slots, initial_list};
+use usal::contract::{Action, Token, Waypoint};
+
+/// Waypoints ahead of the aircraft that are kept on board; the rest of the ring is already passed.
+pub const AHEAD: u64 = 28;
+/// The ring is topped up when fewer waypoints than this are ahead.
+const REFILL: u64 = 16;
+
+/// A write in flight.
+#[derive(Debug, Clone, PartialEq)]
+enum Pending {
+    Upload { items: Vec<Item> },
+    Write { position: u64, items: Vec<Item> },
+    SetCurrent { position: u64 },
+}
+
+/// The windowed feed. See the module's text.
+#[derive(Debug, Clone)]
+pub struct Window {
+    chain: Chain,
+    board: Slots,
+    /// Our ring is on board and its entry was made current.
+    installed: bool,
+    /// The current entry was confirmed since the ring was uploaded.
+    entered: bool,
+    /// How far the chain is to be on board: position of the guard.
+    end: u64,
+    pending: Option<Pending>,
+    /// The entry being steered to was overwritten: it must be loaded anew.
+    reload: bool,
+}
+
+impl Default for Window {
+    fn default() -> Self {
+        Self {
+            chain: Chain::default(),
+            board: Slots::default(),
+            installed: false,
+            entered: false,
+            end: 0,
+            pending: None,
+            reload: false,
+        }
+    }
+}
+
+impl Window {
+    /// The chain of waypoints.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// Cancel and append, as one transaction. The caller has checked plausibility and
+    /// [`Chain::room`].
+    pub fn feed(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>) {
+        let flying = self.entered;
+        self.chain.feed(cancel_after, waypoints, flying);
+        self.end = self.end.min(self.chain.end());
+    }
+
+    /// Everything on board is in order and the aircraft may be let loose on it.
+    pub fn ready(&self) -> bool {
+        let settled = self.pending.is_none() && !self.reload && self.chain.jump().is_none();
+        self.installed && self.entered && settled && self.deviation().is_none()
+    }
+
+    /// Our ring is on board.
+    pub fn installed(&self) -> bool {
+        self.installed
+    }
+
+    /// The aircraft circles the guard: everything that was fed has been flown.
+    pub fn at_guard(&self) -> bool {
+        self.entered && self.chain.is_empty()
+    }
+
+    /// The waypoint being steered to: its token, `None` at the guard or on a waypoint of our own.
+    pub fn current(&self) -> Option<&Waypoint> {
+        self.chain.active()
+    }
+
+    /// The autopilot says it steers to entry `seq`. True: it went on to another waypoint.
+    pub fn reported(&mut self, seq: u16) -> bool {
+        if !self.entered {
+            return false;
+        }
+        match self.position_of(seq) {
+            Some(position) if position > self.chain.first() => {
+                self.chain.advance_to(position);
+                self.reload = false;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The autopilot steers to something that is not in the chain.
+    pub fn is_astray(&self, seq: u16) -> bool {
+        self.entered && self.pending.is_none() && self.position_of(seq).is_none()
+    }
+
+    /// Leave a loiter for the waypoint after it, if there is one.
+    pub fn leave_loiter(&mut self) {
+        self.chain.leave_active();
+    }
+
+    /// Make the autopilot steer to the chain again.
+    pub fn bring_back(&mut self) {
+        self.reload = true;
+    }
+
+    /// A position of the chain (or its guard) by slot.
+    fn position_of(&self, seq: u16) -> Option<u64> {
+        let first = self.chain.first();
+        (first..=self.guard_on_board()).find(|p| slot(*p) == seq)
+    }
+
+    /// The first guard on board from the active position on.
+    fn guard_on_board(&self) -> u64 {
+        let first = self.chain.first();
+        (first..first + RING - 1).find(|p| self.board.is_guard(*p)).unwrap_or(first + AHEAD)
+    }
+
+    /// What is wanted at a position.
+    fn wanted(&self, position: u64) -> Item {
+        match self.chain.at(position) {
+            Some(waypoint) if position < self.end => ring::item(waypoint),
+            _ => self.guard(position),
+        }
+    }
+
+    fn guard(&self, position: u64) -> Item {
+        match self.chain.before(position) {
+            Some(item) => guard_after(&item),
+            None => self.board.get(position).unwrap_or_else(|| guard_after(&self.board.home)),
+        }
+    }
+
+    /// How far on board the chain should reach: extended in large steps, so that there are few
+    /// transactions.
+    fn stretch(&mut self) {
+        let (first, full) = (self.chain.first(), self.chain.end());
+        let enough = self.end >= first + REFILL || self.end >= full;
+        if !enough || self.end < first {
+            self.end = full.min(first + AHEAD);
+        }
+        self.end = self.end.min(full);
+    }
+
+    /// First position that is not on board as wanted.
+    fn deviation(&self) -> Option<u64> {
+        let first = self.chain.first();
+        (first..=self.end).find(|p| {
+            // what is being left behind is not written again
+            !(self.chain.is_left_behind(*p)) && !self.board.holds(*p, &self.wanted(*p))
+        })
+    }
+
+    /// The next order, if one is due and none is in flight. `may_install`: the aircraft is not
+    /// flying the list, so that it may be replaced whole. `home`: what entry 0 becomes.
+    pub fn next_order(&mut self, may_install: bool, home: Option<Item>) -> Option<Order> {
+        if self.pending.is_some() {
+            return None;
+        }
+        if !self.installed {
+            return if may_install && !self.chain.is_empty() { self.install(home?) } else { None };
+        }
+        // what the aircraft waits for comes before topping up
+        if self.is_short_chain_complete()
+            && let Some(order) = self.set_current()
+        {
+            return Some(order);
+        }
+        self.stretch();
+        match self.deviation() {
+            Some(position) => Some(self.write_towards(position)),
+            None => self.set_current(),
+        }
+    }
+
+    fn is_short_chain_complete(&self) -> bool {
+        let target = self.chain.jump().unwrap_or(self.chain.first());
+        self.end > target && self.deviation().is_none()
+    }
+
+    fn install(&mut self, home: Item) -> Option<Order> {
+        self.chain.restart();
+        self.board = Slots::with_home(home);
+        self.end = 0;
+        self.stretch();
+        let items: Vec<Item> = (0..=self.end).map(|p| self.wanted(p)).collect();
+        self.entered = false;
+        let list = initial_list(home, &items);
+        self.pending = Some(Pending::Upload { items });
+        Some(Order::Upload { items: list })
+    }
+
+    fn write_towards(&mut self, position: u64) -> Order {
+        if !self.board.is_guard(position) {
+            return self.write(position, vec![self.guard(position)]);
+        }
+        // When the aircraft waits for it, three waypoints now are better than many later.
+        let urgent = self.chain.jump().is_some() || position == self.chain.first();
+        let end = if urgent { self.end.min(position + 3) } else { self.end };
+        self.end = end;
+        let behind = (position + 1..=end).find(|p| !self.board.holds(*p, &self.wanted(*p)));
+        match behind {
+            Some(start) => {
+                let stop = end.min(ring::last_before_wrap(start));
+                let items = (start..=stop).map(|p| self.wanted(p)).collect();
+                self.write(start, items)
+            }
+            None => self.write(position, vec![self.wanted(position)]),
+        }
+    }
+
+    fn write(&mut self, position: u64, items: Vec<Item>) -> Order {
+        self.board.forget(position, items.len());
+        self.pending = Some(Pending::Write { position, items: items.clone() });
+        Order::Write { start: slot(position), items }
+    }
+
+    fn set_current(&mut self) -> Option<Order> {
+        let position = match self.chain.jump() {
+            Some(jump) => jump,
+            None if !self.entered || self.reload => self.chain.first(),
+            None => return None,
+        };
+        self.pending = Some(Pending::SetCurrent { position });
+        Some(Order::SetCurrent(slot(position)))
+    }
+
+    /// The order in flight was carried out and confirmed. True: the aircraft steers to another
+    /// waypoint now.
+    pub fn done(&mut self) -> bool {
+        match self.pending.take() {
+            Some(Pending::Upload { items }) => {
+                self.installed = true;
+                self.board.fill(items);
+                false
+            }
+            Some(Pending::Write { position, items }) => {
+                let first = self.chain.first();
+                self.reload |= (position..position + items.len() as u64).contains(&first);
+                self.board.put(position, items);
+                false
+            }
+            Some(Pending::SetCurrent { position }) => self.arrived_at(position),
+            None => false,
+        }
+    }
+
+    fn arrived_at(&mut self, position: u64) -> bool {
+        let new = !self.entered || position > self.chain.first();
+        self.entered = true;
+        if position >= self.chain.first() {
+            self.reload = false;
+            self.chain.advance_to(position);
+        }
+        new
+    }
+
+    /// The order in flight failed or its outcome is unknown: what it touched is unknown, and will
+    /// be written again.
+    pub fn failed(&mut self) {
+        self.pending = None;
+    }
+
+    /// The list on board is no longer known (reboot, another station's upload).
+    pub fn invalidate(&mut self) {
+        self.installed = false;
+        self.entered = false;
+        self.pending = None;
+        self.board = Slots::with_home(self.board.home);
+    }
+
+    /// Forget everything: the flight is over.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Take over a list that was read from an autopilot which is flying it. `waypoints`: what was
+    /// known of it before a restart, the one steered to first. False: it is not one of ours.
+    pub fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Waypoint>) -> bool {
+        if !ring::is_ours(list) || !(2..=LAST_SLOT).contains(&current) {
+            return false;
+        }
+        self.clear();
+        self.board = Slots::from_list(list);
+        self.installed = true;
+        self.entered = true;
+        let first = u64::from(current - 2);
+        let known = ring::known_on_board(list, first, waypoints);
+        self.end = first + known.len() as u64;
+        self.chain = Chain::resumed(first, known);
+        true
+    }
+
+    /// The chain's waypoint after the active one is a landing: it is on the approach.
+    pub fn next_is_land(&self) -> bool {
+        self.chain.second().is_some_and(|w| matches!(w.action, Action::Land { .. }))
+    }
+}

@@ -1,0 +1,158 @@
+//! The ring of slots on board: how positions, slots and list entries go together.
+
+use crate::gateway::order::{Item, ItemKind};
+use geometry::LatLon;
+use usal::contract::{Action, Waypoint};
+
+/// Slots of the ring.
+pub const RING: u64 = 40;
+/// Entry of the ring's last slot; the first is 2.
+pub const LAST_SLOT: u16 = 1 + RING as u16;
+/// Entry of the jump back to slot 2.
+pub const JUMP_SLOT: u16 = LAST_SLOT + 1;
+/// Height above home of the loiter at entry 1, metres.
+const HOME_LOITER_M: f64 = 100.0;
+/// Read-back may differ by this much: the list holds degrees × 10⁷, centimetres and whole metres.
+const POSITION_TOLERANCE_DEG: f64 = 3e-7;
+const ALTITUDE_TOLERANCE_M: f64 = 0.5;
+
+/// The entry of a position.
+pub fn slot(position: u64) -> u16 {
+    2 + (position % RING) as u16
+}
+
+/// The last position that can be written in one go with `position`.
+pub fn last_before_wrap(position: u64) -> u64 {
+    position - position % RING + RING - 1
+}
+
+/// The list entry of a waypoint.
+pub fn item(waypoint: &Waypoint) -> Item {
+    let kind = match waypoint.action {
+        Action::TakeOff { .. } => ItemKind::TakeOff,
+        Action::Fly => ItemKind::Fly { over: waypoint.fly_over },
+        Action::Loiter { radius_m } => ItemKind::Loiter { radius_m },
+        Action::Land { .. } => ItemKind::Land,
+    };
+    Item { position: waypoint.position, altitude_amsl_m: waypoint.altitude_amsl_m, kind }
+}
+
+/// The loiter that follows an item.
+pub fn guard_after(item: &Item) -> Item {
+    Item { kind: ItemKind::Loiter { radius_m: 0.0 }, ..*item }
+}
+
+/// The same within what an autopilot keeps of it.
+pub fn matches(a: &Item, b: &Item) -> bool {
+    let here = (a.position.lat_deg - b.position.lat_deg).abs() <= POSITION_TOLERANCE_DEG
+        && (a.position.lon_deg - b.position.lon_deg).abs() <= POSITION_TOLERANCE_DEG
+        && (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M;
+    match (a.kind, b.kind) {
+        (ItemKind::Jump { to: x }, ItemKind::Jump { to: y }) => x == y,
+        (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => here && (x - y).abs() <= 1.0,
+        // where a take-off goes is the runway's business: autopilots keep its altitude only
+        (ItemKind::TakeOff, ItemKind::TakeOff) => {
+            (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
+        }
+        (x, y) => here && x == y,
+    }
+}
+
+/// The whole list for a fresh ring: `items` from slot 2 on, the last of them (the guard) in every
+/// slot that is left.
+pub fn initial_list(home: Item, items: &[Item]) -> Vec<Item> {
+    let over_home = Item { altitude_amsl_m: home.altitude_amsl_m + HOME_LOITER_M, ..guard_after(&home) };
+    let filler = items.last().copied().unwrap_or(over_home);
+    let mut list = vec![Item { kind: ItemKind::Home, ..home }, over_home];
+    list.extend(items.iter().copied());
+    list.resize(usize::from(JUMP_SLOT), filler);
+    list.push(Item { kind: ItemKind::Jump { to: 2 }, ..home });
+    list
+}
+
+/// A list has the shape that [`initial_list`] gives it.
+pub fn is_ours(list: &[Item]) -> bool {
+    list.len() == usize::from(JUMP_SLOT) + 1
+        && matches!(list.last(), Some(Item { kind: ItemKind::Jump { to: 2 }, .. }))
+}
+
+/// Of the waypoints known before, those that are really on board from `first` on.
+pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Waypoint>) -> Vec<Waypoint> {
+    let at = |p: u64| list.get(usize::from(slot(p)));
+    waypoints
+        .into_iter()
+        .zip(first..)
+        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &item(w))))
+        .map(|(w, _)| w)
+        .collect()
+}
+
+/// What is known to be on board.
+#[derive(Debug, Clone)]
+pub struct Slots {
+    /// The take-off place.
+    pub home: Item,
+    /// `None`: unknown.
+    slots: Vec<Option<Item>>,
+}
+
+impl Default for Slots {
+    fn default() -> Self {
+        let home = Item { position: LatLon::new(0.0, 0.0), altitude_amsl_m: 0.0, kind: ItemKind::Home };
+        Self { home, slots: vec![None; RING as usize] }
+    }
+}
+
+impl Slots {
+    /// Nothing is known but the take-off place.
+    pub fn with_home(home: Item) -> Self {
+        Self { home, ..Self::default() }
+    }
+
+    /// From a list of our shape.
+    pub fn from_list(list: &[Item]) -> Self {
+        let mut slots: Vec<_> = list.iter().skip(2).take(RING as usize).map(|i| Some(*i)).collect();
+        slots.resize(RING as usize, None);
+        Self { home: list.first().copied().unwrap_or(Self::default().home), slots }
+    }
+
+    /// What is there.
+    pub fn get(&self, position: u64) -> Option<Item> {
+        self.slots.get((position % RING) as usize).copied().flatten()
+    }
+
+    /// It is there.
+    pub fn holds(&self, position: u64, item: &Item) -> bool {
+        self.get(position).is_some_and(|have| matches(&have, item))
+    }
+
+    /// A loiter with the autopilot's own radius: our guard.
+    pub fn is_guard(&self, position: u64) -> bool {
+        matches!(self.get(position), Some(Item { kind: ItemKind::Loiter { radius_m }, .. }) if radius_m == 0.0)
+    }
+
+    /// Written and verified.
+    pub fn put(&mut self, position: u64, items: Vec<Item>) {
+        for (p, item) in (position..).zip(items) {
+            if let Some(s) = self.slots.get_mut((p % RING) as usize) {
+                *s = Some(item);
+            }
+        }
+    }
+
+    /// About to be written: unknown until verified.
+    pub fn forget(&mut self, position: u64, count: usize) {
+        for p in position..position + count as u64 {
+            if let Some(s) = self.slots.get_mut((p % RING) as usize) {
+                *s = None;
+            }
+        }
+    }
+
+    /// What [`initial_list`] wrote.
+    pub fn fill(&mut self, items: Vec<Item>) {
+        let filler = items.last().copied();
+        self.slots = items.into_iter().map(Some).collect();
+        self.slots.resize(RING as usize, filler);
+    }
+}
