@@ -88,7 +88,8 @@ impl Session {
         request: &Q,
         timeout: Duration,
     ) -> Result<Request, String> {
-        let key = self.key(invocation.service, Kind::Invocation, invocation.name).map_err(|e| e.to_string())?;
+        let key =
+            self.key(invocation.service, Kind::Invocation, invocation.name).map_err(|e| e.to_string())?;
         let payload = codec::encode(request, Format::Cbor)?;
         Ok(Request {
             inner: Arc::downgrade(&self.inner),
@@ -136,7 +137,10 @@ impl Request {
         Ok(receiver)
     }
 
-    async fn run<A: DeserializeOwned>(self, first: Result<mpsc::Receiver<Reply>, CallError>) -> Result<A, CallError> {
+    async fn run<A: DeserializeOwned>(
+        self,
+        first: Result<mpsc::Receiver<Reply>, CallError>,
+    ) -> Result<A, CallError> {
         let mut attempt = first?;
         loop {
             match tokio::time::timeout_at(self.deadline, attempt.recv()).await {

@@ -109,8 +109,16 @@ mod tests {
         check(&GatewayRequest::Direct { heading_deg: 10.0, altitude_amsl_m: 500.0, airspeed_mps: 22.0 });
         check(&FeedAnswer::Refused { faults: vec![(Token(7), "range".into(), "too far".into())] });
         check(&FeedAnswer::Full);
-        check(&Stamped { time_s: 1.0, validity_s: 2.0, value: GatewayEvent::Progress { current: Some(Token(u64::MAX)) } });
-        check(&Stamped { time_s: 1.0, validity_s: 2.0, value: PlanEvent::PlanActivated { hash: "ab".into(), revision: 2 } });
+        check(&Stamped {
+            time_s: 1.0,
+            validity_s: 2.0,
+            value: GatewayEvent::Progress { current: Some(Token(u64::MAX)) },
+        });
+        check(&Stamped {
+            time_s: 1.0,
+            validity_s: 2.0,
+            value: PlanEvent::PlanActivated { hash: "ab".into(), revision: 2 },
+        });
     }
 
     #[test]

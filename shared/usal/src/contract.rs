@@ -4,8 +4,8 @@
 //! they are (`Command`, `Event`, `Status`, `Waypoint`, …) are re-exported, not copied.
 
 pub use flight_exec::{
-    Action, Answer, Command, DecisionRequest, Event as PlanEvent, PlacePointer, ProposalReport,
-    Refusal, Status as PlanStatus, Token, Waypoint,
+    Action, Answer, Command, DecisionRequest, Event as PlanEvent, PlacePointer, ProposalReport, Refusal,
+    Status as PlanStatus, Token, Waypoint,
 };
 pub use flight_plan::{Cause, Id, VariableValue};
 pub use geometry::LatLon;

@@ -107,7 +107,10 @@ impl Session {
     ///
     /// # Errors
     /// [`SessionError::Network`] on a closed session.
-    pub fn serve_description(&self, service: &'static str) -> Result<Server<Empty, Description>, SessionError> {
+    pub fn serve_description(
+        &self,
+        service: &'static str,
+    ) -> Result<Server<Empty, Description>, SessionError> {
         self.serve(topics::describe(service))
     }
 }
@@ -122,13 +125,18 @@ mod tests {
     #[test]
     fn the_contract_is_the_one_in_the_golden_file() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/contract.json");
-        let now = serde_json::to_string_pretty(&[gateway_description(), fp_manager_description()]).unwrap() + "\n";
+        let now =
+            serde_json::to_string_pretty(&[gateway_description(), fp_manager_description()]).unwrap() + "\n";
         if std::env::var_os("LEGWORK_BLESS").is_some() {
             std::fs::write(path, &now).unwrap();
         }
         let golden = std::fs::read_to_string(path).unwrap_or_default();
         let first = golden.lines().zip(now.lines()).position(|(a, b)| a != b);
-        assert!(golden == now, "the contract differs from contract.json, first in line {:?}", first.map(|n| n + 1));
+        assert!(
+            golden == now,
+            "the contract differs from contract.json, first in line {:?}",
+            first.map(|n| n + 1)
+        );
     }
 
     #[test]
@@ -137,7 +145,12 @@ mod tests {
             for primitive in &description.primitives {
                 crate::Key::new("uav1", &description.service, primitive.kind, &primitive.name).unwrap();
                 assert!(primitive.schema.is_object(), "{}", primitive.name);
-                assert_eq!(primitive.request.is_some(), primitive.kind == Kind::Invocation, "{}", primitive.name);
+                assert_eq!(
+                    primitive.request.is_some(),
+                    primitive.kind == Kind::Invocation,
+                    "{}",
+                    primitive.name
+                );
             }
         }
     }

@@ -11,7 +11,9 @@ pub enum SessionError {
     #[error(transparent)]
     Key(#[from] KeyError),
     /// The endpoint is not usable.
-    #[error("endpoint `{endpoint}`: {reason}; write it as tcp/127.0.0.1:7447 and check that nothing else listens there")]
+    #[error(
+        "endpoint `{endpoint}`: {reason}; write it as tcp/127.0.0.1:7447 and check that nothing else listens there"
+    )]
     Endpoint {
         /// What was given.
         endpoint: String,

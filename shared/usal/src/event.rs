@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Weak};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 use tokio::sync::mpsc;
 use zenoh::Wait;
 use zenoh::qos::CongestionControl;
@@ -35,7 +35,7 @@ const RECOVERY_TIMEOUT: Duration = Duration::from_secs(2);
 pub enum Start {
     /// With everything that the publisher still remembers.
     Remembered,
-    /// With what happens from now on.
+    /// With what happens from now on, by the clocks of the two machines: for services aboard.
     Now,
 }
 
@@ -70,7 +70,8 @@ impl<T: Serialize> EventPublisher<T> {
         match codec::encode(event, Format::Cbor) {
             Err(reason) => self.session.inner.health.unsent(key, &reason),
             Ok(bytes) => {
-                if let Err(e) = self.publisher.put(bytes).wait() {
+                let emitted = unix_us().to_le_bytes();
+                if let Err(e) = self.publisher.put(bytes).attachment(emitted).wait() {
                     self.session.inner.health.unsent(key, &e.to_string());
                 }
             }
@@ -129,19 +130,23 @@ impl Session {
     {
         let key = self.key(events.service, Kind::Event, events.name)?.to_string();
         let (sender, receiver) = mpsc::channel(QUEUE);
-        let inlet = Arc::new(Inlet { inner: Arc::downgrade(&self.inner), sender, dropped: AtomicU64::new(0) });
+        let inlet = Arc::new(Inlet {
+            inner: Arc::downgrade(&self.inner),
+            sender,
+            dropped: AtomicU64::new(0),
+            from_us: if start == Start::Now { unix_us() } else { 0 },
+        });
         let samples = inlet.clone();
-        let mut builder = self
+        let subscriber = self
             .inner
             .zenoh
             .declare_subscriber(key)
             .callback(move |sample| samples.sample(&sample))
             .recovery(RecoveryConfig::default().heartbeat())
-            .query_timeout(RECOVERY_TIMEOUT);
-        if start == Start::Remembered {
-            builder = builder.history(HistoryConfig::default().detect_late_publishers().max_samples(MEMORY));
-        }
-        let subscriber = builder.wait().map_err(SessionError::network)?;
+            .query_timeout(RECOVERY_TIMEOUT)
+            .history(HistoryConfig::default().detect_late_publishers().max_samples(MEMORY))
+            .wait()
+            .map_err(SessionError::network)?;
         subscriber
             .sample_miss_listener()
             .callback(move |miss| inlet.push(Occurrence::Gap { missed: miss.nb().into() }))
@@ -158,11 +163,25 @@ struct Inlet<T> {
     sender: mpsc::Sender<Occurrence<T>>,
     /// Dropped since the last that found room.
     dropped: AtomicU64,
+    /// Earlier events are of no interest, microseconds since 1970.
+    from_us: u64,
+}
+
+/// Microseconds since 1970.
+fn unix_us() -> u64 {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_micros()).unwrap_or(u64::MAX)
+}
+
+/// When an event was emitted; a stranger's carries no time and counts as new.
+fn emitted_us(sample: &Sample) -> u64 {
+    let bytes = sample.attachment().and_then(|a| a.to_bytes().as_ref().try_into().ok());
+    bytes.map_or(u64::MAX, u64::from_le_bytes)
 }
 
 impl<T: DeserializeOwned> Inlet<T> {
     fn sample(&self, sample: &Sample) {
-        if sample.kind() == SampleKind::Delete {
+        if sample.kind() == SampleKind::Delete || emitted_us(sample) < self.from_us {
             return;
         }
         // a stranger's plain put has no number

@@ -5,13 +5,13 @@
 //! executed any more). A refusal is an error reply of the form `{code, reason}`. Answers come in
 //! the format of the request.
 
+use crate::SessionError;
 use crate::codec::{self, Format};
 use crate::contract::Refusal;
 use crate::health::Health;
 use crate::keys::Kind;
 use crate::session::Session;
 use crate::topics::Invocation;
-use crate::SessionError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{HashMap, VecDeque};
@@ -91,7 +91,10 @@ impl<Q, A: Serialize> Incoming<Q, A> {
         if Instant::now() < self.deadline {
             return Some(self);
         }
-        self.answer(Err(refusal("expired", "its deadline passed before it could be executed; send it again")));
+        self.answer(Err(refusal(
+            "expired",
+            "its deadline passed before it could be executed; send it again",
+        )));
         None
     }
 }
@@ -146,7 +149,8 @@ fn receive<Q: DeserializeOwned, A: Serialize>(sender: &mpsc::Sender<Incoming<Q, 
             let deadline = Instant::now() + timeout(&reply.query);
             let incoming = Incoming { request, reply, deadline, _answer: PhantomData };
             if let Err(full) = sender.try_send(incoming) {
-                full.into_inner().answer(Err(refusal("busy", "too many requests are waiting; try again later")));
+                full.into_inner()
+                    .answer(Err(refusal("busy", "too many requests are waiting; try again later")));
             }
         }
     }
@@ -275,7 +279,10 @@ impl Memory {
         let kept = if reply.bytes.len() <= REMEMBERED_BYTES {
             reply.clone()
         } else {
-            let forgotten = refusal("answer-too-large", "it was executed; its answer is too large to be kept: ask for the state");
+            let forgotten = refusal(
+                "answer-too-large",
+                "it was executed; its answer is too large to be kept: ask for the state",
+            );
             Reply::new::<()>(&Err(forgotten), reply.format)
         };
         match std::mem::replace(request, Request::Done(kept)) {

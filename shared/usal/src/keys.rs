@@ -7,7 +7,9 @@ const ROOT: &str = "legwork";
 const SEGMENT_MAX: usize = 64;
 
 /// What kind of primitive a key names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Periodic data, latest value wins.
@@ -63,12 +65,7 @@ impl Key {
     /// # Errors
     /// [`KeyError::Segment`] for a part that cannot be a key segment.
     pub fn new(vehicle: &str, service: &str, kind: Kind, name: &str) -> Result<Self, KeyError> {
-        Ok(Self {
-            vehicle: segment(vehicle)?,
-            service: segment(service)?,
-            kind,
-            name: segment(name)?,
-        })
+        Ok(Self { vehicle: segment(vehicle)?, service: segment(service)?, kind, name: segment(name)? })
     }
 }
 
@@ -148,7 +145,9 @@ mod tests {
 
     #[test]
     fn other_peoples_keys_are_refused() {
-        for bad in ["legwork/a/b/variable", "legwork/a/b/variable/c/d", "other/a/b/variable/c", "legwork/a/b/file/c"] {
+        for bad in
+            ["legwork/a/b/variable", "legwork/a/b/variable/c/d", "other/a/b/variable/c", "legwork/a/b/file/c"]
+        {
             assert!(matches!(bad.parse::<Key>(), Err(KeyError::Shape(_))), "{bad}");
         }
     }

@@ -1,8 +1,8 @@
 //! A session: one vehicle's services, over explicit endpoints.
 
+use crate::SessionError;
 use crate::health::{Health, HealthCount};
 use crate::keys::{Key, KeyError, Kind};
-use crate::SessionError;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -60,7 +60,10 @@ impl Config {
 
 impl fmt::Debug for Config {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Config").field("vehicle", &self.vehicle).field("role", &self.role).finish_non_exhaustive()
+        f.debug_struct("Config")
+            .field("vehicle", &self.vehicle)
+            .field("role", &self.role)
+            .finish_non_exhaustive()
     }
 }
 

@@ -137,7 +137,8 @@ impl Session {
             .wait()
             .map_err(SessionError::network)?;
         // after the queryable: who sees the token can ask
-        let token = self.inner.zenoh.liveliness().declare_token(token).wait().map_err(SessionError::network)?;
+        let token =
+            self.inner.zenoh.liveliness().declare_token(token).wait().map_err(SessionError::network)?;
         Ok(VariablePublisher {
             session: self.clone(),
             publisher,
