@@ -19,7 +19,7 @@ class Process:
     def __init__(self, *command, log):
         self.log = open(log, "w+b")
         self.child = subprocess.Popen(
-            [str(part) for part in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log
+            [str(part) for part in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, bufsize=0
         )
 
     def wait_for(self, pattern, seconds=20):

@@ -2,7 +2,6 @@
 
 import asyncio
 
-from conftest import until  # noqa: F401  (keeps the folder one package for pytest)
 from mavsdk import System
 from mavsdk.mission_raw import MissionItem
 
