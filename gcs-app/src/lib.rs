@@ -3,7 +3,18 @@
 //! `app` is the window: its `logic` drains what the workers found out, its `ui` draws. Panels and
 //! map borrow the state and ask for changes through `command`. Nothing on the UI thread waits.
 
+pub mod app;
 pub mod assets;
+pub mod command;
 pub mod demo;
+pub mod document;
+pub mod files;
+pub mod forecast;
 pub mod headless;
+pub mod link;
+pub mod map;
+pub mod panels;
 pub mod report;
+pub mod state;
+pub mod theme;
+pub mod units;

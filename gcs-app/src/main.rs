@@ -1,32 +1,89 @@
 //! Command line of `legwork`.
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use gcs_app::app::{self, Options, Screenshot};
+use gcs_app::document::Document;
 use gcs_app::{demo, headless};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Program a UAV's flight instead of placing waypoints.
+///
+/// Without a command, opens the ground station's window.
 #[derive(Debug, Parser)]
-#[command(name = "legwork", version, about, subcommand_precedence_over_arg = true)]
+#[command(name = "legwork", version, about, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Task>,
+    #[command(flatten)]
+    window: Window,
 }
 
 #[derive(Debug, Subcommand)]
 enum Task {
+    /// Open the ground station's window.
+    Fly(Window),
     /// Fly the fire-watch mission with an embedded simulator and agent.
     Demo(demo::Args),
     #[command(flatten)]
     Headless(headless::Command),
 }
 
+/// How the window opens.
+#[derive(Debug, Args)]
+struct Window {
+    /// A flight plan to open.
+    file: Option<PathBuf>,
+    /// Connect to a vehicle's gateway at once, as tcp/127.0.0.1:7447.
+    #[arg(long, value_name = "ENDPOINT")]
+    connect: Option<String>,
+    /// The vehicle's name.
+    #[arg(long, default_value = "uav1")]
+    vehicle: String,
+    /// Begin with the light theme.
+    #[arg(long)]
+    light: bool,
+    /// Keep the aircraft in the middle of the map.
+    #[arg(long)]
+    follow: bool,
+    /// Write a picture of the window (PNG) and close it.
+    #[arg(long, value_name = "FILE")]
+    screenshot: Option<PathBuf>,
+    /// Seconds until that picture is taken.
+    #[arg(long, value_name = "SECONDS", default_value_t = 3.0, requires = "screenshot")]
+    after: f64,
+}
+
 fn main() -> ExitCode {
+    tracing_subscriber::fmt()
+        .with_env_filter(tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn".into()))
+        .with_writer(std::io::stderr)
+        .init();
     let cli = Cli::parse();
-    match cli.command {
-        Some(Task::Demo(args)) => status(demo::run(&args)),
-        Some(Task::Headless(command)) => status(headless::run(&command)),
-        None => ExitCode::SUCCESS,
-    }
+    status(match cli.command {
+        Some(Task::Demo(args)) => demo::run(&args),
+        Some(Task::Headless(command)) => headless::run(&command),
+        Some(Task::Fly(window)) => open(window),
+        None => open(cli.window),
+    })
+}
+
+fn open(window: Window) -> anyhow::Result<ExitCode> {
+    let document = window.file.map(read).transpose()?;
+    let vehicle = window.vehicle;
+    app::run(Options {
+        document,
+        connect: window.connect.map(|endpoint| (vehicle, endpoint)),
+        screenshot: window.screenshot.map(|file| Screenshot::new(file, window.after)),
+        follow: window.follow,
+        theme: window.light.then_some(eframe::egui::Theme::Light),
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn read(path: PathBuf) -> anyhow::Result<Document> {
+    let bytes = std::fs::read(&path).map_err(|error| anyhow::anyhow!("{} can't be opened: {error}", path.display()))?;
+    Ok(Document::read(&bytes, Some(path)))
 }
 
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {

@@ -1,0 +1,215 @@
+//! The window. `logic` drains what the workers found out, `ui` draws and then carries out what was
+//! asked for. Nothing here waits for file, network or computation.
+
+mod keys;
+mod layout;
+mod orders;
+mod screenshot;
+mod window;
+
+pub use screenshot::Screenshot;
+pub use window::{Options, WindowError, has_display, run};
+
+use crate::assets;
+use crate::command::{BottomTab, Queue};
+use crate::document::Document;
+use crate::files::{FileNews, Files};
+use crate::forecast::{Analysis, Question, Worker};
+use crate::link::{Call, Link, Order};
+use crate::map::{MapState, hillshade::Ground};
+use crate::panels::{Scene, ViewState, tree::Tree};
+use crate::state::Vehicle;
+use crate::theme;
+use crate::units::Units;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::Duration;
+use terrain::Terrain;
+
+/// The ground station.
+#[derive(Debug)]
+pub struct App {
+    document: Document,
+    vehicle: Vehicle,
+    view: ViewState,
+    analysis: Analysis,
+    map: MapState,
+    tree: Tree,
+    queue: Queue,
+    link: Link,
+    worker: Worker,
+    files: Files,
+    asked_aboard_s: f64,
+    screenshot: Option<Screenshot>,
+}
+
+/// What is remembered from one run to the next.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Remembered {
+    units: Units,
+    bottom: BottomTab,
+}
+
+const STORAGE_KEY: &str = "legwork";
+/// Ages on the screen are refreshed at least so often while a vehicle is connected.
+const REFRESH: Duration = Duration::from_millis(100);
+/// The plan aboard is asked for again at most so often, seconds.
+const ASK_ABOARD_S: f64 = 3.0;
+
+impl App {
+    /// A ground station that talks through `link` and flies over `terrain`.
+    ///
+    /// # Errors
+    /// No thread can be started.
+    pub fn new(creation: &eframe::CreationContext<'_>, document: Document, link: Link, terrain: Arc<dyn Terrain>) -> std::io::Result<Self> {
+        let ctx = creation.egui_ctx.clone();
+        theme::install(&ctx);
+        let wake: Arc<dyn Fn() + Send + Sync> = {
+            let ctx = ctx.clone();
+            Arc::new(move || ctx.request_repaint())
+        };
+        let remembered: Remembered =
+            creation.storage.and_then(|s| eframe::get_value(s, STORAGE_KEY)).unwrap_or_default();
+        let mut app = Self {
+            document,
+            vehicle: Vehicle::default(),
+            view: ViewState { units: remembered.units, bottom: remembered.bottom, ..ViewState::default() },
+            analysis: Analysis::default(),
+            map: MapState::default(),
+            tree: Tree::default(),
+            queue: Queue::default(),
+            link,
+            worker: Worker::spawn(terrain.clone(), wake.clone())?,
+            files: Files::new(wake),
+            asked_aboard_s: f64::NEG_INFINITY,
+            screenshot: None,
+        };
+        if let Ok(tile) = assets::demo_tile() {
+            let (south_west, north_east) = tile.known_box();
+            app.map.hillshade.begin(Ground { terrain, south_west, north_east }, &ctx);
+        }
+        app.map.fit();
+        Ok(app)
+    }
+
+    /// The plan being edited.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+    /// What is known of the vehicle.
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+    /// What the operator looks at.
+    pub fn view(&self) -> &ViewState {
+        &self.view
+    }
+    /// What was found out about the plan.
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
+    }
+
+    fn scene(&self, now_s: f64) -> Scene<'_> {
+        Scene { document: &self.document, analysis: &self.analysis, vehicle: &self.vehicle, view: &self.view, now_s }
+    }
+
+    fn drain(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|i| i.time);
+        let mut lacks_plan = false;
+        while let Some(news) = self.link.news() {
+            lacks_plan = self.vehicle.hear(news, now_s);
+        }
+        self.adopt_plan_aboard();
+        if lacks_plan && now_s - self.asked_aboard_s > ASK_ABOARD_S {
+            self.asked_aboard_s = now_s;
+            self.call("Read the plan aboard", Call::PlanAboard, now_s);
+        }
+        if let Some(analysis) = self.worker.answer() {
+            self.analysis = analysis;
+        }
+        self.worker.ask(Question { version: self.document.version(), plan: self.document.plan().clone() });
+        while let Some(news) = self.files.news() {
+            self.file_news(news);
+        }
+    }
+
+    /// A window without a plan of its own shows the one that is aboard.
+    fn adopt_plan_aboard(&mut self) {
+        let Some(aboard) = &self.vehicle.aboard else { return };
+        let untouched = self.document.path().is_none() && !self.document.can_undo() && !self.document.can_redo();
+        if untouched && self.document.plan().stages.is_empty() {
+            self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
+            self.map.fit();
+        }
+    }
+
+    fn file_news(&mut self, news: FileNews) {
+        match news {
+            FileNews::Opened { path, bytes } => {
+                self.document = Document::read(&bytes, Some(path));
+                self.view.selection = None;
+                self.view.cursor_s = None;
+                self.view.notice = None;
+                self.map.fit();
+            }
+            FileNews::Saved { path, version } if version == self.document.version() => self.document.saved_as(path),
+            FileNews::Saved { path, .. } => {
+                self.view.notice = Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
+            }
+            FileNews::Failed(why) => self.view.notice = Some(why),
+        }
+    }
+
+    /// Sends a question to the vehicle and notes it.
+    fn call(&mut self, label: &str, call: Call, now_s: f64) {
+        let ticket = self.vehicle.requests.open(label, now_s);
+        if !self.link.order(Order::Call { ticket, call }) {
+            let outcome = crate::state::Outcome::Refused("the link's thread has ended: restart the program".into());
+            self.vehicle.requests.settle(ticket, outcome, now_s);
+        }
+    }
+
+    /// The cursor runs thirty times as fast as the flight.
+    fn play(&mut self, ctx: &egui::Context) {
+        const SPEED: f64 = 30.0;
+        if !self.view.playing {
+            return;
+        }
+        let step = f64::from(ctx.input(|i| i.stable_dt)).min(0.1) * SPEED;
+        let end = self.analysis.forecast.duration_s();
+        let next = self.view.cursor_s.unwrap_or(0.0) + step;
+        self.view.cursor_s = Some(next.min(end));
+        self.view.playing = next < end;
+        ctx.request_repaint();
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.drain(ctx);
+        if self.vehicle.link.is_wanted() {
+            ctx.request_repaint_after(REFRESH);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let now_s = ctx.input(|i| i.time);
+        self.play(&ctx);
+        let mut queue = std::mem::take(&mut self.queue);
+        keys::read(&ctx, &self.scene(now_s), &mut queue);
+        self.lay_out(ui, now_s, &mut queue);
+        for command in queue.take() {
+            self.carry_out(command, now_s);
+        }
+        self.queue = queue;
+        if let Some(screenshot) = &mut self.screenshot {
+            screenshot.run(&ctx, now_s);
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        let remembered = Remembered { units: self.view.units, bottom: self.view.bottom };
+        eframe::set_value(storage, STORAGE_KEY, &remembered);
+    }
+}

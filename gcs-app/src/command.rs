@@ -1,0 +1,168 @@
+//! What the window may ask for. Panels and map borrow the state and push commands; the app carries
+//! them out between two frames.
+
+use crate::units::Units;
+use flight_exec::Command as PlanCommand;
+use flight_plan::{Edit, Id};
+use std::path::PathBuf;
+use usal::contract::GatewayRequest;
+
+/// Something the operator wants done.
+#[derive(Debug, Clone)]
+pub enum Command {
+    /// To the document.
+    Document(DocumentCommand),
+    /// To what is shown.
+    View(ViewCommand),
+    /// To the vehicle and the way to it.
+    Fly(FlyCommand),
+}
+
+/// Commands to the document.
+#[derive(Debug, Clone)]
+pub enum DocumentCommand {
+    /// An empty plan.
+    New,
+    /// Ask for a file and open it.
+    AskOpen,
+    /// Open this file.
+    Open(PathBuf),
+    /// Save where it came from, asking if it came from nowhere.
+    Save,
+    /// Ask where to save.
+    AskSaveAs,
+    /// Save here.
+    SaveTo(PathBuf),
+    /// Apply an edit as an undo step of its own.
+    Edit(Edit),
+    /// Apply an edit as part of a gesture; the steps of a gesture are undone together.
+    DragEdit(Edit),
+    /// The gesture is over.
+    EndGesture,
+    /// Take the last step back.
+    Undo,
+    /// Redo it.
+    Redo,
+}
+
+/// Commands to the view.
+#[derive(Debug, Clone)]
+pub enum ViewCommand {
+    /// Select something, or nothing.
+    Select(Option<Selection>),
+    /// Select it and bring it into the map's middle.
+    JumpTo(Selection),
+    /// Show the whole plan.
+    Fit,
+    /// Keep the aircraft in the map's middle, or stop that.
+    Follow(bool),
+    /// Other units.
+    Units(Units),
+    /// Another tab below the map.
+    BottomTab(BottomTab),
+    /// Move the cursor along the preview, seconds from its start; `None` hides it.
+    Scrub(Option<f64>),
+    /// Run the preview's cursor, or stop it.
+    Play(bool),
+    /// Take a message away.
+    DismissNotice,
+}
+
+/// Commands to the vehicle.
+#[derive(Debug, Clone)]
+pub enum FlyCommand {
+    /// Open a session to a vehicle.
+    Connect {
+        /// Where its gateway listens, as `tcp/127.0.0.1:7447`.
+        endpoint: String,
+        /// Its name.
+        vehicle: String,
+    },
+    /// Close the session.
+    Disconnect,
+    /// Propose the document.
+    Propose,
+    /// Choose the leg at which the proposal is entered.
+    EnterAt(Id),
+    /// Make the proposal the active plan.
+    Commit,
+    /// Put the proposal aside.
+    DropProposal,
+    /// Replace the document by the plan aboard.
+    TakeAboard,
+    /// A command for the plan's executor.
+    Plan(PlanCommand),
+    /// A request for the gateway.
+    Gateway(GatewayRequest),
+    /// Start the plan: the aircraft takes off.
+    Launch,
+}
+
+/// What can be selected.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Selection {
+    /// A leg, anywhere in the document.
+    Leg(Id),
+    /// A stage of the main plan or of an emergency plan.
+    Stage(Id),
+    /// An emergency plan.
+    Emergency(Id),
+    /// A fix.
+    Fix(Id),
+    /// A runway.
+    Runway(Id),
+    /// A variable.
+    Variable(Id),
+}
+
+impl Selection {
+    /// The identifier it stands for.
+    pub fn id(&self) -> &Id {
+        match self {
+            Self::Leg(id) | Self::Stage(id) | Self::Emergency(id) | Self::Fix(id) | Self::Runway(id) | Self::Variable(id) => id,
+        }
+    }
+}
+
+/// What is shown below the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum BottomTab {
+    /// Altitude and terrain along the path.
+    #[default]
+    Profile,
+    /// The plan as a table.
+    Table,
+    /// Commands with their answers, and events.
+    Log,
+}
+
+/// Commands on their way to the app.
+#[derive(Debug, Default)]
+pub struct Queue(Vec<Command>);
+
+impl Queue {
+    /// To the document.
+    pub fn document(&mut self, command: DocumentCommand) {
+        self.0.push(Command::Document(command));
+    }
+    /// An edit as one undo step.
+    pub fn edit(&mut self, edit: Edit) {
+        self.document(DocumentCommand::Edit(edit));
+    }
+    /// To the view.
+    pub fn view(&mut self, command: ViewCommand) {
+        self.0.push(Command::View(command));
+    }
+    /// To the vehicle.
+    pub fn fly(&mut self, command: FlyCommand) {
+        self.0.push(Command::Fly(command));
+    }
+    /// To the plan's executor.
+    pub fn plan(&mut self, command: PlanCommand) {
+        self.fly(FlyCommand::Plan(command));
+    }
+    /// Everything that was asked for, in order.
+    pub fn take(&mut self) -> Vec<Command> {
+        std::mem::take(&mut self.0)
+    }
+}

@@ -1,0 +1,220 @@
+//! The plan being edited: immutable states, undo and redo over all of them, and its file.
+
+use flight_plan::{Edit, FlightPlan, History, Id, Problem};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The document.
+#[derive(Debug)]
+pub struct Document {
+    history: History,
+    gesture: u64,
+    path: Option<PathBuf>,
+    reading_problems: Vec<Problem>,
+    kinds: BTreeMap<Id, &'static str>,
+    version: u64,
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self::new(new_plan(), None, Vec::new())
+    }
+}
+
+/// An empty plan, for the aircraft that comes with the product.
+fn new_plan() -> FlightPlan {
+    FlightPlan { name: "New plan".into(), aircraft: "trainer".into(), ..FlightPlan::default() }
+}
+
+impl Document {
+    /// A plan, where it came from, and what was wrong with its text.
+    pub fn new(plan: FlightPlan, path: Option<PathBuf>, reading_problems: Vec<Problem>) -> Self {
+        let mut document = Self {
+            history: History::new(plan),
+            gesture: 0,
+            path,
+            reading_problems,
+            kinds: BTreeMap::new(),
+            version: 0,
+        };
+        document.changed();
+        document
+    }
+
+    /// A plan from the text of a document; whatever is wrong with it, it opens.
+    pub fn read(bytes: &[u8], path: Option<PathBuf>) -> Self {
+        let reading = flight_plan::read(bytes);
+        Self::new(reading.plan, path, reading.problems)
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Arc<FlightPlan> {
+        self.history.plan()
+    }
+    /// Differs whenever the plan differs.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+    /// What was wrong with the text, until the first edit.
+    pub fn reading_problems(&self) -> &[Problem] {
+        &self.reading_problems
+    }
+    /// Its file.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+    /// Its file's name, or what there is instead.
+    pub fn file_name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "not saved yet".into(), |n| n.to_string_lossy().into_owned())
+    }
+    /// It differs from its file.
+    pub fn is_dirty(&self) -> bool {
+        !self.history.is_saved()
+    }
+    /// There is a step to take back.
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+    /// There is a step to redo.
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+    /// What a leg is called in the document; empty for one that is not there.
+    pub fn kind_name(&self, leg: &Id) -> &'static str {
+        self.kinds.get(leg).copied().unwrap_or_default()
+    }
+
+    /// Replaces the plan by another one, as a step that can be undone.
+    pub fn replace(&mut self, plan: FlightPlan) {
+        self.history.replace(plan);
+        self.changed();
+    }
+
+    /// Applies an edit as a step of its own. The sentence says why it can't be done.
+    pub fn edit(&mut self, edit: &Edit) -> Result<(), String> {
+        self.apply(edit, None)
+    }
+
+    /// Applies an edit as part of a gesture: everything until [`Document::end_gesture`] is one step.
+    pub fn drag_edit(&mut self, edit: &Edit) -> Result<(), String> {
+        self.apply(edit, Some(self.gesture))
+    }
+
+    /// The gesture is over.
+    pub fn end_gesture(&mut self) {
+        self.gesture += 1;
+        self.history.end_gesture();
+    }
+
+    fn apply(&mut self, edit: &Edit, gesture: Option<u64>) -> Result<(), String> {
+        self.history.apply(edit, gesture).map_err(|error| error.to_string())?;
+        self.changed();
+        Ok(())
+    }
+
+    /// Takes the last step back.
+    pub fn undo(&mut self) {
+        if self.history.undo() {
+            self.changed();
+        }
+    }
+
+    /// Redoes the last step that was taken back.
+    pub fn redo(&mut self) {
+        if self.history.redo() {
+            self.changed();
+        }
+    }
+
+    /// It was written to `path`.
+    pub fn saved_as(&mut self, path: PathBuf) {
+        self.path = Some(path);
+        self.history.mark_saved();
+    }
+
+    fn changed(&mut self) {
+        if self.version > 0 {
+            self.reading_problems.clear();
+        }
+        self.kinds = self.plan().all_legs().iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
+        // versions are never used twice, not even by another document of this run
+        self.version = next_version();
+    }
+}
+
+fn next_version() -> u64 {
+    use std::sync::atomic::{AtomicU64, Ordering};
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Ordering::Relaxed) + 1
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use flight_plan::Fix;
+    use geometry::LatLon;
+
+    fn document() -> Document {
+        let fix = Fix { id: "A".into(), position: LatLon::new(1.0, 1.0), name: String::new(), description: String::new() };
+        Document::new(FlightPlan { fixes: vec![fix], ..new_plan() }, None, Vec::new())
+    }
+
+    fn moved(lat: f64) -> Edit {
+        Edit::MoveFix { fix: "A".into(), to: LatLon::new(lat, 1.0) }
+    }
+
+    fn latitude(d: &Document) -> f64 {
+        d.plan().fixes[0].position.lat_deg
+    }
+
+    #[test]
+    fn a_drag_is_one_step_and_undo_is_exact() {
+        let mut d = document();
+        let before = d.plan().clone();
+        for lat in [2.0, 3.0, 4.0] {
+            d.drag_edit(&moved(lat)).unwrap();
+        }
+        d.end_gesture();
+        d.drag_edit(&moved(5.0)).unwrap();
+        d.end_gesture();
+        assert!(d.is_dirty());
+        d.undo();
+        assert_eq!(latitude(&d), 4.0, "the second drag is a step of its own");
+        d.undo();
+        assert_eq!(*d.plan(), before);
+        assert!(!d.can_undo() && !d.is_dirty());
+        d.redo();
+        d.redo();
+        assert_eq!(latitude(&d), 5.0);
+        assert!(!d.can_redo());
+    }
+
+    #[test]
+    fn a_new_edit_forgets_what_was_undone() {
+        let mut d = document();
+        d.edit(&moved(2.0)).unwrap();
+        d.undo();
+        d.edit(&moved(3.0)).unwrap();
+        assert!(!d.can_redo());
+        assert_eq!(latitude(&d), 3.0);
+    }
+
+    #[test]
+    fn an_edit_that_cannot_be_done_says_why_and_changes_nothing() {
+        let mut d = document();
+        let refused = d.edit(&Edit::MoveFix { fix: "nowhere".into(), to: LatLon::new(0.0, 0.0) });
+        assert!(refused.unwrap_err().contains("nowhere"));
+        assert!(!d.can_undo());
+    }
+
+    #[test]
+    fn a_broken_text_opens_with_its_problems_until_it_is_edited() {
+        let mut d = Document::read(b"<flightPlan", None);
+        assert!(!d.reading_problems().is_empty());
+        d.replace(new_plan());
+        assert!(d.reading_problems().is_empty());
+    }
+}

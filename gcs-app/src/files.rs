@@ -1,0 +1,164 @@
+//! Files: dialogs, reading and saving, each on a thread of its own; the window hears of it later.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What came of it.
+#[derive(Debug)]
+pub enum FileNews {
+    /// A file was read.
+    Opened {
+        /// Which.
+        path: PathBuf,
+        /// What is in it.
+        bytes: Vec<u8>,
+    },
+    /// The document was saved; `version` of it.
+    Saved {
+        /// Where.
+        path: PathBuf,
+        /// Which version.
+        version: u64,
+    },
+    /// It didn't work; the sentence says what to do.
+    Failed(String),
+}
+
+/// Largest file that is opened, bytes; the reader's own limit is a little lower than this.
+const LARGEST: u64 = 80 * 1024 * 1024;
+/// A dialog that is closed sooner than this was never seen.
+const UNSEEN: Duration = Duration::from_millis(150);
+
+/// Where files come from and go to.
+pub struct Files {
+    outbox: Sender<FileNews>,
+    inbox: Receiver<FileNews>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl std::fmt::Debug for Files {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Files").finish_non_exhaustive()
+    }
+}
+
+impl Files {
+    /// `wake` is called when there is news.
+    pub fn new(wake: Arc<dyn Fn() + Send + Sync>) -> Self {
+        let (outbox, inbox) = channel();
+        Self { outbox, inbox, wake }
+    }
+
+    /// The next news, if there are any.
+    pub fn news(&self) -> Option<FileNews> {
+        self.inbox.try_recv().ok()
+    }
+
+    /// Asks for a file and reads it.
+    pub fn ask_open(&self) {
+        self.work(|| {
+            let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]);
+            seen(|| dialog.pick_file()).map(|path| path.map(|path| open(&path)))
+        });
+    }
+
+    /// Reads a file.
+    pub fn open(&self, path: PathBuf) {
+        self.work(move || Ok(Some(open(&path))));
+    }
+
+    /// Asks where to save, and saves.
+    pub fn ask_save(&self, suggestion: String, text: String, version: u64) {
+        self.work(move || {
+            let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
+            seen(|| dialog.save_file()).map(|path| path.map(|path| save(path, &text, version)))
+        });
+    }
+
+    /// Saves.
+    pub fn save(&self, path: PathBuf, text: String, version: u64) {
+        self.work(move || Ok(Some(save(path, &text, version))));
+    }
+
+    fn work(&self, job: impl FnOnce() -> Result<Option<FileNews>, String> + Send + 'static) {
+        let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
+        let work = move || {
+            if let Some(news) = job().unwrap_or_else(|why| Some(FileNews::Failed(why))) {
+                // the window may be gone: nobody to tell
+                let _ = outbox.send(news);
+                wake();
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("files".into()).spawn(work) {
+            tracing::warn!(%error, "no thread for a file");
+        }
+    }
+}
+
+/// A dialog's answer. Without a desktop portal it "cancels" at once, before anybody saw it.
+fn seen(dialog: impl FnOnce() -> Option<PathBuf>) -> Result<Option<PathBuf>, String> {
+    let begin = Instant::now();
+    let answer = dialog();
+    if answer.is_none() && begin.elapsed() < UNSEEN {
+        return Err("This desktop offers no file dialog (xdg-desktop-portal is missing). Drop the file on the window, or give it on the command line: legwork fly FILE".into());
+    }
+    Ok(answer)
+}
+
+fn open(path: &Path) -> FileNews {
+    let read = std::fs::metadata(path).and_then(|meta| {
+        if meta.len() > LARGEST { Err(std::io::Error::other("it is larger than 80 MiB")) } else { std::fs::read(path) }
+    });
+    match read {
+        Ok(bytes) => FileNews::Opened { path: path.to_owned(), bytes },
+        Err(error) => FileNews::Failed(format!("{} can't be opened: {error}", path.display())),
+    }
+}
+
+fn save(path: PathBuf, text: &str, version: u64) -> FileNews {
+    match write_whole(&path, text.as_bytes()) {
+        Ok(()) => FileNews::Saved { path, version },
+        Err(error) => FileNews::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display())),
+    }
+}
+
+/// Temporary file, fsync, rename, fsync of the folder: the old file or the new one, never half of it.
+fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let name = path.file_name().ok_or_else(|| std::io::Error::other("that is no file name"))?;
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let temporary = folder.join(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
+    let written = (|| {
+        let mut file = std::fs::File::create(&temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        std::fs::rename(&temporary, path)?;
+        std::fs::File::open(folder)?.sync_all()
+    })();
+    if written.is_err() {
+        // nothing of use is in it
+        let _ = std::fs::remove_file(&temporary);
+    }
+    written
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn saving_is_all_or_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.xml");
+        assert!(matches!(save(path.clone(), "one", 1), FileNews::Saved { version: 1, .. }));
+        assert!(matches!(save(path.clone(), "two", 2), FileNews::Saved { .. }));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
+        let nowhere = folder.path().join("missing").join("plan.xml");
+        assert!(matches!(save(nowhere, "x", 3), FileNews::Failed(_)));
+        assert!(matches!(open(&folder.path().join("none.xml")), FileNews::Failed(_)));
+    }
+}

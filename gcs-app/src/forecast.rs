@@ -1,0 +1,134 @@
+//! What will be flown, as map, profile and table need it; and the worker that finds it out.
+//!
+//! The worker checks, hashes, compiles and previews the newest plan on a thread of its own. It waits
+//! for a short rest between edits, and a newer plan always wins.
+
+mod preview;
+mod worker;
+
+pub use worker::{Analysis, Question, Worker};
+
+use flight_exec::Waypoint;
+use flight_plan::Id;
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// A point of the path that will be flown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Seconds since the start.
+    pub time_s: f64,
+    /// Metres flown over the ground since the start.
+    pub distance_m: f64,
+    /// Where.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Ground below, metres AMSL, where it is known.
+    pub ground_amsl_m: Option<f64>,
+    /// Which of the forecast's passages it belongs to.
+    pub passage: usize,
+}
+
+/// One passage of a leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
+    /// The leg.
+    pub leg: Id,
+    /// Its stage.
+    pub stage: Id,
+    /// Pass of the innermost loop around it, from 1; 0 outside loops.
+    pub iteration: u64,
+    /// Index of its first point.
+    pub first: usize,
+    /// Index after its last point.
+    pub end: usize,
+}
+
+/// A flight ahead of time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Forecast {
+    /// The path.
+    pub points: Vec<Point>,
+    /// Its passages, in order.
+    pub passages: Vec<Passage>,
+    /// The waypoints that will be sent.
+    pub waypoints: Vec<Waypoint>,
+    /// Share of the energy left at the end, 0..1.
+    pub battery_left: Option<f64>,
+    /// Why it ends early, if it does.
+    pub cut_short: Option<String>,
+}
+
+impl Forecast {
+    /// Seconds from start to end.
+    pub fn duration_s(&self) -> f64 {
+        self.points.last().map_or(0.0, |p| p.time_s)
+    }
+    /// Metres from start to end.
+    pub fn length_m(&self) -> f64 {
+        self.points.last().map_or(0.0, |p| p.distance_m)
+    }
+    /// The point at a time, or the nearest there is.
+    pub fn at(&self, time_s: f64) -> Option<&Point> {
+        let after = self.points.partition_point(|p| p.time_s < time_s);
+        self.points.get(after).or(self.points.last())
+    }
+    /// Points of the passages of a leg, part by part.
+    pub fn passages_of<'a>(&'a self, leg: &'a Id) -> impl Iterator<Item = &'a [Point]> {
+        self.passages.iter().filter(move |p| p.leg == *leg).filter_map(|p| self.part(p))
+    }
+    /// The points of a passage, with the first point of the next so that the line has no gap.
+    pub fn part(&self, passage: &Passage) -> Option<&[Point]> {
+        self.points.get(passage.first..(passage.end + 1).min(self.points.len()))
+    }
+    /// The point that is nearest to `position` on passages of `leg` (all, if it is `None`).
+    pub fn nearest(&self, position: LatLon, leg: Option<&Id>) -> Option<&Point> {
+        let frame = geometry::LocalFrame::new(position);
+        let far = |p: &Point| frame.to_local(p.position).length();
+        let belongs = |p: &&Point| {
+            leg.is_none_or(|leg| self.passages.get(p.passage).is_some_and(|passage| passage.leg == *leg))
+        };
+        self.points.iter().filter(belongs).min_by(|a, b| far(a).total_cmp(&far(b)))
+    }
+}
+
+/// A forecast that is shared between threads.
+pub type Shared = Arc<Forecast>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn forecast() -> Forecast {
+        let point = |i: usize, passage| Point {
+            time_s: i as f64 * 2.0,
+            distance_m: i as f64 * 50.0,
+            position: LatLon::new(0.0, i as f64 * 1e-3),
+            altitude_amsl_m: 500.0,
+            ground_amsl_m: None,
+            passage,
+        };
+        let passage = |leg: &str, iteration, first, end| Passage { leg: leg.into(), stage: "s".into(), iteration, first, end };
+        Forecast {
+            points: vec![point(0, 0), point(1, 0), point(2, 1), point(3, 2), point(4, 2)],
+            passages: vec![passage("a", 1, 0, 2), passage("b", 1, 2, 3), passage("a", 2, 3, 5)],
+            ..Forecast::default()
+        }
+    }
+
+    #[test]
+    fn times_and_places_find_their_points() {
+        let f = forecast();
+        assert_eq!(f.duration_s(), 8.0);
+        for (time, expected) in [(-1.0, 0.0), (3.0, 4.0), (4.0, 4.0), (99.0, 8.0)] {
+            assert_eq!(f.at(time).map(|p| p.time_s), Some(expected), "{time}");
+        }
+        let here = LatLon::new(0.0, 2.1e-3);
+        assert_eq!(f.nearest(here, None).map(|p| p.time_s), Some(4.0));
+        assert_eq!(f.nearest(here, Some(&"a".into())).map(|p| p.time_s), Some(6.0), "the other leg is nearer");
+        assert_eq!(f.nearest(here, Some(&"c".into())), None);
+        assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
+        assert_eq!(Forecast::default().at(1.0), None);
+    }
+}

@@ -1,0 +1,104 @@
+//! The bundled world: land, coasts, borders and country names.
+
+use super::polyline;
+use super::view::{Mercator, View};
+use crate::assets::{self, Basemap, Polyline, basemap::Bounds};
+use crate::theme::Palette;
+use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, epaint::Vertex};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// The layer; keeps what it drew until the view or the theme changes.
+#[derive(Debug, Default)]
+pub struct Layer {
+    key: Option<(View, Color32)>,
+    land: Arc<Mesh>,
+    lines: Vec<Vec<Pos2>>,
+    borders: Vec<Vec<Pos2>>,
+}
+
+impl Layer {
+    /// Draws water, land, lines and names.
+    pub fn draw(&mut self, painter: &Painter, view: &View, p: &Palette) {
+        painter.rect_filled(view.rect, 0.0, p.water);
+        let Ok(map) = assets::basemap() else { return };
+        if self.key != Some((*view, p.land)) {
+            self.build(map, view, p);
+        }
+        painter.add(Shape::mesh(self.land.clone()));
+        for part in &self.lines {
+            painter.add(Shape::line(part.clone(), Stroke::new(1.0, p.border)));
+        }
+        for part in &self.borders {
+            painter.extend(Shape::dashed_line(part, Stroke::new(1.0, p.border), 6.0, 3.0));
+        }
+        draw_names(painter, map, view, p);
+    }
+
+    fn build(&mut self, map: &Basemap, view: &View, p: &Palette) {
+        self.key = Some((*view, p.land));
+        let Some(level) = map.level_for(view.degrees_per_point() as f32) else { return };
+        let shown = shown(view);
+        let mut mesh = Mesh::default();
+        for land in level.lands.iter().filter(|l| l.bounds.overlaps(&shown)) {
+            let corners: Vec<Pos2> = land.vertices.iter().map(|v| view.place(geo(*v))).collect();
+            add_triangles(&mut mesh, &corners, &land.triangles, view.rect, p.land);
+        }
+        self.land = Arc::new(mesh);
+        self.lines = parts(&level.coasts, &shown, view);
+        self.borders = parts(&level.borders, &shown, view);
+    }
+}
+
+fn geo(v: [f32; 2]) -> LatLon {
+    LatLon::new(f64::from(v[1]), f64::from(v[0]))
+}
+
+fn shown(view: &View) -> Bounds {
+    let corners = [view.rect.left_top(), view.rect.right_bottom()].map(|c| view.geo(c));
+    Bounds::around(&corners.map(|c| [c.lon_deg as f32, c.lat_deg as f32]))
+}
+
+fn parts(lines: &[Polyline], shown: &Bounds, view: &View) -> Vec<Vec<Pos2>> {
+    let near = lines.iter().filter(|l| l.bounds.overlaps(shown));
+    near.flat_map(|l| {
+        let line: Vec<Mercator> = l.points.iter().map(|v| geo(*v).into()).collect();
+        polyline::visible_parts(&line, view)
+    })
+    .collect()
+}
+
+/// Only triangles that touch the screen: at high zoom nearly all of them do not.
+fn add_triangles(mesh: &mut Mesh, corners: &[Pos2], triangles: &[[u32; 3]], screen: Rect, colour: Color32) {
+    for triangle in triangles {
+        let Some(corners) = corners_of(corners, *triangle) else { continue };
+        if !Rect::from_points(&corners).intersects(screen) {
+            continue;
+        }
+        let first = mesh.vertices.len() as u32;
+        mesh.vertices.extend(corners.map(|pos| Vertex { pos, uv: egui::epaint::WHITE_UV, color: colour }));
+        mesh.indices.extend([first, first + 1, first + 2]);
+    }
+}
+
+fn corners_of(corners: &[Pos2], [a, b, c]: [u32; 3]) -> Option<[Pos2; 3]> {
+    Some([*corners.get(a as usize)?, *corners.get(b as usize)?, *corners.get(c as usize)?])
+}
+
+/// Names of countries big enough on the screen, without overlaps.
+fn draw_names(painter: &Painter, map: &Basemap, view: &View, p: &Palette) {
+    let most = (view.points_per_metre() * 4.0e6).clamp(4.0, 300.0) as u32;
+    let mut taken: Vec<Rect> = Vec::new();
+    for label in map.labels().iter().filter(|l| l.rank < most) {
+        let at = view.place(label.position);
+        if !view.rect.contains(at) {
+            continue;
+        }
+        let galley = painter.layout_no_wrap(label.name.clone(), FontId::proportional(11.5), p.weak);
+        let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+        if taken.iter().all(|t| !t.intersects(rect.expand(4.0))) {
+            painter.galley(rect.min, galley, p.weak);
+            taken.push(rect);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What lies on the map's edge: scale, sources, legend, and the buttons.
+
+use super::text;
+use super::view::View;
+use crate::assets;
+use crate::command::{Queue, ViewCommand};
+use crate::panels::Scene;
+use crate::theme::{self, Palette};
+use crate::units::Units;
+use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use walkers::MapMemory;
+
+/// Draws scale bar, legend and sources.
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    scale(painter, view, scene.units(), p);
+    legend(painter, view.rect, p);
+    let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
+    text::haloed(painter, corner, Align2::RIGHT_BOTTOM, assets::ATTRIBUTION, 10.0, p.weak, p);
+}
+
+/// A bar of a round length, up to 120 points long.
+fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
+    let unit = units.distance();
+    let most = unit.from_si(120.0 / view.points_per_metre());
+    let decade = 10f64.powf(most.log10().floor());
+    let length = [5.0, 2.0, 1.0].map(|k| k * decade).into_iter().find(|l| *l <= most).unwrap_or(decade);
+    let points = (unit.to_si(length) * view.points_per_metre()) as f32;
+    let start = view.rect.left_bottom() + vec2(12.0, -12.0);
+    let end = start + vec2(points, 0.0);
+    for (width, colour) in [(5.0, p.halo), (2.0, p.text)] {
+        painter.line_segment([start, end], Stroke::new(width, colour));
+    }
+    let label = format!("{length} {}", unit.symbol);
+    text::haloed(painter, end + vec2(6.0, 0.0), Align2::LEFT_CENTER, &label, 11.0, p.text, p);
+}
+
+/// Line styles and what they mean.
+fn legend(painter: &Painter, map: Rect, p: &Palette) {
+    let rows: [(&str, fn(&Painter, Pos2, Pos2, &Palette)); 4] = [
+        ("planned", |painter, a, b, p| {
+            painter.line_segment([a, b], Stroke::new(2.0, p.accent));
+        }),
+        ("active", |painter, a, b, p| {
+            painter.line_segment([a, b], Stroke::new(3.6, p.active));
+        }),
+        ("flown", |painter, a, b, p| {
+            painter.line_segment([a, b], Stroke::new(2.6, p.flown));
+        }),
+        ("alternate", |painter, a, b, p| {
+            painter.extend(Shape::dotted_line(&[a, b], p.contingency, 6.0, 1.5));
+        }),
+    ];
+    let origin = map.left_bottom() + vec2(12.0, -30.0 - 16.0 * rows.len() as f32);
+    let plate = Rect::from_min_size(origin - vec2(6.0, 2.0), vec2(104.0, 16.0 * rows.len() as f32 + 4.0));
+    painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
+    for (i, (name, line)) in rows.iter().enumerate() {
+        let y = origin.y + 8.0 + 16.0 * i as f32;
+        line(painter, pos2(origin.x, y), pos2(origin.x + 30.0, y), p);
+        painter.text(pos2(origin.x + 38.0, y), Align2::LEFT_CENTER, name, egui::FontId::proportional(11.0), p.text);
+    }
+}
+
+/// Buttons at the map's right edge.
+pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &mut Queue) {
+    let map = ui.min_rect();
+    let area = Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, 150.0));
+    let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map buttons"));
+    column.spacing_mut().item_spacing.y = 4.0;
+    if button(&mut column, "+", "Zoom in", false) {
+        // at the end of the range nothing happens
+        let _ = memory.zoom_in();
+    }
+    if button(&mut column, "−", "Zoom out", false) {
+        let _ = memory.zoom_out();
+    }
+    if button(&mut column, "⛶", "Show the whole plan (F)", false) {
+        queue.view(ViewCommand::Fit);
+    }
+    if scene.vehicle.position.is_some() && button(&mut column, "✈", "Follow the aircraft", scene.view.follow) {
+        queue.view(ViewCommand::Follow(!scene.view.follow));
+    }
+}
+
+fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {
+    let p = theme::of(ui);
+    let button = egui::Button::new(egui::RichText::new(symbol).size(16.0))
+        .min_size(vec2(32.0, 32.0))
+        .stroke(Stroke::new(1.0, p.line))
+        .selected(on);
+    let response = ui.add(button).on_hover_text(name);
+    let name = name.to_owned();
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.clicked()
+}

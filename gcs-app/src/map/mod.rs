@@ -1,0 +1,161 @@
+//! The map: basemap, terrain, the plan, the path that will be flown, the aircraft; and the tools to
+//! change the plan by hand.
+
+pub mod aircraft;
+pub mod basemap;
+pub mod furniture;
+pub mod handles;
+pub mod hillshade;
+pub mod path;
+pub mod plan;
+pub mod polyline;
+pub mod sketch;
+pub mod text;
+pub mod view;
+
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::panels::Scene;
+use crate::theme;
+use egui::{Role, Ui};
+use flight_plan::Variables;
+use geometry::LatLon;
+use sketch::Sketch;
+use usal::contract::PlanVariables;
+use view::View;
+use walkers::{Map, MapMemory, lat_lon};
+
+/// What the map remembers from frame to frame.
+#[derive(Debug, Default)]
+pub struct MapState {
+    memory: MapMemory,
+    /// Show everything as soon as the size of the map is known.
+    fit: bool,
+    basemap: basemap::Layer,
+    /// The shaded terrain.
+    pub hillshade: hillshade::Layer,
+    path: path::Layer,
+    aircraft: aircraft::Layer,
+    handles: handles::Tool,
+    sketch: Sketch,
+    sketched: Option<(u64, Option<PlanVariables>)>,
+}
+
+impl MapState {
+    /// Shows the whole plan in the next frame.
+    pub fn fit(&mut self) {
+        self.fit = true;
+    }
+
+    /// Brings a place into the middle, near enough to see it.
+    pub fn jump_to(&mut self, at: LatLon) {
+        self.memory.center_at(lat_lon(at.lat_deg, at.lon_deg));
+        if self.memory.zoom() < 12.0 {
+            // 13 is within the map's range
+            let _ = self.memory.set_zoom(13.0);
+        }
+    }
+
+    /// Keeps the aircraft in the middle from now on.
+    pub fn follow(&mut self) {
+        self.memory.follow_my_position();
+    }
+
+    /// Where something selectable is, if it is anywhere.
+    pub fn place_of(&self, selection: &Selection, plan: &flight_plan::FlightPlan) -> Option<LatLon> {
+        let of_leg = |leg| self.sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
+        match selection {
+            Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
+            Selection::Stage(id) => plan.stage(id)?.legs.iter().find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
+            Selection::Emergency(id) => self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied(),
+            Selection::Fix(id) => plan.fix(id).map(|f| f.position),
+            Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
+            Selection::Variable(_) => None,
+        }
+    }
+
+    /// Draws the map and takes what the operator does on it.
+    pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        self.sketch(scene);
+        if self.fit {
+            self.fit_now(ui.available_size());
+        }
+        let here = scene.vehicle.position.as_ref().map(|p| p.value.position);
+        let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(LatLon::new(36.3, -84.3));
+        let mut memory = std::mem::take(&mut self.memory);
+        let followed = memory.detached().is_none();
+        Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
+            .zoom_with_ctrl(false)
+            .double_click_to_zoom(false)
+            .show(ui, |ui, response, projector, _| self.draw(ui, response, &View::of(projector), scene, queue));
+        if followed && scene.view.follow && memory.detached().is_some() {
+            queue.view(ViewCommand::Follow(false));
+        }
+        furniture::buttons(ui, &mut memory, scene, queue);
+        self.memory = memory;
+    }
+
+    fn draw(&mut self, ui: &mut Ui, response: &egui::Response, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
+        response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, "Map"));
+        let p = theme::of(ui);
+        let painter = ui.painter_at(view.rect);
+        self.basemap.draw(&painter, view, p);
+        self.hillshade.draw(&painter, view, ui.visuals().dark_mode);
+        plan::draw_areas(&painter, view, &self.sketch, scene, p);
+        plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
+        self.path.draw(&painter, view, scene, &self.sketch, p);
+        self.aircraft.draw_trail(&painter, view, scene.vehicle, p);
+        aircraft::draw_ahead(&painter, view, scene, p);
+        plan::draw_runways(&painter, view, scene.document.plan(), p);
+        let on_handle = self.handles.run(ui, view, &self.sketch, scene, queue);
+        path::draw_cursor(&painter, view, scene, p);
+        aircraft::draw(&painter, view, scene, p);
+        furniture::draw(&painter, view, scene, p);
+        if response.clicked() && !on_handle {
+            let picked = response.interact_pointer_pos().and_then(|at| path::leg_near(at, view, scene));
+            queue.view(ViewCommand::Select(picked.map(Selection::Leg)));
+        }
+    }
+
+    /// Places the plan anew, when it or the variables aboard have changed.
+    fn sketch(&mut self, scene: &Scene<'_>) {
+        let version = scene.document.version();
+        let live = live_variables(scene);
+        if self.sketched.as_ref().is_some_and(|(v, variables)| *v == version && variables.as_ref() == live) {
+            return;
+        }
+        let plan = scene.document.plan();
+        let mut variables = Variables::initial(plan);
+        for v in live.map(|l| l.variables.as_slice()).unwrap_or_default() {
+            // a value the document's variable does not take belongs to another version of it
+            let _ = variables.set(plan, &v.name, v.value.clone());
+        }
+        self.sketch = Sketch::new(plan, &variables);
+        self.sketched = Some((version, live.cloned()));
+    }
+
+    fn fit_now(&mut self, size: egui::Vec2) {
+        let Some((centre, zoom)) = View::fit(&self.sketch.places(), size) else { return };
+        self.fit = false;
+        self.memory.center_at(centre);
+        // fit keeps within the map's range of zooms
+        let _ = self.memory.set_zoom(zoom);
+    }
+}
+
+/// The variables as they are in flight, if what is flown is this document.
+fn live_variables<'a>(scene: &Scene<'a>) -> Option<&'a PlanVariables> {
+    let hash = scene.analysis.hash_of(scene.document.version())?;
+    let active = scene.vehicle.active_hash().is_some_and(|h| *h == *hash);
+    active.then(|| scene.vehicle.variables.as_ref().map(|v| &v.value)).flatten()
+}
+
+fn place_of_leg(plan: &flight_plan::FlightPlan, leg: &flight_plan::Leg) -> Option<LatLon> {
+    use flight_plan::{LegKind, Place};
+    let place = match &leg.kind {
+        LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => &to.place,
+        LegKind::Hf(h) | LegKind::Ha(h) => &h.fix.place,
+        LegKind::Iterative { body, .. } => return body.iter().find_map(|inner| place_of_leg(plan, inner)),
+        LegKind::Intersection { .. } | LegKind::Scan(_) | LegKind::Orbit { .. } => return None,
+    };
+    if let Place::Fix(id) = place { plan.fix(id).map(|f| f.position) } else { None }
+}

@@ -1,0 +1,99 @@
+//! The path that will be flown and the waypoints that will be sent.
+
+use super::polyline::{self, Cached, Style};
+use super::sketch::Sketch;
+use super::view::{Mercator, View};
+use crate::command::Selection;
+use crate::panels::{Scene, bar};
+use crate::theme::Palette;
+use egui::{Painter, Pos2, Shape, Stroke, vec2};
+use flight_plan::Id;
+
+/// The layer; keeps the decimated line until view or forecast change.
+#[derive(Debug, Default)]
+pub struct Layer {
+    line: Cached,
+}
+
+/// Screen points per metre from which single waypoints are drawn.
+const WAYPOINTS_FROM: f64 = 0.015;
+/// Most waypoints drawn at once.
+const MOST_WAYPOINTS: usize = 3000;
+
+impl Layer {
+    /// Draws the forecast; where there is none, the plan's places as a draft.
+    pub fn draw(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
+        let forecast = scene.forecast();
+        let (_, standing) = bar::plan_state(scene);
+        if forecast.points.is_empty() {
+            return draft(painter, view, sketch, p);
+        }
+        let line = || forecast.points.iter().map(|point| point.position.into()).collect();
+        let parts = self.line.parts(line, scene.analysis.forecast_version, view);
+        // a draft that differs from what is aboard is dashed
+        let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
+        let style = if is_draft { Style::Dashed } else { Style::Solid };
+        polyline::draw(painter, parts, Stroke::new(2.0, p.accent), style, p.halo);
+        highlight_selection(painter, view, scene, p);
+        if view.points_per_metre() > WAYPOINTS_FROM {
+            waypoints(painter, view, scene, p);
+        }
+    }
+}
+
+fn draft(painter: &Painter, view: &View, sketch: &Sketch, p: &Palette) {
+    let line: Vec<Mercator> = sketch.main.iter().flatten().map(|at| (*at).into()).collect();
+    let parts = polyline::visible_parts(&line, view);
+    polyline::draw(painter, &parts, Stroke::new(2.0, p.accent), Style::Dashed, p.halo);
+}
+
+fn highlight_selection(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let selected = |leg: &Id, stage: &Id| match &scene.view.selection {
+        Some(Selection::Leg(id)) => id == leg,
+        Some(Selection::Stage(id)) => id == stage,
+        _ => false,
+    };
+    let forecast = scene.forecast();
+    for passage in forecast.passages.iter().filter(|passage| selected(&passage.leg, &passage.stage)) {
+        let line: Vec<Mercator> = forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
+        let parts = polyline::visible_parts(&line, view);
+        polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Solid, p.halo);
+    }
+}
+
+fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let near = scene.forecast().waypoints.iter().map(|w| (w, view.place(w.position))).filter(|(_, at)| view.is_near(*at));
+    let mut last: Option<Pos2> = None;
+    for (waypoint, at) in near.take(MOST_WAYPOINTS) {
+        if last.is_some_and(|l| l.distance(at) < 7.0) {
+            continue;
+        }
+        last = Some(at);
+        if waypoint.fly_over {
+            painter.circle(at, 3.4, p.halo, Stroke::new(1.6, p.accent));
+        } else {
+            painter.circle(at, 2.4, p.accent, Stroke::new(1.0, p.halo));
+        }
+    }
+}
+
+/// The preview's cursor.
+pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let Some(point) = scene.view.cursor_s.and_then(|t| scene.forecast().at(t)) else { return };
+    let at = view.place(point.position);
+    painter.circle_stroke(at, 7.0, Stroke::new(4.0, p.halo));
+    painter.circle_stroke(at, 7.0, Stroke::new(2.0, p.text));
+    for d in [vec2(0.0, 1.0), vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(-1.0, 0.0)] {
+        painter.add(Shape::line_segment([at + d * 7.0, at + d * 12.0], Stroke::new(2.0, p.text)));
+    }
+}
+
+/// The leg whose path is under the pointer.
+pub fn leg_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<Id> {
+    const REACH: f32 = 9.0;
+    let forecast = scene.forecast();
+    let near = |i: &usize| forecast.points.get(*i).map_or(f32::INFINITY, |q| view.place(q.position).distance(at));
+    let closest = (0..forecast.points.len()).min_by(|a, b| near(a).total_cmp(&near(b))).filter(|i| near(i) < REACH)?;
+    let passage = forecast.points.get(closest)?.passage;
+    forecast.passages.get(passage).map(|passage| passage.leg.clone())
+}

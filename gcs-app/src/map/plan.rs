@@ -1,0 +1,79 @@
+//! The plan's areas, runways and emergency plans.
+
+use super::polyline::{self, Style};
+use super::sketch::{Circle, Sketch};
+use super::text;
+use super::view::{Mercator, View};
+use crate::command::Selection;
+use crate::panels::Scene;
+use crate::theme::Palette;
+use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use flight_plan::{FlightPlan, Id};
+
+/// Areas to be scanned and orbits.
+pub fn draw_areas(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+    for circle in &sketch.circles {
+        draw_circle(painter, view, circle, is_selected(scene, &circle.leg), p);
+    }
+    for (leg, rings) in &sketch.polygons {
+        let width = if is_selected(scene, leg) { 2.2 } else { 1.4 };
+        for ring in rings {
+            let closed: Vec<Mercator> = ring.iter().chain(ring.first()).map(|at| (*at).into()).collect();
+            let parts = polyline::visible_parts(&closed, view);
+            polyline::draw(painter, &parts, Stroke::new(width, p.text), Style::Dashed, p.halo);
+        }
+    }
+}
+
+fn is_selected(scene: &Scene<'_>, leg: &Id) -> bool {
+    matches!(&scene.view.selection, Some(Selection::Leg(id)) if id == leg)
+}
+
+fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, p: &Palette) {
+    let centre = view.place(circle.centre);
+    let radius = (circle.radius_m * view.points_per_metre()) as f32;
+    if !view.rect.expand(radius).contains(centre) || radius > 20_000.0 {
+        return;
+    }
+    let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.text);
+    if circle.is_area {
+        painter.circle_filled(centre, radius, p.text.gamma_multiply(0.07));
+    }
+    let steps = (radius.sqrt() * 8.0).clamp(24.0, 256.0) as usize;
+    let on = |i: usize| centre + egui::Vec2::angled(i as f32 / steps as f32 * std::f32::consts::TAU) * radius;
+    let ring: Vec<Pos2> = (0..=steps).map(on).collect();
+    painter.extend(Shape::dashed_line(&ring, stroke, 8.0, 6.0));
+}
+
+/// Emergency plans: grey and dotted; the one in force is named.
+pub fn draw_emergencies(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+    let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref());
+    for (id, line) in &sketch.emergencies {
+        let points: Vec<Mercator> = line.iter().map(|at| (*at).into()).collect();
+        let emphasised = in_force == Some(id) || matches!(&scene.view.selection, Some(Selection::Emergency(e)) if e == id);
+        let width = if emphasised { 3.0 } else { 2.0 };
+        let parts = polyline::visible_parts(&points, view);
+        polyline::draw(painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
+        if let (true, Some(first)) = (emphasised, line.first()) {
+            text::haloed(painter, view.place(*first) + vec2(8.0, -8.0), Align2::LEFT_BOTTOM, &format!("⚑ {id}"), 12.0, p.contingency, p);
+        }
+    }
+}
+
+/// Runways: their true length and direction, with the threshold and the name.
+pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, p: &Palette) {
+    for runway in plan.runways.iter().filter(|r| r.threshold.is_valid() && r.heading_deg.is_finite()) {
+        let (start, end) = (view.place(runway.threshold), view.place(runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0))));
+        if !view.is_near(start) && !view.is_near(end) {
+            continue;
+        }
+        // never shorter than can be seen
+        let way = end - start;
+        let end = if way.length() < 14.0 { start + way.normalized() * 14.0 } else { end };
+        painter.line_segment([start, end], Stroke::new(7.0, p.halo));
+        painter.line_segment([start, end], Stroke::new(4.0, p.text));
+        let across = (end - start).normalized().rot90() * 7.0;
+        painter.line_segment([start - across, start + across], Stroke::new(2.0, p.text));
+        text::haloed(painter, start - (end - start).normalized() * 8.0, Align2::CENTER_TOP, runway.id.as_str(), 12.0, p.text, p);
+    }
+}

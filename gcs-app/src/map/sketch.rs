@@ -1,0 +1,264 @@
+//! A plan's places, before anything is flown: what can be dragged, areas, and the lines of emergency
+//! plans. Broken drafts give what can be made of them.
+
+use flight_plan::{
+    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Place, PlanWaypoint, Section, Value, VariableValue, Variables,
+    expression,
+};
+use geometry::LatLon;
+
+/// Something on the map that can be dragged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Handle {
+    /// What it is.
+    pub what: Handled,
+    /// Where.
+    pub at: LatLon,
+}
+
+/// What a handle moves.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Handled {
+    /// A fix, with every leg that goes there.
+    Fix(Id),
+    /// Where a leg goes.
+    Waypoint(Id),
+    /// The middle of a scan or orbit.
+    Centre(Id),
+    /// The rim of a scan or orbit; the middle is at [`Circle::centre`].
+    Radius(Id),
+    /// A corner of a scan's polygon.
+    Corner {
+        /// The scan.
+        leg: Id,
+        /// `None`: the outer ring.
+        hole: Option<usize>,
+        /// Which corner.
+        corner: usize,
+    },
+}
+
+impl Handled {
+    /// The leg it belongs to, if it is a leg's.
+    pub fn leg(&self) -> Option<&Id> {
+        match self {
+            Self::Fix(_) => None,
+            Self::Waypoint(leg) | Self::Centre(leg) | Self::Radius(leg) | Self::Corner { leg, .. } => Some(leg),
+        }
+    }
+    /// Its name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Fix(id) => format!("Fix {id}"),
+            Self::Waypoint(id) => format!("Waypoint {id}"),
+            Self::Centre(id) => format!("Centre of {id}"),
+            Self::Radius(id) => format!("Radius of {id}"),
+            Self::Corner { leg, hole: None, corner } => format!("Corner {} of {leg}", corner + 1),
+            Self::Corner { leg, hole: Some(hole), corner } => format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1),
+        }
+    }
+}
+
+/// A circle on the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circle {
+    /// Whose.
+    pub leg: Id,
+    /// Its middle.
+    pub centre: LatLon,
+    /// Metres.
+    pub radius_m: f64,
+    /// It is an area to be scanned, not an orbit.
+    pub is_area: bool,
+}
+
+/// Everything of a plan that can be placed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sketch {
+    /// What can be dragged.
+    pub handles: Vec<Handle>,
+    /// Scans and orbits.
+    pub circles: Vec<Circle>,
+    /// Polygons to be scanned: whose, and their rings, the outer one first.
+    pub polygons: Vec<(Id, Vec<Vec<LatLon>>)>,
+    /// The main plan's places in order, stage by stage.
+    pub main: Vec<Vec<LatLon>>,
+    /// Emergency plans, each with its line.
+    pub emergencies: Vec<(Id, Vec<LatLon>)>,
+}
+
+impl Sketch {
+    /// Of a plan whose variables have these values.
+    pub fn new(plan: &FlightPlan, variables: &Variables) -> Self {
+        let home = plan.home().or(plan.runways.first()).map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
+        let reader = Reader { plan, env: Env { variables, flight: FlightState::on_ground(home) } };
+        let mut sketch = Self::default();
+        for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
+            sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
+        }
+        for context in plan.all_legs() {
+            sketch.add_leg(context.leg, &reader);
+        }
+        sketch.add_lines(plan, &reader);
+        sketch
+    }
+
+    fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
+        match &leg.kind {
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => self.add_waypoint(leg, to, reader),
+            LegKind::Hf(h) | LegKind::Ha(h) => self.add_waypoint(leg, &h.fix, reader),
+            LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
+            LegKind::Scan(scan) => match &scan.area {
+                Area::Circle { centre, radius_m } => self.add_circle(leg, centre, radius_m, true, reader),
+                Area::Polygon { corners, holes } => self.add_polygon(leg, corners, holes),
+            },
+            LegKind::Iterative { .. } | LegKind::Intersection { .. } => {}
+        }
+    }
+
+    fn add_waypoint(&mut self, leg: &Leg, to: &PlanWaypoint, reader: &Reader<'_>) {
+        if matches!(to.place, Place::Fix(_)) {
+            return;
+        }
+        if let Some(at) = reader.place(&to.place) {
+            self.handles.push(Handle { what: Handled::Waypoint(leg.id.clone()), at });
+        }
+    }
+
+    fn add_circle(&mut self, leg: &Leg, centre: &Place, radius_m: &Value<f64>, is_area: bool, reader: &Reader<'_>) {
+        let (Some(at), Some(radius_m)) = (reader.place(centre), reader.number(radius_m)) else { return };
+        if !(radius_m > 0.0 && radius_m < 1.0e6) {
+            return;
+        }
+        // circles around the same place share one handle: the first one's
+        let taken = self.handles.iter().any(|h| matches!(h.what, Handled::Centre(_)) && h.at == at);
+        if !taken {
+            self.handles.push(Handle { what: Handled::Centre(leg.id.clone()), at });
+        }
+        self.handles.push(Handle { what: Handled::Radius(leg.id.clone()), at: at.destination(90.0, radius_m) });
+        self.circles.push(Circle { leg: leg.id.clone(), centre: at, radius_m, is_area });
+    }
+
+    fn add_polygon(&mut self, leg: &Leg, corners: &[LatLon], holes: &[Vec<LatLon>]) {
+        let rings: Vec<Vec<LatLon>> = std::iter::once(corners.to_vec()).chain(holes.iter().cloned()).collect();
+        for (ring, points) in rings.iter().enumerate() {
+            for (corner, at) in points.iter().enumerate().filter(|(_, at)| at.is_valid()) {
+                let what = Handled::Corner { leg: leg.id.clone(), hole: ring.checked_sub(1), corner };
+                self.handles.push(Handle { what, at: *at });
+            }
+        }
+        self.polygons.push((leg.id.clone(), rings));
+    }
+
+    fn add_lines(&mut self, plan: &FlightPlan, reader: &Reader<'_>) {
+        for (section, stage) in plan.all_stages() {
+            let mut line = Vec::new();
+            stage.legs.iter().for_each(|leg| reader.line_of(leg, &mut line));
+            if let Some(runway) = stage.runway.as_ref().and_then(|id| plan.runway(id)) {
+                line.push(runway.threshold);
+            }
+            match section {
+                Section::Main => self.main.push(line),
+                Section::Emergency(emergency) => match self.emergencies.iter_mut().find(|(id, _)| *id == emergency.id) {
+                    Some((_, before)) => before.extend(line),
+                    None => self.emergencies.push((emergency.id.clone(), line)),
+                },
+            }
+        }
+    }
+
+    /// Every place, to fit the map to.
+    pub fn places(&self) -> Vec<LatLon> {
+        let rims = self.circles.iter().flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
+        self.handles.iter().map(|h| h.at).chain(self.main.iter().flatten().copied()).chain(rims).collect()
+    }
+}
+
+/// Reads places and numbers with the variables as they are.
+struct Reader<'a> {
+    plan: &'a FlightPlan,
+    env: Env<'a>,
+}
+
+impl Reader<'_> {
+    fn place(&self, place: &Place) -> Option<LatLon> {
+        let at = match place {
+            Place::Fix(id) => self.plan.fix(id)?.position,
+            Place::Position(Value::Constant(at)) => *at,
+            Place::Position(Value::Expression(source)) => {
+                expression::compile(source, self.plan).ok()?.position(&self.env).ok()?
+            }
+        };
+        at.is_valid().then_some(at)
+    }
+
+    fn number(&self, value: &Value<f64>) -> Option<f64> {
+        match value {
+            Value::Constant(number) => Some(*number),
+            Value::Expression(source) => expression::compile(source, self.plan).ok()?.number(&self.env).ok(),
+        }
+    }
+
+    fn line_of(&self, leg: &Leg, line: &mut Vec<LatLon>) {
+        let place = match &leg.kind {
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => Some(&to.place),
+            LegKind::Hf(h) | LegKind::Ha(h) => Some(&h.fix.place),
+            LegKind::Orbit { centre, .. } => Some(centre),
+            LegKind::Scan(scan) => match &scan.area {
+                Area::Circle { centre, .. } => Some(centre),
+                Area::Polygon { corners, .. } => {
+                    line.extend(corners.first().filter(|c| c.is_valid()));
+                    None
+                }
+            },
+            LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
+        };
+        line.extend(place.and_then(|p| self.place(p)));
+        leg.body().iter().for_each(|inner| self.line_of(inner, line));
+    }
+}
+
+/// The variable that sets a radius, and what is added to it: `fire_radius + 200.0` is `(fire_radius, 200)`.
+pub fn bound_radius(source: &str) -> Option<(Id, f64)> {
+    let (name, added) = match source.split_once('+') {
+        Some((name, added)) => (name.trim(), added.trim().parse().ok()?),
+        None => (source.trim(), 0.0),
+    };
+    let is_name = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    is_name.then(|| (Id::new(name), added))
+}
+
+/// The edit that gives a circle of a leg another radius, in metres; within its variable's bounds if it has one.
+pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<flight_plan::Edit> {
+    use flight_plan::Edit;
+    let radius = match &plan.leg(leg)?.leg.kind {
+        LegKind::Orbit { radius_m, .. } => radius_m,
+        LegKind::Scan(flight_plan::Scan { area: Area::Circle { radius_m, .. }, .. }) => radius_m,
+        _ => return None,
+    };
+    let Value::Expression(source) = radius else {
+        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0) });
+    };
+    let (name, added) = bound_radius(source)?;
+    let variable = plan.variable(&name)?;
+    let value = (radius_m - added).clamp(variable.min.unwrap_or(1.0), variable.max.unwrap_or(1.0e6).max(1.0));
+    Some(Edit::SetVariable { name, value: VariableValue::Number(value.round()) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_bound_to_a_variable_are_recognised() {
+        for (source, expected) in [
+            ("fire_radius", Some(("fire_radius", 0.0))),
+            ("fire_radius + 200.0", Some(("fire_radius", 200.0))),
+            ("fire_radius * 2.0", None),
+            ("a + b", None),
+            ("", None),
+        ] {
+            assert_eq!(bound_radius(source), expected.map(|(name, added)| (Id::new(name), added)), "{source}");
+        }
+    }
+}

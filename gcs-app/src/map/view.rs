@@ -1,0 +1,155 @@
+//! Where things are on the screen. Positions are projected once, to the unit square of the Web
+//! Mercator projection; a view then is one scale and one shift, in double precision, so that
+//! nothing trembles at high zoom.
+
+use egui::{Pos2, Rect, pos2};
+use geometry::LatLon;
+use std::f64::consts::PI;
+use walkers::{Projector, lat_lon};
+
+/// A position in the unit square: x eastwards, y southwards from the north-west corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mercator {
+    /// 0..1 from the antimeridian eastwards.
+    pub x: f64,
+    /// 0..1 from 85.05° north southwards.
+    pub y: f64,
+}
+
+impl From<LatLon> for Mercator {
+    fn from(p: LatLon) -> Self {
+        let lat = p.lat_deg.clamp(-85.051, 85.051).to_radians();
+        Self { x: (p.lon_deg / 180.0 + 1.0) / 2.0, y: (1.0 - lat.tan().asinh() / PI) / 2.0 }
+    }
+}
+
+impl Mercator {
+    /// Back to a position.
+    pub fn to_geo(self) -> LatLon {
+        LatLon::new(((1.0 - 2.0 * self.y) * PI).sinh().atan().to_degrees(), (2.0 * self.x - 1.0) * 180.0)
+    }
+}
+
+/// The part of the world that is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Where on the screen.
+    pub rect: Rect,
+    centre: Mercator,
+    /// Screen points per unit of the unit square.
+    scale: f64,
+}
+
+impl View {
+    /// What walkers shows.
+    pub fn of(projector: &Projector<'_>) -> Self {
+        let rect = projector.clip_rect();
+        let centre = projector.unproject(rect.center().to_vec2());
+        Self {
+            rect,
+            centre: LatLon::new(centre.y(), centre.x()).into(),
+            scale: 256.0 * 2f64.powf(projector.zoom()),
+        }
+    }
+
+    /// On the screen.
+    pub fn screen(&self, m: Mercator) -> Pos2 {
+        let middle = self.rect.center();
+        pos2(
+            middle.x + ((m.x - self.centre.x) * self.scale) as f32,
+            middle.y + ((m.y - self.centre.y) * self.scale) as f32,
+        )
+    }
+
+    /// A position on the screen.
+    pub fn place(&self, p: LatLon) -> Pos2 {
+        self.screen(p.into())
+    }
+
+    /// The position under a point of the screen.
+    pub fn geo(&self, at: Pos2) -> LatLon {
+        let d = at - self.rect.center();
+        Mercator {
+            x: self.centre.x + f64::from(d.x) / self.scale,
+            y: self.centre.y + f64::from(d.y) / self.scale,
+        }
+        .to_geo()
+    }
+
+    /// Screen points per metre in the middle of the view.
+    pub fn points_per_metre(&self) -> f64 {
+        let latitude = self.centre.to_geo().lat_deg.to_radians();
+        self.scale / (40_075_016.686 * latitude.cos())
+    }
+
+    /// Degrees of longitude per screen point.
+    pub fn degrees_per_point(&self) -> f64 {
+        360.0 / self.scale
+    }
+
+    /// Near enough to the screen to be drawn.
+    pub fn is_near(&self, p: Pos2) -> bool {
+        self.rect.expand(40.0).contains(p)
+    }
+
+    /// The map's middle and zoom level at which all of `points` are shown with a margin.
+    pub fn fit(points: &[LatLon], size: egui::Vec2) -> Option<(walkers::Position, f64)> {
+        let mut all = points.iter().filter(|p| p.is_valid()).map(|p| Mercator::from(*p));
+        let first = all.next()?;
+        let (low, high) = all.fold((first, first), |(low, high), m| {
+            (
+                Mercator { x: low.x.min(m.x), y: low.y.min(m.y) },
+                Mercator { x: high.x.max(m.x), y: high.y.max(m.y) },
+            )
+        });
+        let middle = Mercator { x: (low.x + high.x) / 2.0, y: (low.y + high.y) / 2.0 }.to_geo();
+        let room = |points: f32, extent: f64| f64::from((points - 96.0).max(64.0)) / extent.max(1e-6);
+        let scale = room(size.x, high.x - low.x).min(room(size.y, high.y - low.y));
+        Some((lat_lon(middle.lat_deg, middle.lon_deg), (scale / 256.0).log2().clamp(1.0, 17.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::panic)]
+    use super::*;
+    use egui::vec2;
+    use walkers::{MapMemory, MercatorProjection};
+
+    fn view(zoom: f64) -> (View, Projector<'static>) {
+        let mut memory = MapMemory::default();
+        assert!(memory.set_zoom(zoom).is_ok());
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 600.0));
+        let projector = Projector::new(rect, &MercatorProjection, &memory, lat_lon(36.5, -84.27));
+        (View::of(&projector), projector)
+    }
+
+    #[test]
+    fn a_view_agrees_with_the_map_widget_and_inverts() {
+        for zoom in [3.0, 11.5, 17.0] {
+            let (view, projector) = view(zoom);
+            let p = LatLon::new(36.5005, -84.2693);
+            let theirs = projector.project(lat_lon(p.lat_deg, p.lon_deg)).to_pos2();
+            assert!(view.place(p).distance(theirs) < 0.3, "{zoom}: {:?} {theirs:?}", view.place(p));
+            let back = view.geo(view.place(p));
+            assert!(back.distance_m(p) < 1e-4 * view.rect.width() as f64 / view.points_per_metre());
+            let metre = view.place(p.destination(90.0, 100.0)).x - view.place(p).x;
+            assert!((f64::from(metre) - 100.0 * view.points_per_metre()).abs() < 0.02 * f64::from(metre).max(1.0));
+        }
+    }
+
+    #[test]
+    fn everything_fitted_is_on_the_screen() {
+        let points = [LatLon::new(36.45, -84.36), LatLon::new(36.65, -84.18), LatLon::new(f64::NAN, 0.0)];
+        let size = vec2(700.0, 500.0);
+        let Some((centre, zoom)) = View::fit(&points, size) else { panic!("nothing fitted") };
+        let mut memory = MapMemory::default();
+        assert!(memory.set_zoom(zoom).is_ok());
+        let rect = Rect::from_min_size(Pos2::ZERO, size);
+        let view = View::of(&Projector::new(rect, &MercatorProjection, &memory, centre));
+        for p in &points[..2] {
+            assert!(rect.shrink(30.0).contains(view.place(*p)));
+        }
+        assert!(View::fit(&points[2..], size).is_none());
+    }
+}

@@ -1,0 +1,234 @@
+//! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
+
+use super::Scene;
+use crate::command::{DocumentCommand, FlyCommand, Queue, ViewCommand};
+use crate::link::LinkState;
+use crate::state::{LINK_CAUTION_S, log::short_hash};
+use crate::theme::{self, Palette};
+use crate::units::{self, Units};
+use egui::{Color32, RichText, Ui};
+use flight_exec::Phase;
+
+/// Draws the bar.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    ui.horizontal_centered(|ui| {
+        menus(ui, scene, queue);
+        ui.separator();
+        link(ui, scene, queue);
+        state(ui, scene);
+        ui.separator();
+        badge(ui, scene);
+        push(ui, scene, queue);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new(utc()).monospace()).on_hover_text(local());
+            ui.separator();
+            title(ui, scene);
+        });
+    });
+}
+
+fn utc() -> String {
+    jiff::Timestamp::now().strftime("%H:%M:%SZ").to_string()
+}
+
+fn local() -> String {
+    jiff::Zoned::now().strftime("Local time %H:%M:%S %Z").to_string()
+}
+
+fn title(ui: &mut Ui, scene: &Scene<'_>) {
+    let p = theme::of(ui);
+    let dirty = if scene.document.is_dirty() { " ●" } else { "" };
+    let text = format!("{}{dirty}", scene.document.plan().name);
+    let hover = format!("{}{}", scene.document.file_name(), if dirty.is_empty() { "" } else { ", with unsaved changes" });
+    ui.add(egui::Label::new(RichText::new(text).color(p.weak)).truncate()).on_hover_text(hover);
+}
+
+fn menus(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    ui.menu_button(RichText::new("Legwork").strong(), |ui| {
+        let file: [(&str, &str, DocumentCommand); 5] = [
+            ("New", "Ctrl+N", DocumentCommand::New),
+            ("Open…", "Ctrl+O", DocumentCommand::AskOpen),
+            ("Save", "Ctrl+S", DocumentCommand::Save),
+            ("Save as…", "", DocumentCommand::AskSaveAs),
+            ("Take the plan aboard", "", DocumentCommand::EndGesture),
+        ];
+        for (text, keys, command) in file {
+            let aboard = matches!(command, DocumentCommand::EndGesture);
+            if aboard && scene.vehicle.aboard.is_none() {
+                continue;
+            }
+            if ui.add(egui::Button::new(text).shortcut_text(keys)).clicked() {
+                if aboard { queue.fly(FlyCommand::TakeAboard) } else { queue.document(command) }
+                ui.close();
+            }
+        }
+        ui.separator();
+        view_menu(ui, scene, queue);
+    });
+    let undo = ui.add_enabled(scene.document.can_undo(), egui::Button::new("↶"));
+    named(&undo, "Undo");
+    if undo.on_hover_text("Undo (Ctrl+Z)").clicked() {
+        queue.document(DocumentCommand::Undo);
+    }
+    let redo = ui.add_enabled(scene.document.can_redo(), egui::Button::new("↷"));
+    named(&redo, "Redo");
+    if redo.on_hover_text("Redo (Ctrl+Y)").clicked() {
+        queue.document(DocumentCommand::Redo);
+    }
+}
+
+/// A name for those who can't see the symbol.
+fn named(response: &egui::Response, name: &'static str) {
+    let enabled = response.enabled();
+    response.widget_info(move || egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
+}
+
+fn view_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    for units in [Units::Si, Units::Aviation] {
+        if ui.radio(scene.units() == units, units.label()).clicked() {
+            queue.view(ViewCommand::Units(units));
+            ui.close();
+        }
+    }
+    ui.separator();
+    for (theme, text) in [(egui::Theme::Dark, "Dark"), (egui::Theme::Light, "Light")] {
+        if ui.radio(ui.ctx().theme() == theme, text).clicked() {
+            ui.ctx().set_theme(theme);
+            ui.close();
+        }
+    }
+    ui.separator();
+    if ui.add(egui::Button::new("Show the whole plan").shortcut_text("F")).clicked() {
+        queue.view(ViewCommand::Fit);
+        ui.close();
+    }
+}
+
+/// What is typed into the connection form.
+#[derive(Debug, Clone)]
+struct Form {
+    endpoint: String,
+    vehicle: String,
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() }
+    }
+}
+
+/// The link: its state and its age, which are also the way to the form.
+fn link(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let silence = scene.vehicle.silence_s(scene.now_s);
+    let (text, colour) = match (&scene.vehicle.link, silence) {
+        (LinkState::Off, _) => ("○ Connect".to_owned(), p.text),
+        (LinkState::Failed(_), _) => ("✖ No link".to_owned(), p.caution),
+        (LinkState::Connecting(_), _) | (LinkState::Connected(_), None) => ("◌ Looking for it…".to_owned(), p.weak),
+        (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => (format!("⚠ Silent for {}", units::age(age)), p.caution),
+        (LinkState::Connected(_), Some(age)) => (format!("● Link {}", units::age(age)), p.good),
+    };
+    let menu = ui.menu_button(RichText::new(text).color(colour), |ui| form(ui, scene, queue));
+    menu.response.on_hover_text(scene.vehicle.link.text());
+}
+
+fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let id = egui::Id::unique("connection form");
+    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    ui.set_width(280.0);
+    ui.label(scene.vehicle.link.text());
+    super::field::row(ui, "Gateway at", |ui| ui.text_edit_singleline(&mut form.endpoint));
+    super::field::row(ui, "Vehicle", |ui| ui.text_edit_singleline(&mut form.vehicle));
+    ui.horizontal(|ui| {
+        if ui.add(super::primary_button("Connect", theme::of(ui))).clicked() {
+            queue.fly(FlyCommand::Connect { endpoint: form.endpoint.clone(), vehicle: form.vehicle.clone() });
+            ui.close();
+        }
+        if scene.vehicle.link.is_wanted() && ui.button("Disconnect").clicked() {
+            queue.fly(FlyCommand::Disconnect);
+            ui.close();
+        }
+    });
+    ui.data_mut(|d| d.insert_temp(id, form));
+}
+
+/// What the gateway and the autopilot do: green is engaged.
+fn state(ui: &mut Ui, scene: &Scene<'_>) {
+    let p = theme::of(ui);
+    let Some(gateway) = &scene.vehicle.gateway else { return };
+    let v = &gateway.value;
+    let armed = if v.armed { "armed" } else { "disarmed" };
+    let text = RichText::new(format!("{:?} · {} · {armed}", v.state, v.autopilot_mode));
+    let text = if gateway.is_expired(scene.now_s) { text.color(p.weak).strikethrough() } else { text.color(p.good) };
+    let hover = format!("{}\nAutopilot heard {} ago", v.cause, units::age(v.autopilot_age_s));
+    ui.label(text).on_hover_text(hover);
+    if let Some(seconds) = v.safe_return_in_s {
+        ui.label(RichText::new(format!("⚠ flies home in {}", units::duration(seconds))).color(p.caution));
+    }
+}
+
+/// Where the document stands: edited, proposed, aboard or active, and its hash.
+pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
+    let Some(hash) = scene.analysis.hash_of(scene.document.version()) else { return ("checking", Standing::Draft) };
+    let Some(status) = scene.vehicle.status.as_ref().map(|s| &s.value) else { return ("draft", Standing::Draft) };
+    if status.plan.as_deref() == Some(hash) {
+        return match status.phase {
+            Phase::Idle => ("aboard", Standing::Aboard),
+            Phase::Finished => ("flown", Standing::Aboard),
+            _ => ("active", Standing::Active),
+        };
+    }
+    if status.proposed.as_deref() == Some(hash) {
+        return ("proposed", Standing::Proposed);
+    }
+    if status.plan.is_some() { ("edited ≠ aboard", Standing::Draft) } else { ("draft", Standing::Draft) }
+}
+
+/// How far a plan has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// Only here.
+    Draft,
+    /// Checked aboard, not committed.
+    Proposed,
+    /// Stored aboard.
+    Aboard,
+    /// Being flown.
+    Active,
+}
+
+fn badge(ui: &mut Ui, scene: &Scene<'_>) {
+    let p = theme::of(ui);
+    let (text, standing) = plan_state(scene);
+    let hash = scene.analysis.hash_of(scene.document.version()).map(short_hash).unwrap_or_default();
+    let (symbol, colour) = standing_look(standing, p);
+    let label = RichText::new(format!("{symbol} {text} {hash}")).color(colour);
+    let aboard = scene.vehicle.active_hash().map_or_else(|| "no plan".to_owned(), |h| short_hash(&h));
+    let revision = scene.vehicle.status.as_ref().map_or(0, |s| s.value.revision);
+    ui.label(label).on_hover_text(format!("This document: {hash}\nAboard: {aboard}, revision {revision}"));
+}
+
+fn standing_look(standing: Standing, p: &Palette) -> (&'static str, Color32) {
+    match standing {
+        Standing::Draft => ("◇", p.text),
+        Standing::Proposed => ("◈", p.accent),
+        Standing::Aboard => ("◆", p.accent),
+        Standing::Active => ("◆", p.good),
+    }
+}
+
+fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let (_, standing) = plan_state(scene);
+    let connected = matches!(scene.vehicle.link, LinkState::Connected(_));
+    let differs = matches!(standing, Standing::Draft | Standing::Proposed);
+    let enabled = connected && differs && !scene.vehicle.requests.is_pending(PUSH);
+    let button = super::primary_button("⬆ Push", theme::of(ui));
+    let response = ui.add_enabled(enabled, if enabled { button } else { egui::Button::new("⬆ Push") });
+    named(&response, "Push");
+    if response.on_hover_text("Propose this plan to the vehicle, look at what it would do, then commit").clicked() {
+        queue.fly(FlyCommand::Propose);
+    }
+}
+
+/// What the log calls a proposal.
+pub const PUSH: &str = "Propose plan";

@@ -1,0 +1,175 @@
+//! Fields: numbers with units, expressions, and buttons that must be held.
+
+use crate::theme;
+use crate::units::Unit;
+use egui::{Color32, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
+use flight_plan::Value;
+use std::sync::Arc;
+
+/// What happened to a field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change<T> {
+    /// Nothing.
+    None,
+    /// It is being dragged and has this value for now.
+    Moving(T),
+    /// It has this value.
+    Set(T),
+    /// The drag is over.
+    Ended,
+}
+
+impl<T> Change<T> {
+    /// The same, for something made of the value.
+    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Change<U> {
+        match self {
+            Self::None => Change::None,
+            Self::Moving(value) => Change::Moving(f(value)),
+            Self::Set(value) => Change::Set(f(value)),
+            Self::Ended => Change::Ended,
+        }
+    }
+}
+
+/// A row with a name on the left and a field on the right.
+pub fn row<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let p = theme::of(ui);
+    ui.horizontal(|ui| {
+        ui.add_sized([92.0, 22.0], egui::Label::new(RichText::new(name).color(p.weak)).halign(egui::Align::LEFT).truncate());
+        add(ui)
+    })
+    .inner
+}
+
+/// A number in a unit, stored in SI.
+pub fn number(ui: &mut Ui, name: &str, si: f64, unit: Unit, least_si: f64) -> Change<f64> {
+    let mut shown = unit.from_si(si);
+    let drag = DragValue::new(&mut shown)
+        .suffix(format!(" {}", unit.symbol))
+        .max_decimals(unit.decimals.max(1))
+        .speed(unit.from_si(1.0).max(0.05))
+        .range(unit.from_si(least_si)..=f64::MAX)
+        .update_while_editing(false);
+    let response = ui.add_sized([96.0, 24.0], drag);
+    named(&response, name, shown);
+    outcome(&response, unit.to_si(shown))
+}
+
+/// Gives a spin button a name, which its text alone is not.
+fn named(response: &Response, name: &str, value: f64) {
+    let (name, enabled) = (name.to_owned(), response.enabled());
+    response.widget_info(move || {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::SpinButton, enabled, &name);
+        info.value = Some(value);
+        info
+    });
+}
+
+fn outcome<T>(response: &Response, value: T) -> Change<T> {
+    match (response.changed(), response.dragged(), response.drag_stopped()) {
+        (true, true, _) => Change::Moving(value),
+        (true, false, _) => Change::Set(value),
+        (_, _, true) => Change::Ended,
+        _ => Change::None,
+    }
+}
+
+/// A number or an expression; the small button changes between the two.
+pub fn number_value(ui: &mut Ui, name: &str, value: &Value<f64>, unit: Unit, least_si: f64) -> Change<Value<f64>> {
+    let change = match value {
+        Value::Constant(si) => number(ui, name, *si, unit, least_si).map(Value::Constant),
+        Value::Expression(source) => expression(ui, name, source).map(Value::Expression),
+    };
+    let toggle = ui.small_button("ƒ").on_hover_text("Number or expression over the plan's variables");
+    if !toggle.clicked() {
+        return change;
+    }
+    Change::Set(match value {
+        Value::Constant(si) => Value::Expression(si.to_string().into()),
+        Value::Expression(source) => Value::Constant(source.trim().parse().unwrap_or(least_si.max(1.0))),
+    })
+}
+
+/// The source of an expression, taken when the field is left.
+pub fn expression(ui: &mut Ui, name: &str, source: &Arc<str>) -> Change<Arc<str>> {
+    match text(ui, name, source, true) {
+        Some(new) => Change::Set(new.trim().trim_start_matches('=').trim().into()),
+        None => Change::None,
+    }
+}
+
+/// A text, taken when the field is left or Enter is pressed.
+pub fn text(ui: &mut Ui, name: &str, current: &str, code: bool) -> Option<String> {
+    let id = ui.auto_id_with(("field", name));
+    let mut draft = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
+    let mut edit = egui::TextEdit::singleline(&mut draft).id(id).desired_width(ui.available_width() - 30.0);
+    if code {
+        edit = edit.code_editor();
+    }
+    let response = ui.add(edit);
+    let label = name.to_owned();
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, &label);
+        info.current_text_value = Some(draft.clone());
+        info
+    });
+    if response.has_focus() {
+        ui.data_mut(|d| d.insert_temp(id, draft));
+        return None;
+    }
+    ui.data_mut(|d| d.remove::<String>(id));
+    (response.lost_focus() && draft != current).then_some(draft)
+}
+
+/// Seconds a dangerous button must be held.
+pub const HOLD_S: f64 = 1.0;
+
+/// A button for something dangerous, named by its effect: it works only when held for [`HOLD_S`],
+/// with the pointer or with the space bar. True in the frame in which it has been held long enough.
+pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool {
+    let galley = ui.painter().layout_no_wrap(text.into(), egui::FontId::proportional(13.5), colour);
+    let size = vec2((galley.size().x + 24.0).max(width), 30.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let name = format!("{text} (hold)");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let held = response.is_pointer_button_down_on() || (response.has_focus() && ui.input(|i| i.key_down(Key::Space)));
+    let progress = progress(ui, response.id, held);
+    let p = theme::of(ui);
+    let painter = ui.painter();
+    painter.rect(rect, 5.0, colour.gamma_multiply(0.14), Stroke::new(1.4, colour), egui::StrokeKind::Inside);
+    let mut done = rect;
+    done.set_width(rect.width() * progress.min(1.0) as f32);
+    painter.rect_filled(done, 5.0, colour.gamma_multiply(0.45));
+    painter.galley_with_override_text_color(rect.center() - galley.size() / 2.0, galley, if progress > 0.0 { p.text } else { colour });
+    if response.has_focus() {
+        painter.rect_stroke(rect.expand(2.0), 6.0, Stroke::new(1.0, p.text), egui::StrokeKind::Outside);
+    }
+    response.on_hover_text(format!("Hold for {HOLD_S:.0} s"));
+    (1.0..f64::INFINITY).contains(&progress)
+}
+
+/// How far a hold has come, 0..1, reaching at least 1 in exactly one frame; 0 after that until it is let go.
+fn progress(ui: &Ui, id: Id, held: bool) -> f64 {
+    let now = ui.input(|i| i.time);
+    let started = ui.data(|d| d.get_temp::<f64>(id));
+    match (held, started) {
+        (false, _) => {
+            ui.data_mut(|d| d.remove::<f64>(id));
+            0.0
+        }
+        (true, None) => {
+            ui.data_mut(|d| d.insert_temp(id, now));
+            ui.request_repaint();
+            0.0
+        }
+        (true, Some(start)) if start == f64::INFINITY => 0.0,
+        (true, Some(start)) => {
+            let progress = (now - start) / HOLD_S;
+            if progress >= 1.0 {
+                ui.data_mut(|d| d.insert_temp(id, f64::INFINITY));
+            }
+            ui.request_repaint();
+            progress
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The flight: what the vehicle does now, every value with its age, and the strip of commands.
+
+use super::{Scene, age_of, field, value_with_age};
+use crate::command::{FlyCommand, Queue};
+use crate::theme;
+use crate::units;
+use egui::{RichText, Ui};
+use flight_exec::{Command, IterationPlace, Phase};
+use flight_plan::{Cause, Id};
+use usal::contract::GatewayState;
+
+/// Draws what the vehicle does now.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    plan_rows(ui, scene);
+    ui.add_space(4.0);
+    buffer(ui, scene);
+    ui.add_space(4.0);
+    air_rows(ui, scene);
+    systems_rows(ui, scene);
+}
+
+fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
+    let status = &scene.vehicle.status;
+    let age = age_of(status, scene.now_s);
+    let place = status.as_ref().and_then(|s| s.value.place.as_ref());
+    let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", p.stage, p.leg));
+    value_with_age(ui, "Leg", &leg, age);
+    if let Some(place) = place.filter(|p| !p.iterations.is_empty()) {
+        let loops: Vec<String> = place.iterations.iter().map(iteration).collect();
+        value_with_age(ui, "Iteration", &loops.join(" ▸ "), age);
+    }
+    if let Some(alternate) = status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref()) {
+        value_with_age(ui, "Alternate", alternate.as_str(), age);
+    }
+    let navigation = &scene.vehicle.navigation;
+    let u = scene.units();
+    let next = navigation.as_ref().map(|n| {
+        format!("{} · {}", u.distance().show(n.value.distance_m), units::duration(n.value.eta_s))
+    });
+    value_with_age(ui, "Next", &next.unwrap_or_default(), age_of(navigation, scene.now_s));
+    let off = navigation.as_ref().map(|n| {
+        let side = if n.value.cross_track_m < 0.0 { "left" } else { "right" };
+        format!("{} {side}", u.length().show(n.value.cross_track_m.abs()))
+    });
+    value_with_age(ui, "Off track", &off.unwrap_or_default(), age_of(navigation, scene.now_s));
+}
+
+/// `patrol 3/20 ↩`: the pass being flown, how many there are, and an arrow when it goes backwards.
+pub fn iteration(place: &IterationPlace) -> String {
+    let of = place.of.map_or_else(|| "∞".to_owned(), |n| n.to_string());
+    let back = if place.reverse { " ◀" } else { "" };
+    format!("{} {}/{of}{back}", place.leg, place.iteration)
+}
+
+/// Waypoints and seconds in the gateway's buffer, as a bar that is full at a minute.
+fn buffer(ui: &mut Ui, scene: &Scene<'_>) {
+    let navigation = &scene.vehicle.navigation;
+    let text = navigation.as_ref().map(|n| {
+        let end = if n.value.end_of_plan { ", end of plan" } else { "" };
+        format!("{} wp · {}{end}", n.value.buffer_waypoints, units::duration(n.value.buffer_s))
+    });
+    value_with_age(ui, "Buffer", &text.unwrap_or_default(), age_of(navigation, scene.now_s));
+    if let Some(n) = navigation.as_ref().filter(|n| !n.is_expired(scene.now_s)) {
+        let p = theme::of(ui);
+        let short = n.value.buffer_s < 10.0 && !n.value.end_of_plan && scene.vehicle.is_airborne();
+        let colour = if short { p.caution } else { p.accent };
+        let share = (n.value.buffer_s / 60.0).clamp(0.0, 1.0) as f32;
+        ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(colour));
+    }
+}
+
+fn air_rows(ui: &mut Ui, scene: &Scene<'_>) {
+    let u = scene.units();
+    let position = &scene.vehicle.position;
+    let age = age_of(position, scene.now_s);
+    let home = position.as_ref().map(|v| format!("{} above home", u.altitude().show(v.value.altitude_home_m)));
+    value_with_age(ui, "Height", &home.unwrap_or_default(), age);
+    let ground = position.as_ref().map(|v| {
+        format!("{} · track {}", u.speed().show(v.value.ground_speed_mps), units::bearing(v.value.track_deg))
+    });
+    value_with_age(ui, "Ground", &ground.unwrap_or_default(), age);
+    let climb = position.as_ref().map(|v| u.climb().show(-v.value.velocity_down_mps));
+    value_with_age(ui, "Climb", &climb.unwrap_or_default(), age);
+}
+
+fn systems_rows(ui: &mut Ui, scene: &Scene<'_>) {
+    let v = scene.vehicle;
+    let power = v.power.as_ref().map(|p| format!("{:.0} % · {:.1} V · {:.1} A", p.value.battery * 100.0, p.value.voltage_v, p.value.current_a));
+    value_with_age(ui, "Battery", &power.unwrap_or_default(), age_of(&v.power, scene.now_s));
+    let engine = v.engine.as_ref().map(|e| format!("{:.0} rpm · {:.0} °C · {:.0} %", e.value.rpm, e.value.temperature_c, e.value.throttle * 100.0));
+    value_with_age(ui, "Engine", &engine.unwrap_or_default(), age_of(&v.engine, scene.now_s));
+    let gps = v.gps.as_ref().map(|g| {
+        let fix = if g.value.fix_3d { "3D fix" } else { "NO FIX" };
+        format!("{fix} · {} sats · HDOP {:.1}", g.value.satellites, g.value.hdop)
+    });
+    value_with_age(ui, "GPS", &gps.unwrap_or_default(), age_of(&v.gps, scene.now_s));
+}
+
+/// The strip of commands; each is there when it makes sense.
+pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let phase = scene.vehicle.phase();
+    if can_launch(scene) && field::hold_button(ui, "Start and take off", p.accent, 150.0) {
+        queue.fly(FlyCommand::Launch);
+    }
+    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision);
+    if flying && ui.button("⏸ Hold").clicked() {
+        queue.plan(Command::Hold);
+    }
+    if phase == Phase::Holding && ui.add(super::primary_button("▶ Resume", p)).clicked() {
+        queue.plan(Command::Resume);
+    }
+    if flying && ui.button("⏭ Skip leg").clicked() {
+        queue.plan(Command::SkipLeg);
+    }
+    if flying || phase == Phase::Holding {
+        emergency(ui, scene, queue);
+    }
+    recover(ui, scene, queue);
+}
+
+fn can_launch(scene: &Scene<'_>) -> bool {
+    let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
+    on_ground && scene.vehicle.phase() == Phase::Idle && scene.vehicle.active_hash().is_some()
+}
+
+/// Which emergency plan, then hold: named by its effect.
+fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let id = ui.make_persistent_id("emergency plan");
+    let mut chosen: Option<Id> = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.clone());
+    let name = chosen.as_ref().or(in_force.as_ref()).map_or_else(|| "the alternate in force".to_owned(), Id::to_string);
+    let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();
+    if plans.len() > 1 {
+        let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
+        let shown = combo.show_ui(ui, |ui| {
+            ui.selectable_value(&mut chosen, None, "In force here");
+            for plan in plans {
+                ui.selectable_value(&mut chosen, Some(plan.id.clone()), plan.id.as_str());
+            }
+        });
+        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));
+        ui.data_mut(|d| d.insert_temp(id, chosen.clone()));
+    }
+    if field::hold_button(ui, &format!("Emergency: fly {name}"), p.warning, 0.0) {
+        queue.plan(Command::Emergency { cause: Cause::Operator, plan: chosen });
+    }
+}
+
+fn recover(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) && ui.button("Leave Safe mode").clicked() {
+        queue.fly(FlyCommand::Gateway(usal::contract::GatewayRequest::Recover));
+    }
+}
+
+/// What became of the last command: pending, accepted, or refused and why.
+pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
+    use crate::state::Outcome;
+    const SHOWN_S: f64 = 8.0;
+    let p = theme::of(ui);
+    let Some(request) = scene.vehicle.requests.last() else { return };
+    let (text, colour) = match &request.outcome {
+        Outcome::Pending => (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text),
+        Outcome::Accepted => (format!("✔ {}: accepted", request.label), p.good),
+        Outcome::Refused(reason) => (format!("✖ {}: refused, {reason}", request.label), p.caution),
+    };
+    let fresh = request.settled_s.is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)));
+    if fresh {
+        ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
+    }
+}

@@ -1,0 +1,67 @@
+//! Commands with what became of them, and what happened.
+
+use super::Scene;
+use crate::state::{Level, Line, Outcome, Request};
+use crate::theme;
+use crate::units;
+use egui::{RichText, ScrollArea, Ui};
+
+/// Commands on the left, events on the right.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
+    ui.columns(2, |columns| {
+        if let [left, right] = columns {
+            commands(left, scene);
+            events(right, scene);
+        }
+    });
+}
+
+fn commands(ui: &mut Ui, scene: &Scene<'_>) {
+    super::group_title(ui, "Commands");
+    let requests: Vec<&Request> = scene.vehicle.requests.newest_first().collect();
+    ScrollArea::vertical().id_salt("commands").auto_shrink(false).show_rows(ui, 20.0, requests.len(), |ui, rows| {
+        for request in requests.get(rows).unwrap_or_default() {
+            command(ui, request, scene.now_s);
+        }
+    });
+}
+
+fn command(ui: &mut Ui, request: &Request, now_s: f64) {
+    let p = theme::of(ui);
+    ui.horizontal(|ui| {
+        ui.add(egui::Label::new(RichText::new(&request.label)).truncate());
+        let (text, colour) = match &request.outcome {
+            Outcome::Pending => (format!("⏳ pending, {}", units::age(now_s - request.sent_s)), p.weak),
+            Outcome::Accepted => ("✔ accepted".to_owned(), p.good),
+            Outcome::Refused(reason) => (format!("✖ refused: {reason}"), p.caution),
+        };
+        ui.add(egui::Label::new(RichText::new(&text).color(colour)).truncate()).on_hover_text(text);
+    });
+}
+
+fn events(ui: &mut Ui, scene: &Scene<'_>) {
+    super::group_title(ui, "Events");
+    let log = &scene.vehicle.log;
+    ScrollArea::vertical().id_salt("events").auto_shrink(false).show_rows(ui, 20.0, log.len(), |ui, rows| {
+        for line in rows.filter_map(|i| log.from_newest(i)) {
+            event(ui, line, scene.now_s);
+        }
+    });
+}
+
+fn event(ui: &mut Ui, line: &Line, now_s: f64) {
+    let p = theme::of(ui);
+    let (symbol, colour) = match line.level {
+        Level::Info => ("·", p.text),
+        Level::Caution => ("⚠", p.caution),
+        Level::Warning => ("⛔", p.warning),
+    };
+    ui.horizontal(|ui| {
+        let ago = format!("{:>7} ago", units::duration(now_s - line.time_s));
+        ui.label(RichText::new(ago).monospace().size(11.0).color(p.weak));
+        ui.label(RichText::new(symbol).color(colour));
+        let times = if line.times > 1 { format!(" (×{})", line.times) } else { String::new() };
+        let text = format!("{}{times}", line.text);
+        ui.add(egui::Label::new(RichText::new(&text).color(colour)).truncate()).on_hover_text(&text);
+    });
+}

@@ -1,0 +1,85 @@
+//! What is wrong with the plan, with a jump to its place and, often, a remedy.
+
+use super::Scene;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::theme;
+use egui::{RichText, ScrollArea, Sense, Ui};
+use flight_plan::{FlightPlan, Id, Problem};
+
+/// Lists the problems.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let problems: Vec<&Problem> = scene.problems().collect();
+    let p = theme::of(ui);
+    ui.horizontal(|ui| {
+        super::group_title(ui, &format!("Problems ({})", problems.len()));
+        if scene.analysis.version != scene.document.version() {
+            ui.spinner();
+        }
+    });
+    if problems.is_empty() {
+        ui.label(RichText::new("✔ This plan can be flown").color(p.good));
+        return;
+    }
+    let height = 44.0;
+    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show_rows(ui, height, problems.len(), |ui, rows| {
+        for problem in problems.get(rows).unwrap_or_default() {
+            row(ui, scene, problem, height, queue);
+        }
+    });
+}
+
+fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
+    let size = egui::vec2(ui.available_width(), height);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let name = format!("Problem: {}", problem.message);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
+    }
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink2(egui::vec2(4.0, 2.0))));
+    inside.horizontal_top(|ui| {
+        ui.label(RichText::new(symbol).color(colour));
+        let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
+        ui.vertical(|ui| {
+            let text = RichText::new(format!("{}{place}", problem.message)).size(12.0);
+            ui.add(egui::Label::new(text).wrap().selectable(false).sense(Sense::hover()));
+        });
+    });
+    let response = response.on_hover_text(format!("{}\n{}", problem.code, problem.message));
+    if response.clicked()
+        && let Some(selection) = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id))
+    {
+        queue.view(ViewCommand::JumpTo(selection));
+    }
+    if let Some(fix) = &problem.fix {
+        response.context_menu(|ui| {
+            if ui.button("Apply the remedy").clicked() {
+                queue.edit((**fix).clone());
+                ui.close();
+            }
+        });
+    }
+}
+
+/// What an identifier of the document stands for.
+pub fn find(plan: &FlightPlan, id: &Id) -> Option<Selection> {
+    let id_ = || id.clone();
+    if plan.leg(id).is_some() {
+        return Some(Selection::Leg(id_()));
+    }
+    if plan.stage(id).is_some() {
+        return Some(Selection::Stage(id_()));
+    }
+    if plan.emergency_plan(id).is_some() {
+        return Some(Selection::Emergency(id_()));
+    }
+    if plan.fix(id).is_some() {
+        return Some(Selection::Fix(id_()));
+    }
+    if plan.runway(id).is_some() {
+        return Some(Selection::Runway(id_()));
+    }
+    plan.variable(id).map(|_| Selection::Variable(id_()))
+}

@@ -1,0 +1,200 @@
+//! Altitude along the path, with the ground below, stages as bands, and a cursor on the timeline.
+
+use super::Scene;
+use crate::command::{Queue, ViewCommand};
+use crate::forecast::{Forecast, Passage, Point};
+use crate::theme::{self, Palette};
+use crate::units;
+use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+/// Draws the profile; dragging on it moves the cursor.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let size = ui.available_size().max(vec2(120.0, 80.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let forecast = scene.forecast();
+    let description = format!(
+        "Vertical profile: {} in {}",
+        scene.units().distance().show(forecast.length_m()),
+        units::duration(forecast.duration_s())
+    );
+    response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, &description));
+    let painter = ui.painter_at(rect);
+    let p = theme::of(ui);
+    if forecast.points.len() < 2 {
+        let text = scene.analysis.why_no_forecast();
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.weak);
+        return;
+    }
+    let axes = Axes::new(rect, forecast);
+    draw_axes(&painter, &axes, scene, p);
+    draw_stages(&painter, &axes, forecast, p);
+    draw_ground(&painter, &axes, forecast, p);
+    draw_path(&painter, &axes, scene, p);
+    draw_cursor(&painter, &axes, scene, p);
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+        queue.view(ViewCommand::Scrub(Some(axes.time_at(pointer))));
+    }
+}
+
+struct Axes {
+    plot: Rect,
+    duration_s: f64,
+    low_m: f64,
+    high_m: f64,
+}
+
+impl Axes {
+    fn new(rect: Rect, forecast: &Forecast) -> Self {
+        let plot = Rect::from_min_max(rect.min + vec2(48.0, 20.0), rect.max - vec2(10.0, 20.0));
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for point in &forecast.points {
+            low = low.min(point.ground_amsl_m.unwrap_or(point.altitude_amsl_m));
+            high = high.max(point.altitude_amsl_m).max(point.ground_amsl_m.unwrap_or(high));
+        }
+        let margin = ((high - low) * 0.08).max(20.0);
+        Self { plot, duration_s: forecast.duration_s().max(1.0), low_m: low - margin, high_m: high + margin }
+    }
+    fn x(&self, time_s: f64) -> f32 {
+        self.plot.left() + (time_s / self.duration_s) as f32 * self.plot.width()
+    }
+    fn y(&self, altitude_m: f64) -> f32 {
+        self.plot.bottom() - ((altitude_m - self.low_m) / (self.high_m - self.low_m)) as f32 * self.plot.height()
+    }
+    fn place(&self, point: &Point) -> Pos2 {
+        pos2(self.x(point.time_s), self.y(point.altitude_amsl_m))
+    }
+    fn time_at(&self, at: Pos2) -> f64 {
+        let share = (at.x - self.plot.left()) / self.plot.width().max(1.0);
+        f64::from(share.clamp(0.0, 1.0)) * self.duration_s
+    }
+}
+
+/// A round step that gives about `marks` marks over `range`.
+fn round_step(range: f64, marks: f64, steps: &[f64]) -> f64 {
+    steps.iter().copied().find(|s| range / s <= marks).or(steps.last().copied()).unwrap_or(1.0)
+}
+
+fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let font = FontId::proportional(10.5);
+    let unit = scene.units().altitude();
+    let (low, high) = (unit.from_si(axes.low_m), unit.from_si(axes.high_m));
+    let step = round_step(high - low, 5.0, &[50., 100., 200., 250., 500., 1000., 2000., 5000., 10_000.]);
+    let mut value = (low / step).ceil() * step;
+    while value < high {
+        let y = axes.y(unit.to_si(value));
+        painter.hline(axes.plot.x_range(), y, Stroke::new(1.0, p.line));
+        painter.text(pos2(axes.plot.left() - 5.0, y), Align2::RIGHT_CENTER, format!("{value:.0}"), font.clone(), p.weak);
+        value += step;
+    }
+    let head = format!("{} AMSL", unit.symbol);
+    painter.text(pos2(axes.plot.left() - 5.0, axes.plot.top() - 11.0), Align2::RIGHT_CENTER, head, font.clone(), p.weak);
+    let marks = f64::from(axes.plot.width() / 90.0).max(1.0);
+    let step = round_step(axes.duration_s, marks, &[10., 30., 60., 120., 300., 600., 1200., 1800., 3600., 7200.]);
+    for mark in 0..=(axes.duration_s / step) as usize {
+        let time = mark as f64 * step;
+        let at = pos2(axes.x(time), axes.plot.bottom() + 3.0);
+        painter.text(at, Align2::CENTER_TOP, units::duration(time), font.clone(), p.weak);
+    }
+}
+
+/// One band above the plot per stage, with its name where there is room.
+fn draw_stages(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette) {
+    let mut band: Option<(&Passage, f32)> = None;
+    for passage in &forecast.passages {
+        if band.is_none_or(|(b, _)| b.stage != passage.stage) {
+            let x = forecast.points.get(passage.first).map_or(axes.plot.left(), |point| axes.x(point.time_s));
+            if let Some((before, from)) = band {
+                draw_band(painter, axes, before.stage.as_str(), from, x, p);
+            }
+            band = Some((passage, x));
+        }
+    }
+    if let Some((last, from)) = band {
+        draw_band(painter, axes, last.stage.as_str(), from, axes.plot.right(), p);
+    }
+}
+
+fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: &Palette) {
+    let rect = Rect::from_min_max(pos2(from + 1.0, axes.plot.top() - 17.0), pos2(to - 1.0, axes.plot.top() - 3.0));
+    painter.rect_filled(rect, 2.0, p.line);
+    let galley = painter.layout_no_wrap(name.into(), FontId::proportional(10.5), p.text);
+    if galley.size().x + 4.0 < rect.width() {
+        painter.galley(rect.center() - galley.size() / 2.0, galley, p.text);
+    }
+    painter.vline(from, axes.plot.y_range(), Stroke::new(1.0, p.line));
+}
+
+/// At most one point per screen point: the first of each column.
+fn thinned<'a>(axes: &'a Axes, forecast: &'a Forecast) -> impl Iterator<Item = &'a Point> {
+    let mut last = f32::NEG_INFINITY;
+    forecast.points.iter().filter(move |point| {
+        let x = axes.x(point.time_s);
+        let keep = x - last >= 1.0;
+        if keep {
+            last = x;
+        }
+        keep
+    })
+}
+
+fn draw_ground(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette) {
+    let fill = p.border.gamma_multiply(0.55);
+    let mut mesh = Mesh::default();
+    let mut edge: Vec<Pos2> = Vec::new();
+    for point in thinned(axes, forecast) {
+        let Some(ground) = point.ground_amsl_m else { continue };
+        let top = pos2(axes.x(point.time_s), axes.y(ground));
+        let first = mesh.vertices.len() as u32;
+        mesh.colored_vertex(top, fill);
+        mesh.colored_vertex(pos2(top.x, axes.plot.bottom()), fill);
+        if first >= 2 {
+            mesh.add_triangle(first - 2, first - 1, first);
+            mesh.add_triangle(first - 1, first, first + 1);
+        }
+        edge.push(top);
+    }
+    painter.add(Shape::mesh(mesh));
+    painter.add(Shape::line(edge, Stroke::new(1.2, p.border)));
+}
+
+fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let forecast = scene.forecast();
+    let path: Vec<Pos2> = thinned(axes, forecast).map(|point| axes.place(point)).collect();
+    painter.add(Shape::line(path, Stroke::new(1.8, p.accent)));
+    let highlighted = |leg: &flight_plan::Id, colour: Color32| {
+        for part in forecast.passages_of(leg) {
+            painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), Stroke::new(2.6, colour)));
+        }
+    };
+    if let Some(crate::command::Selection::Leg(leg)) = &scene.view.selection {
+        highlighted(leg, p.text);
+    }
+    if let (Some(leg), true) = (scene.vehicle.current_leg(), scene.vehicle.is_airborne()) {
+        highlighted(leg, p.active);
+    }
+    draw_aircraft(painter, axes, scene, p);
+}
+
+fn draw_aircraft(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let Some(position) = scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground) else { return };
+    let Some(near) = scene.forecast().nearest(position.value.position, scene.vehicle.current_leg()) else { return };
+    let at = pos2(axes.x(near.time_s), axes.y(position.value.altitude_amsl_m));
+    let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
+    painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));
+}
+
+fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let Some(point) = scene.view.cursor_s.and_then(|t| scene.forecast().at(t)) else { return };
+    let at = axes.place(point);
+    painter.vline(at.x, axes.plot.y_range(), Stroke::new(1.0, p.text));
+    painter.circle(at, 4.0, p.text, Stroke::new(1.5, p.halo));
+    let leg = scene.forecast().passages.get(point.passage).map_or("", |passage| passage.leg.as_str());
+    let altitude = scene.units().altitude();
+    let above = point.ground_amsl_m.map_or_else(String::new, |g| format!(" · {} AGL", altitude.show(point.altitude_amsl_m - g)));
+    let text = format!("{leg} · {} · {}{above}", units::duration(point.time_s), altitude.show(point.altitude_amsl_m));
+    let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), p.text);
+    let x = (at.x + 8.0).min(axes.plot.right() - galley.size().x - 6.0);
+    let plate = Rect::from_min_size(pos2(x, axes.plot.top() + 4.0), galley.size()).expand2(vec2(5.0, 3.0));
+    painter.rect(plate, 4.0, p.card, Stroke::new(1.0, p.line), egui::StrokeKind::Outside);
+    painter.galley(plate.min + vec2(5.0, 3.0), galley, p.text);
+}

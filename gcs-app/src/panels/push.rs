@@ -1,0 +1,106 @@
+//! What a proposed plan would do, before it is committed.
+
+use super::Scene;
+use crate::command::{FlyCommand, Queue};
+use crate::state::{Proposal, log::short_hash};
+use crate::theme::{self, Palette};
+use crate::units;
+use egui::{Color32, RichText, ScrollArea, Ui};
+use flight_plan::Id;
+
+/// Draws the window with the proposal's answer, while there is one.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(proposal) = &scene.vehicle.proposal else { return };
+    egui::Window::new("Push plan")
+        .id(egui::Id::unique("push"))
+        .collapsible(false)
+        .resizable(false)
+        .default_width(380.0)
+        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(ui.ctx(), |ui| body(ui, scene, proposal, queue));
+}
+
+fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
+    let report = &proposal.report;
+    let p = theme::of(ui);
+    ui.set_width(380.0);
+    verdict(ui, proposal, p);
+    ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        for problem in &report.problems {
+            ui.label(RichText::new(format!("⚠ {problem}")).color(p.caution));
+        }
+        difference(ui, "+", "added", &report.added, p.good);
+        difference(ui, "~", "changed", &report.changed, p.accent);
+        difference(ui, "−", "removed", &report.removed, p.weak);
+        if report.added.is_empty() && report.changed.is_empty() && report.removed.is_empty() {
+            ui.label(RichText::new("No leg differs from the plan aboard.").color(p.weak));
+        }
+    });
+    ui.separator();
+    next(ui, proposal, p);
+    if report.entry_needed {
+        entry(ui, scene, proposal, queue);
+    }
+    ui.add_space(4.0);
+    ui.horizontal(|ui| buttons(ui, proposal, queue));
+}
+
+fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
+    let hash = short_hash(&proposal.report.hash);
+    let (text, colour) = if proposal.report.acceptable {
+        (format!("✔ Checked aboard: {hash} can be flown"), p.good)
+    } else {
+        (format!("✖ Checked aboard: {hash} can't be flown. It stays a draft."), p.warning)
+    };
+    ui.label(RichText::new(text).strong().color(colour));
+}
+
+fn difference(ui: &mut Ui, sign: &str, what: &str, legs: &[Id], colour: Color32) {
+    if legs.is_empty() {
+        return;
+    }
+    let shown: Vec<&str> = legs.iter().take(40).map(Id::as_str).collect();
+    let more = legs.len().saturating_sub(shown.len());
+    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(format!("{sign} {} {what}:", legs.len())).strong().color(colour));
+        ui.label(format!("{}{rest}", shown.join(", ")));
+    });
+}
+
+fn next(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
+    let report = &proposal.report;
+    let leg = report.next_leg.as_ref().map_or_else(|| "–".to_owned(), Id::to_string);
+    let place = report.next_position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
+        ui.label(RichText::new(format!("{leg}{place}")).strong().color(p.active));
+    });
+}
+
+fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
+    ui.horizontal(|ui| {
+        ui.label("The leg it is on is gone. Enter at:");
+        let current = proposal.entry.as_ref().map_or("choose a leg", Id::as_str);
+        egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {
+            for context in scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main) {
+                let chosen = proposal.entry.as_ref() == Some(&context.leg.id);
+                if ui.selectable_label(chosen, context.leg.id.as_str()).clicked() {
+                    queue.fly(FlyCommand::EnterAt(context.leg.id.clone()));
+                }
+            }
+        });
+    });
+}
+
+fn buttons(ui: &mut Ui, proposal: &Proposal, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let ready = proposal.report.acceptable && (!proposal.report.entry_needed || proposal.entry.is_some());
+    if ui.add_enabled(ready, super::primary_button("Commit", p)).clicked() {
+        queue.fly(FlyCommand::Commit);
+    }
+    if ui.button("Keep as draft").clicked() {
+        queue.fly(FlyCommand::DropProposal);
+    }
+}

@@ -1,0 +1,348 @@
+//! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
+
+use super::Scene;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::theme::{self, Palette};
+use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use flight_plan::{FlightPlan, Leg, LegKind, Problem, Stage, StageKind};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One line of the tree.
+#[derive(Debug, Clone)]
+struct Row {
+    depth: usize,
+    tag: &'static str,
+    text: String,
+    detail: String,
+    selection: Option<Selection>,
+    /// What is hidden when it is folded.
+    folds: Option<String>,
+}
+
+/// The tree; its rows are worked out again only when the plan or what is folded changes.
+#[derive(Debug, Default)]
+pub struct Tree {
+    rows: Vec<Row>,
+    version: Option<u64>,
+    folded: BTreeSet<String>,
+}
+
+const HEIGHT: f32 = 23.0;
+
+impl Tree {
+    /// Draws the tree.
+    pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        if self.version != Some(scene.document.version()) {
+            self.rows = rows(scene.document.plan(), &self.folded);
+            self.version = Some(scene.document.version());
+        }
+        let problems = worst(scene);
+        let mut toggled = None;
+        ui.spacing_mut().item_spacing.y = 1.0;
+        ScrollArea::vertical().id_salt("tree").auto_shrink(false).show_rows(ui, HEIGHT, self.rows.len(), |ui, shown| {
+            for row in self.rows.get(shown).unwrap_or_default() {
+                if draw(ui, row, scene, &problems, &self.folded, queue) {
+                    toggled.clone_from(&row.folds);
+                }
+            }
+        });
+        if let Some(fold) = toggled {
+            if !self.folded.remove(&fold) {
+                self.folded.insert(fold);
+            }
+            self.version = None;
+        }
+    }
+}
+
+/// The worst problem of each subject.
+fn worst(scene: &Scene<'_>) -> BTreeMap<String, bool> {
+    let mut worst = BTreeMap::new();
+    for problem in scene.problems() {
+        if let Some(id) = &problem.subject {
+            *worst.entry(id.to_string()).or_insert(false) |= Problem::is_error(problem);
+        }
+    }
+    worst
+}
+
+fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
+    let mut builder = Builder { rows: Vec::new(), folded };
+    builder.group("Main plan", 0, |b| {
+        for stage in &plan.stages {
+            b.stage(stage, 1);
+        }
+    });
+    if !plan.emergency_plans.is_empty() {
+        builder.group("Emergency plans", 0, |b| b.emergency_plans(plan));
+    }
+    if !plan.variables.is_empty() {
+        builder.group("Variables", 0, |b| b.variables(plan));
+    }
+    if !plan.fixes.is_empty() {
+        builder.group("Fixes", 0, |b| b.fixes(plan));
+    }
+    if !plan.runways.is_empty() {
+        builder.group("Runways", 0, |b| b.runways(plan));
+    }
+    builder.rows
+}
+
+struct Builder<'a> {
+    rows: Vec<Row>,
+    folded: &'a BTreeSet<String>,
+}
+
+impl Builder<'_> {
+    fn group(&mut self, name: &str, depth: usize, children: impl FnOnce(&mut Self)) {
+        self.push(Row {
+            depth,
+            tag: "",
+            text: name.into(),
+            detail: String::new(),
+            selection: None,
+            folds: Some(name.into()),
+        });
+        if !self.folded.contains(name) {
+            children(self);
+        }
+    }
+
+    fn push(&mut self, row: Row) {
+        self.rows.push(row);
+    }
+
+    fn item(&mut self, depth: usize, tag: &'static str, text: &str, detail: String, selection: Selection) {
+        self.push(Row { depth, tag, text: text.into(), detail, selection: Some(selection), folds: None });
+    }
+
+    fn stage(&mut self, stage: &Stage, depth: usize) {
+        let fold = format!("stage {}", stage.id);
+        let hidden = self.folded.contains(&fold);
+        self.push(Row {
+            depth,
+            tag: stage_tag(stage.kind),
+            text: title(&stage.name, stage.id.as_str()),
+            detail: emergency(&stage.emergency),
+            selection: Some(Selection::Stage(stage.id.clone())),
+            folds: (!stage.legs.is_empty()).then_some(fold),
+        });
+        if !hidden {
+            self.legs(&stage.legs, depth + 1);
+        }
+    }
+
+    fn legs(&mut self, legs: &[Leg], depth: usize) {
+        for leg in legs {
+            self.leg(leg, depth);
+        }
+    }
+
+    fn leg(&mut self, leg: &Leg, depth: usize) {
+        let fold = format!("leg {}", leg.id);
+        let hidden = self.folded.contains(&fold);
+        self.push(Row {
+            depth,
+            tag: leg_tag(&leg.kind),
+            text: title(&leg.name, leg.id.as_str()),
+            detail: [leg_detail(&leg.kind), emergency(&leg.emergency)].join(" ").trim().to_owned(),
+            selection: Some(Selection::Leg(leg.id.clone())),
+            folds: (!leg.body().is_empty()).then_some(fold),
+        });
+        if hidden {
+            return;
+        }
+        self.legs(leg.body(), depth + 1);
+        if let LegKind::Intersection { branches, default, .. } = &leg.kind {
+            for branch in branches {
+                let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
+                let is_default = default.as_ref() == Some(&branch.id);
+                let detail = if is_default { format!("{to}, default") } else { to };
+                self.item(depth + 1, "▸", &title(&branch.label, branch.id.as_str()), detail, Selection::Leg(leg.id.clone()));
+            }
+        }
+    }
+
+    fn emergency_plans(&mut self, plan: &FlightPlan) {
+        for emergency in &plan.emergency_plans {
+            let fold = format!("emergency {}", emergency.id);
+            let hidden = self.folded.contains(&fold);
+            self.push(Row {
+                depth: 1,
+                tag: "ALT",
+                text: title(&emergency.name, emergency.id.as_str()),
+                detail: format!("→ {}", emergency.runway),
+                selection: Some(Selection::Emergency(emergency.id.clone())),
+                folds: Some(fold),
+            });
+            for stage in emergency.stages.iter().filter(|_| !hidden) {
+                self.stage(stage, 2);
+            }
+        }
+    }
+
+    fn variables(&mut self, plan: &FlightPlan) {
+        for v in &plan.variables {
+            let value = crate::state::log::variable(&v.initial);
+            let detail = format!("{value} {}", v.unit).trim().to_owned();
+            self.item(1, "VAR", v.name.as_str(), detail, Selection::Variable(v.name.clone()));
+        }
+    }
+
+    fn fixes(&mut self, plan: &FlightPlan) {
+        for fix in &plan.fixes {
+            self.item(1, "FIX", fix.id.as_str(), fix.name.clone(), Selection::Fix(fix.id.clone()));
+        }
+    }
+
+    fn runways(&mut self, plan: &FlightPlan) {
+        for runway in &plan.runways {
+            let detail = crate::units::bearing(runway.heading_deg);
+            self.item(1, "RWY", runway.id.as_str(), detail, Selection::Runway(runway.id.clone()));
+        }
+    }
+}
+
+fn title(name: &str, id: &str) -> String {
+    if name.is_empty() { id.to_owned() } else { name.to_owned() }
+}
+
+fn emergency(choice: &flight_plan::EmergencyChoice) -> String {
+    choice.by_cause.first().map(|(_, id)| format!("⚑ {id}")).unwrap_or_default()
+}
+
+fn stage_tag(kind: StageKind) -> &'static str {
+    match kind {
+        StageKind::TakeOff => "T/O",
+        StageKind::Departure => "DEP",
+        StageKind::EnRoute => "ENR",
+        StageKind::Mission => "MIS",
+        StageKind::Arrival => "ARR",
+        StageKind::Approach => "APP",
+        StageKind::Land => "LND",
+    }
+}
+
+/// Short tag of a leg's kind.
+pub fn leg_tag(kind: &LegKind) -> &'static str {
+    match kind {
+        LegKind::If(_) => "IF",
+        LegKind::Tf(_) => "TF",
+        LegKind::Df { .. } => "DF",
+        LegKind::Rf { .. } => "RF",
+        LegKind::Hf(_) => "HF",
+        LegKind::Ha(_) => "HA",
+        LegKind::Iterative { .. } => "LOOP",
+        LegKind::Intersection { .. } => "FORK",
+        LegKind::Scan(_) => "SCAN",
+        LegKind::Orbit { .. } => "ORB",
+    }
+}
+
+fn leg_detail(kind: &LegKind) -> String {
+    use flight_plan::Value;
+    let LegKind::Iterative { count, until, .. } = kind else { return String::new() };
+    let count = match count {
+        Some(Value::Constant(n)) => format!("×{n:.0}"),
+        Some(Value::Expression(source)) => format!("×({source})"),
+        None => String::new(),
+    };
+    let until = until.as_ref().map(|u| format!(" until {u}")).unwrap_or_default();
+    format!("{count}{until}").trim().to_owned()
+}
+
+/// Draws a row; true if it is to be folded or unfolded.
+fn draw(
+    ui: &mut Ui,
+    row: &Row,
+    scene: &Scene<'_>,
+    problems: &BTreeMap<String, bool>,
+    folded: &BTreeSet<String>,
+    queue: &mut Queue,
+) -> bool {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let selected = row.selection.as_ref().is_some_and(|s| scene.is_selected(s));
+    let name = format!("{} {}", row.tag, row.text).trim().to_owned();
+    response.widget_info(|| egui::WidgetInfo::selected(Role::TreeItem, true, selected, &name));
+    if ui.is_rect_visible(rect) {
+        let p = theme::of(ui);
+        let active = matches!(&row.selection, Some(Selection::Leg(id)) if scene.vehicle.current_leg() == Some(id));
+        background(ui, rect, selected, response.hovered(), p);
+        contents(ui, rect, row, active, folded, problems, p);
+    }
+    let on_triangle = response.interact_pointer_pos().is_some_and(|at| at.x < indent(rect, row) + 14.0);
+    if response.clicked() && row.selection.is_some() && !(row.folds.is_some() && on_triangle) {
+        queue.view(ViewCommand::Select(row.selection.clone()));
+        return false;
+    }
+    if response.double_clicked()
+        && let Some(selection) = row.selection.clone()
+    {
+        queue.view(ViewCommand::JumpTo(selection));
+    }
+    response.clicked() && row.folds.is_some()
+}
+
+fn indent(rect: Rect, row: &Row) -> f32 {
+    rect.left() + 2.0 + row.depth as f32 * 13.0
+}
+
+fn background(ui: &Ui, rect: Rect, selected: bool, hovered: bool, p: &Palette) {
+    if selected {
+        ui.painter().rect_filled(rect, 4.0, ui.visuals().selection.bg_fill);
+    } else if hovered {
+        ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
+    }
+}
+
+fn contents(
+    ui: &Ui,
+    rect: Rect,
+    row: &Row,
+    active: bool,
+    folded: &BTreeSet<String>,
+    problems: &BTreeMap<String, bool>,
+    p: &Palette,
+) {
+    let painter = ui.painter_at(rect);
+    let y = rect.center().y;
+    let mut x = indent(rect, row);
+    if let Some(fold) = &row.folds {
+        let symbol = if folded.contains(fold) { "▸" } else { "▾" };
+        painter.text(pos2(x + 5.0, y), Align2::CENTER_CENTER, symbol, FontId::proportional(12.0), p.weak);
+    }
+    x += 14.0;
+    if !row.tag.is_empty() {
+        x = tag(&painter, pos2(x, y), row.tag, active, p);
+    }
+    let colour = if active { p.active } else { p.text };
+    let size = if row.tag.is_empty() { 12.0 } else { 13.0 };
+    let text = painter.layout_no_wrap(row.text.clone(), FontId::proportional(size), colour);
+    let end = x + text.size().x;
+    painter.galley(pos2(x, y - text.size().y / 2.0), text, colour);
+    let mut right = rect.right() - 6.0;
+    let subject = row.selection.as_ref().map(|s| s.id().as_str());
+    if let Some(error) = subject.and_then(|id| problems.get(id)) {
+        let (symbol, colour) = if *error { ("✖", p.warning) } else { ("⚠", p.caution) };
+        painter.text(pos2(right, y), Align2::RIGHT_CENTER, symbol, FontId::proportional(12.0), colour);
+        right -= 18.0;
+    }
+    let detail = painter.layout_no_wrap(row.detail.clone(), FontId::proportional(11.0), p.weak);
+    let room = right - end - 8.0;
+    if room > 24.0 {
+        let at = (right - detail.size().x).max(end + 8.0);
+        let clip = Rect::from_min_max(pos2(end + 8.0, rect.top()), pos2(right, rect.bottom()));
+        painter.with_clip_rect(clip).galley(pos2(at, y - detail.size().y / 2.0), detail, p.weak);
+    }
+}
+
+/// A small box with the kind of a row; filled for the one that is being flown. Returns where the text starts.
+fn tag(painter: &egui::Painter, at: egui::Pos2, text: &str, active: bool, p: &Palette) -> f32 {
+    let (fill, colour) = if active { (p.active, p.halo) } else { (p.line.gamma_multiply(0.7), p.weak) };
+    let galley = painter.layout_no_wrap(text.into(), FontId::monospace(9.5), colour);
+    let width = (galley.size().x + 8.0).max(30.0);
+    let rect = Rect::from_min_size(pos2(at.x, at.y - 8.0), vec2(width, 16.0));
+    painter.rect(rect, 3.0, fill, Stroke::NONE, egui::StrokeKind::Inside);
+    painter.galley(rect.center() - galley.size() / 2.0, galley, colour);
+    rect.right() + 6.0
+}

@@ -1,0 +1,163 @@
+//! What happened, in sentences.
+
+use flight_plan::VariableValue;
+use std::collections::VecDeque;
+use usal::contract::{GatewayEvent, PlanEvent, Severity};
+
+/// How much a line matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// For information.
+    Info,
+    /// Needs attention.
+    Caution,
+    /// Needs action.
+    Warning,
+}
+
+impl From<Severity> for Level {
+    fn from(severity: Severity) -> Self {
+        match severity {
+            Severity::Advisory => Self::Info,
+            Severity::Caution => Self::Caution,
+            Severity::Warning => Self::Warning,
+        }
+    }
+}
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// When, seconds of the window's clock.
+    pub time_s: f64,
+    /// How much it matters.
+    pub level: Level,
+    /// Who says so.
+    pub source: &'static str,
+    /// What happened.
+    pub text: String,
+    /// How often, without a break.
+    pub times: u32,
+}
+
+/// The latest lines, newest last.
+#[derive(Debug, Default)]
+pub struct Log {
+    lines: VecDeque<Line>,
+}
+
+/// Most lines kept.
+const CAPACITY: usize = 2000;
+/// Longest text kept of one line, characters.
+const LONGEST: usize = 400;
+
+impl Log {
+    /// Adds a line; one like the last only counts it up.
+    pub fn add(&mut self, time_s: f64, level: Level, source: &'static str, text: &str) {
+        let text: String = text.chars().take(LONGEST).collect();
+        if let Some(last) = self.lines.back_mut().filter(|l| l.text == text && l.source == source) {
+            last.times = last.times.saturating_add(1);
+            last.time_s = time_s;
+            return;
+        }
+        if self.lines.len() >= CAPACITY {
+            self.lines.pop_front();
+        }
+        self.lines.push_back(Line { time_s, level, source, text, times: 1 });
+    }
+    /// How many lines there are.
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+    /// Nothing happened yet.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+    /// A line, counted from the newest.
+    pub fn from_newest(&self, index: usize) -> Option<&Line> {
+        self.lines.get(self.lines.len().checked_sub(index + 1)?)
+    }
+}
+
+/// A plan event as a sentence.
+pub fn plan_event(event: &PlanEvent) -> (Level, String) {
+    let info = |text: String| (Level::Info, text);
+    match event {
+        PlanEvent::LegEntered { place } => info(format!("Leg {} of stage {}", place.leg, place.stage)),
+        PlanEvent::IterationFinished { leg, finished, of } => {
+            info(format!("Loop {leg}: pass {finished}{} done", of.map(|n| format!(" of {n}")).unwrap_or_default()))
+        }
+        PlanEvent::DecisionRequested(d) => {
+            (Level::Caution, format!("Decision asked for at {}: {} choices", d.leg, d.options.len()))
+        }
+        PlanEvent::DecisionTaken { leg, branch, by } => info(format!("{leg}: branch {branch}, decided by {by}")),
+        PlanEvent::VariableChanged { name, value } => info(format!("{name} is now {}", variable(value))),
+        PlanEvent::PatternRefused { leg, reason } => (Level::Caution, format!("{leg} keeps its old pattern: {reason}")),
+        PlanEvent::PlanActivated { hash, revision } => {
+            info(format!("Plan {} is active, revision {revision}", short_hash(hash)))
+        }
+        PlanEvent::EmergencyStarted { cause, plan, .. } => {
+            (Level::Warning, format!("Emergency plan {plan} is being flown ({cause:?})"))
+        }
+        PlanEvent::EmergencyUnanswered { cause } => {
+            (Level::Warning, format!("No emergency plan for {cause:?}: Safe mode decides"))
+        }
+        PlanEvent::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
+        PlanEvent::WaypointsRejected { leg, reason } => {
+            let leg = leg.as_ref().map(|l| format!(" of {l}")).unwrap_or_default();
+            (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
+        }
+    }
+}
+
+/// A gateway event as a sentence; `None` for what would only fill the log.
+pub fn gateway_event(event: &GatewayEvent) -> Option<(Level, String)> {
+    match event {
+        GatewayEvent::StateChanged { from, to, cause } => {
+            Some((Level::Info, format!("Gateway: {from:?} to {to:?}, {cause}")))
+        }
+        GatewayEvent::Progress { .. } => None,
+        GatewayEvent::BufferLow { waypoints, seconds } => {
+            Some((Level::Caution, format!("Buffer low: {waypoints} waypoints, {seconds:.0} s")))
+        }
+        GatewayEvent::AlarmRaised(alarm) => Some((alarm.severity.into(), format!("{}: {}", alarm.id, alarm.advice))),
+        GatewayEvent::AlarmCleared { id } => Some((Level::Info, format!("{id}: cleared"))),
+    }
+}
+
+/// A variable's value as text.
+pub fn variable(value: &VariableValue) -> String {
+    match value {
+        VariableValue::Bool(b) => b.to_string(),
+        VariableValue::Number(n) => n.to_string(),
+        VariableValue::Text(t) => t.clone(),
+        VariableValue::Position(p) => crate::units::position(*p),
+    }
+}
+
+/// Enough of a hash to tell plans apart.
+pub fn short_hash(hash: &str) -> String {
+    hash.chars().take(7).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flood_of_lines_stays_bounded_and_repetitions_are_counted() {
+        let mut log = Log::default();
+        for i in 0..5000 {
+            log.add(0.0, Level::Info, "plan", &format!("line {i}"));
+        }
+        assert_eq!(log.len(), CAPACITY);
+        for _ in 0..3 {
+            log.add(1.0, Level::Info, "plan", "again");
+        }
+        assert_eq!(log.from_newest(0).map(|l| (l.text.as_str(), l.times)), Some(("again", 3)));
+        assert_eq!(log.from_newest(1).map(|l| l.text.as_str()), Some("line 4999"));
+        assert_eq!(log.from_newest(CAPACITY), None);
+        log.add(1.0, Level::Info, "plan", &"x".repeat(10_000));
+        assert_eq!(log.from_newest(0).map(|l| l.text.len()), Some(LONGEST));
+    }
+}

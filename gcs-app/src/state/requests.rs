@@ -1,0 +1,110 @@
+//! Commands that were sent, and what became of them. An answer belongs to its own request alone: a
+//! late one is never taken for a newer one.
+
+use std::collections::VecDeque;
+
+/// Correlates a request with its answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Ticket(pub u64);
+
+/// What became of a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// No answer yet.
+    Pending,
+    /// Done.
+    Accepted,
+    /// Not done, and why.
+    Refused(String),
+}
+
+/// A command that was sent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Its number.
+    pub ticket: Ticket,
+    /// What was asked, for people.
+    pub label: String,
+    /// When, seconds of the window's clock.
+    pub sent_s: f64,
+    /// When it was answered.
+    pub settled_s: Option<f64>,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+/// The latest requests, newest last.
+#[derive(Debug, Default)]
+pub struct Requests {
+    count: u64,
+    list: VecDeque<Request>,
+}
+
+/// Most requests remembered.
+const CAPACITY: usize = 64;
+
+impl Requests {
+    /// Notes a request that is being sent now.
+    pub fn open(&mut self, label: &str, now_s: f64) -> Ticket {
+        self.count += 1;
+        let ticket = Ticket(self.count);
+        if self.list.len() >= CAPACITY {
+            self.list.pop_front();
+        }
+        self.list.push_back(Request {
+            ticket,
+            label: label.into(),
+            sent_s: now_s,
+            settled_s: None,
+            outcome: Outcome::Pending,
+        });
+        ticket
+    }
+
+    /// Notes an answer; its request's label if it was still waited for.
+    pub fn settle(&mut self, ticket: Ticket, outcome: Outcome, now_s: f64) -> Option<String> {
+        let request = self.list.iter_mut().find(|r| r.ticket == ticket && r.outcome == Outcome::Pending)?;
+        request.outcome = outcome;
+        request.settled_s = Some(now_s);
+        Some(request.label.clone())
+    }
+
+    /// The newest request.
+    pub fn last(&self) -> Option<&Request> {
+        self.list.back()
+    }
+    /// All that are remembered, newest first.
+    pub fn newest_first(&self) -> impl Iterator<Item = &Request> {
+        self.list.iter().rev()
+    }
+    /// Something with this label is waiting for its answer.
+    pub fn is_pending(&self, label: &str) -> bool {
+        self.list.iter().any(|r| r.label == label && r.outcome == Outcome::Pending)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_answer_is_not_taken_for_a_new_one() {
+        let mut requests = Requests::default();
+        let first = requests.open("Hold", 1.0);
+        let second = requests.open("Hold", 2.0);
+        assert_eq!(requests.settle(first, Outcome::Refused("on the ground".into()), 3.0).as_deref(), Some("Hold"));
+        assert_eq!(requests.last().map(|r| &r.outcome), Some(&Outcome::Pending));
+        assert_eq!(requests.settle(first, Outcome::Accepted, 4.0), None, "answered twice");
+        assert!(requests.settle(second, Outcome::Accepted, 5.0).is_some());
+        assert!(!requests.is_pending("Hold"));
+    }
+
+    #[test]
+    fn requests_without_answers_do_not_pile_up() {
+        let mut requests = Requests::default();
+        for _ in 0..1000 {
+            requests.open("Hold", 0.0);
+        }
+        assert_eq!(requests.newest_first().count(), CAPACITY);
+    }
+}

@@ -1,0 +1,177 @@
+//! Colours and spacing, light and dark. Red is warning, amber is caution, and neither is used for
+//! anything else; what colour says, shape or line style says too.
+
+use egui::{Color32, CornerRadius, Margin, Shadow, Stroke, TextStyle, Theme, Ui, Visuals, vec2};
+
+/// The colours that carry meaning, for one theme.
+#[derive(Debug, Clone, Copy)]
+pub struct Palette {
+    /// Panels.
+    pub panel: Color32,
+    /// Cards on panels.
+    pub card: Color32,
+    /// Thin lines between things.
+    pub line: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Secondary text.
+    pub weak: Color32,
+    /// What can be acted on, and the planned path.
+    pub accent: Color32,
+    /// Text on the accent colour.
+    pub on_accent: Color32,
+    /// The leg being flown and the guidance towards it.
+    pub active: Color32,
+    /// What has been flown.
+    pub flown: Color32,
+    /// Engaged, good.
+    pub good: Color32,
+    /// Cautions, nothing else.
+    pub caution: Color32,
+    /// Warnings, nothing else.
+    pub warning: Color32,
+    /// Emergency plans and other contingencies.
+    pub contingency: Color32,
+    /// Around lines and texts on the map.
+    pub halo: Color32,
+    /// Water of the basemap.
+    pub water: Color32,
+    /// Land of the basemap.
+    pub land: Color32,
+    /// Borders of the basemap.
+    pub border: Color32,
+}
+
+const fn rgb(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+const DARK: Palette = Palette {
+    panel: rgb(0x14191f),
+    card: rgb(0x1d242c),
+    line: rgb(0x2d3742),
+    text: rgb(0xe2e8ee),
+    weak: rgb(0x95a3b1),
+    accent: rgb(0x62c4f5),
+    on_accent: rgb(0x07222f),
+    active: rgb(0xff5fdc),
+    flown: rgb(0xa7adb5),
+    good: rgb(0x5fd38a),
+    caution: rgb(0xffbf3c),
+    warning: rgb(0xff6257),
+    contingency: rgb(0xb9bfca),
+    halo: rgb(0x0c1116),
+    water: rgb(0x16293a),
+    land: rgb(0x27302b),
+    border: rgb(0x4b584f),
+};
+
+const LIGHT: Palette = Palette {
+    panel: rgb(0xf3f5f7),
+    card: rgb(0xffffff),
+    line: rgb(0xd3dae1),
+    text: rgb(0x17202a),
+    weak: rgb(0x566473),
+    accent: rgb(0x0069a6),
+    on_accent: rgb(0xffffff),
+    active: rgb(0xc0008f),
+    flown: rgb(0x6c737b),
+    good: rgb(0x0c7a3c),
+    caution: rgb(0x9a5b00),
+    warning: rgb(0xc21b12),
+    contingency: rgb(0x59616d),
+    halo: rgb(0xffffff),
+    water: rgb(0xc6dceb),
+    land: rgb(0xedeee4),
+    border: rgb(0xa8aea2),
+};
+
+/// The colours of a theme.
+pub fn palette(dark: bool) -> &'static Palette {
+    if dark { &DARK } else { &LIGHT }
+}
+
+/// The colours in use in a part of the window.
+pub fn of(ui: &Ui) -> &'static Palette {
+    palette(ui.visuals().dark_mode)
+}
+
+/// Sets fonts, spacing and both themes.
+pub fn install(ctx: &egui::Context) {
+    ctx.set_visuals_of(Theme::Dark, visuals(Visuals::dark(), &DARK));
+    ctx.set_visuals_of(Theme::Light, visuals(Visuals::light(), &LIGHT));
+    ctx.all_styles_mut(|style| {
+        style.spacing.item_spacing = vec2(8.0, 6.0);
+        style.spacing.button_padding = vec2(10.0, 4.0);
+        style.spacing.interact_size = vec2(36.0, 24.0);
+        style.spacing.indent = 16.0;
+        style.spacing.menu_margin = Margin::same(8);
+        for (kind, size) in [
+            (TextStyle::Small, 11.5),
+            (TextStyle::Body, 13.5),
+            (TextStyle::Button, 13.5),
+            (TextStyle::Monospace, 12.5),
+            (TextStyle::Heading, 17.0),
+        ] {
+            if let Some(font) = style.text_styles.get_mut(&kind) {
+                font.size = size;
+            }
+        }
+    });
+}
+
+fn visuals(mut v: Visuals, p: &Palette) -> Visuals {
+    let radius = CornerRadius::same(5);
+    v.panel_fill = p.panel;
+    v.window_fill = p.card;
+    v.window_stroke = Stroke::new(1.0, p.line);
+    v.window_corner_radius = CornerRadius::same(8);
+    v.menu_corner_radius = CornerRadius::same(6);
+    v.window_shadow = Shadow { offset: [0, 4], blur: 16, spread: 0, color: Color32::from_black_alpha(70) };
+    v.popup_shadow = v.window_shadow;
+    v.extreme_bg_color = if v.dark_mode { rgb(0x0e1317) } else { rgb(0xe7ebef) };
+    v.faint_bg_color = p.card;
+    v.hyperlink_color = p.accent;
+    v.warn_fg_color = p.caution;
+    v.error_fg_color = p.warning;
+    v.weak_text_color = Some(p.weak);
+    v.selection.bg_fill = p.accent.gamma_multiply(if v.dark_mode { 0.32 } else { 0.22 });
+    v.selection.stroke = Stroke::new(1.0, p.text);
+    v.slider_trailing_fill = true;
+    let base = if v.dark_mode { 0x2a333d } else { 0xe2e8ed };
+    let hover = if v.dark_mode { 0x36424e } else { 0xd3dde5 };
+    let press = if v.dark_mode { 0x425160 } else { 0xc3d1db };
+    let w = &mut v.widgets;
+    for (state, fill, text) in [
+        (&mut w.noninteractive, rgb(base), p.text),
+        (&mut w.inactive, rgb(base), p.text),
+        (&mut w.hovered, rgb(hover), p.text),
+        (&mut w.active, rgb(press), p.text),
+        (&mut w.open, rgb(hover), p.text),
+    ] {
+        state.bg_fill = fill;
+        state.weak_bg_fill = fill;
+        state.fg_stroke = Stroke::new(1.2, text);
+        state.bg_stroke = Stroke::NONE;
+        state.corner_radius = radius;
+        state.expansion = 0.0;
+    }
+    w.noninteractive.bg_stroke = Stroke::new(1.0, p.line);
+    w.hovered.bg_stroke = Stroke::new(1.0, p.weak.gamma_multiply(0.6));
+    v
+}
+
+/// A card: a filled, rounded box on a panel.
+pub fn card(ui: &Ui) -> egui::Frame {
+    let p = of(ui);
+    egui::Frame::new()
+        .fill(p.card)
+        .stroke(Stroke::new(1.0, p.line))
+        .corner_radius(CornerRadius::same(6))
+        .inner_margin(Margin::symmetric(10, 8))
+}
+
+/// The margin of a whole panel.
+pub fn panel(ui: &Ui) -> egui::Frame {
+    egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::symmetric(10, 8))
+}
