@@ -16,9 +16,7 @@ pub struct Field {
 impl Field {
     /// Position `ahead_m` metres along the runway's direction from the threshold and `right_m` to its right.
     pub fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
-        self.threshold
-            .destination(self.heading_deg, ahead_m)
-            .destination(self.heading_deg + 90.0, right_m)
+        self.threshold.destination(self.heading_deg, ahead_m).destination(self.heading_deg + 90.0, right_m)
     }
 
     /// `lat="…" lon="…"` of such a position.

@@ -4,12 +4,12 @@ use crate::binaries::Program;
 use crate::plans::Field;
 use anyhow::{Context, bail, ensure};
 use geometry::LatLon;
-use std::{path::Path, sync::Arc, time::Duration};
+use std::{path::Path, time::Duration};
 use usal::{
     Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber,
     contract::{
-        Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus,
-        Position, ProposalReport, Propose, TimedGatewayEvent,
+        Attitude, ClockTick, Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation,
+        PlanEvent, PlanStatus, Position, ProposalReport, Propose, TimedGatewayEvent,
     },
     topics::{fp_manager, gateway},
 };
@@ -58,42 +58,55 @@ impl Seen {
 
     /// It took off and stands again.
     pub fn landed(&self) -> bool {
-        let flown = self.gateway.iter().skip_while(
-            |e| !matches!(e, GatewayEvent::StateChanged { to: GatewayState::Nav | GatewayState::TakeOff, .. }),
-        );
+        let flown = self.gateway.iter().skip_while(|e| {
+            !matches!(e, GatewayEvent::StateChanged { to: GatewayState::Nav | GatewayState::TakeOff, .. })
+        });
         flown.into_iter().any(|e| matches!(e, GatewayEvent::StateChanged { to: GatewayState::Stop, .. }))
     }
 }
 
 /// Simulator, gateway, FP Manager, and the test as a ground station and clock participant.
 pub struct Rig {
-    /// The simulator.
-    pub simulator: Program,
+    /// The simulator, unless the autopilot is somebody else's.
+    pub simulator: Option<Program>,
     /// The gateway's process.
     pub gateway: Program,
     /// The FP Manager's process.
     pub fp_manager: Program,
     /// What happened.
     pub seen: Seen,
+    /// Where it flies.
+    pub field: Field,
     endpoint: String,
     state: tempfile::TempDir,
+    pace: Pace,
     ground: Option<Ground>,
+}
+
+/// How time passes.
+#[derive(Clone, Copy, PartialEq)]
+enum Pace {
+    /// Tick by tick, when the test says so.
+    Lockstep,
+    /// By itself: an autopilot that knows nothing of us.
+    Free,
 }
 
 /// The test's side of the contract.
 struct Ground {
     session: Session,
-    clock: Participant,
+    clock: Option<Participant>,
     plan_events: EventSubscriber<FpManagerEvent>,
     gateway_events: EventSubscriber<TimedGatewayEvent>,
     status: VariableSubscriber<PlanStatus>,
     state: VariableSubscriber<GatewayStatus>,
     position: VariableSubscriber<Position>,
     navigation: VariableSubscriber<Navigation>,
+    attitude: VariableSubscriber<Attitude>,
 }
 
 impl Ground {
-    async fn open(endpoint: &str) -> anyhow::Result<Self> {
+    async fn open(endpoint: &str, pace: Pace) -> anyhow::Result<Self> {
         let session = Session::open(Config::client(VEHICLE, endpoint)).await?;
         Ok(Self {
             plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
@@ -102,9 +115,21 @@ impl Ground {
             state: session.follow(gateway::STATE)?,
             position: session.follow(gateway::POSITION)?,
             navigation: session.follow(gateway::NAVIGATION)?,
-            clock: Participant::join(&session, "test")?,
+            attitude: session.follow(gateway::ATTITUDE)?,
+            clock: match pace {
+                Pace::Lockstep => Some(Participant::join(&session, "test")?),
+                Pace::Free => None,
+            },
             session,
         })
+    }
+
+    /// Waits until time has gone on, and gives it; in lockstep with the tick to be acknowledged.
+    async fn next(&mut self) -> Option<(f64, Option<ClockTick>)> {
+        match &mut self.clock {
+            Some(clock) => clock.next().await.map(|tick| (tick.time_s, Some(tick))),
+            None => self.position.changed().await.map(|position| (position.stamped.time_s, None)),
+        }
     }
 }
 
@@ -115,19 +140,37 @@ impl Rig {
         arguments.extend(simulator_arguments);
         let simulator = Program::start("legwork-sim", &arguments)?;
         let autopilot = format!("tcp:{}", simulator.wait_for("listening on tcp ")?);
+        Self::assemble(Some(simulator), &autopilot, Pace::Lockstep).await
+    }
+
+    /// Starts the agent on somebody else's autopilot (`tcp:HOST:PORT`, …), around the place where it stands.
+    pub async fn attach(autopilot: &str) -> anyhow::Result<Self> {
+        let mut rig = Self::assemble(None, autopilot, Pace::Free).await?;
+        rig.until("a position on the ground", 120.0, |rig, _| {
+            rig.attitude().is_some() && rig.position().is_some_and(|p| p.on_ground)
+        })
+        .await?;
+        let (position, attitude) = (rig.position().context("position")?, rig.attitude().context("attitude")?);
+        rig.field = Field {
+            threshold: position.position,
+            elevation_m: position.altitude_amsl_m,
+            heading_deg: attitude.heading_deg,
+        };
+        Ok(rig)
+    }
+
+    async fn assemble(simulator: Option<Program>, autopilot: &str, pace: Pace) -> anyhow::Result<Self> {
         let state = tempfile::tempdir()?;
-        let folder = |name: &str| state.path().join(name).display().to_string();
-        let gateway = Program::start(
-            "onboard-agent",
-            &[
-                "gateway", "--vehicle", VEHICLE, "--listen", "tcp/127.0.0.1:0", "--simulated", "--autopilot",
-                &autopilot, "--state-dir", &folder("gateway"),
-            ],
-        )?;
+        let folder = state.path().join("gateway").display().to_string();
+        let mut arguments = vec!["gateway", "--vehicle", VEHICLE, "--listen", "tcp/127.0.0.1:0"];
+        arguments.extend(["--autopilot", autopilot, "--state-dir", &folder]);
+        arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
+        let gateway = Program::start("onboard-agent", &arguments)?;
         let endpoint = gateway.wait_for("listening on ")?;
-        let fp_manager = start_fp_manager(&endpoint, state.path())?;
-        let ground = Some(Ground::open(&endpoint).await?);
-        Ok(Self { simulator, gateway, fp_manager, seen: Seen::default(), endpoint, state, ground })
+        let fp_manager = start_fp_manager(&endpoint, state.path(), pace)?;
+        let ground = Some(Ground::open(&endpoint, pace).await?);
+        let seen = Seen::default();
+        Ok(Self { simulator, gateway, fp_manager, seen, field: FIELD, endpoint, state, pace, ground })
     }
 
     /// Puts a plan forward and makes it the active one.
@@ -156,7 +199,8 @@ impl Rig {
             rig.gateway_status().is_some_and(|s| s.state == GatewayState::Stop)
         })
         .await?;
-        self.load(&FIELD.mission(1800.0)).await?;
+        let mission = self.field.mission(1800.0);
+        self.load(&mission).await?;
         self.command(Command::Start).await?;
         self.until("airborne", 120.0, |rig, _| rig.position().is_some_and(|p| !p.on_ground)).await
     }
@@ -171,15 +215,19 @@ impl Rig {
         let mut ends_at = None;
         loop {
             let ground = self.ground.as_mut().context("no ground station")?;
-            let tick = tokio::time::timeout(PATIENCE, ground.clock.next()).await;
-            let Some(tick) = tick.with_context(|| format!("time stands still; waiting for: {what}"))? else {
+            let next = tokio::time::timeout(PATIENCE, ground.next()).await;
+            let Some((time_s, tick)) =
+                next.with_context(|| format!("time stands still; waiting for: {what}"))?
+            else {
                 bail!("the session is closed")
             };
-            self.seen.time_s = tick.time_s;
+            self.seen.time_s = time_s;
             self.drain();
             let done = holds(self, &self.seen);
-            let late = tick.time_s > *ends_at.get_or_insert(tick.time_s + limit_s);
-            self.ground()?.clock.acknowledge(tick);
+            let late = time_s > *ends_at.get_or_insert(time_s + limit_s);
+            if let (Some(clock), Some(tick)) = (&self.ground()?.clock, tick) {
+                clock.acknowledge(tick);
+            }
             if done {
                 return Ok(());
             }
@@ -213,13 +261,13 @@ impl Rig {
     /// A ground station comes (back).
     pub async fn come_back(&mut self) -> anyhow::Result<()> {
         self.seen = Seen::default();
-        self.ground = Some(Ground::open(&self.endpoint).await?);
+        self.ground = Some(Ground::open(&self.endpoint, self.pace).await?);
         Ok(())
     }
 
     /// Starts the FP Manager anew over the state it left.
     pub fn restart_fp_manager(&mut self) -> anyhow::Result<()> {
-        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path())?;
+        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path(), self.pace)?;
         Ok(())
     }
 
@@ -242,6 +290,11 @@ impl Rig {
         Some(self.ground.as_ref()?.position.latest()?.stamped.value)
     }
 
+    /// How it lies in the air.
+    pub fn attitude(&self) -> Option<Attitude> {
+        Some(self.ground.as_ref()?.attitude.latest()?.stamped.value)
+    }
+
     /// The buffer.
     pub fn navigation(&self) -> Option<Navigation> {
         Some(self.ground.as_ref()?.navigation.latest()?.stamped.value.clone())
@@ -253,7 +306,11 @@ impl Rig {
             "at {:.1} s\nlegs: {:?}\ngateway: {:?}\nstate: {:?}\nplan: {:?}\nnavigation: {:?}",
             self.seen.time_s,
             self.seen.legs(),
-            self.seen.gateway.iter().filter(|e| !matches!(e, GatewayEvent::Progress { .. })).collect::<Vec<_>>(),
+            self.seen
+                .gateway
+                .iter()
+                .filter(|e| !matches!(e, GatewayEvent::Progress { .. }))
+                .collect::<Vec<_>>(),
             self.gateway_status(),
             self.plan_status(),
             self.navigation(),
@@ -263,18 +320,18 @@ impl Rig {
     /// It landed on the runway.
     pub fn expect_on_runway(&self) -> anyhow::Result<()> {
         let position = self.position().context("no position")?;
-        let off_m = position.position.distance_m(FIELD.threshold);
+        let off_m = position.position.distance_m(self.field.threshold);
         ensure!(off_m < 600.0, "it stands {off_m:.0} m from the threshold\n{}", self.story());
         Ok(())
     }
 }
 
-fn start_fp_manager(endpoint: &str, state: &Path) -> anyhow::Result<Program> {
+fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace) -> anyhow::Result<Program> {
     let folder = state.join("fp-manager").display().to_string();
-    Program::start(
-        "onboard-agent",
-        &["fp-manager", "--vehicle", VEHICLE, "--connect", endpoint, "--simulated", "--state-dir", &folder],
-    )
+    let mut arguments =
+        vec!["fp-manager", "--vehicle", VEHICLE, "--connect", endpoint, "--state-dir", &folder];
+    arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
+    Program::start("onboard-agent", &arguments)
 }
 
 /// A value of the plan's `number` type.
@@ -285,9 +342,4 @@ pub fn number(value: f64) -> usal::contract::VariableValue {
 /// An identifier.
 pub fn id(text: &str) -> usal::contract::Id {
     usal::contract::Id::new(text)
-}
-
-/// A plan's hash, as a command wants it.
-pub fn hash(text: &str) -> Arc<str> {
-    text.into()
 }

@@ -101,9 +101,9 @@ fn only_the_demo_sees_agent_and_simulator() {
                 let code = std::fs::read_to_string(&path).expect("source");
                 for seen in ["onboard_agent::", "sim::"] {
                     let found = code.lines().any(|l| {
-                        !l.trim_start().starts_with("//") && l.match_indices(seen).any(|(i, _)| {
-                            !l[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_')
-                        })
+                        !l.trim_start().starts_with("//")
+                            && l.match_indices(seen)
+                                .any(|(i, _)| !l[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
                     });
                     assert!(!found, "{} uses {seen}", path.display());
                 }

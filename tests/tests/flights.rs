@@ -125,9 +125,11 @@ async fn fp_manager_killed_and_back_in_time_goes_on_at_its_place() {
     rig.fp_manager.kill().unwrap();
     rig.until("Safe", 60.0, |_, seen| seen.went_to(GatewayState::SafeHold)).await.unwrap();
     rig.restart_fp_manager().unwrap();
-    rig.until("back in Nav", 60.0, |rig, _| rig.gateway_status().is_some_and(|s| s.state == GatewayState::Nav))
-        .await
-        .unwrap();
+    rig.until("back in Nav", 60.0, |rig, _| {
+        rig.gateway_status().is_some_and(|s| s.state == GatewayState::Nav)
+    })
+    .await
+    .unwrap();
     land(&mut rig).await;
     let finished = rig.seen.plan.iter().filter(|e| matches!(e, PlanEvent::IterationFinished { .. })).count();
     assert_eq!(finished, 3, "no iteration lost, none doubled: {}", rig.story());
@@ -183,7 +185,7 @@ async fn plan_update_in_flight_keeps_the_place() {
 async fn engine_out_flies_the_alternate_by_itself() {
     let mut rig = airborne(&[]).await;
     on_leg(&mut rig, "downwind").await;
-    rig.simulator.tell("fault engine-out").unwrap();
+    rig.simulator.as_mut().unwrap().tell("fault engine-out").unwrap();
     rig.until("an emergency plan", 60.0, |_, seen| {
         seen.plan.iter().any(|e| matches!(e, PlanEvent::EmergencyStarted { cause: Cause::Engine, .. }))
     })
