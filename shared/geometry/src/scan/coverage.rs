@@ -1,6 +1,6 @@
 //! How much of an area was really seen.
 
-use super::outline::{Span, Sweep, merge};
+use super::outline::{Span, Sweep, merge, spans};
 use super::{Axes, Outline};
 use crate::Vec2;
 use crate::polygon::Polygon;
@@ -31,11 +31,12 @@ pub fn coverage(polygon: &Polygon, tracks: impl IntoIterator<Item = (Vec2, Vec2)
     }
     let mut sweep = Sweep::default();
     let (mut area, mut covered) = (0.0, 0.0);
-    for (row, spans) in seen.iter_mut().enumerate() {
+    for (row, reached) in seen.iter_mut().enumerate() {
         sweep.go_to(&outline, rows.across_m(row), 0.0, 0.0);
-        merge(spans);
-        area += sweep.spans().iter().map(|s| s.end_m - s.start_m).sum::<f64>();
-        covered += overlap_m(sweep.spans(), spans);
+        merge(reached);
+        let inside: Vec<Span> = spans(sweep.bounds_m()).collect();
+        area += inside.iter().map(|s| s.end_m - s.start_m).sum::<f64>();
+        covered += overlap_m(&inside, reached);
     }
     if area > 0.0 { covered / area } else { 0.0 }
 }

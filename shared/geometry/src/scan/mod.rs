@@ -122,9 +122,6 @@ impl Axes {
         let along = Vec2::from_bearing_rad(heading_deg.to_radians());
         Self { along, across: Vec2::new(along.n, -along.e) }
     }
-    fn point(&self, along_m: f64, across_m: f64) -> Vec2 {
-        self.along * along_m + self.across * across_m
-    }
 }
 
 /// Where the lines are, across the heading.
@@ -201,11 +198,9 @@ impl Scan {
         let across_m = self.lines.across_m(line);
         let mut sweep = Sweep::default();
         sweep.go_to(&self.outline, across_m, self.strip_m, self.overshoot_m);
-        let span = if corner.is_end() { sweep.spans().last() } else { sweep.spans().first() };
-        span.map(|s| {
-            let along_m = if corner.is_end() { s.end_m } else { s.start_m };
-            self.axes.point(along_m, across_m)
-        })
+        let bounds_m = sweep.bounds_m();
+        let along_m = if corner.is_end() { bounds_m.last() } else { bounds_m.first() };
+        along_m.map(|&along_m| self.axes.along * along_m + self.axes.across * across_m)
     }
 
     /// Direction of the lines, degrees true (0..180 if it was left to the scan).

@@ -26,7 +26,12 @@ impl Order {
     }
 
     /// The line of a track.
+    #[inline]
     pub fn line(&self, track: u64) -> u64 {
+        if self.step == 1 {
+            // the usual case, without the divisions
+            return self.mirrored(track);
+        }
         let (short, longer) = (self.lines / self.step, self.lines % self.step);
         // the first `longer` passes have one line more than the others
         let in_longer = longer * (short + 1);

@@ -31,6 +31,7 @@ impl Edge {
         }
     }
 
+    #[inline]
     fn along_at(&self, across_m: f64) -> f64 {
         self.along_left_m + (across_m - self.left_m) * self.slope
     }
@@ -128,6 +129,8 @@ pub(super) struct Sweep {
     /// Corners before and after the line: as long as it stays between them nothing changes.
     slab: (f64, f64),
     strip: Window,
+    bounds_m: Vec<f64>,
+    /// Room for joining spans; empty between calls.
     spans: Vec<Span>,
 }
 
@@ -137,34 +140,33 @@ impl Default for Sweep {
             crossed: Window::default(),
             slab: (f64::INFINITY, f64::NEG_INFINITY),
             strip: Window::default(),
+            bounds_m: Vec::new(),
             spans: Vec::new(),
         }
     }
 }
 
 impl Sweep {
-    /// Where the line at `across_m` scans: in ascending order, without overlaps.
-    pub fn spans(&self) -> &[Span] {
-        &self.spans
+    /// Where the line scans: start and end of the first span, of the second, and so on,
+    /// ascending.
+    pub fn bounds_m(&self) -> &[f64] {
+        &self.bounds_m
     }
 
     /// Moves to a line. `strip_m`: half-width of the strip whose whole extent is to be scanned;
     /// `overshoot_m`: by how much the line itself goes on.
+    #[inline]
     pub fn go_to(&mut self, outline: &Outline, across_m: f64, strip_m: f64, overshoot_m: f64) {
         if !(self.slab.0 <= across_m && across_m < self.slab.1) {
             self.enter_slab(outline, across_m);
         }
-        self.spans.clear();
-        for pair in self.crossed.edges.chunks_exact(2) {
-            if let [a, b] = pair {
-                let (start_m, end_m) = (a.along_at(across_m), b.along_at(across_m));
-                if end_m > start_m {
-                    self.spans.push(Span { start_m, end_m });
-                }
-            }
-        }
+        self.bounds_m.clear();
+        let crossings = self.crossed.edges.iter().map(|e| e.along_at(across_m));
+        self.bounds_m.extend(crossings);
         if overshoot_m > 0.0 {
             self.prolong(outline, across_m, strip_m, overshoot_m);
+        } else if !self.bounds_m.is_sorted_by(|a, b| a < b) {
+            self.tidy();
         }
     }
 
@@ -176,16 +178,41 @@ impl Sweep {
     }
 
     fn prolong(&mut self, outline: &Outline, across_m: f64, strip_m: f64, overshoot_m: f64) {
-        for span in &mut self.spans {
-            span.start_m -= overshoot_m;
-            span.end_m += overshoot_m;
-        }
+        self.bounds_m.sort_unstable_by(f64::total_cmp);
+        self.spans.extend(
+            spans(&self.bounds_m)
+                .map(|s| Span { start_m: s.start_m - overshoot_m, end_m: s.end_m + overshoot_m }),
+        );
         let (left_m, right_m) = (across_m - strip_m, across_m + strip_m);
         self.strip.move_to(outline, left_m, right_m);
         let edges = self.strip.edges.iter();
         self.spans.extend(edges.map(|e| e.extent_between(left_m, right_m)));
-        merge(&mut self.spans);
+        self.join();
     }
+
+    /// A line through a corner: rounding may have swapped crossings, spans may be empty or touch.
+    #[cold]
+    fn tidy(&mut self) {
+        self.bounds_m.sort_unstable_by(f64::total_cmp);
+        let spans = spans(&self.bounds_m).filter(|s| s.start_m < s.end_m);
+        self.spans.extend(spans);
+        self.join();
+    }
+
+    fn join(&mut self) {
+        merge(&mut self.spans);
+        self.bounds_m.clear();
+        let joined = self.spans.drain(..);
+        self.bounds_m.extend(joined.flat_map(|s| [s.start_m, s.end_m]));
+    }
+}
+
+/// The spans between bounds that come in pairs.
+pub(super) fn spans(bounds_m: &[f64]) -> impl Iterator<Item = Span> + '_ {
+    bounds_m.chunks_exact(2).filter_map(|pair| match pair {
+        &[start_m, end_m] => Some(Span { start_m, end_m }),
+        _ => None,
+    })
 }
 
 /// Sorts spans and joins those that overlap.

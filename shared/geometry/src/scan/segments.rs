@@ -37,7 +37,8 @@ pub struct Segments<'a> {
 struct Track {
     number: u64,
     line: u64,
-    across_m: f64,
+    /// Where the line crosses the pattern's axis.
+    origin: Vec2,
     along_heading: bool,
 }
 
@@ -73,49 +74,64 @@ impl<'a> Segments<'a> {
             self.current = Track {
                 number,
                 line,
-                across_m,
+                origin: scan.axes.across * across_m,
                 along_heading: scan.order.along_heading(number) != self.backwards,
             };
             self.done = 0;
             // n spans have n − 1 gaps between them
-            self.pieces = (2 * self.sweep.spans().len()).saturating_sub(1);
+            self.pieces = self.sweep.bounds_m().len().saturating_sub(1);
             if self.pieces > 0 {
                 return Some(());
             }
         }
     }
 
-    /// Start and end of a piece along the heading: even ones are spans, odd ones gaps.
-    fn piece(&self, index: usize) -> Option<(f64, f64)> {
-        let spans = self.sweep.spans();
-        let span = spans.get(index / 2)?;
-        if index.is_multiple_of(2) {
-            Some((span.start_m, span.end_m))
-        } else {
-            Some((span.end_m, spans.get(index / 2 + 1)?.start_m))
-        }
+    /// The current track's next piece: even ones are spans, odd ones the gaps between them.
+    #[inline]
+    fn next_piece(&mut self) -> Option<Segment> {
+        let track = self.current;
+        let index = if track.along_heading { self.done } else { self.pieces - 1 - self.done };
+        let &[start_m, end_m] = self.sweep.bounds_m().get(index..)?.first_chunk()?;
+        self.done += 1;
+        let (from_m, to_m) = if track.along_heading { (start_m, end_m) } else { (end_m, start_m) };
+        let axes = self.scan.axes;
+        Some(Segment {
+            track: track.number,
+            line: track.line,
+            from: track.origin + axes.along * from_m,
+            to: track.origin + axes.along * to_m,
+            scanning: index.is_multiple_of(2),
+        })
     }
 }
 
 impl Iterator for Segments<'_> {
     type Item = Segment;
 
+    #[inline]
     fn next(&mut self) -> Option<Segment> {
         if self.done >= self.pieces {
             self.next_track()?;
         }
-        let track = self.current;
-        let index = if track.along_heading { self.done } else { self.pieces - 1 - self.done };
-        self.done += 1;
-        let (start_m, end_m) = self.piece(index)?;
-        let (from_m, to_m) = if track.along_heading { (start_m, end_m) } else { (end_m, start_m) };
-        Some(Segment {
-            track: track.number,
-            line: track.line,
-            from: self.scan.axes.point(from_m, track.across_m),
-            to: self.scan.axes.point(to_m, track.across_m),
-            scanning: index.is_multiple_of(2),
-        })
+        self.next_piece()
+    }
+
+    /// Track by track: what `for_each`, `sum` and the like use, twice as fast as one by one.
+    fn fold<B, F>(mut self, init: B, mut f: F) -> B
+    where
+        F: FnMut(B, Segment) -> B,
+    {
+        let mut result = init;
+        loop {
+            while self.done < self.pieces
+                && let Some(segment) = self.next_piece()
+            {
+                result = f(result, segment);
+            }
+            if self.next_track().is_none() {
+                return result;
+            }
+        }
     }
 }
 
