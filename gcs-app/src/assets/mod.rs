@@ -14,6 +14,9 @@ use terrain::{Flat, Terrain, Tile, TileError, Tiles};
 /// Sources of the bundled data, as the map shows them.
 pub const ATTRIBUTION: &str = "Natural Earth · USGS";
 
+/// The fire-watch mission over the Cumberland Mountains, XML.
+pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+
 /// File name of the bundled elevation tile.
 const TILE_NAME: &str = "N36W085.hgt";
 

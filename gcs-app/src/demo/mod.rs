@@ -1,5 +1,10 @@
 //! The demo: simulator, agent and window in one process, talking over loopback.
 
+mod judge;
+mod mission;
+mod progress;
+mod recorder;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 

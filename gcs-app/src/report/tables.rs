@@ -60,7 +60,7 @@ fn cells(row: &PassageReport) -> [String; 10] {
     let key = &row.passage.key;
     let cross = row
         .cross_track
-        .map_or("not planned".to_owned(), |s| format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m));
+        .map_or("–".to_owned(), |s| format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m));
     [
         key.leg.clone(),
         row.passage.kind.to_owned(),

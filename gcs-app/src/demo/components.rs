@@ -1,0 +1,103 @@
+//! Simulator, gateway and FP Manager, started in this process and watched. They talk as they always do: MAVLink
+//! over TCP, Zenoh over TCP, both on ports of the loopback that were free.
+
+use aircraft::Wind;
+use anyhow::Context;
+use flight_plan::Runway;
+use onboard_agent::{Trigger, shutdown};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::Path;
+use tokio::task::JoinHandle;
+
+/// The vehicle's name in the demo.
+pub const VEHICLE: &str = "demo";
+/// Simulated seconds between points of the flown track.
+const TRACK_INTERVAL_S: f64 = 0.5;
+
+/// The embedded system.
+pub struct Components {
+    /// The simulated autopilot.
+    pub simulator: sim::Handle,
+    /// Zenoh endpoint of the gateway.
+    pub endpoint: String,
+    services: Vec<(&'static str, JoinHandle<anyhow::Result<()>>)>,
+    trigger: Trigger,
+}
+
+/// How they are to be started.
+#[derive(Debug, Clone)]
+pub struct Setup<'a> {
+    /// Where the aircraft stands.
+    pub home: &'a Runway,
+    /// The aircraft.
+    pub profile: aircraft::Profile,
+    /// The wind.
+    pub wind: Wind,
+    /// Simulated seconds per second; 0: as fast as possible.
+    pub speed: f64,
+    /// For what has to survive a restart.
+    pub state_dir: &'a Path,
+    /// Elevation tiles for the services: files.
+    pub terrain: &'a Path,
+}
+
+impl Components {
+    /// Starts everything; inside a multi-threaded runtime.
+    ///
+    /// # Errors
+    /// A port can't be had, or the simulator can't be started.
+    pub fn start(setup: &Setup) -> anyhow::Result<Self> {
+        let simulator = sim::spawn(sim::Config {
+            link: sim::Link::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0))),
+            home: sim::Home {
+                position: setup.home.threshold,
+                altitude_amsl_m: setup.home.elevation_amsl_m,
+                heading_deg: setup.home.heading_deg,
+            },
+            wind: setup.wind,
+            profile: setup.profile.clone(),
+            speed: setup.speed,
+            lockstep: true,
+            track_interval_s: TRACK_INTERVAL_S,
+            ..sim::Config::default()
+        })
+        .context("the simulator can't be started")?;
+        let endpoint = format!("tcp/{}", free_address()?);
+        let (trigger, shutdown) = shutdown();
+        let services = services(setup, &simulator, &endpoint, shutdown);
+        Ok(Self { simulator, endpoint, services, trigger })
+    }
+
+    /// The first component that has ended, and why; `None` while all are running.
+    pub async fn failure(&mut self) -> Option<String> {
+        if self.simulator.is_finished() {
+            return Some("the simulator has ended".into());
+        }
+        let ended = self.services.iter().position(|(_, task)| task.is_finished())?;
+        let (name, task) = self.services.remove(ended);
+        Some(match task.await {
+            Ok(Ok(())) => format!("the {name} has ended by itself"),
+            Ok(Err(error)) => format!("the {name} has failed: {error:#}"),
+            Err(error) => format!("the {name} has crashed: {error}"),
+        })
+    }
+
+    /// Ends everything; what does not end in time is cut off.
+    pub async fn stop(self) {
+        self.trigger.shut_down();
+        for (name, mut task) in self.services {
+            if tokio::time::timeout(std::time::Duration::from_secs(3), &mut task).await.is_err() {
+                tracing::warn!("the {name} does not end, it is cut off");
+                task.abort();
+            }
+        }
+        self.simulator.stop();
+    }
+}
+
+/// A loopback address that nobody listens on.
+fn free_address() -> anyhow::Result<SocketAddr> {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, 0))
+        .and_then(|listener| listener.local_addr())
+        .context("no free port on the loopback interface")
+}

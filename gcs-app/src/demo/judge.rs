@@ -1,0 +1,231 @@
+//! Was the mission really flown as planned? Pure: from what was recorded to a verdict.
+
+use crate::report::{Findings, Record};
+use flight_exec::Phase;
+use geometry::{LatLon, LocalFrame, Vec2};
+use usal::contract::GatewayState;
+
+/// Greatest cross-track error on TF legs against the previewed path, metres.
+const TF_LIMIT_M: f64 = 15.0;
+/// The same on RF legs.
+const RF_LIMIT_M: f64 = 25.0;
+/// Least share of each scanned area that must have been seen.
+const COVERAGE_LIMIT: f64 = 0.99;
+/// How far beside the centre line a landed aircraft may stand, metres.
+const BESIDE_LIMIT_M: f64 = 30.0;
+/// Slower than this it stands, m/s.
+const STANDING_MPS: f64 = 1.0;
+
+/// What the demo knows at the end besides the record.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Where the aircraft really ended.
+    pub stands_at: LatLon,
+    /// On the ground.
+    pub on_ground: bool,
+    /// Motor disarmed.
+    pub disarmed: bool,
+    /// m/s over the ground.
+    pub ground_speed_mps: f64,
+    /// The runway to land on.
+    pub runway: flight_plan::Runway,
+    /// The executor's last phase.
+    pub phase: Phase,
+    /// The gateway's states in order, as far as events told.
+    pub states: Vec<GatewayState>,
+    /// Steps of the mission logic that did not happen.
+    pub missing_steps: Vec<String>,
+    /// Steps in all.
+    pub steps: usize,
+    /// Waypoints or patterns that were refused.
+    pub refusals: Vec<String>,
+}
+
+/// The verdict's sentences, each with whether it holds.
+pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(bool, String)> {
+    vec![
+        landed(outcome),
+        finished(outcome),
+        as_previewed(record),
+        scripted(outcome),
+        deviation(findings, "TF", TF_LIMIT_M),
+        deviation(findings, "RF", RF_LIMIT_M),
+        covered(findings),
+        never_safe(outcome),
+        nothing_refused(outcome),
+    ]
+}
+
+fn landed(outcome: &Outcome) -> (bool, String) {
+    let runway = &outcome.runway;
+    if !outcome.on_ground || outcome.ground_speed_mps > STANDING_MPS {
+        return (
+            false,
+            format!(
+                "still moving at {:.1} m/s when it ended, not landed on {}",
+                outcome.ground_speed_mps, runway.id
+            ),
+        );
+    }
+    let offset = LocalFrame::new(runway.threshold).to_local(outcome.stands_at);
+    let ahead = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
+    let (along_m, beside_m) = (offset.dot(ahead), ahead.cross(offset).abs());
+    let on_it = (0.0..=runway.length_m).contains(&along_m) && beside_m <= BESIDE_LIMIT_M;
+    let text = format!(
+        "stands on {}, {along_m:.0} m behind the threshold, {beside_m:.1} m off its centre line",
+        runway.id
+    );
+    match (on_it, outcome.disarmed) {
+        (true, true) => (true, text),
+        (true, false) => (false, format!("{text}, but still armed")),
+        (false, _) => {
+            (false, format!("landed beside {}: {along_m:.0} m along, {beside_m:.0} m aside", runway.id))
+        }
+    }
+}
+
+fn finished(outcome: &Outcome) -> (bool, String) {
+    match outcome.phase {
+        Phase::Finished => (true, "the plan was flown to its end".into()),
+        other => (false, format!("the plan did not come to its end: {other:?}")),
+    }
+}
+
+/// Every passage of the preview was flown, in the same order, and no other.
+fn as_previewed(record: &Record) -> (bool, String) {
+    let (planned, flown) = (record.planned.passages(), record.flown.passages());
+    let differing = planned.iter().zip(flown).position(|(p, f)| p.key != f.key);
+    match differing {
+        Some(i) => (
+            false,
+            format!("passage {}: {} was flown, {} was previewed", i + 1, flown[i].key, planned[i].key),
+        ),
+        None if planned.len() != flown.len() => {
+            (false, format!("{} passages of legs were flown, {} were previewed", flown.len(), planned.len()))
+        }
+        None => (!flown.is_empty(), format!("all {} passages of legs as previewed", flown.len())),
+    }
+}
+
+fn scripted(outcome: &Outcome) -> (bool, String) {
+    match outcome.missing_steps.as_slice() {
+        [] => (true, format!("the mission logic did its {} steps", outcome.steps)),
+        missing => (false, format!("the mission logic did not come to: {}", missing.join(", "))),
+    }
+}
+
+fn deviation(findings: &Findings, kind: &str, limit_m: f64) -> (bool, String) {
+    match findings.worst(kind) {
+        Some(worst) => (
+            worst.worst_m() < limit_m,
+            format!(
+                "cross-track error on {kind} legs {:.1} m at most, on {} (limit {limit_m} m)",
+                worst.worst_m(),
+                worst.passage.key
+            ),
+        ),
+        None => (false, format!("no {kind} leg was flown")),
+    }
+}
+
+fn covered(findings: &Findings) -> (bool, String) {
+    let least = findings.coverages.iter().min_by(|a, b| a.share.total_cmp(&b.share));
+    match least {
+        Some(least) => (
+            least.share >= COVERAGE_LIMIT,
+            format!(
+                "{} scans, {:.2} % seen at least (limit {:.0} %)",
+                findings.coverages.len(),
+                least.share * 100.0,
+                COVERAGE_LIMIT * 100.0
+            ),
+        ),
+        None => (false, "nothing was scanned".into()),
+    }
+}
+
+fn never_safe(outcome: &Outcome) -> (bool, String) {
+    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn, Terminate};
+    let unsafe_state = outcome
+        .states
+        .iter()
+        .find(|s| matches!(s, SafeHold | SafeReturn | SafeApproach | SafeLand | Terminate));
+    match unsafe_state {
+        Some(state) => (false, format!("the gateway went to {state:?}")),
+        None => (true, "the gateway never had to enter Safe mode".into()),
+    }
+}
+
+fn nothing_refused(outcome: &Outcome) -> (bool, String) {
+    match outcome.refusals.first() {
+        Some(first) => (false, format!("{} refusals, first: {first}", outcome.refusals.len())),
+        None => (true, "no waypoint and no pattern was refused".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use flight_plan::Runway;
+
+    fn outcome() -> Outcome {
+        let threshold = LatLon::new(36.319, -84.173);
+        Outcome {
+            stands_at: threshold.destination(52.0, 300.0),
+            on_ground: true,
+            disarmed: true,
+            ground_speed_mps: 0.0,
+            runway: Runway {
+                id: "R05".into(),
+                threshold,
+                elevation_amsl_m: 349.0,
+                heading_deg: 52.0,
+                length_m: 600.0,
+                priority: 1,
+                approach_entry: None,
+            },
+            phase: Phase::Finished,
+            states: vec![GatewayState::Stop, GatewayState::TakeOff, GatewayState::Nav],
+            missing_steps: vec![],
+            steps: 6,
+            refusals: vec![],
+        }
+    }
+
+    #[test]
+    fn a_good_landing_and_bad_ones() {
+        let at = |along: f64, aside: f64| {
+            let good = outcome();
+            let stands_at = good.runway.threshold.destination(52.0, along).destination(142.0, aside);
+            landed(&Outcome { stands_at, ..good }).0
+        };
+        assert!(at(300.0, 0.0) && at(1.0, 29.0) && at(599.0, -29.0));
+        assert!(!at(-5.0, 0.0) && !at(605.0, 0.0) && !at(300.0, 31.0) && !at(300.0, -31.0));
+        assert!(!landed(&Outcome { on_ground: false, ..outcome() }).0);
+        assert!(!landed(&Outcome { ground_speed_mps: 5.0, ..outcome() }).0);
+        assert!(!landed(&Outcome { disarmed: false, ..outcome() }).0);
+    }
+
+    #[test]
+    fn each_fault_spoils_its_own_sentence() {
+        assert!(
+            finished(&outcome()).0
+                && scripted(&outcome()).0
+                && never_safe(&outcome()).0
+                && nothing_refused(&outcome()).0
+        );
+        assert!(!finished(&Outcome { phase: Phase::Holding, ..outcome() }).0);
+        assert!(!scripted(&Outcome { missing_steps: vec!["fire out".into()], ..outcome() }).0);
+        assert!(
+            !never_safe(&Outcome { states: vec![GatewayState::Nav, GatewayState::SafeHold], ..outcome() }).0
+        );
+        assert!(!nothing_refused(&Outcome { refusals: vec!["too steep".into()], ..outcome() }).0);
+    }
+
+    #[test]
+    fn a_flight_without_the_legs_in_question_is_not_good() {
+        let nothing = Findings::default();
+        assert!(!deviation(&nothing, "TF", TF_LIMIT_M).0 && !covered(&nothing).0);
+    }
+}

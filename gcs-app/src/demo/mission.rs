@@ -1,0 +1,265 @@
+//! The fire-watch mission's logic: a service above the plan that sees the fire grow and move, decides at the
+//! intersection, sends a new plan and tells when the fire is out. Pure; the preview follows the same steps.
+
+use flight_exec::{Command, DecisionRequest, Event, PlacePointer, Token};
+use flight_plan::{
+    Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Spot, Value, VariableValue,
+};
+use geometry::LatLon;
+
+/// When a step is due.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum When {
+    /// On a passage of a leg.
+    On {
+        /// The leg.
+        leg: Id,
+        /// Pass of the innermost loop around it, from 1; 0 outside loops.
+        iteration: u64,
+        /// After so many of its waypoints.
+        waypoints: u64,
+    },
+    /// When the decision of an intersection is asked for.
+    Asked {
+        /// The intersection.
+        leg: Id,
+        /// Pass of the innermost loop around it, from 1; 0 outside loops.
+        iteration: u64,
+    },
+}
+
+/// What a step does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Act {
+    /// A command to the FP Manager.
+    Command(Command),
+    /// The active plan with this change is proposed and committed.
+    Update(Edit),
+}
+
+/// One step of the mission logic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// For people.
+    pub name: &'static str,
+    /// When.
+    pub when: When,
+    /// What, in order.
+    pub acts: Vec<Act>,
+}
+
+/// The steps for a plan: those of the fire watch if it has its legs and variables, else none.
+pub fn steps_for(plan: &FlightPlan) -> Vec<Step> {
+    let has_legs =
+        ["sweep", "ask", "look", "patrol", "p2", "h1"].iter().all(|id| plan.leg(&Id::new(id)).is_some());
+    let has_variables =
+        ["fire_centre", "fire_radius", "fire_out"].iter().all(|name| plan.variable(&Id::new(name)).is_some());
+    if has_legs && has_variables { fire_watch() } else { Vec::new() }
+}
+
+fn fire_watch() -> Vec<Step> {
+    let on = |leg: &str, iteration, waypoints| When::On { leg: Id::new(leg), iteration, waypoints };
+    let asked = |iteration| When::Asked { leg: "ask".into(), iteration };
+    vec![
+        Step {
+            name: "the fire grows",
+            when: on("sweep", 1, 4),
+            acts: vec![set("fire_radius", VariableValue::Number(430.0))],
+        },
+        Step { name: "another round", when: asked(1), acts: vec![decide("again")] },
+        Step {
+            name: "the fire moves",
+            when: on("sweep", 2, 4),
+            acts: vec![
+                set("fire_centre", VariableValue::Position(LatLon::new(36.2525, -84.2565))),
+                set("fire_radius", VariableValue::Number(380.0)),
+            ],
+        },
+        Step { name: "a closer look", when: asked(2), acts: vec![decide("close")] },
+        Step {
+            name: "the fire is out",
+            when: on("look", 2, 6),
+            acts: vec![set("fire_out", VariableValue::Bool(true))],
+        },
+        Step { name: "another way home", when: on("p2", 2, 0), acts: vec![Act::Update(way_home())] },
+    ]
+}
+
+fn set(name: &str, value: VariableValue) -> Act {
+    Act::Command(Command::SetVariable { name: Id::new(name), value })
+}
+
+fn decide(branch: &str) -> Act {
+    Act::Command(Command::Decide { leg: "ask".into(), branch: Id::new(branch) })
+}
+
+/// A look at the valley on the way home: one leg more, after the mountain front.
+fn way_home() -> Edit {
+    let leg = Leg {
+        id: "h2".into(),
+        name: "Look at the valley".into(),
+        emergency: Default::default(),
+        altitude: None::<Altitude>,
+        speed_mps: None,
+        next: None,
+        kind: LegKind::Tf(PlanWaypoint {
+            place: Place::Position(Value::Constant(LatLon::new(36.2880, -84.2190))),
+            fly_over: false,
+        }),
+    };
+    Edit::InsertLeg { leg: Box::new(leg), at: Spot::After("h1".into()) }
+}
+
+/// Follows a flight and says which steps are due; each comes once, in order.
+#[derive(Debug, Clone)]
+pub struct Script {
+    steps: std::collections::VecDeque<Step>,
+    place: Option<PlacePointer>,
+    /// Waypoints of the present leg that have been flown.
+    flown: u64,
+    steering_to: Option<Token>,
+    asked: Option<(Id, u64)>,
+}
+
+impl Script {
+    /// Before the flight.
+    pub fn new(steps: Vec<Step>) -> Self {
+        Self { steps: steps.into(), place: None, flown: 0, steering_to: None, asked: None }
+    }
+
+    /// The executor told something.
+    pub fn hear(&mut self, event: &Event) {
+        match event {
+            Event::LegEntered { place } => {
+                self.place = Some(place.clone());
+                self.flown = 0;
+            }
+            Event::DecisionRequested(DecisionRequest { leg, .. }) => {
+                self.asked = Some((leg.clone(), self.iteration()));
+            }
+            _ => {}
+        }
+    }
+
+    /// The autopilot steers to this waypoint.
+    pub fn steers_to(&mut self, current: Option<Token>) {
+        if current.is_some() && current != self.steering_to {
+            if self.steering_to.is_some() {
+                self.flown += 1;
+            }
+            self.steering_to = current;
+        }
+    }
+
+    /// The next step, if it is due; it won't come again.
+    pub fn next_due(&mut self) -> Option<Step> {
+        let due = self.is_due(&self.steps.front()?.when);
+        if due { self.steps.pop_front() } else { None }
+    }
+
+    /// Steps that have not come.
+    pub fn missing(&self) -> impl Iterator<Item = &Step> {
+        self.steps.iter()
+    }
+
+    fn is_due(&self, when: &When) -> bool {
+        match when {
+            When::Asked { leg, iteration } => self.asked.as_ref() == Some(&(leg.clone(), *iteration)),
+            When::On { leg, iteration, waypoints } => {
+                let here = self.place.as_ref().is_some_and(|p| p.leg == *leg);
+                here && self.iteration() == *iteration && self.flown >= *waypoints
+            }
+        }
+    }
+
+    fn iteration(&self) -> u64 {
+        self.place.as_ref().and_then(|p| p.iterations.last()).map_or(0, |i| i.iteration)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use flight_exec::{Branching, IterationPlace};
+
+    fn enter(leg: &str, iteration: u64) -> Event {
+        let iterations = vec![IterationPlace { leg: "rounds".into(), iteration, of: None, reverse: false }];
+        let place = PlacePointer {
+            plan: Branching::Main,
+            stage: "watch".into(),
+            leg: Id::new(leg),
+            iterations,
+            reverse: false,
+            distance_m: 0.0,
+        };
+        Event::LegEntered { place }
+    }
+
+    fn ask() -> Event {
+        let (options, default) = (vec![], None);
+        Event::DecisionRequested(DecisionRequest {
+            leg: "ask".into(),
+            options,
+            default,
+            distance_left_m: 0.0,
+            time_left_s: 0.0,
+        })
+    }
+
+    #[test]
+    fn steps_come_once_and_at_their_place() {
+        let mut script = Script::new(fire_watch());
+        let mut names = Vec::new();
+        let mut token = 0;
+        let mut fly = |script: &mut Script, names: &mut Vec<&str>, waypoints: u64| {
+            for _ in 0..waypoints {
+                token += 1;
+                script.steers_to(Some(Token(token)));
+                names.extend(std::iter::from_fn(|| script.next_due()).map(|s| s.name));
+            }
+        };
+        script.hear(&enter("sweep", 1));
+        fly(&mut script, &mut names, 3);
+        assert!(names.is_empty(), "not after two waypoints");
+        fly(&mut script, &mut names, 3);
+        assert_eq!(names, ["the fire grows"]);
+        script.hear(&ask());
+        fly(&mut script, &mut names, 20);
+        assert_eq!(names, ["the fire grows", "another round"]);
+        script.hear(&enter("sweep", 2));
+        script.hear(&ask());
+        fly(&mut script, &mut names, 9);
+        assert_eq!(names.len(), 4);
+        assert_eq!(
+            script.missing().map(|s| s.name).collect::<Vec<_>>(),
+            ["the fire is out", "another way home"]
+        );
+    }
+
+    #[test]
+    fn other_plans_have_no_steps() {
+        assert!(steps_for(&FlightPlan::default()).is_empty());
+    }
+
+    #[test]
+    fn the_script_fits_the_example() {
+        let plan = flight_plan::read(crate::assets::FIRE_WATCH.as_bytes()).plan;
+        let steps = steps_for(&plan);
+        assert_eq!(steps.len(), 6);
+        for act in steps.iter().flat_map(|s| &s.acts) {
+            match act {
+                Act::Update(edit) => {
+                    let changed = edit.apply(&plan).unwrap();
+                    let profile = aircraft::Profile::by_name(&changed.aircraft).unwrap();
+                    let terrain = crate::assets::demo_terrain();
+                    assert_eq!(flight_plan::check(&changed, &profile, terrain.as_ref()), []);
+                }
+                Act::Command(Command::SetVariable { name, value }) => {
+                    plan.variable(name).unwrap().accepts(value).unwrap();
+                }
+                Act::Command(_) => {}
+            }
+        }
+    }
+}

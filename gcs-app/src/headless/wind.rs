@@ -1,0 +1,45 @@
+//! Wind on the command line.
+
+use aircraft::Wind;
+
+/// Strongest wind that makes sense, m/s.
+const MOST_MPS: f64 = 50.0;
+
+/// `DIRECTION,SPEED`: where it comes from in degrees true, and m/s.
+///
+/// # Errors
+/// How to write it.
+pub fn parse(text: &str) -> Result<Wind, String> {
+    let numbers = text.split_once(',').and_then(|(direction, speed)| {
+        Some((direction.trim().parse::<f64>().ok()?, speed.trim().parse::<f64>().ok()?))
+    });
+    match numbers {
+        Some((from_deg, speed_mps)) if from_deg.is_finite() && (0.0..=MOST_MPS).contains(&speed_mps) => {
+            Ok(Wind::from_direction(from_deg, speed_mps))
+        }
+        _ => Err("write DIRECTION,SPEED, as 270,5: degrees it comes from, m/s up to 50".into()),
+    }
+}
+
+/// For people: `5 m/s from 270°`, or `calm`.
+pub fn shown(wind: &Wind) -> String {
+    if wind.speed_mps() < 0.05 {
+        return "calm".into();
+    }
+    format!("{:.0} m/s from {:.0}°", wind.speed_mps(), wind.direction_from_deg())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn winds() {
+        assert_eq!(shown(&parse("270,5").unwrap()), "5 m/s from 270°");
+        assert_eq!(shown(&parse(" 0 , 0 ").unwrap()), "calm");
+        for bad in ["", "270", "270,", "a,b", "270,51", "270,-1", "270,NaN", "inf,5"] {
+            assert!(parse(bad).is_err(), "{bad}");
+        }
+    }
+}
