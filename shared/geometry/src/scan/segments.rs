@@ -86,22 +86,37 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// The current track's next piece: even ones are spans, odd ones the gaps between them.
+    /// The current track's next piece.
     #[inline]
     fn next_piece(&mut self) -> Option<Segment> {
-        let track = self.current;
-        let index = if track.along_heading { self.done } else { self.pieces - 1 - self.done };
-        let &[start_m, end_m] = self.sweep.bounds_m().get(index..)?.first_chunk()?;
+        let index = if self.current.along_heading { self.done } else { self.pieces - 1 - self.done };
+        let bounds_m = self.sweep.bounds_m().get(index..)?.first_chunk()?;
         self.done += 1;
-        let (from_m, to_m) = if track.along_heading { (start_m, end_m) } else { (end_m, start_m) };
-        let axes = self.scan.axes;
-        Some(Segment {
-            track: track.number,
-            line: track.line,
-            from: track.origin + axes.along * from_m,
-            to: track.origin + axes.along * to_m,
+        Some(self.current.segment(self.scan.axes.along, index, *bounds_m))
+    }
+}
+
+impl Track {
+    /// A piece between two bounds along the heading: even ones are spans, odd ones the gaps
+    /// between them.
+    #[inline]
+    fn segment(&self, along: Vec2, index: usize, [start_m, end_m]: [f64; 2]) -> Segment {
+        let (from_m, to_m) = if self.along_heading { (start_m, end_m) } else { (end_m, start_m) };
+        Segment {
+            track: self.number,
+            line: self.line,
+            from: self.origin + along * from_m,
+            to: self.origin + along * to_m,
             scanning: index.is_multiple_of(2),
-        })
+        }
+    }
+
+    /// All pieces between bounds, in flight order.
+    #[inline]
+    fn fold<B>(&self, along: Vec2, bounds_m: &[f64], init: B, f: impl FnMut(B, Segment) -> B) -> B {
+        let pairs = bounds_m.windows(2).enumerate();
+        let pieces = pairs.filter_map(|(index, pair)| Some(self.segment(along, index, *pair.first_chunk()?)));
+        if self.along_heading { pieces.fold(init, f) } else { pieces.rev().fold(init, f) }
     }
 }
 
@@ -116,22 +131,23 @@ impl Iterator for Segments<'_> {
         self.next_piece()
     }
 
-    /// Track by track: what `for_each`, `sum` and the like use, twice as fast as one by one.
+    /// Track by track: what `for_each`, `sum` and the like use; faster than piece by piece.
     fn fold<B, F>(mut self, init: B, mut f: F) -> B
     where
         F: FnMut(B, Segment) -> B,
     {
         let mut result = init;
-        loop {
-            while self.done < self.pieces
-                && let Some(segment) = self.next_piece()
-            {
-                result = f(result, segment);
-            }
-            if self.next_track().is_none() {
-                return result;
-            }
+        while self.done < self.pieces
+            && let Some(segment) = self.next_piece()
+        {
+            result = f(result, segment);
         }
+        let along = self.scan.axes.along;
+        while self.next_track().is_some() {
+            let bounds_m = self.sweep.bounds_m();
+            result = self.current.fold(along, bounds_m, result, &mut f);
+        }
+        result
     }
 }
 
