@@ -44,7 +44,11 @@ pub fn track(points: &[TrackPoint], events: &[(f64, Event)], plans: &[&FlightPla
 fn nature(place: &PlacePointer, plans: &[&FlightPlan]) -> (&'static str, String) {
     let find = |plan: &&FlightPlan| {
         let stage = plan.stage(&place.stage)?;
-        let leg = plan.leg(&place.leg).map(|c| c.leg.kind_name());
+        let leg = plan.leg(&place.leg).map(|c| match &c.leg.kind {
+            // the loop itself is flown only where it turns round
+            LegKind::Iterative { .. } => "turn-round",
+            _ => c.leg.kind_name(),
+        });
         let name = if stage.name.is_empty() { stage.id.to_string() } else { stage.name.clone() };
         Some((leg.unwrap_or_else(|| stage_kind(stage.kind)), name))
     };

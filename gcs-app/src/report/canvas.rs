@@ -106,6 +106,11 @@ impl Canvas {
         self.pixmap.draw_pixmap(0, 0, picture.as_ref(), &paint, place, None);
     }
 
+    /// Another canvas, as it is, with its corner at `(x, y)`.
+    pub fn draw(&mut self, other: &Canvas, x: f32, y: f32) {
+        self.picture(&other.pixmap, x, y, 1.0);
+    }
+
     /// A line through points.
     pub fn line(&mut self, points: &[(f32, f32)], pen: Pen) {
         if let Some(path) = path_of(points, false) {

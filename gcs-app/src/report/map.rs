@@ -19,57 +19,105 @@ const SHADE_SCALE: f32 = 2.0;
 /// Minutes between the time marks on the track.
 const TIME_MARK_MIN: u32 = 5;
 
+/// Side of the enlarged view of the scanned areas, pixels.
+const INSET: f32 = 332.0;
+/// Areas that fill more of the map than this need no enlarged view.
+const INSET_BELOW: f64 = 0.4;
+
 /// The picture as PNG bytes.
 ///
 /// # Errors
 /// Nothing to draw, or the encoder fails.
 pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
     let mut canvas = Canvas::new(WIDTH as u32, HEIGHT as u32, PAPER)?;
-    let view = View::of(record).ok_or_else(|| anyhow::anyhow!("the track is empty: nothing to draw"))?;
+    let tracks = record.planned.points().iter().chain(record.flown.points()).map(|p| p.position);
+    let shown = tracks.chain(record.areas.iter().flat_map(|a| a.outline.iter().copied()));
+    let view = View::around(shown, (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT))
+        .ok_or_else(|| anyhow::anyhow!("the track is empty: nothing to draw"))?;
     draw_ground(&mut canvas, record, &view);
-    for area in &record.areas {
-        draw_area(&mut canvas, &view, area);
-    }
-    draw_tracks(&mut canvas, record, &view);
-    record.places.iter().for_each(|place| draw_place(&mut canvas, &view, place));
+    draw_flight(&mut canvas, record, &view);
     label_areas(&mut canvas, record, &view);
-    draw_time_marks(&mut canvas, record.main_track(), &view);
+    draw_time_marks(&mut canvas, record, &view);
     draw_happenings(&mut canvas, record, &view);
     draw_scale(&mut canvas, &view);
     draw_north(&mut canvas);
     draw_header(&mut canvas, record);
-    panel::draw(&mut canvas, record, findings, (MAP_WIDTH, HEADER, WIDTH, HEIGHT));
+    let inset = inset(record, &view)?;
+    let bottom = if inset.is_some() { HEIGHT - INSET - 56.0 } else { HEIGHT };
+    panel::draw(&mut canvas, record, findings, (MAP_WIDTH, HEADER, WIDTH, bottom));
+    if let Some(inset) = inset {
+        place_inset(&mut canvas, &inset);
+    }
     canvas.png()
+}
+
+fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
+    for area in &record.areas {
+        draw_area(canvas, view, area);
+    }
+    draw_tracks(canvas, record, view);
+    record.places.iter().for_each(|place| draw_place(canvas, view, place));
+}
+
+/// The scanned areas enlarged, where the map shows them too small.
+fn inset(record: &Record, map: &View) -> anyhow::Result<Option<Canvas>> {
+    let corners = record.areas.iter().flat_map(|a| a.outline.iter().copied());
+    let Some(view) = View::around(corners, (0.0, 0.0, INSET, INSET)) else { return Ok(None) };
+    if f64::from(INSET) * view.metres_per_pixel > f64::from(MAP_WIDTH) * map.metres_per_pixel * INSET_BELOW {
+        return Ok(None);
+    }
+    let mut canvas = Canvas::new(INSET as u32, INSET as u32, PAPER)?;
+    draw_ground(&mut canvas, record, &view);
+    draw_flight(&mut canvas, record, &view);
+    draw_happenings(&mut canvas, record, &view);
+    Ok(Some(canvas))
+}
+
+fn place_inset(canvas: &mut Canvas, inset: &Canvas) {
+    let (x, y) = (MAP_WIDTH + (PANEL - INSET) / 2.0, HEIGHT - INSET - 20.0);
+    canvas.rectangle(MAP_WIDTH + 1.0, y - 40.0, PANEL, INSET + 60.0, PAPER);
+    canvas.text((x + 2.0, y - 18.0), Anchor::Left, "Scanned areas, enlarged", Type::bold(17.0, TEXT));
+    canvas.draw(inset, x, y);
+    canvas.outline(&[(x, y), (x + INSET, y), (x + INSET, y + INSET), (x, y + INSET)], Pen::solid(RULE, 1.5));
 }
 
 /// Which part of the world is where on the picture.
 struct View {
     frame: LocalFrame,
     metres_per_pixel: f64,
+    /// Left, top, width, height, pixels.
+    window: (f32, f32, f32, f32),
 }
 
 impl View {
-    fn of(record: &Record) -> Option<Self> {
-        let tracks = record.planned.points().iter().chain(record.flown.points()).map(|p| p.position);
-        let shown: Vec<LatLon> =
-            tracks.chain(record.areas.iter().flat_map(|a| a.outline.iter().copied())).collect();
+    /// All of `shown` with a margin, in a window `(left, top, width, height)`; `None` if nothing is shown.
+    fn around(shown: impl Iterator<Item = LatLon>, window: (f32, f32, f32, f32)) -> Option<Self> {
+        let shown: Vec<LatLon> = shown.collect();
         let about = LocalFrame::new(*shown.first()?);
         let local: Vec<Vec2> = shown.iter().map(|p| about.to_local(*p)).collect();
         let range = |axis: fn(&Vec2) -> f64| {
             local.iter().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
         };
         let ((west, east), (south, north)) = (range(|p| p.e), range(|p| p.n));
-        let across = (east - west) / f64::from(MAP_WIDTH);
-        let up = (north - south) / f64::from(MAP_HEIGHT);
+        let across = (east - west) / f64::from(window.2);
+        let up = (north - south) / f64::from(window.3);
         Some(Self {
             frame: LocalFrame::new(about.to_geo(Vec2::new((west + east) / 2.0, (south + north) / 2.0))),
             metres_per_pixel: across.max(up).max(0.2) / (1.0 - 2.0 * MARGIN),
+            window,
         })
     }
 
     fn place(&self, p: LatLon) -> (f32, f32) {
+        let (left, top, width, height) = self.window;
         let v = self.frame.to_local(p) * (1.0 / self.metres_per_pixel);
-        (MAP_WIDTH / 2.0 + v.e as f32, HEADER + MAP_HEIGHT / 2.0 - v.n as f32)
+        (left + width / 2.0 + v.e as f32, top + height / 2.0 - v.n as f32)
+    }
+
+    /// Well inside the window.
+    fn shows(&self, (x, y): (f32, f32)) -> bool {
+        let (left, top, width, height) = self.window;
+        (left + 4.0..left + width - 4.0).contains(&x) && (top + 4.0..top + height - 4.0).contains(&y)
     }
 
     /// A track as pixels, without points closer than one pixel.
@@ -86,10 +134,11 @@ impl View {
 }
 
 fn draw_ground(canvas: &mut Canvas, record: &Record, view: &View) {
-    let (width, height) = ((MAP_WIDTH / SHADE_SCALE) as u32, (MAP_HEIGHT / SHADE_SCALE) as u32);
+    let (left, top, width, height) = view.window;
+    let (columns, rows) = ((width / SHADE_SCALE) as u32, (height / SHADE_SCALE) as u32);
     let spacing_m = view.metres_per_pixel * f64::from(SHADE_SCALE);
-    if let Some(ground) = hillshade::picture(record.terrain.as_ref(), &view.frame, spacing_m, width, height) {
-        canvas.picture(&ground, 0.0, HEADER, SHADE_SCALE);
+    if let Some(ground) = hillshade::picture(record.terrain.as_ref(), &view.frame, spacing_m, columns, rows) {
+        canvas.picture(&ground, left, top, SHADE_SCALE);
     }
 }
 
@@ -104,15 +153,21 @@ fn draw_area(canvas: &mut Canvas, view: &View, area: &Area) {
     canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
 }
 
-/// Labels stand at the top of their area, one below the other where areas overlap.
+/// Labels stand at the top of their area, one below the other where areas overlap; areas that lie in the same place
+/// (within a few pixels) share the first one's.
 fn label_areas(canvas: &mut Canvas, record: &Record, view: &View) {
     let mut taken: Vec<(f32, f32)> = Vec::new();
+    let mut named: Vec<((f32, f32), f32)> = Vec::new();
     for area in &record.areas {
-        let Some((x, mut y)) = outline(view, area).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        let points = outline(view, area);
+        let Some((x, top)) = points.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        let bottom = points.iter().fold(top, |y, p| y.max(p.1));
+        if named.iter().any(|((nx, ny), nb)| (nx - x).abs() + (ny - top).abs() + (nb - bottom).abs() < 4.0) {
             continue;
-        };
-        y -= 14.0;
-        while taken.iter().any(|(tx, ty)| (tx - x).abs() < 130.0 && (ty - y).abs() < 19.0) {
+        }
+        named.push(((x, top), bottom));
+        let mut y = top - 14.0;
+        while taken.iter().any(|(tx, ty)| (tx - x).abs() < 150.0 && (ty - y).abs() < 19.0) {
             y -= 20.0;
         }
         taken.push((x, y));
@@ -133,7 +188,7 @@ fn draw_tracks(canvas: &mut Canvas, record: &Record, view: &View) {
 
 fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
     let (x, y) = view.place(place.position);
-    if !(4.0..MAP_WIDTH - 4.0).contains(&x) || !(HEADER + 4.0..HEIGHT - 4.0).contains(&y) {
+    if !view.shows((x, y)) {
         return;
     }
     match place.kind {
@@ -149,41 +204,45 @@ fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
         }
     }
     let text = Type::bold(16.0, FIX).on(PAPER);
-    if x > MAP_WIDTH - 120.0 {
+    if x > view.window.0 + view.window.2 - 110.0 {
         canvas.text((x - 13.0, y), Anchor::Right, &place.label, text);
     } else {
         canvas.text((x + 13.0, y + 2.0), Anchor::Left, &place.label, text);
     }
 }
 
-fn draw_time_marks(canvas: &mut Canvas, track: &Track, view: &View) {
+fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View) {
+    let track = record.main_track();
     let Some(start) = track.points().first() else { return };
+    let ink = if record.flown.points().is_empty() { PLANNED } else { FLOWN };
+    let mut taken: Vec<(f32, f32)> = Vec::new();
     let marks = (track.duration_s() / 60.0) as u32 / TIME_MARK_MIN;
     for minute in (1..=marks).map(|i| i * TIME_MARK_MIN) {
         let time_s = start.time_s + f64::from(minute) * 60.0;
         let (Some(before), Some(here)) = (track.at(time_s - 2.0), track.at(time_s)) else { continue };
         let ((ax, ay), (x, y)) = (view.place(before.position), view.place(here.position));
+        // a pattern flown again and again would be covered with them
+        if taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 60.0) {
+            continue;
+        }
+        taken.push((x, y));
         let length = (x - ax).hypot(y - ay).max(0.01);
         let (dx, dy) = ((x - ax) / length, (y - ay) / length);
-        arrow(canvas, (x, y), (dx, dy));
-        canvas.text(
-            (x - dy * 20.0, y + dx * 20.0),
-            Anchor::Middle,
-            &format!("{minute} min"),
-            Type::plain(14.0, TEXT).on(PAPER),
-        );
+        arrow(canvas, (x, y), (dx, dy), ink);
+        let beside = (x - dy * 26.0, y + dx * 20.0);
+        canvas.text(beside, Anchor::Middle, &format!("{minute} min"), Type::plain(14.0, TEXT).on(PAPER));
     }
 }
 
 /// A small arrow head in the direction of flight.
-fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32)) {
+fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32), ink: Ink) {
     let (tip, back, half) = (9.0, 6.0, 6.0);
     let points = [
         (x + dx * tip, y + dy * tip),
         (x - dx * back - dy * half, y - dy * back + dx * half),
         (x - dx * back + dy * half, y - dy * back - dx * half),
     ];
-    canvas.polygon(&points, FLOWN);
+    canvas.polygon(&points, ink);
     canvas.outline(&points, Pen::solid(PAPER, 1.2));
 }
 
@@ -193,6 +252,9 @@ fn draw_happenings(canvas: &mut Canvas, record: &Record, view: &View) {
     for (i, happening) in record.happenings.iter().filter(|h| h.important).enumerate() {
         let Some(point) = record.main_track().at(happening.time_s) else { continue };
         let (x, mut y) = view.place(point.position);
+        if !view.shows((x, y)) {
+            continue;
+        }
         while taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 24.0) {
             y -= 24.0;
         }
@@ -257,7 +319,8 @@ mod tests {
     #[test]
     fn everything_shown_is_inside_the_map() {
         let record = crate::report::record::tests::record();
-        let view = View::of(&record).unwrap();
+        let points = record.planned.points().iter().chain(record.flown.points());
+        let view = View::around(points.map(|p| p.position), (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT)).unwrap();
         for p in record.planned.points().iter().chain(record.flown.points()) {
             let (x, y) = view.place(p.position);
             assert!((0.0..MAP_WIDTH).contains(&x) && (HEADER..HEIGHT).contains(&y));

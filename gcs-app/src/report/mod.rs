@@ -36,7 +36,7 @@ impl Findings {
         let deviations = deviation::signed(&record.planned, &record.flown);
         Self {
             passages: deviation::by_passage(record, &deviations),
-            coverages: record.areas.iter().filter_map(|a| coverage::of(a, &record.flown)).collect(),
+            coverages: record.areas.iter().filter_map(|a| coverage::of(a, record.main_track())).collect(),
         }
     }
 
