@@ -1,5 +1,7 @@
 //! Scans: waypoints per second, and lines over a concave polygon beside a bare scanline.
 #![allow(clippy::unwrap_used, missing_docs)]
+// the library is pure; its bench measures time
+#![allow(clippy::disallowed_methods)]
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

@@ -173,7 +173,8 @@ pub struct Corner {
 /// Fly-bys cut their corners. Where a fly-by is abandoned (see [`fly_by`]) or a waypoint is
 /// fly-over, the fix is crossed and the next track captured by a turn beyond it, an intercept and
 /// a roll-out; where the next leg is too short for that, the turn leads straight to its end. Track
-/// changes up to 3° are crossed without an arc. Fewer than two waypoints give nothing.
+/// changes up to 3° are crossed without an arc. Where the turns at both ends of a leg do not fit in
+/// it together, the first is flown by and the second captured. Fewer than two waypoints give nothing.
 pub fn fly_route(corners: &[Corner]) -> Vec<PathElement> {
     let Some(first) = corners.first() else {
         return Vec::new();
@@ -216,8 +217,8 @@ fn fly_corner(path: &mut Vec<PathElement>, at: LatLon, corner: &Corner, next: La
 fn turn_beyond(fix: LatLon, course_deg: f64, next: LatLon, radius_m: f64) -> Vec<PathElement> {
     let outbound = fix.inverse(next);
     let change_deg = course_change_deg(course_deg, outbound.bearing_start_deg);
-    let crossed = !(radius_m > 0.0) || outbound.distance_m < SHORTEST_LINE_M;
-    if crossed || change_deg.abs() <= LEAST_FLY_BY_DEG {
+    let turns = radius_m > 0.0 && change_deg.abs() > LEAST_FLY_BY_DEG;
+    if !turns || outbound.distance_m < SHORTEST_LINE_M {
         return Vec::new();
     }
     let capture = capture(fix, course_deg, change_deg, radius_m);

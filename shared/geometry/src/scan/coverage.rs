@@ -25,6 +25,10 @@ pub fn coverage(polygon: &Polygon, tracks: impl IntoIterator<Item = (Vec2, Vec2)
             if let (Some(spans), Some(span)) =
                 (seen.get_mut(row), reach(a, b, half_width_m, rows.across_m(row)))
             {
+                // instead of growing, join what overlaps: memory follows the pattern, not its age
+                if spans.len() == spans.capacity() {
+                    merge(spans);
+                }
                 spans.push(span);
             }
         }

@@ -233,7 +233,7 @@ fn any_parameters() -> impl Strategy<Value = ScanParameters> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
     fn an_overshoot_of_half_the_spacing_covers_everything(area in area(), p in any_parameters()) {
