@@ -70,3 +70,39 @@ fn shallow(leg: &Leg) -> (Leg, Vec<Id>) {
     }
     (alone, ids)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Edit, Spot, read};
+    use geometry::LatLon;
+
+    const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+
+    #[test]
+    fn legs_are_added_removed_and_changed() {
+        let old = read(FIRE_WATCH).plan;
+        let new_leg = Box::new(Leg { id: "new".into(), ..old.leg(&"o1".into()).unwrap().leg.clone() });
+        let elsewhere = LatLon::new(36.3, -84.2);
+        let cases = [
+            (Edit::InsertLeg { leg: new_leg, at: Spot::After("o1".into()) }, ["new", "", ""]),
+            (Edit::DeleteLeg { leg: "h1".into() }, ["", "h1", ""]),
+            (Edit::DeleteLeg { leg: "patrol".into() }, ["", "patrol p1 p2 p3", ""]),
+            (Edit::MoveFix { fix: "WATCH".into(), to: elsewhere }, ["", "", "o2 regroup"]),
+            (
+                Edit::SetSpeed { of: "p2".into(), speed_mps: Some(crate::Value::Constant(20.0)) },
+                ["", "", "p2"],
+            ),
+            (Edit::SetCount { leg: "patrol".into(), count: None }, ["", "", "patrol"]),
+            (Edit::MoveLeg { leg: "p3".into(), at: Spot::Before("p2".into()) }, ["", "", "patrol"]),
+            (Edit::MoveLeg { leg: "h1".into(), at: Spot::EndOf("out".into()) }, ["", "", "h1"]),
+            (Edit::Rename { id: "GAP".into(), name: "Another".into() }, ["", "", ""]),
+        ];
+        for (edit, expected) in cases {
+            let difference = Difference::between(&old, &edit.apply(&old).unwrap());
+            let words = |ids: &[Id]| ids.iter().map(Id::as_str).collect::<Vec<_>>().join(" ");
+            let found = [words(&difference.added), words(&difference.removed), words(&difference.changed)];
+            assert_eq!(found, expected, "{edit:?}");
+        }
+    }
+}

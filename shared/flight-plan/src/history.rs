@@ -98,3 +98,99 @@ impl History {
         self.saved = Some(self.present);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Fix;
+    use geometry::LatLon;
+    use proptest::prelude::*;
+
+    fn start() -> History {
+        let fix = Fix {
+            id: "A".into(),
+            position: LatLon::new(0.0, 0.0),
+            name: String::new(),
+            description: String::new(),
+        };
+        History::new(FlightPlan { fixes: vec![fix], ..FlightPlan::default() })
+    }
+
+    fn moved(lat: f64) -> Edit {
+        Edit::MoveFix { fix: "A".into(), to: LatLon::new(lat, 0.0) }
+    }
+
+    fn lat(history: &History) -> f64 {
+        history.plan().fixes[0].position.lat_deg
+    }
+
+    #[test]
+    fn a_drag_is_one_step() {
+        let mut history = start();
+        for i in 1..=20 {
+            history.apply(&moved(f64::from(i)), Some(7)).unwrap();
+        }
+        history.apply(&moved(30.0), Some(8)).unwrap();
+        assert!(history.undo());
+        assert_eq!(lat(&history), 20.0);
+        assert!(history.undo());
+        assert_eq!(lat(&history), 0.0);
+        assert!(!history.undo() && history.redo() && history.redo() && !history.redo());
+        assert_eq!(lat(&history), 30.0);
+    }
+
+    #[test]
+    fn a_failed_edit_changes_nothing() {
+        let mut history = start();
+        assert!(history.apply(&Edit::DeleteLeg { leg: "z".into() }, None).is_err());
+        assert!(!history.can_undo() && history.is_saved());
+    }
+
+    #[test]
+    fn saved_is_the_state_on_disk() {
+        let mut history = start();
+        history.apply(&moved(1.0), None).unwrap();
+        assert!(!history.is_saved());
+        history.mark_saved();
+        history.undo();
+        assert!(!history.is_saved());
+        history.redo();
+        assert!(history.is_saved());
+        history.undo();
+        history.apply(&moved(2.0), None).unwrap();
+        assert!(!history.is_saved(), "the saved state is gone");
+    }
+
+    #[test]
+    fn the_oldest_states_are_forgotten() {
+        let mut history = start();
+        (1..=2000).for_each(|i| history.apply(&moved(f64::from(i)), None).unwrap());
+        let steps = std::iter::from_fn(|| history.undo().then_some(())).count();
+        assert_eq!(steps, MOST_STATES - 1);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Against a model: a list of states and a cursor.
+        #[test]
+        fn undo_and_redo_walk_the_states(steps in prop::collection::vec(0..3_u8, 0..60)) {
+            let mut history = start();
+            let (mut states, mut present) = (vec![0.0], 0);
+            for (i, step) in steps.into_iter().enumerate() {
+                match step {
+                    0 => {
+                        history.apply(&moved(i as f64 + 1.0), None).unwrap();
+                        states.truncate(present + 1);
+                        states.push(i as f64 + 1.0);
+                        present += 1;
+                    }
+                    1 => present -= usize::from(history.undo()),
+                    _ => present += usize::from(history.redo()),
+                }
+                prop_assert_eq!(lat(&history), states[present]);
+                prop_assert_eq!((history.can_undo(), history.can_redo()), (present > 0, present + 1 < states.len()));
+            }
+        }
+    }
+}

@@ -325,3 +325,87 @@ fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Expression> {
     plan.all_legs().iter().for_each(|c| c.leg.for_each_expression(&mut add));
     compiled
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FlightState, Variables};
+    use terrain::Flat;
+
+    const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+
+    fn program() -> Program {
+        compile_document(FIRE_WATCH.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap()
+    }
+
+    #[test]
+    fn every_leg_and_stage_is_found_on_its_path() {
+        let program = program();
+        for context in program.plan.all_legs() {
+            let path = program.path(&context.leg.id).unwrap();
+            assert_eq!(program.leg(&context.leg.id), Some(context.leg));
+            assert_eq!(program.stage(path), Some(context.stage));
+            assert_eq!(program.list(path), Some(context.siblings));
+            let around: Vec<_> = context.loops.iter().copied().chain([context.leg]).collect();
+            assert_eq!(program.chain(path), around);
+        }
+        let stage = program.path(&"watch".into()).unwrap();
+        assert_eq!((stage.stage, stage.indices.len(), program.chain(stage).len()), (3, 0, 0));
+        assert_eq!(program.leg(&"watch".into()), None);
+    }
+
+    /// Leg, stage, plan; at each of them the cause before the fallback.
+    #[test]
+    fn the_most_specific_emergency_plan_wins() {
+        let program = program();
+        let cases = [
+            ("o1", Cause::Engine, "return"),           // the document's
+            ("sweep", Cause::Operator, "north-strip"), // the stage's fallback
+            ("sweep", Cause::Engine, "return"),        // the stage's for this cause
+            ("watch", Cause::Link, "north-strip"),     // a stage by itself
+            ("look", Cause::Link, "return"),           // the leg's
+            ("p2", Cause::Gps, "north-strip"),         // a nested leg inherits
+        ];
+        for (leg, cause, expected) in cases {
+            let found = program.emergency_for(&leg.into(), cause).map(|e| e.id.as_str());
+            assert_eq!(found, Some(expected), "{leg} {cause:?}");
+        }
+        assert_eq!(program.emergency_for(&"gone".into(), Cause::Link), None);
+    }
+
+    #[test]
+    fn a_fallback_near_beats_a_cause_far_away() {
+        let document = FIRE_WATCH.replace(r#"id="sweep""#, r#"id="sweep" emergency="north-strip""#);
+        let program = compile_document(document.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap();
+        let found = program.emergency_for(&"sweep".into(), Cause::Engine).map(|e| e.id.as_str());
+        assert_eq!(found, Some("north-strip"), "the stage names `return` for the engine");
+    }
+
+    #[test]
+    fn values_follow_the_variables() {
+        let program = program();
+        let mut variables = Variables::initial(&program.plan);
+        let radius = Value::Expression("fire_radius + 150.0".into());
+        let flight = FlightState::on_ground(LatLon::new(36.3, -84.2));
+        let value = |variables: &Variables| program.eval_number(&radius, &Env { variables, flight });
+        assert_eq!(value(&variables), Ok(500.0));
+        variables.set(&program.plan, &"fire_radius".into(), crate::VariableValue::Number(700.0)).unwrap();
+        assert_eq!(value(&variables), Ok(850.0));
+        let env = Env { variables: &variables, flight };
+        assert_eq!(program.eval_bool("fire_out || battery < 0.35", &env), Ok(false));
+        assert_eq!(program.eval_place(&Place::Fix("GAP".into()), &env), Ok(LatLon::new(36.285, -84.215)));
+        assert!(program.eval_bool("no such expression", &env).is_err());
+        let sweep = program.leg(&"sweep".into()).unwrap();
+        assert!(
+            program.leg_reads(sweep, &"fire_radius".into()) && !program.leg_reads(sweep, &"fire_out".into())
+        );
+    }
+
+    #[test]
+    fn problems_of_a_refused_document_have_places() {
+        let document = FIRE_WATCH.replace("fire_radius + 150.0", "fire_radios + 150.0");
+        let problems = compile_document(document.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap_err();
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        assert_eq!((problems[0].code, problems[0].location.is_some()), ("unknown-name", true));
+    }
+}

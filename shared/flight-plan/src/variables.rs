@@ -123,3 +123,54 @@ impl Variables {
         Self(plan.variables.iter().map(|v| (v.name.clone(), keep(v))).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use VariableValue::{Bool, Number, Text};
+
+    fn plan(min: f64, max: f64) -> FlightPlan {
+        let variable = |name: &str, initial| Variable {
+            name: name.into(),
+            initial,
+            unit: String::new(),
+            min: Some(min),
+            max: Some(max),
+            max_length: Some(3),
+        };
+        FlightPlan {
+            variables: vec![variable("n", Number(min)), variable("t", Text(String::new()))],
+            ..FlightPlan::default()
+        }
+    }
+
+    #[test]
+    fn values_outside_type_or_bounds_are_refused_and_nothing_changes() {
+        let plan = plan(1.0, 5.0);
+        let mut variables = Variables::initial(&plan);
+        let cases = [
+            ("n", Number(5.0), true),
+            ("n", Number(5.1), false),
+            ("n", Number(f64::NAN), false),
+            ("n", Bool(true), false),
+            ("t", Text("häß".into()), true),
+            ("t", Text("four".into()), false),
+            ("z", Number(1.0), false),
+        ];
+        for (name, value, accepted) in cases {
+            let before = variables.clone();
+            let name = Id::new(name);
+            assert_eq!(variables.set(&plan, &name, value.clone()).is_ok(), accepted, "{name} {value:?}");
+            assert_eq!(variables == before, !accepted, "{name} {value:?}");
+        }
+    }
+
+    #[test]
+    fn a_new_plan_keeps_the_values_it_accepts() {
+        let old = plan(1.0, 5.0);
+        let mut variables = Variables::initial(&old);
+        variables.set(&old, &"n".into(), Number(4.0)).unwrap();
+        assert_eq!(variables.carried_over(&plan(0.0, 9.0)).get(&"n".into()), Some(&Number(4.0)));
+        assert_eq!(variables.carried_over(&plan(6.0, 9.0)).get(&"n".into()), Some(&Number(6.0)));
+    }
+}

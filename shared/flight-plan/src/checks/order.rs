@@ -37,16 +37,15 @@ fn list(legs: &[Leg], problems: &mut Vec<Problem>) {
 }
 
 fn successors(index: usize, leg: &Leg, known: &HashMap<&str, usize>) -> Vec<usize> {
-    let target = |next: &Option<crate::Id>| match next {
-        Some(id) => known.get(id.as_str()).copied(),
-        None => Some(index + 1),
+    // an unknown target is another rule's business: it is taken for the leg that follows
+    let target = |next: &Option<crate::Id>| {
+        next.as_ref().and_then(|id| known.get(id.as_str()).copied()).unwrap_or(index + 1)
     };
     match &leg.kind {
         LegKind::Intersection { branches, .. } if !branches.is_empty() => {
-            branches.iter().filter_map(|b| target(&b.next)).collect()
+            branches.iter().map(|b| target(&b.next)).collect()
         }
-        // an unknown target is another rule's business; it is taken for a way out
-        _ => vec![target(&leg.next).unwrap_or(known.len())],
+        _ => vec![target(&leg.next)],
     }
 }
 

@@ -183,3 +183,6 @@ enum Node {
     Binary(Operator, Box<Node>, Box<Node>),
     Call(Function, Vec<Node>),
 }
+
+#[cfg(test)]
+mod tests;

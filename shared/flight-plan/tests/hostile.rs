@@ -1,0 +1,229 @@
+//! Malformed and hostile documents give problems, and never a panic, a hang or unbounded memory.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use aircraft::Profile;
+use flight_plan::xml::{MAX_BYTES, MAX_ELEMENTS, MAX_PROBLEMS};
+use flight_plan::{Severity, check, compile_document, read, write};
+use proptest::prelude::*;
+use terrain::Flat;
+
+const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+
+fn codes(document: impl AsRef<[u8]>) -> Vec<&'static str> {
+    read(document).problems.iter().map(|p| p.code).collect()
+}
+
+fn plan_of(inside: &str) -> String {
+    format!(r#"<flightPlan xmlns="urn:legwork:flight-plan:1">{inside}</flightPlan>"#)
+}
+
+#[test]
+fn a_document_of_64_mib_and_a_byte_is_refused_at_once() {
+    assert_eq!(codes(vec![b' '; MAX_BYTES + 1]), ["too-large"]);
+}
+
+#[test]
+fn nothing_and_garbage_are_no_plan() {
+    assert_eq!(codes(""), ["not-a-plan"]);
+    assert_eq!(codes("hello"), ["unexpected-text", "not-a-plan"]);
+    assert_eq!(codes([0_u8; 1000]), ["bad-character", "unexpected-text", "not-a-plan"]);
+    assert_eq!(codes([0xff_u8, 0xfe, 0x00]), ["not-utf8", "unexpected-text", "not-a-plan"]);
+}
+
+#[test]
+fn an_entity_bomb_is_not_expanded() {
+    let levels = (1..20).map(|i| format!(r#"<!ENTITY e{i} "{}">"#, format!("&e{};", i - 1).repeat(10)));
+    let bomb = format!(r#"<!DOCTYPE x [<!ENTITY e0 "boom">{}]>"#, levels.collect::<String>());
+    assert_eq!(codes(bomb + &plan_of("&e19;")), ["doctype", "not-a-plan"]);
+    assert_eq!(codes(plan_of("&e19;")), ["entity"]);
+    assert_eq!(codes(plan_of(r#"<fixes note="&e19;"/>"#)), ["entity"]);
+}
+
+#[test]
+fn a_reference_to_a_forbidden_character() {
+    for reference in ["&#0;", "&#1;", "&#xFFFE;", "&#x110000;"] {
+        let found = codes(plan_of(&format!(r#"<fixes note="{reference}"/>"#)));
+        assert!(matches!(found[..], ["bad-character" | "entity"]), "{reference}: {found:?}");
+    }
+}
+
+#[test]
+fn a_million_nested_elements() {
+    assert_eq!(
+        codes(plan_of(&"<mainPlan>".repeat(1_000_000))),
+        [vec!["unknown-element"], vec!["too-deep"]].concat()
+    );
+}
+
+#[test]
+fn a_million_attributes() {
+    let attributes: String = (0..50_000).map(|i| format!(" a{i}=''")).collect();
+    let found = codes(plan_of(&format!("<fixes{attributes}/>")));
+    assert_eq!(found.first(), Some(&"too-many-attributes"));
+    assert!(found.len() <= MAX_PROBLEMS);
+}
+
+#[test]
+fn a_tag_of_two_megabytes() {
+    assert_eq!(codes(plan_of(&format!("<fixes note='{}'/>", "x".repeat(2 << 20)))), ["too-large"]);
+}
+
+#[test]
+fn more_elements_than_a_plan_may_have() {
+    let fixes = r#"<fix id="a" lat="1" lon="1"/>"#.repeat(MAX_ELEMENTS + 1);
+    let reading = read(plan_of(&format!("<fixes>{fixes}</fixes>")));
+    assert_eq!(reading.problems.iter().map(|p| p.code).collect::<Vec<_>>(), ["too-large"]);
+    assert!(reading.plan.fixes.len() < MAX_ELEMENTS);
+}
+
+#[test]
+fn more_faults_than_anyone_would_read() {
+    let found = codes(plan_of(&format!("<fixes>{}</fixes>", "<fix/>".repeat(100_000))));
+    assert_eq!(found.len(), MAX_PROBLEMS);
+    assert_eq!(found.last(), Some(&"too-many-problems"));
+}
+
+#[test]
+fn places_are_those_of_the_text() {
+    let document = plan_of("\n<fixes>\n  <!-- é漢 --> <fix id=\"A\" lat=\"x\"\n  lon=\"1\"/>\n</fixes>");
+    let problem = &read(&document).problems[0];
+    assert_eq!((problem.code, problem.location.unwrap().to_string().as_str()), ("bad-value", "3:27"));
+}
+
+#[test]
+fn a_byte_order_mark_is_no_problem() {
+    let document = [b"\xef\xbb\xbf", FIRE_WATCH.as_bytes()].concat();
+    assert_eq!(read(document).plan, read(FIRE_WATCH).plan);
+}
+
+/// What an attacker or a broken disk puts into a document.
+#[derive(Debug, Clone)]
+enum Fault {
+    Flip(prop::sample::Index, u8),
+    Cut(prop::sample::Index, prop::sample::Index),
+    Repeat(prop::sample::Index, prop::sample::Index),
+    Insert(prop::sample::Index, &'static str),
+    /// The value of the attribute nearest after a place.
+    Value(prop::sample::Index, &'static str),
+    Truncate(prop::sample::Index),
+}
+
+fn fault() -> impl Strategy<Value = Fault> {
+    let snippets = prop::sample::select(vec![
+        "<",
+        ">",
+        "\"",
+        "&",
+        "\0",
+        "<!--",
+        "<![CDATA[",
+        "<?",
+        "<!DOCTYPE x>",
+        "&lt;",
+        "</stage>",
+        "<iterative>",
+        "\u{feff}",
+        "]]>",
+    ]);
+    let values = prop::sample::select(vec![
+        "",
+        "NaN",
+        "inf",
+        "-inf",
+        "1e308",
+        "-1e308",
+        "1e-308",
+        "-0",
+        "0",
+        "-1",
+        "90",
+        "-180",
+        "99999999999999999999",
+        "= 1.0 / 0.0",
+        "= (",
+        "= fire_radius * 1e308",
+        "= offset(fire_centre, 1e300, 1e300)",
+        "= position",
+        "= -----1",
+        "= a.b.c[1]",
+        "= [1].map(x, x)",
+        "= 'a' + 'b'",
+        "= \\u0000",
+        "patrol",
+        "sweep",
+        "p1",
+        "0s",
+        "1e308m",
+        "x y",
+        "90 180",
+        "= fire_out ? 1 : 2",
+    ]);
+    let index = any::<prop::sample::Index>;
+    prop_oneof![
+        2 => (index(), any::<u8>()).prop_map(|(at, byte)| Fault::Flip(at, byte)),
+        1 => (index(), index()).prop_map(|(a, b)| Fault::Cut(a, b)),
+        1 => (index(), index()).prop_map(|(a, b)| Fault::Repeat(a, b)),
+        3 => (index(), snippets).prop_map(|(at, text)| Fault::Insert(at, text)),
+        12 => (index(), values).prop_map(|(at, value)| Fault::Value(at, value)),
+        1 => index().prop_map(Fault::Truncate),
+    ]
+}
+
+/// Ranges that faults take or repeat, bytes.
+const RANGE: usize = 400;
+
+fn apply(document: &mut Vec<u8>, fault: &Fault) {
+    let at = |index: &prop::sample::Index| {
+        index.index(document.len().max(1)).min(document.len().saturating_sub(1))
+    };
+    match fault {
+        _ if document.is_empty() => {}
+        Fault::Flip(index, byte) => {
+            let at = at(index);
+            document[at] = *byte;
+        }
+        Fault::Cut(index, length) => {
+            let from = at(index);
+            let to = (from + length.index(RANGE)).min(document.len());
+            document.drain(from..to);
+        }
+        Fault::Repeat(index, length) => {
+            let from = at(index);
+            let to = (from + length.index(RANGE)).min(document.len());
+            let piece = document[from..to].to_vec();
+            document.splice(to..to, piece);
+        }
+        Fault::Insert(index, text) => {
+            let at = at(index);
+            document.splice(at..at, text.bytes());
+        }
+        Fault::Value(index, value) => {
+            let after = at(index);
+            let Some(from) = document[after..].windows(2).position(|w| w == b"=\"").map(|i| after + i + 2)
+            else {
+                return;
+            };
+            let to = document[from..].iter().position(|b| *b == b'"').map_or(document.len(), |i| from + i);
+            document.splice(from..to, value.bytes());
+        }
+        Fault::Truncate(index) => document.truncate(at(index)),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_mutated_document_never_panics_and_its_plan_can_be_written(faults in prop::collection::vec(fault(), 1..6)) {
+        let mut document = FIRE_WATCH.as_bytes().to_vec();
+        faults.iter().for_each(|fault| apply(&mut document, fault));
+        let reading = read(&document);
+        prop_assert!(reading.problems.len() <= MAX_PROBLEMS);
+        let problems = check(&reading.plan, &Profile::default(), &Flat(200.0));
+        let good = !reading.has_errors() && problems.iter().all(|p| p.severity < Severity::Error);
+        prop_assert_eq!(compile_document(&document, &Profile::default(), &Flat(200.0)).is_ok(), good);
+        if good {
+            prop_assert_eq!(read(write(&reading.plan)).plan, reading.plan);
+        }
+    }
+}
