@@ -22,6 +22,8 @@ pub struct Config {
     pub debounce_s: f64,
     /// How often conditions that read the flight (battery, time, …) are read again, seconds.
     pub review_s: f64,
+    /// A decision is asked for when it is due within this, seconds.
+    pub ask_ahead_s: f64,
     /// An altitude counts as reached this close to it, metres.
     pub altitude_tolerance_m: f64,
     /// Slope of the final approach, degrees.
@@ -41,6 +43,7 @@ impl Default for Config {
             design_wind_mps: 6.0,
             debounce_s: 1.0,
             review_s: 1.0,
+            ask_ahead_s: 120.0,
             altitude_tolerance_m: 5.0,
             glide_slope_deg: 4.5,
             final_approach_m: 700.0,

@@ -38,7 +38,8 @@ impl Executor {
         for pending in self.pending() {
             let Some(request) = self.request_for(&pending) else { continue };
             let key = (pending.leg.clone(), pending.crossing);
-            if !self.state.requested.contains(&key) {
+            let soon = request.time_left_s <= self.config.ask_ahead_s;
+            if soon && !self.state.requested.contains(&key) {
                 self.state.requested.push(key);
                 if !self.is_decided(&pending) {
                     out.push(Output::Event(Event::DecisionRequested(request.clone())));

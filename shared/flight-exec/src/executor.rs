@@ -167,6 +167,11 @@ impl Executor {
         Token(self.state.last_token)
     }
 
+    /// Goes on numbering after a token that the gateway has seen (its memory may be longer than a snapshot's).
+    pub fn number_after(&mut self, highest: Token) {
+        self.state.last_token = self.state.last_token.max(highest.0);
+    }
+
     fn advance_clock(&mut self, now: Time) {
         if let Some(last) = self.last_step {
             self.state.clock_s += crate::world::seconds_between(last, now);

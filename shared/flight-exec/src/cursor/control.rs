@@ -2,7 +2,7 @@
 
 use super::{Cursor, Doing, LoopFrame, Visit};
 use crate::choice::{By, Choice};
-use crate::expand::track::{SAME_PLACE_M, turn_round};
+use crate::expand::track::turn_round;
 use crate::expand::{Expansion, Point};
 use crate::path::distance_m;
 use crate::world::World;
@@ -119,26 +119,12 @@ impl Cursor {
         self.doing = Doing::Arriving;
         if turns && frame_flies(leg) {
             self.begin_turn_round(turn, world);
-        } else if self.is_reverse() {
-            self.connect_to_the_end();
         }
     }
 
     fn begin_turn_round(&mut self, turn: flight_plan::TurnDirection, world: &World) {
         self.expansion = Some(Arc::new(turn_round(&self.path, turn, self.airspeed_mps, world)));
         self.begin_passage(Doing::Turning);
-    }
-
-    /// A pass back begins where the forward pass ended; a form-B loop that is flown backwards has to go there first.
-    pub(super) fn connect_to_the_end(&mut self) {
-        let Some(end) = self.loops.last().and_then(|f| f.trail.last()).map(|v| v.end) else { return };
-        if distance_m(end.position, self.path.last.position) > SAME_PLACE_M {
-            self.level = end.level;
-            self.airspeed_mps = end.airspeed_mps;
-            let point = Point { fly_over: end.fly_over, ..Point::fly(end.position) };
-            self.expansion = Some(Arc::new(Expansion::Points(vec![point])));
-            self.begin_passage(Doing::Turning);
-        }
     }
 
     pub(super) fn begin_passage(&mut self, doing: Doing) {

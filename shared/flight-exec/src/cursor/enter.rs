@@ -45,7 +45,6 @@ impl Cursor {
         match (&leg.kind, &visit.inner) {
             (LegKind::Iterative { .. }, Some(inner)) if !inner.is_empty() => {
                 self.enter_loop(true, inner.clone());
-                self.connect_to_the_end();
             }
             // nothing in it was flown on the way out
             (LegKind::Iterative { .. }, _) => self.leave(world),

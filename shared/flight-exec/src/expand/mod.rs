@@ -100,10 +100,13 @@ impl Expansion {
         }
     }
 
-    /// The same pattern backwards, ending at `start`.
-    pub fn reversed(self: &Arc<Self>, start: Point) -> Expansion {
+    /// The same pattern backwards, ending at `start`; `with_last`: beginning with its last point, because the path isn't there.
+    pub fn reversed(self: &Arc<Self>, start: Point, with_last: bool) -> Expansion {
         match self.len() {
-            Some(points) => Expansion::Reversed { pattern: self.clone(), points, start },
+            Some(points) => {
+                let points = points + u64::from(with_last);
+                Expansion::Reversed { pattern: self.clone(), points, start }
+            }
             None => Expansion::Points(vec![start]),
         }
     }

@@ -61,20 +61,26 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
 fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
     let start = visit.start;
     let back = Point { fly_over: start.fly_over, ..Point::fly(start.position) };
+    // the way back starts where the way out ended, wherever a loop in between has led
+    let end = Point { level: Some(visit.end.level), ..Point::fly(visit.end.position) };
+    let elsewhere = crate::path::distance_m(end.position, approach.path.last.position) > SAME_PLACE_M;
+    let connection = elsewhere.then_some(end);
     Ok(match &leg.kind {
         LegKind::If(_) | LegKind::Iterative { .. } | LegKind::Intersection { .. } => {
             Expansion::Points(Vec::new())
         }
-        LegKind::Tf(_) | LegKind::Df { .. } => Expansion::Points(vec![back]),
+        LegKind::Tf(_) | LegKind::Df { .. } => {
+            Expansion::Points(connection.into_iter().chain([back]).collect())
+        }
         LegKind::Rf { centre, turn, .. } => {
-            let from = approach.path.last.position;
             let tolerance_m = world.config.arc_tolerance_m;
-            Expansion::Points(arc::radius_to_fix(from, back, *centre, opposite(*turn), tolerance_m))
+            let arc = arc::radius_to_fix(end.position, back, *centre, opposite(*turn), tolerance_m);
+            Expansion::Points(connection.into_iter().chain(arc).collect())
         }
         LegKind::Hf(holding) => racetrack(holding, 180.0, true, approach, world)?,
         LegKind::Ha(holding) => racetrack(holding, 180.0, false, approach, world)?,
         LegKind::Scan(_) | LegKind::Orbit { .. } => match &visit.flown {
-            Some(flown) => flown.reversed(back),
+            Some(flown) => flown.reversed(back, connection.is_some()),
             None => Expansion::Points(vec![back]),
         },
     })

@@ -1,0 +1,241 @@
+//! Commands: each is done or refused with a reason, and answered once.
+
+use crate::rig::{Rig, document, fix, program};
+use flight_exec::{Command, Event, Executor, Input, Output, Phase, Snapshot, Token};
+use flight_plan::Cause;
+
+const LEGS: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
+
+fn code(result: Result<(), flight_exec::Refusal>) -> String {
+    result.err().map_or_else(|| "done".into(), |r| r.code)
+}
+
+#[test]
+fn without_a_plan_everything_is_refused() {
+    let mut rig = Rig::new();
+    let leg = || "a".into();
+    let cases = [
+        (Command::Start, "no-plan"),
+        (Command::Hold, "not-flying"),
+        (Command::Resume, "not-holding"),
+        (Command::SkipLeg, "not-flying"),
+        (Command::GoTo { leg: leg() }, "not-flying"),
+        (Command::SetCount { leg: leg(), count: 1 }, "not-flying"),
+        (Command::Decide { leg: leg(), branch: leg() }, "not-flying"),
+        (Command::Emergency { cause: Cause::Link, plan: None }, "not-flying"),
+        (Command::ReturnToMain { leg: leg() }, "not-flying"),
+        (Command::Commit { hash: "x".into(), entry: None }, "not-proposed"),
+    ];
+    for (command, expected) in cases {
+        assert_eq!(code(rig.command(command.clone())), expected, "{command:?}");
+    }
+    assert_eq!(code(rig.set("x", 1.0)), "no-plan");
+}
+
+#[test]
+fn skip_and_go_to_cancel_everything_and_go_direct() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    rig.command(Command::SkipLeg).unwrap();
+    assert_eq!(rig.buffer[0].leg.as_str(), "c");
+    assert!(rig.buffer[0].position.distance_m(fix("C2")) < 0.1);
+    rig.fly_to("c");
+    rig.command(Command::GoTo { leg: "a".into() }).unwrap();
+    assert_eq!(code(rig.command(Command::GoTo { leg: "nowhere".into() })), "unknown-leg");
+    assert_eq!(code(rig.command(Command::GoTo { leg: "b-df".into() })), "unknown-leg");
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c a b c d");
+}
+
+#[test]
+fn the_last_leg_can_not_be_skipped() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("land");
+    assert_eq!(code(rig.command(Command::SkipLeg)), "last-leg");
+    rig.fly_to_the_end();
+}
+
+#[test]
+fn hold_and_resume_rejoin_where_the_hold_was_given() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("c");
+    let held_at = fix("B2").destination(90.0, 500.0);
+    rig.position = held_at;
+    rig.report();
+    rig.command(Command::Hold).unwrap();
+    assert_eq!((rig.holds, rig.executor.status().phase), (1, Phase::Holding));
+    assert_eq!(code(rig.command(Command::Hold)), "already-holding");
+    rig.position = held_at.destination(0.0, 400.0);
+    rig.report();
+    rig.command(Command::Resume).unwrap();
+    assert!(rig.buffer[0].position.distance_m(held_at) < 0.1);
+    assert_eq!((rig.buffer[0].leg.as_str(), rig.buffer[1].leg.as_str()), ("c", "c"));
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d", "the leg held on is entered once");
+}
+
+#[test]
+fn a_refused_batch_holds_and_can_be_resumed() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    let first = rig.buffer[2].token;
+    rig.step(Input::Rejected { first, reason: "too steep".into() });
+    rig.buffer.truncate(2);
+    assert_eq!((rig.holds, rig.executor.status().phase), (1, Phase::Holding));
+    assert!(
+        rig.events
+            .iter()
+            .any(|e| matches!(e, Event::WaypointsRejected { leg: Some(l), .. } if l.as_str() == "d"))
+    );
+    rig.command(Command::Resume).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+}
+
+#[test]
+fn the_gateway_takes_control_and_gives_it_back() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    let feeds = rig.feeds;
+    rig.step(Input::GatewayControls(true));
+    rig.report();
+    assert_eq!(rig.feeds, feeds);
+    rig.buffer.clear();
+    rig.step(Input::GatewayControls(false));
+    assert_eq!(rig.feeds, feeds + 1);
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+}
+
+#[test]
+fn progress_of_unknown_waypoints_is_ignored() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    let before = rig.executor.status();
+    for token in [0, 1, 9999] {
+        rig.step(Input::Progress { current: Some(Token(token)) });
+    }
+    assert_eq!(rig.executor.status(), before);
+}
+
+#[test]
+fn an_emergency_cancels_what_is_unflown_and_only_worse_ones_replace_it() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    assert_eq!(rig.executor.status().emergency_in_force.unwrap().as_str(), "back");
+    rig.command(Command::Emergency { cause: Cause::Link, plan: None }).unwrap();
+    assert!(rig.buffer[0].position.distance_m(fix("A1")) < 0.1, "direct to the first fix");
+    rig.steer();
+    let other = || Some("other".into());
+    assert_eq!(
+        code(rig.command(Command::Emergency { cause: Cause::Payload, plan: other() })),
+        "not-more-severe"
+    );
+    assert_eq!(
+        code(rig.command(Command::Emergency { cause: Cause::Link, plan: other() })),
+        "not-more-severe"
+    );
+    assert_eq!(
+        code(rig.command(Command::Emergency { cause: Cause::Engine, plan: Some("?".into()) })),
+        "unknown-plan"
+    );
+    rig.command(Command::Emergency { cause: Cause::Engine, plan: other() }).unwrap();
+    assert!(rig.buffer[0].position.distance_m(fix("B1")) < 0.1);
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b b-df o-df o-land");
+}
+
+#[test]
+fn returning_to_the_main_plan_is_a_command_that_names_a_leg() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    assert_eq!(code(rig.command(Command::ReturnToMain { leg: "c".into() })), "no-emergency");
+    rig.command(Command::Emergency { cause: Cause::Link, plan: None }).unwrap();
+    rig.steer();
+    assert_eq!(code(rig.command(Command::ReturnToMain { leg: "b-df".into() })), "unknown-leg");
+    rig.command(Command::ReturnToMain { leg: "c".into() }).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b b-df c d");
+}
+
+#[test]
+fn the_most_specific_emergency_plan_wins() {
+    let legs = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2" emergency="other"/><TF id="c" fix="C2"/>"#;
+    for (leg, first) in [("a", "b-df"), ("b", "o-df"), ("c", "b-df")] {
+        let mut rig = Rig::started(legs);
+        rig.fly_to(leg);
+        rig.command(Command::Emergency { cause: Cause::Energy, plan: None }).unwrap();
+        assert_eq!(rig.buffer[0].leg.as_str(), first);
+    }
+}
+
+#[test]
+fn an_emergency_without_a_plan_is_left_to_the_gateway() {
+    let mut rig = Rig::flying(&document(LEGS).replace(r#" emergency="back""#, ""));
+    rig.fly_to("b");
+    assert_eq!(code(rig.command(Command::Emergency { cause: Cause::Gps, plan: None })), "no-emergency-plan");
+    assert!(rig.events.contains(&Event::EmergencyUnanswered { cause: Cause::Gps }));
+    rig.fly_to_the_end();
+}
+
+/// Kills the executor at every waypoint and compares what the restored one does with what the first one does.
+#[test]
+fn killed_and_restored_anywhere_it_flies_the_same() {
+    let legs = r#"<TF id="a" fix="B1"/>
+        <iterative id="l" form="reverse" count="2"><TF id="b" fix="B2"/>
+          <scan id="s" spacing="300" heading="0" overshoot="50"><area fix="C4" radius="500"/></scan>
+        </iterative><TF id="z" fix="A3"/>"#;
+    let plan = program(&document(legs));
+    let mut rig = Rig::flying(&document(legs));
+    let mut places = 0;
+    while rig.fly_one() {
+        let text = serde_json::to_string(&rig.executor.snapshot()).unwrap();
+        let snapshot: Snapshot = serde_json::from_str(&text).unwrap();
+        let mut twin = rig.clone();
+        twin.executor = Executor::restore(
+            flight_exec::Config::default(),
+            std::sync::Arc::new(terrain::Flat(crate::rig::GROUND_M)),
+            aircraft::Profile::default(),
+            Some(plan.clone()),
+            snapshot,
+        )
+        .unwrap();
+        assert_eq!(twin.executor.status(), rig.executor.status());
+        let mut first = rig.clone();
+        for _ in 0..6 {
+            assert_eq!(twin.fly_one(), first.fly_one());
+        }
+        assert_eq!((&twin.flown, &twin.events), (&first.flown, &first.events));
+        assert!(text.len() < 200_000, "a snapshot of {} bytes", text.len());
+        places += 1;
+    }
+    assert!(places > 20);
+}
+
+#[test]
+fn a_snapshot_of_another_plan_is_refused() {
+    let rig = Rig::started(LEGS);
+    let restored = Executor::restore(
+        flight_exec::Config::default(),
+        std::sync::Arc::new(terrain::Flat(0.0)),
+        aircraft::Profile::default(),
+        None,
+        rig.executor.snapshot(),
+    );
+    assert!(restored.is_err_and(|e| e.to_string().contains("load that plan")));
+}
+
+#[test]
+fn each_deadline_lies_ahead() {
+    let legs = r#"<TF id="a" fix="B1"/><iterative id="l" form="forward" count="3"><TF id="b" fix="B2"/><TF id="c" fix="C2"/></iterative>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_one();
+    let mut out = Vec::new();
+    for _ in 0..20 {
+        let due = rig.executor.deadline().unwrap();
+        assert!(due > rig.now);
+        rig.now = due;
+        rig.executor.step(due, Input::Tick, &mut out);
+    }
+    assert!(!out.iter().any(|o| matches!(o, Output::Feed { .. })));
+}

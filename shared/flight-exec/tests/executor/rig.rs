@@ -1,0 +1,291 @@
+//! An autopilot that is wherever it is told to go, at once; and plans made of fixes on a grid.
+
+use aircraft::Profile;
+use flight_exec::{
+    Action, AircraftState, Answer, Command, Config, Event, Executor, Input, Output, Phase, Refusal,
+    RequestId, Time, Token, Waypoint,
+};
+use flight_plan::{Program, VariableValue, compile_document};
+use geometry::LatLon;
+use std::collections::VecDeque;
+use std::sync::Arc;
+use terrain::Flat;
+
+pub const GROUND_M: f64 = 300.0;
+pub const HOME: LatLon = LatLon::new(36.5, -84.2);
+
+/// Fix `x` `y` of the grid: two kilometres apart, `B2` is 2 km east and 4 km north of home.
+pub fn fix(name: &str) -> LatLon {
+    let bytes = name.as_bytes();
+    let (east, north) = (f64::from(bytes[0] - b'A'), f64::from(bytes[1] - b'0'));
+    HOME.destination(90.0, 2000.0 * east).destination(0.0, 2000.0 * north)
+}
+
+/// A whole document around some legs of a mission stage.
+pub fn document(legs: &str) -> String {
+    document_with(legs, "", "")
+}
+
+/// As [`document`], with variables and attributes of the mission stage.
+pub fn document_with(legs: &str, variables: &str, stage: &str) -> String {
+    let names = ('A'..='F').flat_map(|x| (0..6).map(move |y| format!("{x}{y}")));
+    let fixes: String = names
+        .map(|n| {
+            let p = fix(&n);
+            format!(r#"<fix id="{n}" lat="{}" lon="{}"/>"#, p.lat_deg, p.lon_deg)
+        })
+        .collect();
+    format!(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="test" aircraft="trainer">
+        <fixes>{fixes}</fixes>
+        <runways>
+          <runway id="R" lat="{}" lon="{}" elevation="300" heading="90" length="600" priority="1"/>
+        </runways>
+        <variables>{variables}</variables>
+        <mainPlan emergency="back">
+          <stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+          <stage id="m" type="mission" altitude="200" altitudeReference="agl" {stage}>{legs}</stage>
+          <stage id="land" type="land" runway="R"/>
+        </mainPlan>
+        <emergencyPlans>
+          <emergencyPlan id="back" runway="R">
+            <stage id="b1" type="arrival"><DF id="b-df" fix="A1" altitude="150" altitudeReference="agl"/></stage>
+            <stage id="b-land" type="land" runway="R"/>
+          </emergencyPlan>
+          <emergencyPlan id="other" runway="R">
+            <stage id="o1" type="arrival"><DF id="o-df" fix="B1" altitude="150" altitudeReference="agl"/></stage>
+            <stage id="o-land" type="land" runway="R"/>
+          </emergencyPlan>
+        </emergencyPlans>
+        </flightPlan>"#,
+        HOME.lat_deg, HOME.lon_deg
+    )
+}
+
+pub fn program(document: &str) -> Arc<Program> {
+    match compile_document(document.as_bytes(), &Profile::default(), &Flat(GROUND_M)) {
+        Ok(program) => Arc::new(program),
+        Err(problems) => {
+            let shown: Vec<_> = problems.iter().map(ToString::to_string).collect();
+            panic!("the test's plan has problems:\n{}", shown.join("\n"))
+        }
+    }
+}
+
+/// The executor, and the gateway's buffer as it would be.
+#[derive(Clone)]
+pub struct Rig {
+    pub executor: Executor,
+    pub now: Time,
+    pub buffer: VecDeque<Waypoint>,
+    /// Waypoints steered to, in order.
+    pub flown: Vec<Waypoint>,
+    pub events: Vec<Event>,
+    pub holds: usize,
+    pub feeds: usize,
+    pub battery: f64,
+    /// Reported instead of the waypoint's altitude.
+    pub altitude_amsl_m: Option<f64>,
+    pub position: LatLon,
+    requests: u64,
+}
+
+impl Rig {
+    pub fn new() -> Self {
+        let executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default());
+        Self {
+            executor,
+            now: Time::ZERO,
+            buffer: VecDeque::new(),
+            flown: Vec::new(),
+            events: Vec::new(),
+            holds: 0,
+            feeds: 0,
+            battery: 1.0,
+            altitude_amsl_m: None,
+            position: HOME,
+            requests: 0,
+        }
+    }
+
+    /// A plan around some mission legs, committed and started.
+    pub fn started(legs: &str) -> Self {
+        Self::flying(&document(legs))
+    }
+
+    pub fn flying(document: &str) -> Self {
+        let mut rig = Self::new();
+        rig.update(&program(document)).unwrap();
+        rig.command(Command::Start).unwrap();
+        rig
+    }
+
+    pub fn propose(&mut self, program: &Arc<Program>) -> flight_exec::ProposalReport {
+        self.requests += 1;
+        let request = RequestId(self.requests);
+        match self.step(Input::Propose { request, program: program.clone() }) {
+            Some(Ok(Answer::Proposal(report))) => *report,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn update(&mut self, program: &Arc<Program>) -> Result<(), Refusal> {
+        self.propose(program);
+        self.command(Command::Commit { hash: program.hash.clone(), entry: None })
+    }
+
+    pub fn command(&mut self, command: Command) -> Result<(), Refusal> {
+        self.requests += 1;
+        let request = RequestId(self.requests);
+        match self.step(Input::Command { request, command }) {
+            Some(Ok(Answer::Done)) => Ok(()),
+            Some(Err(refusal)) => Err(refusal),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), Refusal> {
+        self.command(Command::SetVariable { name: name.into(), value: VariableValue::Number(value) })
+    }
+
+    /// One input; the gateway's side of the invariants is asserted on every output. Returns the answer.
+    pub fn step(&mut self, input: Input) -> Option<Result<Answer, Refusal>> {
+        let asked = match &input {
+            Input::Command { request, .. } | Input::Propose { request, .. } => Some(*request),
+            _ => None,
+        };
+        let mut out = Vec::new();
+        self.executor.step(self.now, input, &mut out);
+        let mut answers = Vec::new();
+        for output in out {
+            match output {
+                Output::Feed { cancel_after, waypoints } => self.take(cancel_after, waypoints),
+                Output::Hold => self.holds += 1,
+                Output::Answer { request, result } => answers.push((request, result)),
+                Output::Event(event) => self.events.push(event),
+            }
+        }
+        assert_eq!(
+            answers.iter().map(|(r, _)| *r).collect::<Vec<_>>(),
+            Vec::from_iter(asked),
+            "one answer each"
+        );
+        answers.pop().map(|(_, result)| result)
+    }
+
+    fn take(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>) {
+        self.feeds += 1;
+        let highest = self.buffer.iter().chain(&self.flown).map(|w| w.token).max();
+        if let Some(last) = cancel_after {
+            self.buffer.retain(|w| w.token <= last);
+        }
+        for waypoint in &waypoints {
+            assert!(Some(waypoint.token) > highest, "a token used twice: {waypoint:?}");
+        }
+        self.buffer.extend(waypoints);
+        assert!(self.buffer.iter().is_sorted_by(|a, b| a.token < b.token), "tokens count up");
+        assert!(self.buffer.len() <= 64, "the horizon is bounded");
+    }
+
+    /// The aircraft where it is, seen by the executor.
+    pub fn report(&mut self) {
+        let altitude_amsl_m = self.altitude_amsl_m.or(self.flown.last().map(|w| w.altitude_amsl_m));
+        let state = AircraftState {
+            position: self.position,
+            altitude_amsl_m: altitude_amsl_m.unwrap_or(GROUND_M),
+            track_deg: 90.0,
+            ground_speed_mps: 25.0,
+            airspeed_mps: 25.0,
+            wind_east_mps: 0.0,
+            wind_north_mps: 0.0,
+            battery: self.battery,
+            on_ground: self.flown.is_empty(),
+        };
+        self.step(Input::Aircraft(state));
+    }
+
+    /// Steers to the first waypoint of the buffer, if it doesn't yet.
+    pub fn steer(&mut self) {
+        if let Some(front) = self.buffer.front().cloned()
+            && self.flown.last().is_none_or(|w| w.token != front.token)
+        {
+            self.flown.push(front.clone());
+            self.step(Input::Progress { current: Some(front.token) });
+            // the way may have been changed on arrival
+            if self.buffer.front().is_some_and(|w| w.token != front.token) {
+                self.flown.pop();
+                self.steer();
+            }
+        }
+    }
+
+    /// Flies to the waypoint steered to, and steers to the next one. False: nothing to fly.
+    pub fn fly_one(&mut self) -> bool {
+        self.steer();
+        let Some(reached) = self.buffer.front().cloned() else { return false };
+        if matches!(reached.action, Action::Loiter { .. }) {
+            self.now += Time::from_secs(10);
+            self.report();
+            return false;
+        }
+        let seconds = self.position.distance_m(reached.position) / reached.airspeed_mps;
+        self.now += Time::from_secs_f64(seconds);
+        self.position = reached.position;
+        self.report();
+        self.buffer.pop_front();
+        if self.buffer.is_empty() {
+            assert!(reached.end_of_plan, "ran dry after {reached:?}");
+            self.step(Input::Progress { current: None });
+            return false;
+        }
+        self.steer();
+        true
+    }
+
+    /// Flies until a leg is entered. Panics when the plan ends first.
+    pub fn fly_to(&mut self, leg: &str) {
+        self.steer();
+        for _ in 0..10_000 {
+            if self.leg() == leg {
+                return;
+            }
+            assert!(self.fly_one(), "{leg} was not reached: {:?}", self.legs());
+        }
+        panic!("{leg} was not reached: {:?}", self.legs());
+    }
+
+    pub fn fly_to_the_end(&mut self) {
+        for _ in 0..100_000 {
+            if !self.fly_one() {
+                assert_eq!(self.executor.status().phase, Phase::Finished);
+                return;
+            }
+        }
+        panic!("it never ends: {:?}", self.legs());
+    }
+
+    /// The leg of the waypoint steered to.
+    pub fn leg(&self) -> String {
+        self.executor.status().place.map_or_else(String::new, |p| p.leg.to_string())
+    }
+
+    /// Legs entered so far, `<` before one flown backwards, take-off and landing left out.
+    pub fn legs(&self) -> String {
+        let entered = self.events.iter().filter_map(|e| match e {
+            Event::LegEntered { place } => {
+                Some(format!("{}{}", if place.reverse { "<" } else { "" }, place.leg))
+            }
+            _ => None,
+        });
+        let entered: Vec<_> = entered.filter(|l| l != "to" && l != "land").collect();
+        entered.join(" ")
+    }
+}
+
+/// Flies a mission of some legs to its end and compares the legs entered.
+pub fn check(legs: &str, entered: &str) -> Rig {
+    let mut rig = Rig::started(legs);
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), entered);
+    rig
+}
