@@ -79,7 +79,7 @@ impl Autopilot {
             home,
             params: Params::new(&profile),
             mission: Mission::new(Item::home(home.position, home.altitude_amsl_m)),
-            run: Run::new(),
+            run: Run::default(),
             guided: None,
             gps_ok: true,
             mode: Mode::Manual,

@@ -204,12 +204,13 @@ pub struct BadLink<T> {
     held: Option<T>,
 }
 
-impl<T: Clone> BadLink<T> {
-    /// Nothing held back.
-    pub fn new() -> Self {
+impl<T> Default for BadLink<T> {
+    fn default() -> Self {
         Self { held: None }
     }
+}
 
+impl<T: Clone> BadLink<T> {
     /// What comes out when a frame goes in.
     pub fn pass(&mut self, effects: &Effects, dice: &mut Dice, frame: T) -> Vec<T> {
         if effects.silent || dice.roll(effects.loss) {
@@ -288,7 +289,7 @@ mod tests {
     #[test]
     fn a_bad_link_loses_doubles_and_swaps_about_as_much_as_asked() {
         let effects = Effects { loss: 0.2, duplicate: 0.1, reorder: 0.1, ..Effects::default() };
-        let (mut link, mut dice) = (BadLink::new(), Dice::new(7));
+        let (mut link, mut dice) = (BadLink::default(), Dice::new(7));
         let out: Vec<u32> = (0..10_000).flat_map(|i| link.pass(&effects, &mut dice, i)).collect();
         let mut distinct = out.clone();
         distinct.sort_unstable();

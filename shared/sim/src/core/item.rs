@@ -95,7 +95,14 @@ impl Item {
         }
         check_numbers(wire)?;
         let kind = kind_of(wire)?;
-        let datum = if kind.has_position() { datum_of(wire.frame)? } else { Datum::Amsl };
+        let datum = if kind.has_position() {
+            if !wire.z.is_finite() {
+                return Err(MavMissionResult::MAV_MISSION_INVALID_PARAM7);
+            }
+            datum_of(wire.frame)?
+        } else {
+            Datum::Amsl
+        };
         Ok(Self {
             kind,
             position: LatLon::new(f64::from(wire.x) * 1e-7, f64::from(wire.y) * 1e-7),
@@ -166,12 +173,11 @@ pub fn to_float(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
 
 fn check_numbers(wire: &MISSION_ITEM_INT_DATA) -> Result<(), MavMissionResult> {
     use MavMissionResult as R;
-    // a NaN in param4 (yaw) is how clients say "whatever you like"
+    // a NaN in param4 (yaw) is how clients say "whatever you like", and in z of what has no place
     let numbers = [
         (wire.param1, R::MAV_MISSION_INVALID_PARAM1),
         (wire.param2, R::MAV_MISSION_INVALID_PARAM2),
         (wire.param3, R::MAV_MISSION_INVALID_PARAM3),
-        (wire.z, R::MAV_MISSION_INVALID_PARAM7),
     ];
     if let Some((_, refusal)) = numbers.into_iter().find(|(value, _)| !value.is_finite()) {
         return Err(refusal);

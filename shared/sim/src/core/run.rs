@@ -36,12 +36,14 @@ pub struct Walk {
     pub next: Option<(u16, Item)>,
 }
 
-impl Run {
+impl Default for Run {
     /// At the start of a mission.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self { phase: Phase::Stopped, current: 0, active: None, jumps_done: HashMap::new() }
     }
+}
 
+impl Run {
     /// Walks on from item `from` to the next one that is flown, and makes that the active one.
     pub fn advance(&mut self, items: &[Item], from: u16) -> Walk {
         let mut jumps = std::mem::take(&mut self.jumps_done);
@@ -69,7 +71,7 @@ impl Run {
 
     /// Forgets where it was.
     pub fn reset(&mut self) {
-        *self = Self::new();
+        *self = Self::default();
     }
 }
 
@@ -129,7 +131,7 @@ mod tests {
 
     fn flown(text: &str, most: usize) -> Vec<u16> {
         let items = mission(text);
-        let mut run = Run::new();
+        let mut run = Run::default();
         let mut flown = Vec::new();
         let mut from = 1;
         while flown.len() < most {
@@ -163,7 +165,7 @@ mod tests {
     #[test]
     fn the_end_of_the_list_completes_the_mission() {
         let items = mission("h w");
-        let mut run = Run::new();
+        let mut run = Run::default();
         run.advance(&items, 1);
         assert_eq!((run.phase, run.current), (Phase::Running, 1));
         run.advance(&items, 2);
