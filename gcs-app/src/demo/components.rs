@@ -4,9 +4,10 @@
 use aircraft::Wind;
 use anyhow::Context;
 use flight_plan::Runway;
-use onboard_agent::{Trigger, shutdown};
+use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
-use std::path::Path;
+use std::sync::Arc;
+use terrain::Terrain;
 use tokio::task::JoinHandle;
 
 /// The vehicle's name in the demo.
@@ -14,18 +15,21 @@ pub const VEHICLE: &str = "demo";
 /// Simulated seconds between points of the flown track.
 const TRACK_INTERVAL_S: f64 = 0.5;
 
+/// A service's name and its task.
+type Service = (&'static str, JoinHandle<anyhow::Result<()>>);
+
 /// The embedded system.
 pub struct Components {
     /// The simulated autopilot.
     pub simulator: sim::Handle,
     /// Zenoh endpoint of the gateway.
     pub endpoint: String,
-    services: Vec<(&'static str, JoinHandle<anyhow::Result<()>>)>,
+    services: Vec<Service>,
     trigger: Trigger,
 }
 
 /// How they are to be started.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Setup<'a> {
     /// Where the aircraft stands.
     pub home: &'a Runway,
@@ -35,10 +39,8 @@ pub struct Setup<'a> {
     pub wind: Wind,
     /// Simulated seconds per second; 0: as fast as possible.
     pub speed: f64,
-    /// For what has to survive a restart.
-    pub state_dir: &'a Path,
-    /// Elevation tiles for the services: files.
-    pub terrain: &'a Path,
+    /// The ground.
+    pub terrain: Arc<dyn Terrain>,
 }
 
 impl Components {
@@ -64,7 +66,7 @@ impl Components {
         .context("the simulator can't be started")?;
         let endpoint = format!("tcp/{}", free_address()?);
         let (trigger, shutdown) = shutdown();
-        let services = services(setup, &simulator, &endpoint, shutdown);
+        let services = services(setup, simulator.address(), &endpoint, &shutdown)?;
         Ok(Self { simulator, endpoint, services, trigger })
     }
 
@@ -93,6 +95,22 @@ impl Components {
         }
         self.simulator.stop();
     }
+}
+
+/// Gateway and FP Manager as tasks.
+fn services(setup: &Setup, autopilot: SocketAddr, endpoint: &str, shutdown: &Shutdown) -> anyhow::Result<Vec<Service>> {
+    let mut for_gateway = gateway::Config::new(VEHICLE, endpoint, format!("tcp:{autopilot}").parse()?);
+    for_gateway.profile = setup.profile.clone();
+    for_gateway.terrain = Some(setup.terrain.clone());
+    for_gateway.simulated = true;
+    let mut for_manager = fp_manager::Config::new(VEHICLE, endpoint);
+    for_manager.profile = setup.profile.clone();
+    for_manager.terrain = setup.terrain.clone();
+    for_manager.simulated = true;
+    Ok(vec![
+        ("gateway", tokio::spawn(gateway::run(for_gateway, shutdown.clone()))),
+        ("FP Manager", tokio::spawn(fp_manager::run(for_manager, shutdown.clone()))),
+    ])
 }
 
 /// A loopback address that nobody listens on.

@@ -1,11 +1,13 @@
 //! The fire-watch mission's logic: a service above the plan that sees the fire grow and move, decides at the
 //! intersection, sends a new plan and tells when the fire is out. Pure; the preview follows the same steps.
 
-use flight_exec::{Command, DecisionRequest, Event, PlacePointer, Token};
+use flight_exec::preview::{self, Scenario, Trigger};
+use flight_exec::{Command, Event, PlacePointer, Token};
 use flight_plan::{
-    Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Spot, Value, VariableValue,
+    Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Program, Spot, Value, VariableValue,
 };
 use geometry::LatLon;
+use std::sync::Arc;
 
 /// When a step is due.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,8 +116,10 @@ fn way_home() -> Edit {
 #[derive(Debug, Clone)]
 pub struct Script {
     steps: std::collections::VecDeque<Step>,
+    /// Steps in all.
+    count: usize,
     place: Option<PlacePointer>,
-    /// Waypoints of the present leg that have been flown.
+    /// Waypoints of the present passage that have been flown.
     flown: u64,
     steering_to: Option<Token>,
     asked: Option<(Id, u64)>,
@@ -124,37 +128,37 @@ pub struct Script {
 impl Script {
     /// Before the flight.
     pub fn new(steps: Vec<Step>) -> Self {
-        Self { steps: steps.into(), place: None, flown: 0, steering_to: None, asked: None }
+        Self { count: steps.len(), steps: steps.into(), place: None, flown: 0, steering_to: None, asked: None }
     }
 
     /// The executor told something.
     pub fn hear(&mut self, event: &Event) {
-        match event {
-            Event::LegEntered { place } => {
-                self.place = Some(place.clone());
-                self.flown = 0;
-            }
-            Event::DecisionRequested(DecisionRequest { leg, .. }) => {
-                self.asked = Some((leg.clone(), self.iteration()));
-            }
-            _ => {}
+        if let Event::DecisionRequested(request) = event {
+            self.asked = Some((request.leg.clone(), iteration(self.place.as_ref())));
         }
     }
 
-    /// The autopilot steers to this waypoint.
-    pub fn steers_to(&mut self, current: Option<Token>) {
-        if current.is_some() && current != self.steering_to {
-            if self.steering_to.is_some() {
-                self.flown += 1;
-            }
-            self.steering_to = current;
+    /// The aircraft is at this place and steers to this waypoint.
+    pub fn steers_to(&mut self, place: Option<&PlacePointer>, current: Option<Token>) {
+        let passage = |p: &PlacePointer| (p.leg.clone(), p.iterations.clone(), p.reverse);
+        if place.map(passage) != self.place.as_ref().map(passage) {
+            self.flown = 0;
+        } else if current != self.steering_to {
+            self.flown += 1;
         }
+        self.place = place.cloned();
+        self.steering_to = current;
     }
 
     /// The next step, if it is due; it won't come again.
     pub fn next_due(&mut self) -> Option<Step> {
         let due = self.is_due(&self.steps.front()?.when);
         if due { self.steps.pop_front() } else { None }
+    }
+
+    /// Steps in all.
+    pub fn steps(&self) -> usize {
+        self.count
     }
 
     /// Steps that have not come.
@@ -165,76 +169,100 @@ impl Script {
     fn is_due(&self, when: &When) -> bool {
         match when {
             When::Asked { leg, iteration } => self.asked.as_ref() == Some(&(leg.clone(), *iteration)),
-            When::On { leg, iteration, waypoints } => {
+            When::On { leg, iteration: pass, waypoints } => {
                 let here = self.place.as_ref().is_some_and(|p| p.leg == *leg);
-                here && self.iteration() == *iteration && self.flown >= *waypoints
+                here && iteration(self.place.as_ref()) == *pass && self.flown >= *waypoints
             }
         }
     }
+}
 
-    fn iteration(&self) -> u64 {
-        self.place.as_ref().and_then(|p| p.iterations.last()).map_or(0, |i| i.iteration)
+/// Pass of the innermost loop around a place; 0 outside loops.
+fn iteration(place: Option<&PlacePointer>) -> u64 {
+    place.and_then(|p| p.iterations.last()).map_or(0, |i| i.iteration)
+}
+
+/// The steps as a scenario of the preview, which knows no `Asked`: decisions are given at the times `asked_s` at
+/// which an earlier preview was asked for them (those not known yet are left out).
+///
+/// # Errors
+/// A changed plan is no good.
+pub fn scenario(
+    steps: &[Step],
+    plan: &FlightPlan,
+    compile: impl Fn(FlightPlan) -> anyhow::Result<Arc<Program>>,
+    asked_s: &[f64],
+) -> anyhow::Result<Scenario> {
+    let mut asked_s = asked_s.iter();
+    let mut triggers = Vec::new();
+    for step in steps {
+        let at = match &step.when {
+            When::On { leg, iteration, waypoints } => preview::When::Waypoints {
+                leg: leg.clone(),
+                iteration: (*iteration > 0).then_some(*iteration),
+                count: *waypoints,
+            },
+            When::Asked { .. } => match asked_s.next() {
+                Some(seconds) => preview::When::After { seconds: *seconds },
+                None => continue,
+            },
+        };
+        let mut then = Vec::new();
+        for act in &step.acts {
+            then.push(match act {
+                Act::Command(command) => preview::Act::Command(command.clone()),
+                Act::Update(edit) => preview::Act::Update { program: compile(edit.apply(plan)?)?, entry: None },
+            });
+        }
+        triggers.push(Trigger { at, then });
     }
+    Ok(Scenario { triggers })
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
-    use flight_exec::{Branching, IterationPlace};
+    use flight_exec::{Branching, DecisionRequest, IterationPlace};
 
-    fn enter(leg: &str, iteration: u64) -> Event {
-        let iterations = vec![IterationPlace { leg: "rounds".into(), iteration, of: None, reverse: false }];
-        let place = PlacePointer {
+    fn place(leg: &str, iteration: u64) -> PlacePointer {
+        PlacePointer {
             plan: Branching::Main,
             stage: "watch".into(),
             leg: Id::new(leg),
-            iterations,
+            iterations: vec![IterationPlace { leg: "rounds".into(), iteration, of: None, reverse: false }],
             reverse: false,
             distance_m: 0.0,
-        };
-        Event::LegEntered { place }
+        }
     }
 
     fn ask() -> Event {
         let (options, default) = (vec![], None);
-        Event::DecisionRequested(DecisionRequest {
-            leg: "ask".into(),
-            options,
-            default,
-            distance_left_m: 0.0,
-            time_left_s: 0.0,
-        })
+        Event::DecisionRequested(DecisionRequest { leg: "ask".into(), options, default, distance_left_m: 0.0, time_left_s: 0.0 })
     }
 
     #[test]
     fn steps_come_once_and_at_their_place() {
         let mut script = Script::new(fire_watch());
-        let mut names = Vec::new();
         let mut token = 0;
-        let mut fly = |script: &mut Script, names: &mut Vec<&str>, waypoints: u64| {
+        let mut fly = |script: &mut Script, leg: &str, iteration: u64, waypoints: u64| -> Vec<&str> {
+            let mut names = Vec::new();
             for _ in 0..waypoints {
                 token += 1;
-                script.steers_to(Some(Token(token)));
-                names.extend(std::iter::from_fn(|| script.next_due()).map(|s| s.name));
+                for _ in 0..3 {
+                    script.steers_to(Some(&place(leg, iteration)), Some(Token(token)));
+                    names.extend(std::iter::from_fn(|| script.next_due()).map(|s| s.name));
+                }
             }
+            names
         };
-        script.hear(&enter("sweep", 1));
-        fly(&mut script, &mut names, 3);
-        assert!(names.is_empty(), "not after two waypoints");
-        fly(&mut script, &mut names, 3);
-        assert_eq!(names, ["the fire grows"]);
+        assert!(fly(&mut script, "sweep", 1, 4).is_empty(), "three are flown");
+        assert_eq!(fly(&mut script, "sweep", 1, 1), ["the fire grows"]);
         script.hear(&ask());
-        fly(&mut script, &mut names, 20);
-        assert_eq!(names, ["the fire grows", "another round"]);
-        script.hear(&enter("sweep", 2));
-        script.hear(&ask());
-        fly(&mut script, &mut names, 9);
-        assert_eq!(names.len(), 4);
-        assert_eq!(
-            script.missing().map(|s| s.name).collect::<Vec<_>>(),
-            ["the fire is out", "another way home"]
-        );
+        assert_eq!(fly(&mut script, "sweep", 1, 20), ["another round"]);
+        assert!(fly(&mut script, "regroup", 1, 9).is_empty());
+        assert_eq!(fly(&mut script, "sweep", 2, 9), ["the fire moves"]);
+        assert_eq!(script.missing().map(|s| s.name).collect::<Vec<_>>(), ["a closer look", "the fire is out", "another way home"]);
     }
 
     #[test]

@@ -44,8 +44,15 @@ impl Source {
     /// A file can't be read, or an elevation tile or profile is none.
     pub fn load(&self) -> anyhow::Result<Loaded> {
         // one byte more than is allowed: the reader then says that it is too long
-        let document = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
-        let reading = flight_plan::read(&document);
+        self.surround(&read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?)
+    }
+
+    /// A document that is here already, with the surroundings of this source.
+    ///
+    /// # Errors
+    /// An elevation tile or profile can't be read or is none.
+    pub fn surround(&self, document: &[u8]) -> anyhow::Result<Loaded> {
+        let reading = flight_plan::read(document);
         let profile = match &self.aircraft {
             Some(path) => Ok(profile_from(path)?),
             None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),

@@ -16,6 +16,7 @@ mod style;
 mod tables;
 
 pub use coverage::Coverage;
+pub use tables::clock;
 pub use deviation::{PassageReport, Statistics};
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
 

@@ -1,0 +1,318 @@
+//! The flight itself: the mission logic as one more service, in step with the simulated clock.
+
+use super::components::{Components, VEHICLE};
+use super::judge::Outcome;
+use super::mission::{Act, Script, Step};
+use super::progress::Progress;
+use super::recorder::Recorder;
+use crate::report::TrackPoint;
+use anyhow::{Context, bail, ensure};
+use flight_exec::{Command, Phase};
+use flight_plan::{Edit, FlightPlan, Runway};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use usal::contract::{
+    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus, Position, Power, ProposalReport,
+    Propose, TimedGatewayEvent,
+};
+use usal::topics::{fp_manager, gateway};
+use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber};
+
+/// A service that does not answer for so long has failed, wall-clock.
+const ANSWER_WITHIN: Duration = Duration::from_secs(15);
+/// The agent must be ready to fly after this, wall-clock.
+const READY_WITHIN: Duration = Duration::from_secs(30);
+/// No tick of the simulated clock for so long is a failure, wall-clock.
+const TICK_WITHIN: Duration = Duration::from_secs(15);
+/// A flight longer than the preview by this factor and these seconds has failed.
+const TOO_LONG: (f64, f64) = (1.3, 240.0);
+/// Simulated seconds after the plan's end in which the aircraft must have come to rest.
+const REST_WITHIN_S: f64 = 90.0;
+
+/// The mission logic and what it listens to.
+pub struct Flight<'a> {
+    session: Session,
+    clock: Participant,
+    heard: Heard,
+    script: Script,
+    recorder: Recorder,
+    /// With its updates.
+    plan: FlightPlan,
+    progress: &'a Progress,
+    ended: &'a AtomicBool,
+    planned_s: f64,
+    /// Simulated time at which the plan was started, seconds.
+    started_s: f64,
+    now_s: f64,
+    wall: Instant,
+}
+
+/// What was seen of a flight.
+pub struct Ending {
+    /// Where the aircraft really was.
+    pub points: Vec<TrackPoint>,
+    /// What the executor told.
+    pub events: Vec<(f64, PlanEvent)>,
+    /// The plan with its updates.
+    pub plan: FlightPlan,
+    /// For the judge.
+    pub outcome: Outcome,
+}
+
+/// What comes in.
+struct Heard {
+    plan_events: EventSubscriber<FpManagerEvent>,
+    gateway_events: EventSubscriber<TimedGatewayEvent>,
+    state: VariableSubscriber<GatewayStatus>,
+    status: VariableSubscriber<PlanStatus>,
+    position: VariableSubscriber<Position>,
+    attitude: VariableSubscriber<Attitude>,
+    air: VariableSubscriber<Air>,
+    power: VariableSubscriber<Power>,
+    navigation: VariableSubscriber<Navigation>,
+}
+
+impl Heard {
+    fn listen(session: &Session) -> anyhow::Result<Self> {
+        Ok(Self {
+            plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
+            gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,
+            state: session.follow(gateway::STATE)?,
+            status: session.follow(fp_manager::STATUS)?,
+            position: session.follow(gateway::POSITION)?,
+            attitude: session.follow(gateway::ATTITUDE)?,
+            air: session.follow(gateway::AIR)?,
+            power: session.follow(gateway::POWER)?,
+            navigation: session.follow(gateway::NAVIGATION)?,
+        })
+    }
+
+    fn status(&self) -> Option<PlanStatus> {
+        Some(self.status.latest()?.stamped.value.clone())
+    }
+
+    fn gateway_state(&self) -> Option<GatewayState> {
+        Some(self.state.latest()?.stamped.value.state)
+    }
+}
+
+impl<'a> Flight<'a> {
+    /// Joins the flight: a session, the clock, the subscriptions. `ended` is set from outside when the flight is to end early.
+    ///
+    /// # Errors
+    /// The session can't be opened.
+    pub async fn join(
+        components: &Components,
+        plan: FlightPlan,
+        script: Script,
+        recorder: Recorder,
+        planned_s: f64,
+        progress: &'a Progress,
+        ended: &'a AtomicBool,
+    ) -> anyhow::Result<Self> {
+        let session = Session::open(Config::client(VEHICLE, &components.endpoint)).await?;
+        Ok(Self {
+            heard: Heard::listen(&session)?,
+            clock: Participant::join(&session, "mission")?,
+            session,
+            script,
+            recorder,
+            plan,
+            progress,
+            ended,
+            planned_s,
+            started_s: 0.0,
+            now_s: 0.0,
+            wall: Instant::now(),
+        })
+    }
+
+    /// Waits for the agent, sends the plan, starts it, follows it to its end.
+    ///
+    /// # Errors
+    /// A component fails, does not answer, or the flight does not end in time.
+    pub async fn fly(&mut self, components: &mut Components) -> anyhow::Result<()> {
+        self.wait_until_ready(components).await?;
+        let plan = self.plan.clone();
+        self.send_plan(&plan).await.context("the plan was not taken")?;
+        self.command(&Command::Start).await.context("the plan was not started")?;
+        self.started_s = self.now_s;
+        self.wall = Instant::now();
+        let limit_s = self.planned_s * TOO_LONG.0 + TOO_LONG.1;
+        let mut finished_s = None;
+        loop {
+            let tick = self.next_tick(components).await?;
+            self.look(components);
+            self.react().await?;
+            self.clock.acknowledge(tick);
+            if self.heard.status().is_some_and(|s| s.phase == Phase::Finished) {
+                let since_s = self.now_s - *finished_s.get_or_insert(self.now_s);
+                if is_at_rest(components) || since_s > REST_WITHIN_S {
+                    break;
+                }
+            }
+            let flown_s = self.now_s - self.started_s;
+            ensure!(flown_s < limit_s, "after {:.0} min the flight still goes on, {:.0} min were previewed", flown_s / 60.0, self.planned_s / 60.0);
+            ensure!(!self.ended.load(Ordering::Relaxed), "the window was closed before the flight had ended");
+        }
+        self.look(components);
+        self.recorder.flush();
+        Ok(())
+    }
+
+    /// Ends the session: the clock does not wait for it any more.
+    pub async fn leave(self) {
+        self.session.close().await;
+    }
+
+    /// What was seen of the flight so far; times count from the start of the plan.
+    pub fn ending(&mut self, components: &Components, destination: &Runway) -> Ending {
+        let truth = components.simulator.truth();
+        let recorder = &mut self.recorder;
+        let outcome = Outcome {
+            stands_at: truth.position,
+            on_ground: truth.on_ground,
+            disarmed: !truth.armed,
+            ground_speed_mps: truth.ground_speed_mps,
+            runway: destination.clone(),
+            phase: self.heard.status().map_or(Phase::Idle, |s| s.phase),
+            states: std::mem::take(&mut recorder.states),
+            missing_steps: self.script.missing().map(|s| s.name.to_owned()).collect(),
+            steps: self.script.steps(),
+            refusals: std::mem::take(&mut recorder.refusals),
+        };
+        let mut points = std::mem::take(&mut recorder.points);
+        points.retain(|p| p.time_s >= self.started_s);
+        points.iter_mut().for_each(|p| p.time_s -= self.started_s);
+        let mut events = std::mem::take(&mut recorder.events);
+        events.iter_mut().for_each(|(time_s, _)| *time_s -= self.started_s);
+        Ending { points, events, plan: self.plan.clone(), outcome }
+    }
+
+    async fn wait_until_ready(&mut self, components: &mut Components) -> anyhow::Result<()> {
+        let deadline = Instant::now() + READY_WITHIN;
+        loop {
+            let tick = self.next_tick(components).await?;
+            self.look(components);
+            self.clock.acknowledge(tick);
+            if self.heard.gateway_state() == Some(GatewayState::Stop) && self.heard.status().is_some() {
+                return Ok(());
+            }
+            self.progress.say("waiting for the agent");
+            ensure!(
+                Instant::now() < deadline,
+                "the agent is not ready after {} s: gateway {:?}, FP Manager {:?}",
+                READY_WITHIN.as_secs(),
+                self.heard.gateway_state(),
+                self.heard.status().map(|s| s.phase)
+            );
+        }
+    }
+
+    async fn next_tick(&mut self, components: &mut Components) -> anyhow::Result<ClockTick> {
+        let tick = tokio::time::timeout(TICK_WITHIN, self.clock.next()).await;
+        if let Some(failure) = components.failure().await {
+            bail!(failure);
+        }
+        let Ok(tick) = tick else {
+            bail!("the simulated clock stands still since {} s, at {:.1} s", TICK_WITHIN.as_secs(), self.now_s)
+        };
+        let tick = tick.context("the connection to the gateway was closed")?;
+        self.now_s = tick.time_s;
+        Ok(tick)
+    }
+
+    /// Takes in what has come, without waiting.
+    fn look(&mut self, components: &Components) {
+        let recorder = &mut self.recorder;
+        recorder.points.extend(components.simulator.take_track().into_iter().map(|p| TrackPoint {
+            time_s: p.time_s,
+            position: p.position,
+            altitude_amsl_m: p.altitude_amsl_m,
+        }));
+        while let Some(occurrence) = self.heard.plan_events.try_recv() {
+            match occurrence {
+                Occurrence::Event { event, .. } => {
+                    self.script.hear(&event.value);
+                    recorder.plan_event(event);
+                }
+                Occurrence::Gap { missed } => recorder.refusals.push(format!("{missed} events of the FP Manager were lost")),
+            }
+        }
+        while let Some(occurrence) = self.heard.gateway_events.try_recv() {
+            match occurrence {
+                Occurrence::Event { event, .. } => recorder.gateway_event(&event),
+                Occurrence::Gap { missed } => recorder.refusals.push(format!("{missed} events of the gateway were lost")),
+            }
+        }
+        self.log_variables();
+        if let Some(status) = self.heard.status() {
+            self.script.steers_to(status.place.as_ref(), status.current);
+            self.progress.show(self.now_s - self.started_s, self.wall.elapsed().as_secs_f64(), status.place.as_ref());
+        }
+    }
+
+    fn log_variables(&mut self) {
+        let (heard, recorder) = (&mut self.heard, &mut self.recorder);
+        macro_rules! log {
+            ($($field:ident: $topic:literal),+ $(,)?) => {
+                $(if let Some(received) = heard.$field.take_new() {
+                    recorder.log($topic, &received.stamped);
+                })+
+            };
+        }
+        log!(
+            position: "gateway/position",
+            attitude: "gateway/attitude",
+            air: "gateway/air",
+            power: "gateway/power",
+            navigation: "gateway/navigation",
+            state: "gateway/state",
+            status: "fp-manager/status",
+        );
+    }
+
+    /// Does the steps of the mission logic that are due; time stands still meanwhile.
+    async fn react(&mut self) -> anyhow::Result<()> {
+        while let Some(step) = self.script.next_due() {
+            let flown_s = self.now_s - self.started_s;
+            self.progress.tell(&format!("{:>6}  mission logic: {}", crate::report::clock(flown_s), step.name));
+            self.take(&step).await.with_context(|| format!("mission logic, {}", step.name))?;
+        }
+        Ok(())
+    }
+
+    async fn take(&mut self, step: &Step) -> anyhow::Result<()> {
+        for act in &step.acts {
+            match act {
+                Act::Command(command) => self.command(command).await?,
+                Act::Update(edit) => self.update(edit).await?,
+            }
+        }
+        Ok(())
+    }
+
+    async fn update(&mut self, edit: &Edit) -> anyhow::Result<()> {
+        let plan = edit.apply(&self.plan)?;
+        self.send_plan(&plan).await?;
+        self.plan = plan;
+        Ok(())
+    }
+
+    async fn send_plan(&self, plan: &FlightPlan) -> anyhow::Result<()> {
+        let request = Propose { xml: flight_plan::write(plan), seen_revision: None };
+        let report: ProposalReport = self.session.call(fp_manager::PROPOSE, &request, ANSWER_WITHIN).await?;
+        ensure!(report.acceptable, "{}", report.problems.join("; "));
+        self.command(&Command::Commit { hash: report.hash, entry: None }).await
+    }
+
+    async fn command(&self, command: &Command) -> anyhow::Result<()> {
+        self.session.call(fp_manager::COMMAND, command, ANSWER_WITHIN).await?;
+        Ok(())
+    }
+}
+
+fn is_at_rest(components: &Components) -> bool {
+    let truth = components.simulator.truth();
+    truth.on_ground && !truth.armed && truth.ground_speed_mps < 0.5
+}

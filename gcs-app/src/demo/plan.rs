@@ -1,0 +1,160 @@
+//! The plan of a demo, flown ahead of time with everything the mission logic will do.
+
+use super::Args;
+use super::flight::Ending;
+use super::mission::{self, Step, When};
+use crate::assets;
+use crate::headless::{Loaded, Source, forecast, wind};
+use crate::report::{Record, Track, assemble};
+use aircraft::{Profile, Wind};
+use anyhow::{Context, bail};
+use flight_exec::Event;
+use flight_exec::preview::Preview;
+use flight_plan::{FlightPlan, Program, Runway, StageKind};
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// Everything that is known before the flight.
+pub struct Prepared {
+    /// The plan.
+    pub program: Arc<Program>,
+    /// The aircraft.
+    pub profile: Profile,
+    /// The ground.
+    pub terrain: Arc<dyn Terrain>,
+    /// Where it starts.
+    pub home: Runway,
+    /// Where it lands.
+    pub destination: Runway,
+    /// What the mission logic will do.
+    pub steps: Vec<Step>,
+    /// The previewed track.
+    pub planned: Track,
+}
+
+/// Reads, checks and previews the plan.
+///
+/// # Errors
+/// It can't be read, has errors, can't be flown to its end, or the mission logic's steps don't fit it.
+pub fn prepare(args: &Args) -> anyhow::Result<Prepared> {
+    let loaded = load(args)?;
+    let (program, profile) = loaded.compile().map_err(|problems| {
+        let list: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        anyhow::anyhow!("the plan can't be flown:\n{}", list.join("\n"))
+    })?;
+    let program = Arc::new(program);
+    let home = program.plan.home().context("the plan has no take-off stage with a runway: give it one")?.clone();
+    let destination = destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
+    let steps = mission::steps_for(&program.plan);
+    let (preview, last_plan) = preview(&loaded, &program, &profile, args.wind, &steps)?;
+    let planned = forecast::track(&preview, &[&program.plan, &last_plan]);
+    Ok(Prepared { program, profile, terrain: loaded.terrain, home, destination, steps, planned })
+}
+
+fn load(args: &Args) -> anyhow::Result<Loaded> {
+    match &args.plan {
+        Some(file) => Source { file: file.clone(), ..Source::default() }.load(),
+        None => Source::default().surround(assets::FIRE_WATCH.as_bytes()),
+    }
+}
+
+fn destination(plan: &FlightPlan) -> Option<&Runway> {
+    let land = plan.stages.iter().rev().find(|s| s.kind == StageKind::Land)?;
+    plan.runway(land.runway.as_ref()?)
+}
+
+/// The plan after all updates of the steps.
+fn updated(plan: &FlightPlan, steps: &[Step]) -> anyhow::Result<FlightPlan> {
+    let mut plan = plan.clone();
+    for act in steps.iter().flat_map(|s| &s.acts) {
+        if let mission::Act::Update(edit) = act {
+            plan = edit.apply(&plan)?;
+        }
+    }
+    Ok(plan)
+}
+
+/// Previews the flight with the mission logic: again for each decision, as the time at which it is asked for
+/// depends on what was done before.
+fn preview(
+    loaded: &Loaded,
+    program: &Arc<Program>,
+    profile: &Profile,
+    wind: Wind,
+    steps: &[Step],
+) -> anyhow::Result<(Preview, FlightPlan)> {
+    let compile = |plan: FlightPlan| {
+        flight_plan::compile(plan, profile, loaded.terrain.as_ref())
+            .map(Arc::new)
+            .map_err(|problems| anyhow::anyhow!("the changed plan can't be flown: {problems:?}"))
+    };
+    let decisions = steps.iter().filter(|s| matches!(s.when, When::Asked { .. })).count();
+    let mut asked_s: Vec<f64> = Vec::new();
+    loop {
+        let scenario = mission::scenario(steps, &program.plan, compile, &asked_s)?;
+        let preview = forecast::fly(program, profile, &loaded.terrain, wind, &scenario)
+            .context("the plan can't be flown to its end")?;
+        let asked: Vec<f64> = preview.events.iter().filter(|(_, e)| matches!(e, Event::DecisionRequested(_))).map(|(t, _)| *t).collect();
+        if asked_s.len() < decisions {
+            let Some(next) = asked.get(asked_s.len()) else {
+                bail!("the mission logic waits for {decisions} decisions, the preview was asked for {}", asked.len())
+            };
+            asked_s.push(*next);
+            continue;
+        }
+        if let Some((seconds, refusal)) = preview.refusals.first() {
+            bail!("in the preview, the mission logic was refused after {seconds:.0} s: {refusal}");
+        }
+        if let Some(index) = preview.not_fired.first() {
+            bail!("in the preview, the mission logic did not come to step {}", index + 1);
+        }
+        return Ok((preview, updated(&program.plan, steps)?));
+    }
+}
+
+impl Prepared {
+    /// The record of a flight, without a verdict yet. Times count from the start of the plan.
+    pub fn record(&self, ending: &Ending, wind: &Wind) -> Record {
+        let flown = assemble::track(&ending.points, &ending.events, &[&self.program.plan, &ending.plan]);
+        Record {
+            title: self.program.plan.name.clone(),
+            notes: vec![
+                format!("{}, simulated", self.program.plan.aircraft),
+                format!("wind {}", wind::shown(wind)),
+                format!("plan {}", self.program.hash.get(..12).unwrap_or(&self.program.hash)),
+            ],
+            planned: self.planned.clone(),
+            places: assemble::places(&self.program.plan),
+            areas: assemble::areas(&self.program, &flown, &ending.events),
+            flown,
+            happenings: ending.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
+            verdict: Vec::new(),
+            terrain: self.terrain.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    #[test]
+    fn the_fire_watch_is_previewed_with_all_its_steps() {
+        let args = Args {
+            headless: true,
+            report: "unused".into(),
+            plan: None,
+            wind: Wind::from_direction(270.0, 5.0),
+            speed: None,
+        };
+        let prepared = prepare(&args).unwrap();
+        assert_eq!(prepared.steps.len(), 6);
+        let legs: Vec<&str> = prepared.planned.passages().iter().map(|p| p.key.leg.as_str()).collect();
+        for leg in ["d2", "sweep", "look", "regroup", "p2", "h2", "ap1"] {
+            assert!(legs.contains(&leg), "{leg} is not in {legs:?}");
+        }
+        assert_eq!(legs.iter().filter(|l| **l == "sweep").count(), 2, "the fire is out after the second round");
+        assert_eq!(prepared.destination.id.as_str(), "R05");
+    }
+}

@@ -1,0 +1,43 @@
+//! What the demo prints at its end.
+
+use crate::report::{Findings, Record, clock};
+use std::path::Path;
+
+/// The leg table, the verdict and where the report is, on standard output.
+pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) {
+    print!("{}", table(findings));
+    println!();
+    for coverage in &findings.coverages {
+        println!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0);
+    }
+    for (holds, sentence) in &record.verdict {
+        println!("{} {sentence}", if *holds { "ok  " } else { "FAIL" });
+    }
+    let flown_s = record.flown.duration_s();
+    println!(
+        "{} flown in {wall_s:.1} s ({:.0} × real time); report: {}",
+        clock(flown_s),
+        flown_s / wall_s.max(0.1),
+        folder.join("report.html").display()
+    );
+    let good = record.verdict.iter().all(|(holds, _)| *holds);
+    println!("{}", if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." });
+}
+
+fn table(findings: &Findings) -> String {
+    let mut text = format!("{:<26} {:<10} {:>7} {:>7} {:>9}   cross-track RMS / 95 % / max\n", "leg", "type", "entered", "time", "distance");
+    for row in &findings.passages {
+        let cross = row
+            .cross_track
+            .map_or("not previewed".to_owned(), |s| format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m));
+        text += &format!(
+            "{:<26} {:<10} {:>7} {:>7} {:>6.2} km   {cross}\n",
+            row.passage.key.to_string(),
+            row.passage.kind,
+            clock(row.start_s),
+            clock(row.time_s),
+            row.distance_m / 1000.0
+        );
+    }
+    text
+}
