@@ -1,2 +1,93 @@
-//! Command line.
-fn main() {}
+//! Command line of `onboard-agent`.
+
+use clap::Parser;
+use onboard_agent::config::{Cli, Options, Task};
+use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown, supervisor};
+use std::process::ExitCode;
+use tracing_subscriber::EnvFilter;
+
+/// Started wrongly: a restart would not help.
+const STARTED_WRONGLY: u8 = supervisor::USAGE as u8;
+/// Something failed on the way.
+const FAILED: u8 = 1;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info,zenoh=error"));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
+        Ok(runtime) => runtime.block_on(perform(cli.task)),
+        Err(error) => failed(FAILED, &error.into()),
+    }
+}
+
+async fn perform(task: Task) -> ExitCode {
+    let (trigger, shutdown) = shutdown();
+    tokio::spawn(end_on_signal(trigger));
+    match task {
+        Task::Describe => describe(),
+        Task::Run(options) => match options.completed() {
+            Ok(options) => status(run(options, shutdown).await),
+            Err(error) => failed(STARTED_WRONGLY, &error),
+        },
+        Task::Gateway(options) => match options.completed().and_then(|o| o.gateway()) {
+            Ok(config) => status(gateway::run(config, shutdown).await),
+            Err(error) => failed(STARTED_WRONGLY, &error),
+        },
+        Task::FpManager(options) => match options.completed().and_then(|o| o.fp_manager()) {
+            Ok(config) => status(fp_manager::run(config, shutdown).await),
+            Err(error) => failed(STARTED_WRONGLY, &error),
+        },
+    }
+}
+
+async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
+    // what is wrong is better said once than by every child
+    options.gateway()?;
+    options.fp_manager()?;
+    let program = std::env::current_exe()?;
+    supervisor::run(&program, &options.processes(), shutdown).await
+}
+
+fn describe() -> ExitCode {
+    let descriptions = [usal::gateway_description(), usal::fp_manager_description()];
+    match serde_json::to_string_pretty(&descriptions) {
+        Ok(text) => {
+            println!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => failed(FAILED, &error.into()),
+    }
+}
+
+fn status(outcome: anyhow::Result<()>) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failed(FAILED, &error),
+    }
+}
+
+fn failed(code: u8, error: &anyhow::Error) -> ExitCode {
+    eprintln!("onboard-agent: {error:#}");
+    ExitCode::from(code)
+}
+
+/// Ctrl-C and, on Unix, the signal by which the supervisor and the system ask to end.
+async fn end_on_signal(trigger: Trigger) {
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        match signal(SignalKind::terminate()) {
+            Ok(mut terminate) => {
+                tokio::select! {
+                    _ = terminate.recv() => {}
+                    _ = tokio::signal::ctrl_c() => {}
+                }
+            }
+            Err(_) => drop(tokio::signal::ctrl_c().await),
+        }
+    }
+    #[cfg(not(unix))]
+    drop(tokio::signal::ctrl_c().await);
+    trigger.shut_down();
+}

@@ -42,8 +42,9 @@ pub(crate) struct State {
     pub last_token: u64,
     /// Highest passage number used so far.
     pub last_passage: u64,
-    /// Passage whose beginning was announced.
-    pub announced: Option<u64>,
+    /// Passage (and its leg) whose beginning was announced. A wait at an intersection has the number of
+    /// the passage that follows it: hence the leg.
+    pub announced: Option<(u64, Id)>,
     pub decisions: Vec<Decision>,
     pub requested: Vec<(Id, u64)>,
     pub counts: Vec<(Id, u64)>,
@@ -307,11 +308,7 @@ impl Executor {
         let more = self.horizon(count, from_s);
         let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
         let Some(world) = self.world() else { return };
-        let stretch = lay_out(tail, &world, false, more);
-        let end_changes = stretch.handed.is_empty() && stretch.onward == Onward::Ended;
-        if end_changes {
-            return self.replan_last(out);
-        }
+        let stretch = lay_out(tail, &world, false, false, more);
         let first = self.state.handed.len();
         self.append(stretch, out);
         self.feed(None, first, out);
@@ -410,13 +407,6 @@ impl Executor {
         }
     }
 
-    fn replan_last(&mut self, out: &mut Vec<Output>) {
-        let last = self.state.handed.len().saturating_sub(1);
-        if let Some(cursor) = self.bookmark(last).cloned() {
-            self.replan_with(last, cursor, false, out);
-        }
-    }
-
     /// The cursor before waypoint number `index`, or behind the last one.
     pub(crate) fn bookmark(&self, index: usize) -> Option<&Cursor> {
         self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref())
@@ -430,7 +420,9 @@ impl Executor {
         let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
         let more = self.horizon(from, self.time_at_aircraft_s());
         let at_least = old.len();
-        let stretch = lay_out(&cursor, &world, arriving, |n, c| n < at_least || more(n, c));
+        let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
+        let stretch = lay_out(&cursor, &world, arriving, marked, |n, c| n < at_least || more(n, c));
         let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
         let tokens: Vec<Token> = old.iter().take(same).map(|h| h.waypoint.token).collect();
         self.state.handed.truncate(from);
@@ -474,7 +466,7 @@ impl Executor {
         self.state.held_at = None;
         let Some(world) = self.world() else { return };
         let more = self.horizon(0, cursor.path.time_s);
-        let stretch = lay_out(&cursor, &world, false, more);
+        let stretch = lay_out(&cursor, &world, false, false, more);
         self.append(stretch, out);
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);

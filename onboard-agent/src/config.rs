@@ -1,0 +1,268 @@
+//! What the agent is started with: command line over configuration file over defaults.
+
+use crate::{fp_manager, gateway, supervisor};
+use aircraft::Profile;
+use anyhow::{Context, bail};
+use clap::{Args, Parser, Subcommand};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use terrain::{Terrain, Tile, Tiles};
+
+/// Larger plans and configurations are not read, bytes.
+const FILE_MAX: u64 = 64 << 20;
+const DEFAULT_VEHICLE: &str = "uav1";
+const DEFAULT_AUTOPILOT: &str = "udp:127.0.0.1:14550";
+const DEFAULT_AIRCRAFT: &str = "trainer";
+
+/// Legwork's onboard agent: FCS Gateway and FP Manager.
+#[derive(Debug, Parser)]
+#[command(name = "onboard-agent", version, about)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub task: Task,
+}
+
+/// What the agent can do.
+#[derive(Debug, Subcommand)]
+pub enum Task {
+    /// Run every service in a process of its own; restart what dies.
+    Run(Options),
+    /// Run the FCS Gateway alone: the autopilot's driver and the network's hub.
+    Gateway(Options),
+    /// Run the FP Manager alone: it connects to the gateway and flies the plan.
+    FpManager(Options),
+    /// Print the services' descriptions with their JSON Schemas.
+    Describe,
+}
+
+/// Options of the services. The configuration file has the same names, with `_` for `-`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Vehicle's name, part of every key [default: uav1].
+    #[arg(long)]
+    pub vehicle: Option<String>,
+    /// Where the gateway listens for the other services and for ground stations [default: tcp/127.0.0.1:7447].
+    #[arg(long, value_name = "ENDPOINT")]
+    pub listen: Option<String>,
+    /// Where the FP Manager finds the gateway [default: as --listen].
+    #[arg(long, value_name = "ENDPOINT")]
+    pub connect: Option<String>,
+    /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT or tcp:HOST:PORT [default: udp:127.0.0.1:14550].
+    #[arg(long, value_name = "ADDRESS")]
+    pub autopilot: Option<String>,
+    /// Aircraft: the name of a built-in profile or a JSON file [default: trainer].
+    #[arg(long, value_name = "NAME|FILE")]
+    pub aircraft: Option<String>,
+    /// Elevation tile (SRTM .hgt); may be given several times.
+    #[arg(long, value_name = "FILE")]
+    pub terrain: Vec<PathBuf>,
+    /// Flight plan to begin with, unless one is restored from the state directory.
+    #[arg(long, value_name = "FILE")]
+    pub plan: Option<PathBuf>,
+    /// Where plan, place and runways survive a crash; without it they do not.
+    #[arg(long, value_name = "DIR")]
+    pub state_dir: Option<PathBuf>,
+    /// Configuration file (JSON) for what is not given here.
+    #[arg(long, value_name = "FILE")]
+    #[serde(skip)]
+    pub config: Option<PathBuf>,
+    /// Time is the simulator's, in lockstep.
+    #[arg(long)]
+    pub simulated: bool,
+}
+
+impl Options {
+    /// These options, completed from the configuration file they name.
+    ///
+    /// # Errors
+    /// The file can't be read or says something unknown.
+    pub fn completed(self) -> anyhow::Result<Self> {
+        let Some(path) = &self.config else { return Ok(self) };
+        let bytes = read(path)?;
+        let file: Self = serde_json::from_slice(&bytes)
+            .with_context(|| format!("{}: correct it (`onboard-agent run --help` names the options)", path.display()))?;
+        Ok(Self {
+            vehicle: self.vehicle.or(file.vehicle),
+            listen: self.listen.or(file.listen),
+            connect: self.connect.or(file.connect),
+            autopilot: self.autopilot.or(file.autopilot),
+            aircraft: self.aircraft.or(file.aircraft),
+            terrain: if self.terrain.is_empty() { file.terrain } else { self.terrain },
+            plan: self.plan.or(file.plan),
+            state_dir: self.state_dir.or(file.state_dir),
+            config: None,
+            simulated: self.simulated || file.simulated,
+        })
+    }
+
+    fn vehicle(&self) -> &str {
+        self.vehicle.as_deref().unwrap_or(DEFAULT_VEHICLE)
+    }
+
+    fn listen(&self) -> &str {
+        self.listen.as_deref().unwrap_or(usal::DEFAULT_ENDPOINT)
+    }
+
+    /// The gateway's configuration.
+    ///
+    /// # Errors
+    /// An address, profile or tile can't be used.
+    pub fn gateway(&self) -> anyhow::Result<gateway::Config> {
+        let autopilot = self.autopilot.as_deref().unwrap_or(DEFAULT_AUTOPILOT);
+        Ok(gateway::Config {
+            vehicle: self.vehicle().to_owned(),
+            listen: self.listen().to_owned(),
+            autopilot: autopilot.parse().context("--autopilot")?,
+            profile: self.profile()?,
+            terrain: match self.tiles()? {
+                Some(tiles) => Some(Arc::new(tiles)),
+                None => None,
+            },
+            state_dir: self.state_dir.clone(),
+            simulated: self.simulated,
+        })
+    }
+
+    /// The FP Manager's configuration.
+    ///
+    /// # Errors
+    /// A profile, tile or plan can't be read.
+    pub fn fp_manager(&self) -> anyhow::Result<fp_manager::Config> {
+        let connect = self.connect.as_deref().unwrap_or(self.listen());
+        let plan = self.plan.as_deref().map(read_text).transpose()?;
+        let terrain: Arc<dyn Terrain> = Arc::new(self.tiles()?.unwrap_or_default());
+        Ok(fp_manager::Config {
+            profile: self.profile()?,
+            terrain,
+            plan,
+            state_dir: self.state_dir.clone(),
+            simulated: self.simulated,
+            ..fp_manager::Config::new(self.vehicle(), connect)
+        })
+    }
+
+    /// The command lines of the services' processes.
+    pub fn processes(&self) -> [supervisor::Process; 2] {
+        let arguments = self.arguments();
+        ["gateway", "fp-manager"].map(|name| supervisor::Process::new(name, arguments.clone()))
+    }
+
+    /// As they would be typed.
+    fn arguments(&self) -> Vec<std::ffi::OsString> {
+        let mut arguments = Vec::new();
+        let texts = [
+            ("--vehicle", &self.vehicle),
+            ("--listen", &self.listen),
+            ("--connect", &self.connect),
+            ("--autopilot", &self.autopilot),
+            ("--aircraft", &self.aircraft),
+        ];
+        for (name, value) in texts.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
+            arguments.extend([name.into(), value.into()]);
+        }
+        let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir)];
+        for (name, value) in paths.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
+            arguments.extend([name.into(), value.into()]);
+        }
+        for tile in &self.terrain {
+            arguments.extend(["--terrain".into(), tile.into()]);
+        }
+        if self.simulated {
+            arguments.push("--simulated".into());
+        }
+        arguments
+    }
+
+    fn profile(&self) -> anyhow::Result<Profile> {
+        let name = self.aircraft.as_deref().unwrap_or(DEFAULT_AIRCRAFT);
+        if !name.ends_with(".json") {
+            return Profile::by_name(name).context("--aircraft");
+        }
+        let text = read_text(Path::new(name))?;
+        Profile::from_json(&text).with_context(|| format!("--aircraft {name}"))
+    }
+
+    fn tiles(&self) -> anyhow::Result<Option<Tiles>> {
+        let mut tiles = Tiles::new();
+        for path in &self.terrain {
+            let name = path.file_name().and_then(|n| n.to_str()).context("--terrain: a tile's name, like N36W085.hgt")?;
+            let tile = Tile::from_hgt(name, &read(path)?).with_context(|| format!("--terrain {}", path.display()))?;
+            tiles.add(tile);
+        }
+        Ok((!self.terrain.is_empty()).then_some(tiles))
+    }
+}
+
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let size = std::fs::metadata(path).with_context(|| path.display().to_string())?.len();
+    if size > FILE_MAX {
+        bail!("{} has {size} bytes, at most {FILE_MAX} are read", path.display());
+    }
+    std::fs::read(path).with_context(|| path.display().to_string())
+}
+
+fn read_text(path: &Path) -> anyhow::Result<String> {
+    String::from_utf8(read(path)?).with_context(|| format!("{}: save it as UTF-8", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    fn parse(line: &str) -> Options {
+        match Cli::try_parse_from(line.split(' ')).unwrap().task {
+            Task::Run(options) | Task::Gateway(options) | Task::FpManager(options) => options,
+            Task::Describe => panic!("no options"),
+        }
+    }
+
+    #[test]
+    fn every_option_reaches_the_children() {
+        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 \
+                    --aircraft trainer --plan p.xml --state-dir s --terrain a.hgt --terrain b.hgt --simulated";
+        let options = parse(line);
+        let mut again = Cli::try_parse_from(
+            ["onboard-agent".into(), "gateway".into()].into_iter().chain(options.arguments()).collect::<Vec<std::ffi::OsString>>(),
+        )
+        .unwrap();
+        let Task::Gateway(again) = &mut again.task else { panic!("another task") };
+        assert_eq!(*again, options);
+    }
+
+    #[test]
+    fn the_command_line_wins_over_the_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("agent.json");
+        std::fs::write(&path, r#"{"vehicle": "file", "state_dir": "kept", "simulated": true}"#).unwrap();
+        let options = parse(&format!("onboard-agent run --vehicle line --config {}", path.display())).completed().unwrap();
+        assert_eq!(options.vehicle.as_deref(), Some("line"));
+        assert_eq!(options.state_dir.as_deref(), Some(Path::new("kept")));
+        assert!(options.simulated);
+    }
+
+    #[test]
+    fn unknown_setting_is_refused_with_the_file_it_stands_in() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("agent.json");
+        std::fs::write(&path, r#"{"vehikel": "x"}"#).unwrap();
+        let error = parse(&format!("onboard-agent run --config {}", path.display())).completed().unwrap_err();
+        assert!(format!("{error:#}").contains("vehikel") && format!("{error:#}").contains("agent.json"), "{error:#}");
+    }
+
+    #[test]
+    fn unusable_values_are_named() {
+        for (line, told) in [
+            ("onboard-agent run --aircraft zeppelin", "zeppelin"),
+            ("onboard-agent run --terrain nowhere/N36W085.hgt", "N36W085.hgt"),
+            ("onboard-agent run --plan nowhere.xml", "nowhere.xml"),
+        ] {
+            let error = parse(line).fp_manager().err().expect(line);
+            assert!(format!("{error:#}").contains(told), "{error:#}");
+        }
+        assert!(parse("onboard-agent run --autopilot carrier-pigeon").gateway().is_err());
+    }
+}

@@ -1,0 +1,59 @@
+//! Pure: the executor's view of the aircraft, out of the gateway's variables.
+
+use flight_exec::AircraftState;
+use usal::contract::{Air, Position, Power};
+
+/// The latest of each.
+#[derive(Debug, Clone, Default)]
+pub struct Aircraft {
+    position: Option<Position>,
+    air: Option<Air>,
+    power: Option<Power>,
+}
+
+impl Aircraft {
+    /// A fresh position.
+    pub fn position(&mut self, position: Position) {
+        let finite = position.position.lat_deg.is_finite() && position.position.lon_deg.is_finite();
+        if finite && position.altitude_amsl_m.is_finite() && position.ground_speed_mps.is_finite() {
+            self.position = Some(position);
+        }
+    }
+
+    /// Fresh air data.
+    pub fn air(&mut self, air: Air) {
+        if air.airspeed_mps.is_finite() && air.wind_east_mps.is_finite() && air.wind_north_mps.is_finite() {
+            self.air = Some(air);
+        }
+    }
+
+    /// A fresh state of the battery.
+    pub fn power(&mut self, power: Power) {
+        if power.battery.is_finite() {
+            self.power = Some(power);
+        }
+    }
+
+    /// On the ground, as far as is known.
+    pub fn is_on_ground(&self) -> bool {
+        self.position.is_some_and(|p| p.on_ground)
+    }
+
+    /// Everything together, once a position is known. Without air data there is no wind; without
+    /// battery data it is taken as full, as conditions on it must not fire on nothing.
+    pub fn state(&self) -> Option<AircraftState> {
+        let p = self.position?;
+        let (wind_east_mps, wind_north_mps) = self.air.map_or((0.0, 0.0), |a| (a.wind_east_mps, a.wind_north_mps));
+        Some(AircraftState {
+            position: p.position,
+            altitude_amsl_m: p.altitude_amsl_m,
+            track_deg: if p.track_deg.is_finite() { p.track_deg } else { 0.0 },
+            ground_speed_mps: p.ground_speed_mps,
+            airspeed_mps: self.air.map_or(p.ground_speed_mps, |a| a.airspeed_mps),
+            wind_east_mps,
+            wind_north_mps,
+            battery: self.power.map_or(1.0, |p| p.battery.clamp(0.0, 1.0)),
+            on_ground: p.on_ground,
+        })
+    }
+}

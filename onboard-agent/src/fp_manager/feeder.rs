@@ -1,0 +1,276 @@
+//! Pure: waypoints on their way to the gateway, one transaction at a time, in order.
+//!
+//! What waits is one transaction: later ones are merged into it, so it never holds more than the
+//! executor's horizon. A transaction whose answer got lost may or may not have been taken; that
+//! is settled by the highest token the gateway tells at a join.
+
+use crate::clock::Time;
+use std::time::Duration;
+use usal::contract::{Feed, FeedAnswer, Token};
+
+/// Pause before a transaction that found no room, or no ear, is sent again.
+const RETRY: Duration = Duration::from_millis(500);
+
+/// The way from executor to gateway.
+#[derive(Debug, Default)]
+pub struct Feeder {
+    waiting: Option<Feed>,
+    sent: Option<Feed>,
+    /// The answer to what was sent got lost.
+    uncertain: bool,
+    /// What was sent is of no interest any more, whatever the answer.
+    abandoned: bool,
+    not_before: Option<Time>,
+}
+
+/// What became of a transaction.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fate {
+    /// Taken by the gateway.
+    Taken,
+    /// Refused whole: its first token, and why.
+    Refused(Token, String),
+    /// Not now; it will be sent again.
+    Later(String),
+    /// Nobody knows: join, and tell [`Feeder::settle`].
+    Unknown,
+}
+
+impl Feeder {
+    /// Takes a transaction over.
+    pub fn push(&mut self, feed: Feed) {
+        self.waiting = Some(match self.waiting.take() {
+            Some(earlier) => merged(earlier, feed),
+            None => feed,
+        });
+    }
+
+    /// The transaction to be sent now, if any.
+    pub fn send(&mut self, now: Time) -> Option<Feed> {
+        if self.sent.is_some() || self.not_before.is_some_and(|t| now < t) {
+            return None;
+        }
+        self.not_before = None;
+        self.sent = self.waiting.take();
+        self.sent.clone()
+    }
+
+    /// The answer to what was sent; `None`: there was none.
+    pub fn answered(&mut self, now: Time, answer: Option<FeedAnswer>) -> Fate {
+        let Some(sent) = self.sent.take() else { return Fate::Taken };
+        if std::mem::take(&mut self.abandoned) {
+            return Fate::Taken;
+        }
+        match answer {
+            Some(FeedAnswer::Accepted) => Fate::Taken,
+            Some(FeedAnswer::Refused { faults }) => {
+                let first = sent.waypoints.first().map_or(Token(0), |w| w.token);
+                self.waiting = None;
+                Fate::Refused(first, sentence(&faults))
+            }
+            Some(FeedAnswer::Full) => self.later(now, sent, "the gateway's buffer is full"),
+            Some(FeedAnswer::NotNow(why)) => self.later(now, sent, &why),
+            None => {
+                self.sent = Some(sent);
+                self.uncertain = true;
+                Fate::Unknown
+            }
+        }
+    }
+
+    fn later(&mut self, now: Time, sent: Feed, why: &str) -> Fate {
+        self.unsend(sent);
+        self.not_before = Some(now + RETRY);
+        Fate::Later(why.to_owned())
+    }
+
+    /// The gateway has told the highest token it ever took: what it took is done, the rest is sent again.
+    pub fn settle(&mut self, highest: Token) {
+        if !std::mem::take(&mut self.uncertain) {
+            return;
+        }
+        let Some(sent) = self.sent.take() else { return };
+        if sent.waypoints.last().is_none_or(|w| w.token > highest) {
+            self.unsend(sent);
+        }
+    }
+
+    fn unsend(&mut self, sent: Feed) {
+        self.waiting = Some(match self.waiting.take() {
+            Some(later) => merged(sent, later),
+            None => sent,
+        });
+    }
+
+    /// Room was made or the gateway changed its mind: what waits may go at once.
+    pub fn hurry(&mut self) {
+        self.not_before = None;
+    }
+
+    /// Forgets everything: the executor will feed it anew.
+    pub fn clear(&mut self) {
+        self.waiting = None;
+        if std::mem::take(&mut self.uncertain) {
+            self.sent = None;
+        }
+        self.abandoned = self.sent.is_some();
+    }
+
+    /// Nothing waits and nothing is under way.
+    pub fn is_idle(&self) -> bool {
+        self.waiting.is_none() && self.sent.is_none()
+    }
+
+    /// So many waypoints wait.
+    pub fn waiting(&self) -> usize {
+        self.waiting.as_ref().map_or(0, |f| f.waypoints.len())
+    }
+}
+
+/// One transaction with the effect of two.
+fn merged(first: Feed, then: Feed) -> Feed {
+    let Feed { mut cancel_after, mut waypoints } = first;
+    if let Some(cancel) = then.cancel_after {
+        let begins = waypoints.first().map(|w| w.token);
+        waypoints.retain(|w| w.token <= cancel);
+        // a cut within the first transaction touches nothing that the gateway has
+        if begins.is_none_or(|begins| cancel < begins) {
+            cancel_after = Some(cancel_after.map_or(cancel, |c| c.min(cancel)));
+        }
+    }
+    waypoints.extend(then.waypoints);
+    Feed { cancel_after, waypoints }
+}
+
+/// The first faults, for people.
+fn sentence(faults: &[(Token, String, String)]) -> String {
+    let told = faults.iter().take(3).map(|(token, code, reason)| format!("waypoint {}: {reason} ({code})", token.0));
+    let mut text = told.collect::<Vec<_>>().join("; ");
+    if faults.len() > 3 {
+        text.push_str(&format!("; and {} more", faults.len() - 3));
+    }
+    if text.is_empty() { "the gateway gives no reason".into() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use proptest::prelude::*;
+    use usal::contract::{Action, LatLon, Waypoint};
+
+    const NOW: Time = Time::ZERO;
+
+    fn waypoint(token: u64) -> Waypoint {
+        Waypoint {
+            token: Token(token),
+            position: LatLon { lat_deg: 36.0, lon_deg: -84.0 },
+            altitude_amsl_m: 500.0,
+            airspeed_mps: 22.0,
+            action: Action::Fly,
+            fly_over: false,
+            leg: "a".into(),
+            end_of_plan: false,
+        }
+    }
+
+    fn feed(cancel_after: Option<u64>, tokens: impl IntoIterator<Item = u64>) -> Feed {
+        Feed { cancel_after: cancel_after.map(Token), waypoints: tokens.into_iter().map(waypoint).collect() }
+    }
+
+    /// The gateway's buffer, in tokens.
+    fn apply(buffer: &mut Vec<u64>, feed: &Feed) {
+        if let Some(cancel) = feed.cancel_after {
+            buffer.retain(|t| *t <= cancel.0);
+        }
+        buffer.extend(feed.waypoints.iter().map(|w| w.token.0));
+    }
+
+    proptest! {
+        #[test]
+        fn merging_has_the_effect_of_one_after_the_other(
+            kept in 1u64..6, cuts in proptest::collection::vec((proptest::option::of(0u64..8), 0u64..5), 1..6),
+        ) {
+            let mut buffer: Vec<u64> = (1..=kept).collect();
+            let mut next = kept;
+            let mut feeder = Feeder::default();
+            let mut direct = buffer.clone();
+            for (back, count) in cuts {
+                let cancel = back.map(|back| next.saturating_sub(back));
+                let one = feed(cancel, next + 1..=next + count);
+                next += count;
+                apply(&mut direct, &one);
+                feeder.push(one);
+            }
+            apply(&mut buffer, &feeder.send(NOW).unwrap());
+            prop_assert_eq!(buffer, direct);
+        }
+    }
+
+    #[test]
+    fn one_in_flight_at_a_time() {
+        let mut feeder = Feeder::default();
+        feeder.push(feed(None, 1..=2));
+        assert_eq!(feeder.send(NOW).unwrap(), feed(None, 1..=2));
+        feeder.push(feed(None, 3..=3));
+        assert_eq!(feeder.send(NOW), None);
+        assert_eq!(feeder.answered(NOW, Some(FeedAnswer::Accepted)), Fate::Taken);
+        assert_eq!(feeder.send(NOW).unwrap(), feed(None, 3..=3));
+        assert!(!feeder.is_idle());
+        feeder.answered(NOW, Some(FeedAnswer::Accepted));
+        assert!(feeder.is_idle());
+    }
+
+    #[test]
+    fn buffer_full_it_comes_again_when_there_is_room() {
+        let mut feeder = Feeder::default();
+        feeder.push(feed(None, 1..=2));
+        feeder.send(NOW);
+        feeder.push(feed(None, 3..=3));
+        assert!(matches!(feeder.answered(NOW, Some(FeedAnswer::Full)), Fate::Later(_)));
+        assert_eq!(feeder.send(NOW + RETRY / 2), None);
+        assert_eq!(feeder.send(NOW + RETRY).unwrap(), feed(None, 1..=3));
+        feeder.answered(NOW, Some(FeedAnswer::NotNow("Safe".into())));
+        feeder.hurry();
+        assert_eq!(feeder.send(NOW).unwrap(), feed(None, 1..=3));
+    }
+
+    #[test]
+    fn refused_batch_takes_those_behind_it_along() {
+        let mut feeder = Feeder::default();
+        feeder.push(feed(None, 4..=5));
+        feeder.send(NOW);
+        feeder.push(feed(None, 6..=6));
+        let faults = vec![(Token(5), "range".into(), "too far".into())];
+        let fate = feeder.answered(NOW, Some(FeedAnswer::Refused { faults }));
+        assert_eq!(fate, Fate::Refused(Token(4), "waypoint 5: too far (range)".into()));
+        assert!(feeder.is_idle());
+    }
+
+    #[test]
+    fn answer_lost_what_the_gateway_took_is_not_sent_twice() {
+        for (highest, again) in [(2, None), (0, Some(feed(None, 1..=2)))] {
+            let mut feeder = Feeder::default();
+            feeder.push(feed(None, 1..=2));
+            feeder.send(NOW);
+            assert_eq!(feeder.answered(NOW, None), Fate::Unknown);
+            assert_eq!(feeder.send(NOW + RETRY * 9), None, "not before it is settled");
+            feeder.settle(Token(highest));
+            assert_eq!(feeder.send(NOW), again);
+        }
+    }
+
+    #[test]
+    fn what_was_forgotten_while_under_way_neither_comes_back_nor_counts_as_refused() {
+        let refused = FeedAnswer::Refused { faults: vec![] };
+        for answer in [Some(refused), Some(FeedAnswer::NotNow("Safe".into())), None] {
+            let mut feeder = Feeder::default();
+            feeder.push(feed(None, 1..=2));
+            feeder.send(NOW);
+            feeder.clear();
+            feeder.push(feed(Some(0), 3..=4));
+            assert_eq!(feeder.answered(NOW, answer), Fate::Taken);
+            assert_eq!(feeder.send(NOW).unwrap(), feed(Some(0), 3..=4));
+        }
+    }
+}
