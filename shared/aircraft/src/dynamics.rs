@@ -9,7 +9,7 @@ use geometry::geodesy::normalise_360;
 use geometry::{LatLon, LocalFrame, Vec2};
 use std::f64::consts::{PI, TAU};
 
-/// How far the aircraft may be from its frame's origin, metres; the frame's own error stays below 2 mm.
+/// How far the aircraft may be from its frame's origin, metres: its scale is wrong by 2 in 100,000 there.
 const RECENTRE_M: f64 = 100.0;
 /// Greatest change of airspeed in flight and on the ground, m/s².
 const AIR_ACCELERATION_MPS2: f64 = 1.5;

@@ -3,7 +3,7 @@
 use crate::GRAVITY_MPS2;
 use crate::dynamics::wrap_pi;
 use geometry::Vec2;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
 /// Period and damping of the line law, as ArduPlane's NAVL1_PERIOD and NAVL1_DAMPING.
 const PERIOD_S: f64 = 9.0;
@@ -31,7 +31,7 @@ pub(super) fn right_of(along: Vec2) -> Vec2 {
 pub(super) fn line_mps2(cross_track_m: f64, along: Vec2, ground_velocity: Vec2) -> f64 {
     let speed = ground_velocity.length().max(LEAST_SPEED_MPS);
     let l1 = look_ahead_m(speed);
-    let to_line = (cross_track_m / l1).clamp(-0.7071, 0.7071).asin();
+    let to_line = (cross_track_m / l1).clamp(-FRAC_1_SQRT_2, FRAC_1_SQRT_2).asin();
     let to_course = ground_velocity.dot(right_of(along)).atan2(ground_velocity.dot(along));
     let nu = -(to_line + to_course).clamp(-FRAC_PI_2, FRAC_PI_2);
     4.0 * DAMPING * DAMPING * speed * speed / l1 * nu.sin()

@@ -642,3 +642,53 @@ proptest! {
         prop_assert!(ground.position().is_valid());
     }
 }
+
+/// The preview flies `aircraft`'s guidance over a list; the simulator must fly the same track.
+#[test]
+fn a_mission_is_flown_where_bare_guidance_flies_it() {
+    use aircraft::{Action, Aircraft, Guidance, Target};
+    let (wind, home) = (Wind::from_direction(300.0, 5.0), Config::default().home);
+    let items = circuit(home.position);
+    let targets: Vec<Target> = items
+        .iter()
+        .map(|wire| Target {
+            position: LatLon::new(f64::from(wire.x) * 1e-7, f64::from(wire.y) * 1e-7),
+            altitude_amsl_m: 322.0 + f64::from(wire.z),
+            airspeed_mps: 25.0,
+            action: match wire.command {
+                MavCmd::MAV_CMD_NAV_TAKEOFF => Action::TakeOff { heading_deg: 52.0 },
+                MavCmd::MAV_CMD_NAV_LAND => Action::Land { heading_deg: 52.0 },
+                _ => Action::Fly,
+            },
+            fly_over: false,
+        })
+        .collect();
+    let mut aircraft = Aircraft::on_runway(Profile::default(), home.position, 322.0, 52.0);
+    let mut guidance = Guidance::new(Profile::default());
+    guidance.direct(aircraft.state(), targets[0]);
+    let mut track = vec![*aircraft.state()];
+    let mut current = 0;
+    while current < targets.len() {
+        let guided = guidance.step(aircraft.state(), targets.get(current + 1));
+        if guided.reached {
+            current += 1;
+            if let Some(next) = targets.get(current) {
+                guidance.proceed(aircraft.state(), *next);
+            }
+            continue;
+        }
+        aircraft.step(STEP_S, &guided.demand, &wind);
+        track.push(*aircraft.state());
+    }
+    let mut ground = Ground::new(wind);
+    ground.upload(&items);
+    ground.mode(Mode::Auto);
+    ground.arm();
+    for (i, expected) in track.iter().enumerate().skip(1) {
+        ground.sim.step();
+        let s = ground.sim.autopilot.aircraft.state();
+        let apart = s.position.distance_m(expected.position);
+        let above = (s.altitude_amsl_m - expected.altitude_amsl_m).abs();
+        assert!(apart < 0.5 && above < 0.2, "step {i}: {apart} m apart, {above} m above");
+    }
+}
