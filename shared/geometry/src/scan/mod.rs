@@ -26,7 +26,7 @@ const MAX_LINES: f64 = 9e15;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanParameters {
     /// Distance between neighbouring lines, metres. The first and the last line are half of it
-    /// inside the polygon's extent; the last but one gap may be smaller.
+    /// inside the polygon's extent; the last gap may be smaller.
     pub spacing_m: f64,
     /// Direction of the lines, degrees true; `None`: the one with the fewest lines.
     pub heading_deg: Option<f64>,

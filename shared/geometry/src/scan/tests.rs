@@ -112,6 +112,49 @@ fn gaps_are_marked_as_transit() {
     assert_eq!(pieces, [(900.0, 600.0, true), (600.0, 300.0, false), (300.0, 0.0, true)]);
 }
 
+/// Start, end and kind of a track's pieces, along the heading 0.
+fn pieces_northward(area: &Polygon, track: u64) -> Vec<(f64, f64, bool)> {
+    let p = ScanParameters { heading_deg: Some(0.0), ..parameters(100.0) };
+    let scan = Scan::new(area, &p).unwrap();
+    let northward = |s: Segment| (s.from.n.min(s.to.n), s.from.n.max(s.to.n), s.scanning);
+    scan.segments(track..track + 1).map(northward).collect()
+}
+
+#[test]
+fn a_line_through_the_tip_of_a_notch_is_not_interrupted() {
+    let notched = polygon(&[
+        (0.0, 0.0),
+        (400.0, 0.0),
+        (400.0, 400.0),
+        (250.0, 500.0),
+        (400.0, 600.0),
+        (400.0, 1000.0),
+        (0.0, 1000.0),
+    ]);
+    assert_eq!(pieces_northward(&notched, 2), [(0.0, 1000.0, true)]);
+    assert_eq!(pieces_northward(&notched, 3).len(), 3);
+}
+
+#[test]
+fn a_line_through_the_tip_of_a_spike_does_not_scan_a_point() {
+    let spiked = polygon(&[
+        (0.0, 0.0),
+        (400.0, 0.0),
+        (400.0, 1000.0),
+        (0.0, 1000.0),
+        (0.0, 700.0),
+        (300.0, 700.0),
+        (300.0, 550.0),
+        (150.0, 500.0),
+        (300.0, 450.0),
+        (300.0, 300.0),
+        (0.0, 300.0),
+    ]);
+    let mut pieces = pieces_northward(&spiked, 1);
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(pieces, [(0.0, 300.0, true), (300.0, 700.0, false), (700.0, 1000.0, true)]);
+}
+
 #[test]
 fn overshoot_closes_what_is_narrower_than_itself() {
     let p = ScanParameters { heading_deg: Some(90.0), overshoot_m: 160.0, ..parameters(100.0) };
@@ -256,23 +299,6 @@ proptest! {
     }
 
     #[test]
-    fn without_overshoot_a_survey_of_convex_fields_covers_them(
-        angles in prop::collection::vec(0.0..360.0, 5..12), p in any_parameters(),
-    ) {
-        let corners = angles.iter().map(|a: &f64| Vec2::from_bearing_rad(a.to_radians()) * 2000.0);
-        let mut corners: Vec<Vec2> = corners.collect();
-        corners.sort_by(|a, b| a.bearing_rad().total_cmp(&b.bearing_rad()));
-        corners.dedup_by(|a, b| (*a - *b).length() < 300.0);
-        prop_assume!(corners.len() > 3);
-        let area = Polygon::new(corners, vec![]).unwrap();
-        prop_assume!(area.width_m(area.narrowest_heading_deg()) > 1000.0);
-        let p = ScanParameters { overshoot_m: 0.0, spacing_m: 20.0, ..p };
-        let scan = Scan::new(&area, &p).unwrap();
-        let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
-        prop_assert!(share > 0.995, "{share}");
-    }
-
-    #[test]
     fn nothing_is_scanned_farther_outside_than_the_overshoot(area in area(), p in any_parameters()) {
         let scan = Scan::new(&area, &p).unwrap();
         for s in all(&scan).iter().filter(|s| s.scanning) {
@@ -281,6 +307,24 @@ proptest! {
                 let outside_m = area.distance_outside_m(point);
                 prop_assert!(outside_m <= p.overshoot_m + 1e-6, "{outside_m}");
             }
+        }
+    }
+
+    #[test]
+    fn absurd_sizes_neither_panic_nor_hang(
+        corners in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 3..6),
+        size in -300..300_i32, spacing in -300..300_i32, overshoot in prop::option::of(-300..300_i32),
+    ) {
+        let size_m = 10.0_f64.powi(size);
+        let outer = corners.iter().map(|&(e, n)| Vec2::new(e, n) * size_m).collect();
+        let p = ScanParameters {
+            overshoot_m: overshoot.map_or(0.0, |o| 10.0_f64.powi(o)),
+            ..parameters(10.0_f64.powi(spacing))
+        };
+        if let Ok(scan) = Polygon::new(outer, vec![]).map(|area| Scan::new(&area, &p)).unwrap_or(Err(ScanError::EntryPoint)) {
+            let some = scan.segments(0..u64::MAX).take(100).count();
+            prop_assert!(some as u64 <= 100.min(scan.tracks().saturating_mul(20)));
+            let _ = scan.nearest_track(Vec2::new(1e300, f64::NAN), |_| true);
         }
     }
 
@@ -311,5 +355,27 @@ proptest! {
         back.reverse();
         let turned = back.into_iter().map(|s| Segment { from: s.to, to: s.from, ..s });
         prop_assert_eq!(turned.collect::<Vec<_>>(), all(&scan));
+    }
+}
+
+proptest! {
+    // each looks at hundreds of lines in a thousand rows
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn without_overshoot_a_survey_of_convex_fields_covers_them(
+        angles in prop::collection::vec(0.0..360.0, 5..12), p in any_parameters(),
+    ) {
+        let corners = angles.iter().map(|a: &f64| Vec2::from_bearing_rad(a.to_radians()) * 2000.0);
+        let mut corners: Vec<Vec2> = corners.collect();
+        corners.sort_by(|a, b| a.bearing_rad().total_cmp(&b.bearing_rad()));
+        corners.dedup_by(|a, b| (*a - *b).length() < 300.0);
+        prop_assume!(corners.len() > 3);
+        let area = Polygon::new(corners, vec![]).unwrap();
+        prop_assume!(area.width_m(area.narrowest_heading_deg()) > 1000.0);
+        let p = ScanParameters { overshoot_m: 0.0, spacing_m: 20.0, ..p };
+        let scan = Scan::new(&area, &p).unwrap();
+        let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
+        prop_assert!(share > 0.995, "{share}");
     }
 }
