@@ -232,6 +232,16 @@ mod tests {
     }
 
     #[test]
+    fn version_one_frames_are_understood() {
+        let header = MavHeader { system_id: 200, component_id: 3, sequence: 1 };
+        let message = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+        let mut raw = mavlink::MAVLinkV1MessageRaw::new();
+        raw.serialize_message(header, &message);
+        let expected = Frame::new(Sender { system: 200, component: 3 }, message);
+        assert_eq!(decode(raw.raw_bytes()), (vec![expected], 0));
+    }
+
+    #[test]
     fn a_cut_datagram_does_not_swallow_the_next_one() {
         let (mut decoder, mut count) = (Decoder::default(), 0);
         let whole = encode(0, &timesync(1));

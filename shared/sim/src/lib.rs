@@ -4,8 +4,9 @@
 //! link. It is part of the product: plans are tried on it, and it can be given faults.
 //!
 //! What it imitates: ArduPlane's modes, arming, mission list and protocol, parameters, rates of telemetry and
-//! answers. What it leaves out: terrain, a geofence, rally points, a radio-control transmitter, log download; its
-//! dead reckoning without satellites is perfect, and telemetry comes at 10 Hz at most.
+//! answers. What it leaves out: terrain, a geofence, rally points, automatic landing after RTL, a radio-control
+//! transmitter, log download, the time an upload takes; its dead reckoning without satellites is perfect, and
+//! telemetry comes at 10 Hz at most.
 
 // ArduPlane and its clients still speak much that the dialect calls deprecated
 #![allow(deprecated)]

@@ -1,7 +1,7 @@
 //! The thread around the core: it owns the link and the clock.
 //!
 //! Pace: with a lockstep partner, a step is taken when the partner has answered the question before it; without
-//! one, in real time times `speed`. A partner is whoever first answers; it is lost after five silent
+//! one, in real time times `speed`. A partner is whoever first answers; it is lost after eight silent
 //! seconds and found again when it answers.
 
 use crate::config::{Config, Control};
@@ -20,9 +20,11 @@ use tokio::time::Instant;
 
 /// Points of the track log kept when nobody fetches them.
 const MOST_TRACK_POINTS: usize = 100_000;
-/// A lockstep question not answered for this long is asked again, and after the second time given up.
+/// A lockstep question not answered for this long is asked again.
 const ASK_AGAIN: Duration = Duration::from_secs(1);
-const GIVE_UP: Duration = Duration::from_secs(5);
+/// And after this long it is given up: longer than the partner itself waits for those behind it (5 s), so that
+/// one of them dying does not end the lockstep.
+const GIVE_UP: Duration = Duration::from_secs(8);
 
 /// Where the aircraft really is, and how the simulator does.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -407,6 +407,27 @@ fn reposition_circles_the_point_the_way_it_was_asked() {
 }
 
 #[test]
+fn a_position_target_changes_the_altitude_of_guided_and_nothing_else() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    ground.mode(Mode::Guided);
+    let centre = ground.position();
+    let elsewhere = home.destination(0.0, 9000.0);
+    ground.say(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(SET_POSITION_TARGET_GLOBAL_INT_DATA {
+        lat_int: degrees_e7(elsewhere.lat_deg),
+        lon_int: degrees_e7(elsewhere.lon_deg),
+        alt: 200.0,
+        target_system: 1,
+        coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT,
+        ..SET_POSITION_TARGET_GLOBAL_INT_DATA::DEFAULT
+    }));
+    ground.fly_until(120.0, |_| false);
+    let s = *ground.sim.autopilot.aircraft.state();
+    assert!((s.altitude_amsl_m - 522.0).abs() < 2.0, "{}", s.altitude_amsl_m);
+    assert!(s.position.distance_m(centre) < 160.0);
+}
+
+#[test]
 fn commands_are_answered_whatever_they_are() {
     let mut ground = Ground::new(Wind::CALM);
     let cases = [
