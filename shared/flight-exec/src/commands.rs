@@ -87,7 +87,7 @@ impl Executor {
         let left_m = crate::path::distance_m(held_at, front.waypoint.position);
         let stop_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
         let straight = matches!(front.waypoint.action, crate::api::Action::Fly);
-        let under_way = self.state.announced == Some(front.passage);
+        let under_way = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == front.passage);
         if left_m < stop_m || !straight || !under_way {
             return None;
         }

@@ -189,10 +189,12 @@ impl Executor {
         if !self.is_flying() {
             return;
         }
-        if self.state.refresh_due_s.is_some_and(|due| due <= self.state.clock_s) {
+        // a deadline rounded to nanoseconds is not to be missed by one
+        let by_now_s = self.state.clock_s + 1e-6;
+        if self.state.refresh_due_s.is_some_and(|due| due <= by_now_s) {
             self.refresh(out);
         }
-        if self.state.review_due_s <= self.state.clock_s {
+        if self.state.review_due_s <= by_now_s {
             self.state.review_due_s = self.state.clock_s + self.config.review_s;
             self.review(out);
         }
@@ -224,7 +226,7 @@ impl Executor {
     }
 
     /// The world as the cursor sees it; `None` without a plan.
-    pub(crate) fn world(&self) -> Option<World<'_>> {
+    pub fn world(&self) -> Option<World<'_>> {
         Some(World {
             program: self.program.as_deref()?,
             config: &self.config,
@@ -262,7 +264,7 @@ impl Executor {
     }
 
     /// The aircraft as the end of a path; before its first report, standing at home.
-    pub(crate) fn here(&self) -> PathState {
+    pub fn here(&self) -> PathState {
         let runway = self.program.as_ref().and_then(|p| p.plan.home());
         let aircraft = self.state.aircraft.as_ref();
         let elevation_m = runway.map_or(0.0, |r| r.elevation_amsl_m);

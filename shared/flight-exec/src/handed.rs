@@ -67,11 +67,13 @@ pub struct Stretch {
 
 /// Lays out path from a cursor, as long as `more(count, end of path)` asks for it.
 ///
-/// `arriving`: the first step is taken at the aircraft's own place (see [`World::arriving`]).
+/// `arriving`: the first step is taken at the aircraft's own place (see [`World::arriving`]). `marked`: the waypoint before it
+/// has the mark of the plan's end already.
 pub fn lay_out(
     from: &Cursor,
     world: &World,
     arriving: bool,
+    marked: bool,
     mut more: impl FnMut(usize, &Cursor) -> bool,
 ) -> Stretch {
     let (handed, tail_choices, refused) = (Vec::new(), Vec::new(), Vec::new());
@@ -81,7 +83,7 @@ pub fn lay_out(
         let before = stretch.tail.clone();
         let step = stretch.tail.next(&world);
         world.arriving = false;
-        stretch.take(step, before, &world);
+        stretch.take(step, before, marked, &world);
     }
     if stretch.onward == Onward::Open && stretch.tail.at_the_end_of_its_leg() {
         stretch.look_for_the_end(&world);
@@ -90,7 +92,7 @@ pub fn lay_out(
 }
 
 impl Stretch {
-    fn take(&mut self, step: Step, before: Cursor, world: &World) {
+    fn take(&mut self, step: Step, before: Cursor, marked: bool, world: &World) {
         match step {
             Step::Waypoint(emission) => {
                 self.handed.push(handed(*emission, before, &self.tail, world, &mut self.refused))
@@ -99,7 +101,7 @@ impl Stretch {
                 self.tail = before;
                 self.tail_choices = choices;
                 self.refused.extend(refused);
-                self.end(world);
+                self.end(marked, world);
             }
             Step::Waiting => self.onward = Onward::Waiting,
             Step::Stalled => {
@@ -110,8 +112,11 @@ impl Stretch {
     }
 
     /// The end is marked on the last waypoint; a plan that turns out to be over where the aircraft is gets one there.
-    fn end(&mut self, world: &World) {
+    fn end(&mut self, marked: bool, world: &World) {
         self.onward = Onward::Ended;
+        if self.handed.is_empty() && marked {
+            return;
+        }
         if let Some(last) = self.handed.last_mut() {
             last.waypoint.end_of_plan = true;
             return;

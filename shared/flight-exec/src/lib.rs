@@ -10,16 +10,16 @@
 //! while the aircraft approaches, and for the last time when it is there.
 
 pub mod api;
-mod choice;
+pub mod choice;
 mod commands;
 mod config;
 pub mod cursor;
-mod decision;
+pub mod decision;
 mod emergency;
 mod executor;
 pub mod expand;
 mod handed;
-mod path;
+pub mod path;
 pub mod preview;
 mod progress;
 mod snapshot;

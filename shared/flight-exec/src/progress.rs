@@ -76,8 +76,9 @@ impl Executor {
     }
 
     fn announce_leg(&mut self, handed: &Handed, out: &mut Vec<Output>) {
-        if self.state.announced != Some(handed.passage) {
-            self.state.announced = Some(handed.passage);
+        let passage = Some((handed.passage, handed.place.leg.clone()));
+        if self.state.announced != passage {
+            self.state.announced = passage;
             out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
         }
     }

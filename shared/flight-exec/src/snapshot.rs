@@ -73,11 +73,14 @@ impl Executor {
 
 fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
     let Snapshot { mut state, expansions, in_expansion, sealed, .. } = snapshot;
-    if state.handed.len() != sealed.len() || bookmarks(&state).count() != in_expansion.len() {
+    if state.handed.len() != sealed.len() {
         return Err(RestoreError::Damaged);
     }
     for (handed, sealed) in state.handed.iter_mut().zip(sealed) {
         handed.sealed = sealed;
+    }
+    if bookmarks(&state).count() != in_expansion.len() {
+        return Err(RestoreError::Damaged);
     }
     for (cursor, index) in bookmarks_mut(&mut state).zip(in_expansion) {
         cursor.expansion = match index {

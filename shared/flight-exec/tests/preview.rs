@@ -1,49 +1,174 @@
-//! The shipped mission, flown ahead of time.
+//! The shipped mission and small plans, flown ahead of time.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Options, Scenario, Start};
-use flight_exec::{Event, preview};
-use flight_plan::compile_document;
+use flight_exec::preview::{Act, Options, Scenario, Start, Trigger, When, preview_with};
+use flight_exec::{Action, Command, Event, Preview, PreviewError, preview};
+use flight_plan::{Cause, Program, VariableValue, compile_document};
 use std::path::Path;
 use std::sync::Arc;
-use terrain::{Terrain, Tile, Tiles};
+use terrain::{Flat, Terrain, Tile, Tiles};
 
-fn ground() -> Tiles {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/terrain/N36W085.hgt");
+fn asset(path: &str) -> Vec<u8> {
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(path)).unwrap()
+}
+
+fn ground() -> Arc<dyn Terrain> {
     let mut tiles = Tiles::new();
-    tiles.add(Tile::from_hgt("N36W085.hgt", &std::fs::read(file).unwrap()).unwrap());
-    tiles
+    tiles.add(Tile::from_hgt("N36W085.hgt", &asset("terrain/N36W085.hgt")).unwrap());
+    Arc::new(tiles)
+}
+
+fn mission(changed: impl Fn(String) -> String) -> Arc<Program> {
+    let text = changed(String::from_utf8(asset("plans/fire-watch.xml")).unwrap());
+    let program = compile_document(text.as_bytes(), &Profile::default(), ground().as_ref());
+    Arc::new(program.map_err(|p| p.iter().map(|p| p.to_string() + "\n").collect::<String>()).unwrap())
+}
+
+fn fly(program: &Arc<Program>, scenario: &Scenario) -> Result<Preview, PreviewError> {
+    let wind = Wind::from_direction(250.0, 5.0);
+    preview(program, &Profile::default(), &ground(), wind, Start::Runway, scenario, &Options::default())
+}
+
+fn trigger(at: When, command: Command) -> Trigger {
+    Trigger { at, then: vec![Act::Command(command)] }
+}
+
+fn entering(leg: &str, iteration: Option<u64>) -> When {
+    When::Entering { leg: leg.into(), iteration }
+}
+
+fn legs(flown: &Preview) -> Vec<&str> {
+    flown.legs.iter().map(|l| l.place.leg.as_str()).collect()
 }
 
 #[test]
-fn the_shipped_mission_lands() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/plans/fire-watch.xml");
-    let profile = Profile::default();
-    let terrain: Arc<dyn Terrain> = Arc::new(ground());
-    let program = compile_document(&std::fs::read(file).unwrap(), &profile, terrain.as_ref()).unwrap();
-    let wind = Wind::from_direction(250.0, 5.0);
-    let options = Options::default();
-    let flown =
-        preview(&Arc::new(program), &profile, &terrain, wind, Start::Runway, &Scenario::default(), &options)
-            .unwrap();
-    for leg in &flown.legs {
-        println!(
-            "{:10} {:?} {} {:7.1} {:7.1} {:8.0} {:3}",
-            leg.place.leg,
-            leg.place.iterations.iter().map(|i| i.iteration).collect::<Vec<_>>(),
-            leg.place.reverse,
-            leg.start_s,
-            leg.end_s - leg.start_s,
-            leg.distance_m,
-            leg.waypoints
-        );
-    }
-    for (t, e) in &flown.events {
-        if !matches!(e, Event::LegEntered { .. }) {
-            println!("{t:.1} {e:?}");
-        }
-    }
-    println!("{} s {} m {} J left {}", flown.time_s, flown.distance_m, flown.energy_j, flown.battery_left);
+fn the_shipped_mission_is_flown_and_landed() {
+    let flown = fly(&mission(|t| t), &Scenario::default()).unwrap();
+    assert!(flown.landed && flown.refusals.is_empty());
+    assert_eq!(legs(&flown).iter().filter(|l| **l == "sweep").count(), 3);
+    let runway = mission(|t| t).plan.runways[0].clone();
+    let stop = flown.track.last().unwrap().position;
+    assert!(runway.threshold.distance_m(stop) < runway.length_m, "it stops on the runway");
+    let parts: f64 = flown.legs.iter().map(|l| l.distance_m).sum();
+    assert!((parts - flown.distance_m).abs() < 1.0);
+    let energy: f64 = flown.legs.iter().map(|l| l.energy_j).sum();
+    assert!((energy - flown.energy_j).abs() < 0.01 * energy);
+    assert!(flown.track.windows(2).all(|t| t[1].time_s >= t[0].time_s));
+    assert!(flown.waypoints.windows(2).all(|w| w[1].waypoint.token > w[0].waypoint.token));
+    assert!(!flown.events.iter().any(|(_, e)| matches!(e, Event::PatternRefused { .. })));
+}
+
+/// What the demonstration does: the fire grows and moves, dies down, a plan update adds a leg on the way back.
+#[test]
+fn a_scripted_mission() {
+    let number =
+        |name: &str, x: f64| Command::SetVariable { name: name.into(), value: VariableValue::Number(x) };
+    let update =
+        mission(|t| t.replace(r#"<TF id="h1""#, r#"<TF id="h0" name="Look back" fix="RIDGE2"/><TF id="h1""#));
+    let waypoints = When::Waypoints { leg: "sweep".into(), iteration: Some(1), count: 5 };
+    let scenario = Scenario {
+        triggers: vec![
+            trigger(waypoints, number("fire_radius", 500.0)),
+            trigger(entering("sweep", Some(2)), number("fire_radius", 150.0)),
+            trigger(
+                entering("look", Some(2)),
+                Command::SetVariable { name: "fire_out".into(), value: VariableValue::Bool(true) },
+            ),
+            Trigger { at: entering("p3", None), then: vec![Act::Update { program: update, entry: None }] },
+        ],
+    };
+    let flown = fly(&mission(|t| t), &scenario).unwrap();
     assert!(flown.landed);
+    assert_eq!((flown.refusals.len(), flown.not_fired.len()), (0, 0));
+    let legs = legs(&flown);
+    assert_eq!(legs.iter().filter(|l| **l == "sweep").count(), 2, "put out in the second round");
+    assert_eq!(legs.iter().filter(|l| **l == "look").count(), 1);
+    assert_eq!(legs.iter().filter(|l| **l == "h0").count(), 1);
+    let taken: Vec<_> = flown
+        .events
+        .iter()
+        .filter_map(|(_, e)| match e {
+            Event::DecisionTaken { branch, by, .. } => Some((branch.as_str(), by.as_str())),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(taken, [("again", "default"), ("close", "condition")]);
+}
+
+#[test]
+fn an_emergency_ends_on_its_runway() {
+    let emergency = Command::Emergency { cause: Cause::Link, plan: None };
+    let scenario = Scenario { triggers: vec![trigger(entering("sweep", Some(1)), emergency)] };
+    let program = mission(|t| t);
+    let flown = fly(&program, &scenario).unwrap();
+    let strip = program.plan.runways.iter().find(|r| r.id.as_str() == "N23").unwrap();
+    assert!(flown.landed);
+    assert!(flown.track.last().unwrap().position.distance_m(strip.threshold) < strip.length_m);
+    assert!(matches!(flown.waypoints.last().unwrap().waypoint.action, Action::Land { .. }));
+}
+
+#[test]
+fn hold_and_resume_are_flown() {
+    let scenario = Scenario {
+        triggers: vec![
+            trigger(entering("o2", None), Command::Hold),
+            trigger(When::After { seconds: 700.0 }, Command::Resume),
+        ],
+    };
+    let flown = fly(&mission(|t| t), &scenario).unwrap();
+    assert!(flown.landed);
+    assert_eq!(legs(&flown).iter().filter(|l| **l == "o2").count(), 1);
+}
+
+fn small(legs: &str) -> Arc<Program> {
+    let text = format!(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="small" aircraft="trainer">
+        <fixes><fix id="A" lat="36.52" lon="-84.18"/><fix id="B" lat="36.55" lon="-84.18"/><fix id="C" lat="36.55" lon="-84.22"/></fixes>
+        <runways><runway id="R" lat="36.5" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
+        <mainPlan>
+          <stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+          <stage id="m" type="mission" altitude="200" altitudeReference="agl">{legs}</stage>
+          <stage id="land" type="land" runway="R"/>
+        </mainPlan></flightPlan>"#
+    );
+    Arc::new(compile_document(text.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap())
+}
+
+#[test]
+fn flights_without_an_end_are_refused_with_the_place() {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let fly = |legs: &str, options: &Options, energy_j: f64| {
+        let profile = Profile { energy_j, ..Profile::default() };
+        preview(&small(legs), &profile, &flat, Wind::CALM, Start::Runway, &Scenario::default(), options)
+    };
+    let endless = r#"<TF id="a" fix="A"/><iterative id="l" form="forward" until="battery &lt; 0.0"><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative>"#;
+    let short = Options { most_s: 3600.0, ..Options::default() };
+    assert!(matches!(fly(endless, &short, 3e6), Err(PreviewError::TooLong { .. })));
+    let few = Options { most_waypoints: 20, ..Options::default() };
+    assert!(matches!(fly(endless, &few, 3e6), Err(PreviewError::TooManyWaypoints { waypoints: 20, .. })));
+    assert!(matches!(fly(endless, &Options::default(), 3e5), Err(PreviewError::OutOfEnergy { .. })));
+    let asks = r#"<TF id="a" fix="A"/><intersection id="x" decideBefore="10s"><branch id="l" label="l" next="b"/><branch id="r" label="r" next="c"/></intersection><TF id="b" fix="B" next="c"/><TF id="c" fix="C"/>"#;
+    assert!(matches!(fly(asks, &Options::default(), 3e6), Err(PreviewError::Waiting { .. })));
+}
+
+#[test]
+fn it_can_be_cancelled() {
+    let mut told = 0;
+    let mut progress = |advance: &flight_exec::preview::Advance| {
+        told += 1;
+        advance.time_s < 100.0
+    };
+    let flown = preview_with(
+        &mission(|t| t),
+        &Profile::default(),
+        &ground(),
+        Wind::CALM,
+        Start::Runway,
+        &Scenario::default(),
+        &Options::default(),
+        &mut progress,
+    );
+    assert_eq!(flown, Err(PreviewError::Cancelled));
+    assert_eq!(told, 11);
 }

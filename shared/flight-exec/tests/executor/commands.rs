@@ -189,8 +189,9 @@ fn killed_and_restored_anywhere_it_flies_the_same() {
     let mut rig = Rig::flying(&document(legs));
     let mut places = 0;
     while rig.fly_one() {
-        let text = serde_json::to_string(&rig.executor.snapshot()).unwrap();
-        let snapshot: Snapshot = serde_json::from_str(&text).unwrap();
+        let mut bytes = Vec::new();
+        ciborium::into_writer(&rig.executor.snapshot(), &mut bytes).unwrap();
+        let snapshot: Snapshot = ciborium::from_reader(bytes.as_slice()).unwrap();
         let mut twin = rig.clone();
         twin.executor = Executor::restore(
             flight_exec::Config::default(),
@@ -206,7 +207,7 @@ fn killed_and_restored_anywhere_it_flies_the_same() {
             assert_eq!(twin.fly_one(), first.fly_one());
         }
         assert_eq!((&twin.flown, &twin.events), (&first.flown, &first.events));
-        assert!(text.len() < 200_000, "a snapshot of {} bytes", text.len());
+        assert!(bytes.len() < 200_000, "a snapshot of {} bytes", bytes.len());
         places += 1;
     }
     assert!(places > 20);

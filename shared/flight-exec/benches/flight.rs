@@ -1,0 +1,139 @@
+//! The promises of speed: executor step (goal < 2 µs), a million waypoints of a scan through the cursor, preview of two
+//! hours (goal < 200 ms).
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use aircraft::{Profile, Wind};
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use flight_exec::preview::{Options, Scenario, Start};
+use flight_exec::{AircraftState, Command, Config, Executor, Input, Output, RequestId, Time, preview};
+use flight_plan::{Program, compile_document};
+use geometry::LatLon;
+use std::sync::Arc;
+use terrain::{Flat, Terrain};
+
+fn main() {
+    divan::main();
+}
+
+fn program(legs: &str) -> Arc<Program> {
+    let text = format!(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="bench" aircraft="trainer">
+        <fixes><fix id="A" lat="36.52" lon="-84.18"/><fix id="B" lat="36.55" lon="-84.18"/><fix id="C" lat="36.53" lon="-84.22"/></fixes>
+        <runways><runway id="R" lat="36.5" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
+        <mainPlan>
+          <stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+          <stage id="m" type="mission" altitude="200" altitudeReference="agl">{legs}</stage>
+          <stage id="land" type="land" runway="R"/>
+        </mainPlan></flightPlan>"#
+    );
+    let profile = Profile { energy_j: 3e7, ..Profile::default() };
+    Arc::new(compile_document(text.as_bytes(), &profile, &Flat(300.0)).unwrap())
+}
+
+const LOOP: &str = r#"<TF id="a" fix="A"/><iterative id="l" form="reverse" count="1000000"><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative>"#;
+
+struct Flying {
+    executor: Executor,
+    now: Time,
+    out: Vec<Output>,
+    at: LatLon,
+}
+
+impl Flying {
+    fn start(legs: &str) -> Self {
+        let executor = Executor::new(Config::default(), Arc::new(Flat(300.0)), Profile::default());
+        let at = LatLon::new(36.5, -84.2);
+        let mut flying = Self { executor, now: Time::ZERO, out: Vec::new(), at };
+        let program = program(legs);
+        let hash = program.hash.clone();
+        flying.step(Input::Propose { request: RequestId(1), program });
+        flying.step(Input::Command { request: RequestId(2), command: Command::Commit { hash, entry: None } });
+        flying.step(Input::Command { request: RequestId(3), command: Command::Start });
+        flying
+    }
+    fn step(&mut self, input: Input) {
+        self.out.clear();
+        self.executor.step(self.now, input, &mut self.out);
+    }
+    fn aircraft(&mut self) {
+        self.now += Time::from_millis(100);
+        let state = AircraftState {
+            position: self.at,
+            altitude_amsl_m: 500.0,
+            track_deg: 90.0,
+            ground_speed_mps: 25.0,
+            airspeed_mps: 25.0,
+            wind_east_mps: 0.0,
+            wind_north_mps: 0.0,
+            battery: 1.0,
+            on_ground: false,
+        };
+        self.step(Input::Aircraft(state));
+    }
+    fn progress(&mut self) {
+        let next = self.executor.ahead().nth(1).cloned();
+        if let Some(next) = next {
+            self.at = next.position;
+            self.step(Input::Progress { current: Some(next.token) });
+        }
+    }
+}
+
+/// One report of the aircraft at 10 Hz, reviews of provisional choices included.
+#[divan::bench]
+fn executor_step_aircraft(bencher: Bencher) {
+    let mut flying = Flying::start(LOOP);
+    flying.progress();
+    bencher.bench_local(|| {
+        flying.aircraft();
+        black_box(flying.out.len())
+    });
+}
+
+/// A waypoint flown and the next one laid out, in an endless loop.
+#[divan::bench]
+fn executor_step_progress(bencher: Bencher) {
+    let mut flying = Flying::start(LOOP);
+    flying.progress();
+    bencher.bench_local(|| {
+        flying.progress();
+        black_box(flying.out.len())
+    });
+}
+
+/// A scan of a million waypoints, through the cursor.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn million_waypoints_of_a_scan(bencher: Bencher) {
+    use flight_exec::cursor::{Cursor, Step};
+    let scan =
+        r#"<scan id="s" spacing="0.01" heading="0" overshoot="0"><area fix="A" radius="2500"/></scan>"#;
+    let executor = Flying::start(scan).executor;
+    bencher.counter(ItemsCount::new(1_000_000_u64)).bench_local(|| {
+        let world = executor.world().unwrap();
+        let mut cursor = Cursor::start(None, executor.here(), 0);
+        let mut last = None;
+        for _ in 0..1_000_000 {
+            match cursor.next(&world) {
+                Step::Waypoint(waypoint) => last = Some(waypoint.position),
+                _ => break,
+            }
+        }
+        last
+    });
+}
+
+/// Two hours of loops and turns, flown by the simulated aircraft.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn preview_of_two_hours(bencher: Bencher) {
+    let legs = LOOP.replace("1000000", "12");
+    let program = program(&legs);
+    let profile = Profile { energy_j: 3e7, ..Profile::default() };
+    let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let fly = || {
+        let (wind, options) = (Wind::from_direction(250.0, 5.0), Options::default());
+        preview(&program, &profile, &terrain, wind, Start::Runway, &Scenario::default(), &options).unwrap()
+    };
+    println!("previewed flight: {:.0} s, {} waypoints", fly().time_s, fly().waypoints.len());
+    bencher.bench_local(fly);
+}
