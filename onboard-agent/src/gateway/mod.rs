@@ -8,6 +8,8 @@
 mod config;
 pub mod core;
 pub mod driver;
+#[cfg(test)]
+mod flights;
 mod link;
 pub mod order;
 mod publish;

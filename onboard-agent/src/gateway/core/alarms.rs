@@ -12,7 +12,7 @@ const STALE: Duration = Duration::from_secs(1);
 /// Slower than this, a position may stand still, m/s.
 const FLYING_MPS: f64 = 5.0;
 /// Share of energy below which it is low, and above which it is well again.
-const ENERGY_LOW: (f64, f64) = (0.15, 0.18);
+const ENERGY_LOW: (f64, f64) = (0.20, 0.23);
 /// An engine that turns slower than this while it is given throttle has stopped, 1/min.
 const STOPPED_RPM: f64 = 300.0;
 /// Throttle above which an engine has to turn, 0..1.

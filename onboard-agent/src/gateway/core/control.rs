@@ -11,6 +11,8 @@ use usal::contract::{Action, GatewayState};
 
 /// An order that failed is given again after this.
 const RETRY: Duration = Duration::from_millis(1000);
+/// An order of ours that was overtaken by another may still come into effect for so long.
+const OVERTAKEN: Duration = Duration::from_secs(3);
 /// Airspeeds closer than this are the same, m/s.
 const SAME_SPEED_MPS: f64 = 0.1;
 /// A loiter counts as reached within this many radii.
@@ -43,7 +45,11 @@ pub struct Control {
     speed_mps: Option<f64>,
     last_id: u64,
     list: Option<OrderId>,
-    mode: Option<OrderId>,
+    mode: Option<(OrderId, Mode)>,
+    /// The mode last ordered, while it may still come into effect.
+    ordered: Option<Mode>,
+    /// Since when the wanted mode is confirmed.
+    confirmed_at: Option<Time>,
     arm: Option<OrderId>,
     speed: Option<(OrderId, f64)>,
     goto: Option<OrderId>,
@@ -67,6 +73,8 @@ impl Default for Control {
             last_id: 0,
             list: None,
             mode: None,
+            ordered: None,
+            confirmed_at: None,
             arm: None,
             speed: None,
             goto: None,
@@ -97,6 +105,7 @@ impl Control {
         self.intent = intent;
         self.mode_before = mode;
         self.confirmed = false;
+        self.confirmed_at = None;
         self.disobeys_since = None;
         self.retry_at = None;
     }
@@ -135,7 +144,10 @@ impl Control {
 
     /// An order is no longer in flight.
     pub fn forget(&mut self, id: OrderId) {
-        for lane in [&mut self.mode, &mut self.arm, &mut self.goto, &mut self.read] {
+        if self.mode.is_some_and(|(mode, _)| mode == id) {
+            self.mode = None;
+        }
+        for lane in [&mut self.arm, &mut self.goto, &mut self.read] {
             if *lane == Some(id) {
                 *lane = None;
             }
@@ -153,6 +165,23 @@ impl Control {
             Intent::Direct => Some(Mode::Guided),
             Intent::Return => Some(Mode::Return),
         }
+    }
+
+    /// The autopilot is in the wanted mode.
+    fn confirm(&mut self, now: Time) {
+        self.confirmed = true;
+        self.disobeys_since = None;
+        let since = *self.confirmed_at.get_or_insert(now);
+        if self.mode.is_none() && now.saturating_sub(since) > OVERTAKEN {
+            self.ordered = None;
+        }
+    }
+
+    /// It is in a mode that we wanted before.
+    fn overtaken(&mut self, mode: Mode) {
+        self.confirmed = false;
+        self.confirmed_at = None;
+        self.mode_before = Some(mode);
     }
 
     fn may_retry(&mut self, now: Time) -> bool {
@@ -208,8 +237,10 @@ impl Gateway {
             return;
         };
         if mode == wanted {
-            self.control.confirmed = true;
-            self.control.disobeys_since = None;
+            self.control.confirm(now);
+        } else if self.control.ordered == Some(mode) {
+            // an order of ours that has been overtaken: what is wanted is ordered again
+            self.control.overtaken(mode);
         } else if self.control.confirmed || Some(mode) != self.control.mode_before {
             let cause = format!("the autopilot was switched to {mode}, and not by the gateway");
             self.control.set_intent(Intent::Nothing, Some(mode));
@@ -254,7 +285,8 @@ impl Gateway {
         }
         if self.telemetry.mode != Some(wanted) && self.control.mode.is_none() {
             let id = self.order(Order::SetMode(wanted), out);
-            self.control.mode = Some(id);
+            self.control.mode = Some((id, wanted));
+            self.control.ordered = Some(wanted);
         }
         self.steer_direct(wanted, out);
     }

@@ -14,8 +14,6 @@ mod safe;
 mod states;
 mod supervise;
 mod telemetry;
-#[cfg(test)]
-mod tests;
 mod views;
 
 pub use io::{Answer, Input, Intent, Output, Settings, Snapshot};

@@ -38,8 +38,10 @@ pub struct Context<'a> {
 
 type Rule = fn(&Context, Option<&Waypoint>, &Waypoint) -> Option<(&'static str, String)>;
 
+/// Rules without which the others make no sense.
+const NUMBERS: [Rule; 2] = [number, place];
 /// Rules on one waypoint and the one before it.
-const RULES: [Rule; 8] = [number, place, altitude, speed, loiter, distance, gradient, above_terrain];
+const RULES: [Rule; 6] = [altitude, speed, loiter, distance, gradient, above_terrain];
 
 /// Everything that is wrong with a batch that follows on `previous`, whose own predecessor is
 /// `before_previous`. Empty: it may be flown.
@@ -60,9 +62,15 @@ pub fn faults(
     let mut last = previous;
     let mut before = before_previous;
     for waypoint in batch {
-        let broken = RULES.iter().find_map(|rule| rule(context, last, waypoint));
-        let broken = broken.or_else(|| turn(context, before, last, waypoint));
-        found.extend(broken.map(|f| fault(waypoint.token, f)));
+        let broken = match NUMBERS.iter().find_map(|rule| rule(context, last, waypoint)) {
+            // nothing else can be said about a place that is none
+            Some(nonsense) => vec![nonsense],
+            None => {
+                let rules = RULES.iter().filter_map(|rule| rule(context, last, waypoint));
+                rules.chain(turn(context, before, last, waypoint)).collect()
+            }
+        };
+        found.extend(broken.into_iter().map(|f| fault(waypoint.token, f)));
         before = last.map(|w| w.position);
         last = Some(waypoint);
     }
@@ -272,8 +280,7 @@ mod tests {
 
     #[test]
     fn a_turn_that_does_not_fit_is_refused() {
-        let corner =
-            |out_m: f64| [waypoint(1, 0.0, 0.0), waypoint(2, 0.0, 30.0), waypoint(3, -out_m, 30.0 - out_m)];
+        let corner = |out_m: f64| [waypoint(1, 0.0, 0.0), waypoint(2, 0.0, 30.0), waypoint(3, -out_m, 30.0)];
         assert_eq!(codes(&corner(20.0), Token(0)), ["turn"]);
         assert_eq!(codes(&corner(400.0), Token(0)), Vec::<String>::new());
     }

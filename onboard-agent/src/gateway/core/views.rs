@@ -52,10 +52,10 @@ impl Gateway {
         let chain = self.window.chain();
         let own = |t: Token| (t.0 > 0).then_some(t);
         let (buffer_waypoints, buffer_s) = self.level();
-        let to = chain.active().map(|w| w.position);
+        let to = self.window.current().map(|w| w.position);
         let distance_m = to.zip(self.place()).map_or(0.0, |(a, b)| a.distance_m(b));
         Navigation {
-            current: chain.active().and_then(|w| own(w.token)),
+            current: self.window.current().and_then(|w| own(w.token)),
             next: chain.second().and_then(|w| own(w.token)),
             last: chain.last().and_then(|w| own(w.token)),
             distance_m,

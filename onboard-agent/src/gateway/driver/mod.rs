@@ -194,6 +194,13 @@ impl Driver {
         if let MavMessage::HEARTBEAT(beat) = message {
             self.bind(header, beat);
         }
+        // a simulator's clock goes on before it has said who it is
+        if let (None, MavMessage::TIMESYNC(sync)) = (self.peer, message) {
+            if sync.tc1 == 0 {
+                self.synchronise(now, sync.ts1);
+            }
+            return self.tick(now);
+        }
         let Some(peer) = self.peer.filter(|p| is_from(*p, header)) else {
             self.ignored += 1;
             return;

@@ -1,1 +1,285 @@
+//! Transfers against the simulator's mission protocol, with what happens on bad links.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use super::*;
+use crate::gateway::order::{Item, ItemKind};
+use crate::gateway::window::matches;
+use geometry::LatLon;
+use sim::core::{Peer as SimPeer, Simulator};
+
+const PEER: SimPeer = SimPeer(1);
+
+struct Rig {
+    sim: Simulator,
+    driver: Driver,
+    decoder: Decoder,
+    sim_decoder: sim::frame::Decoder,
+    now: Time,
+}
+
+/// Where a message is on its way to.
+#[derive(Clone, Copy, PartialEq)]
+enum To {
+    Autopilot,
+    Driver,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let c = sim::Config::default();
+        let mut sim = Simulator::new(c.profile, c.home, c.wind, 1);
+        sim.connect(PEER);
+        let driver = Driver::new(false);
+        let mut rig = Self {
+            sim,
+            driver,
+            decoder: Decoder::default(),
+            sim_decoder: sim::frame::Decoder::default(),
+            now: Time::ZERO,
+        };
+        while rig.driver.peer().is_none() {
+            rig.step(&mut |_, _| true);
+        }
+        rig.driver.take_reports();
+        rig
+    }
+
+    /// 100 ms; `pass` says what comes through.
+    fn step(&mut self, pass: &mut impl FnMut(To, &MavMessage) -> bool) {
+        self.sim.step();
+        self.now = Duration::from_nanos(self.sim.now_ns());
+        let mut decoded = vec![];
+        for outgoing in self.sim.take_outgoing() {
+            self.decoder.feed(&outgoing.bytes, &mut decoded);
+        }
+        for (header, message) in decoded {
+            if pass(To::Driver, &message) {
+                self.driver.receive(self.now, header, &message);
+            }
+        }
+        self.driver.tick(self.now);
+        for message in self.driver.take_messages() {
+            if pass(To::Autopilot, &message) {
+                let bytes = encode(self.driver.header(0), &message);
+                let mut frames = vec![];
+                self.sim_decoder.push(&bytes, |f| frames.push(f));
+                frames.into_iter().for_each(|f| self.sim.receive(PEER, f));
+            }
+        }
+    }
+
+    /// Gives an order and waits for its outcome; the time it took.
+    fn carry_out(&mut self, order: Order, mut pass: impl FnMut(To, &MavMessage) -> bool) -> (Report, f64) {
+        let (id, begun) = (OrderId(77), self.now);
+        self.driver.order(self.now, id, order);
+        for _ in 0..3000 {
+            self.step(&mut pass);
+            let ended = self.driver.take_reports().into_iter().find(
+                |r| matches!(r, Report::Done(i) | Report::Failed(i, _) | Report::List(i, _) if *i == id),
+            );
+            if let Some(report) = ended {
+                return (report, (self.now - begun).as_secs_f64());
+            }
+        }
+        panic!("no outcome within five minutes");
+    }
+
+    fn on_board(&self) -> Vec<LatLon> {
+        self.sim.autopilot.mission.items().iter().map(|i| i.position).collect()
+    }
+}
+
+fn items(count: usize) -> Vec<Item> {
+    let kind = |i| if i == 0 { ItemKind::Home } else { ItemKind::Fly { over: false } };
+    let place = |i| LatLon::new(36.49 + i as f64 * 1e-3, -84.27);
+    (0..count).map(|i| Item { position: place(i), altitude_amsl_m: 500.0, kind: kind(i) }).collect()
+}
+
+fn is_on_board(rig: &Rig, wanted: &[Item], start: usize) -> bool {
+    let board = rig.on_board();
+    wanted
+        .iter()
+        .enumerate()
+        .all(|(i, w)| i + start == 0 || board.get(i + start).is_some_and(|b| b.distance_m(w.position) < 0.1))
+}
+
+/// A message is lost the first `times` times.
+fn losing(lost: fn(To, &MavMessage) -> bool, mut times: u32) -> impl FnMut(To, &MavMessage) -> bool {
+    move |to, message| {
+        let hit = times > 0 && lost(to, message);
+        times -= u32::from(hit);
+        !hit
+    }
+}
+
+#[test]
+fn a_hundred_entries_go_up_quickly_and_come_back_the_same() {
+    let mut rig = Rig::new();
+    let list = items(100);
+    let (report, seconds) = rig.carry_out(Order::Upload { items: list.clone() }, |_, _| true);
+    assert_eq!(report, Report::Done(OrderId(77)));
+    assert!(seconds < 3.0, "{seconds} s");
+    let (report, _) = rig.carry_out(Order::Read, |_, _| true);
+    let Report::List(_, read) = report else { panic!("{report:?}") };
+    assert!(read.len() == 100 && read.iter().zip(&list).skip(1).all(|(a, b)| matches(a, b)));
+}
+
+#[test]
+fn each_single_loss_is_made_good() {
+    type Lost = fn(To, &MavMessage) -> bool;
+    let cases: [(&str, u32, Lost); 9] = [
+        ("mission count lost", 3, |_, m| matches!(m, MavMessage::MISSION_COUNT(_))),
+        ("first item lost", 1, |_, m| matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq == 0)),
+        ("item in the middle lost twice", 2, |t, m| {
+            t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq == 13)
+        }),
+        ("last item lost", 2, |t, m| {
+            t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq == 29)
+        }),
+        ("final ack lost", 1, |t, m| t == To::Driver && matches!(m, MavMessage::MISSION_ACK(_))),
+        ("every ack lost", 1000, |t, m| t == To::Driver && matches!(m, MavMessage::MISSION_ACK(_))),
+        ("read request lost", 5, |_, m| matches!(m, MavMessage::MISSION_REQUEST_INT(_))),
+        ("read item lost", 5, |t, m| t == To::Driver && matches!(m, MavMessage::MISSION_ITEM_INT(_))),
+        ("a window lost", 24, |t, m| t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_))),
+    ];
+    for (name, times, lost) in cases {
+        let mut rig = Rig::new();
+        let list = items(30);
+        let (report, seconds) = rig.carry_out(Order::Upload { items: list.clone() }, losing(lost, times));
+        println!("{name}: {seconds} s");
+        assert_eq!(report, Report::Done(OrderId(77)), "{name}");
+        assert!(is_on_board(&rig, &list, 0), "{name}");
+    }
+}
+
+#[test]
+fn packets_lost_0_to_30_percent_every_write_completes_and_is_true() {
+    for percent in [0_u64, 10, 20, 30] {
+        let (mut slowest, mut seed) = (0.0_f64, 1 + percent);
+        println!("loss {percent} %, seed {seed}");
+        let mut pass = move |_: To, _: &MavMessage| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % 100 >= percent
+        };
+        let mut rig = Rig::new();
+        let list = items(44);
+        let (report, _) = rig.carry_out(Order::Upload { items: list.clone() }, &mut pass);
+        assert_eq!(report, Report::Done(OrderId(77)));
+        for start in [2_usize, 30, 17] {
+            let part = items(60)[40..52].to_vec();
+            let (report, seconds) =
+                rig.carry_out(Order::Write { start: start as u16, items: part.clone() }, &mut pass);
+            assert_eq!(report, Report::Done(OrderId(77)), "loss {percent} %");
+            assert!(is_on_board(&rig, &part, start), "a false claim at {percent} %");
+            slowest = slowest.max(seconds);
+        }
+        println!("slowest write of 12: {slowest:.1} s");
+    }
+}
+
+#[test]
+fn link_cut_at_item_k_fails_in_plain_words_and_claims_nothing() {
+    let mut rig = Rig::new();
+    let (report, _) = rig.carry_out(
+        Order::Upload { items: items(44) },
+        |_, m| !matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq >= 20),
+    );
+    assert!(matches!(&report, Report::Failed(_, why) if why.contains("does not answer")), "{report:?}");
+}
+
+#[test]
+fn acks_left_over_from_another_transfer_prove_nothing() {
+    let mut rig = Rig::new();
+    let list = items(30);
+    let header = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let ack = MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: 1,
+        target_component: OWN_COMPONENT,
+        mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
+        mission_type: mission_type(),
+        opaque_id: 0,
+    });
+    // half of the items are lost, and every step brings an early "accepted"
+    rig.driver.order(rig.now, OrderId(1), Order::Upload { items: list.clone() });
+    let mut count = 0_u32;
+    for _ in 0..3000 {
+        rig.driver.receive(rig.now, header, &ack);
+        rig.step(&mut |t, m| {
+            count += 1;
+            !(t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_)) && count.is_multiple_of(2))
+        });
+        if rig.driver.take_reports().contains(&Report::Done(OrderId(1))) {
+            assert!(is_on_board(&rig, &list, 0), "a false claim");
+            return;
+        }
+    }
+    panic!("no outcome");
+}
+
+#[test]
+fn another_system_and_nonsense_in_fields_change_nothing() {
+    let mut rig = Rig::new();
+    let stranger = MavHeader { system_id: 9, component_id: 1, sequence: 0 };
+    let own = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let position = |lat: i32| {
+        MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+            time_boot_ms: 1_000_000,
+            lat,
+            lon: -842_710_000,
+            alt: 500_000,
+            relative_alt: 0,
+            vx: 0,
+            vy: 0,
+            vz: 0,
+            hdg: 0,
+        })
+    };
+    let nan = MavMessage::ATTITUDE(ATTITUDE_DATA { roll: f32::NAN, ..ATTITUDE_DATA::DEFAULT });
+    let cases = [
+        (stranger, position(364_905_000)),
+        (own, position(910_000_000)),
+        (own, position(0x7FFF_FFFF)),
+        (own, position(380_000_000)),
+        (own, nan),
+    ];
+    rig.driver.receive(rig.now, own, &position(364_905_000));
+    rig.driver.take_reports();
+    for (i, (header, message)) in cases.into_iter().enumerate() {
+        let ignored = rig.driver.ignored;
+        rig.driver.receive(rig.now, header, &message);
+        assert_eq!(rig.driver.take_reports(), vec![], "case {i}");
+        assert_eq!(rig.driver.ignored, ignored + 1, "case {i}");
+    }
+}
+
+#[test]
+fn commands_are_repeated_until_they_are_seen_to_work() {
+    let mut rig = Rig::new();
+    let mut drops = 3;
+    let (report, _) = rig.carry_out(Order::SetMode(crate::gateway::order::Mode::Loiter), move |_, m| {
+        let hit = drops > 0 && matches!(m, MavMessage::COMMAND_LONG(_) | MavMessage::COMMAND_ACK(_));
+        drops -= i32::from(hit);
+        !hit
+    });
+    assert_eq!(report, Report::Done(OrderId(77)));
+    assert_eq!(rig.sim.autopilot.mode(), sim::Mode::Loiter);
+    let (report, _) = rig.carry_out(Order::SetCurrent(5), |_, _| true);
+    assert!(matches!(report, Report::Failed(..)), "there is no entry 5: {report:?}");
+}
+
+#[test]
+fn an_autopilot_that_is_not_supported_is_refused_in_plain_words() {
+    let mut driver = Driver::new(false);
+    let header = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let beat = HEARTBEAT_DATA {
+        autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
+        mavtype: MavType::MAV_TYPE_FIXED_WING,
+        ..HEARTBEAT_DATA::DEFAULT
+    };
+    driver.receive(Time::ZERO, header, &MavMessage::HEARTBEAT(beat));
+    let told = driver.take_reports().into_iter().find_map(|r| match r {
+        Report::Capability(Err(why)) => Some(why),
+        _ => None,
+    });
+    assert!(told.unwrap().contains("ArduPlane"));
+}

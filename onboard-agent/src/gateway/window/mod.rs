@@ -57,6 +57,8 @@ pub struct Window {
     pending: Option<Pending>,
     /// The entry being steered to was overwritten: it must be loaded anew.
     reload: bool,
+    /// An entry was reached while it was being written: nobody knows what was loaded.
+    reached_in_doubt: bool,
 }
 
 impl Default for Window {
@@ -69,6 +71,7 @@ impl Default for Window {
             end: 0,
             pending: None,
             reload: false,
+            reached_in_doubt: false,
         }
     }
 }
@@ -103,21 +106,31 @@ impl Window {
         self.entered && self.chain.is_empty()
     }
 
-    /// The waypoint being steered to: its token, `None` at the guard or on a waypoint of our own.
+    /// The waypoint being steered to; `None` at the guard, and while it is not certain.
     pub fn current(&self) -> Option<&Waypoint> {
-        self.chain.active()
+        self.chain.active().filter(|_| !self.reload)
     }
 
     /// The autopilot says it steers to entry `seq`. True: it went on to another waypoint.
     pub fn reported(&mut self, seq: u16) -> bool {
-        if !self.entered {
+        let first = self.chain.first();
+        let position = self.position_of(seq).filter(|p| self.entered && *p > first);
+        let Some(position) = position else { return false };
+        if self.is_being_written(position) {
+            // it will say so again when the outcome is known
+            self.reached_in_doubt = true;
             return false;
         }
-        match self.position_of(seq) {
-            Some(position) if position > self.chain.first() => {
-                self.chain.advance_to(position);
-                self.reload = false;
-                true
+        self.chain.advance_to(position);
+        let stale = !self.board.holds(position, &self.wanted(position));
+        self.reload = stale || std::mem::take(&mut self.reached_in_doubt);
+        true
+    }
+
+    fn is_being_written(&self, position: u64) -> bool {
+        match &self.pending {
+            Some(Pending::Write { position: start, items }) => {
+                (*start..*start + items.len() as u64).contains(&position)
             }
             _ => false,
         }
