@@ -168,6 +168,27 @@ fn garbage_on_tcp_is_counted_and_a_second_client_is_turned_away() {
 }
 
 #[test]
+fn a_client_that_never_reads_does_not_stop_time() {
+    let handle = sim::spawn(Config { speed: 20.0, ..Config::default() }).unwrap();
+    let mut client = Client::connect(handle.address());
+    // some 19 MB of answers: more than the sockets' buffers and the simulator's own
+    let ask =
+        MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 });
+    for _ in 0..25_000 {
+        client.say(&ask);
+    }
+    let asked = handle.truth().time_s;
+    wait_for("time to go on", || handle.truth().time_s > asked + 5.0);
+    // and what it reads in the end is still made of whole frames
+    client.hear_until("a late heartbeat", |m| matches!(m, MavMessage::HEARTBEAT(_)));
+    client.hear_until(
+        "time",
+        |m| matches!(m, MavMessage::SYSTEM_TIME(t) if f64::from(t.time_boot_ms) / 1e3 > asked + 5.0),
+    );
+    assert_eq!(client.decoder.ignored_bytes, 0);
+}
+
+#[test]
 fn several_udp_partners_are_served_and_strangers_bytes_are_not_answered() {
     let config = Config { link: Link::Udp(loopback()), speed: 10.0, ..Config::default() };
     let handle = sim::spawn(config).unwrap();
