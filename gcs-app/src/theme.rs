@@ -98,6 +98,7 @@ pub fn of(ui: &Ui) -> &'static Palette {
 
 /// Sets fonts, spacing and both themes.
 pub fn install(ctx: &egui::Context) {
+    ctx.set_fonts(fonts());
     ctx.set_visuals_of(Theme::Dark, visuals(Visuals::dark(), &DARK));
     ctx.set_visuals_of(Theme::Light, visuals(Visuals::light(), &LIGHT));
     ctx.all_styles_mut(|style| {
@@ -118,6 +119,15 @@ pub fn install(ctx: &egui::Context) {
             }
         }
     });
+}
+
+/// The default fonts; symbols that the proportional ones lack come from the monospaced one.
+fn fonts() -> egui::FontDefinitions {
+    let mut fonts = egui::FontDefinitions::default();
+    let spare = fonts.families.get(&egui::FontFamily::Monospace).cloned().unwrap_or_default();
+    let proportional = fonts.families.entry(egui::FontFamily::Proportional).or_default();
+    proportional.extend(spare.into_iter().take(1));
+    fonts
 }
 
 fn visuals(mut v: Visuals, p: &Palette) -> Visuals {

@@ -27,6 +27,7 @@ impl Tool {
     /// Draws the handles and turns drags into edits. True if the pointer clicked on one.
     pub fn run(&mut self, ui: &mut Ui, view: &View, sketch: &Sketch, scene: &Scene<'_>, queue: &mut Queue) -> bool {
         let mut clicked = false;
+        let mut labels = Vec::new();
         let p = theme::of(ui);
         let near = sketch.handles.iter().map(|h| (h, view.place(h.at))).filter(|(_, at)| view.rect.contains(*at));
         for (handle, at) in near.take(MOST) {
@@ -39,9 +40,11 @@ impl Tool {
             let response = ui.interact(rect, ui.scope_id().with(&name), Sense::click_and_drag());
             response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, &name));
             draw(ui.painter(), at, handle, selected, &response, p);
+            labels.extend(label(handle, at, selected || response.hovered()));
             clicked |= response.clicked();
             self.react(&response, at, view, handle, sketch, scene, queue);
         }
+        draw_labels(ui.painter(), labels, p);
         clicked
     }
 
@@ -107,24 +110,52 @@ fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, response: 
     let fill = if selected { p.accent } else { p.halo };
     let stroke = Stroke::new(if hot { 2.4 } else { 1.8 }, if selected { p.text } else { p.accent });
     match &handle.what {
-        Handled::Fix(id) => {
+        Handled::Fix(_) => {
             let corners = [vec2(0.0, -1.2), vec2(1.1, 0.8), vec2(-1.1, 0.8)].map(|d| at + d * size);
             painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
-            text::haloed(painter, at + vec2(9.0, -1.0), Align2::LEFT_CENTER, id.as_str(), 12.0, p.text, p);
         }
-        Handled::Waypoint(id) => {
+        Handled::Waypoint(_) => {
             painter.circle(at, size * 0.8, fill, stroke);
-            text::haloed(painter, at + vec2(9.0, -1.0), Align2::LEFT_CENTER, id.as_str(), 11.0, p.text, p);
         }
-        Handled::Centre(id) => {
+        Handled::Centre(_) => {
             painter.circle(at, size, fill, stroke);
             painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
             painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
-            text::haloed(painter, at + vec2(0.0, 9.0), Align2::CENTER_TOP, id.as_str(), 11.0, p.text, p);
         }
         Handled::Radius(_) | Handled::Corner { .. } => {
             let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
             painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
+        }
+    }
+}
+
+/// A name beside a handle.
+struct Label {
+    at: Pos2,
+    anchor: Align2,
+    text: String,
+    /// Drawn whatever is there already.
+    first: bool,
+}
+
+fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
+    let (id, offset, anchor) = match &handle.what {
+        Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
+        Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
+        Handled::Radius(_) | Handled::Corner { .. } => return None,
+    };
+    Some(Label { at: at + offset, anchor, text: id.to_string(), first })
+}
+
+/// Names that do not overlap; what is selected or under the pointer comes first.
+fn draw_labels(painter: &Painter, mut labels: Vec<Label>, p: &Palette) {
+    labels.sort_by_key(|l| !l.first);
+    let mut taken: Vec<Rect> = Vec::new();
+    for label in labels {
+        let size = vec2(label.text.chars().count() as f32 * 7.0, 13.0);
+        let rect = label.anchor.anchor_size(label.at, size);
+        if label.first || !taken.iter().any(|t| t.intersects(rect)) {
+            taken.push(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p));
         }
     }
 }

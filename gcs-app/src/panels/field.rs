@@ -33,12 +33,22 @@ impl<T> Change<T> {
 
 /// A row with a name on the left and a field on the right.
 pub fn row<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
-    let p = theme::of(ui);
     ui.horizontal(|ui| {
-        ui.add_sized([92.0, 22.0], egui::Label::new(RichText::new(name).color(p.weak)).halign(egui::Align::LEFT).truncate());
+        self::name(ui, name, 84.0);
         add(ui)
     })
     .inner
+}
+
+/// The name of a value, in a column of its own.
+pub fn name(ui: &mut Ui, name: &str, width: f32) {
+    let p = theme::of(ui);
+    let height = ui.spacing().interact_size.y.min(ui.available_height());
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(vec2(width, height), layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(RichText::new(name).color(p.weak)).truncate());
+    });
 }
 
 /// A number in a unit, stored in SI.

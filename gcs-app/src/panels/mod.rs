@@ -101,7 +101,7 @@ pub fn value_with_age(ui: &mut Ui, name: &str, text: &str, age: Option<(f64, boo
     let p = theme::of(ui);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        ui.add_sized([74.0, 18.0], egui::Label::new(RichText::new(name).color(p.weak)).halign(egui::Align::LEFT));
+        field::name(ui, name, 70.0);
         let (shown, age_text) = match age {
             Some((age_s, false)) => (RichText::new(text).color(p.text), units::age(age_s)),
             Some((age_s, true)) => {

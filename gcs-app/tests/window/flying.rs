@@ -1,0 +1,261 @@
+//! In flight, against a vehicle that the test plays.
+
+use super::vehicle::{decision, place, status};
+use super::{SQUARE, Window};
+use egui::Key;
+use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
+use gcs_app::link::{Call, LinkState, News, Order, Reply};
+use gcs_app::state::Outcome;
+use usal::contract::{Alarm, Severity};
+
+fn report(hash: &str, acceptable: bool) -> ProposalReport {
+    ProposalReport {
+        hash: hash.into(),
+        acceptable,
+        problems: if acceptable { Vec::new() } else { vec!["side2 is too steep".into()] },
+        added: vec!["side5".into()],
+        removed: vec!["old".into()],
+        changed: vec!["side2".into()],
+        next_leg: Some("side2".into()),
+        next_position: None,
+        entry_needed: false,
+    }
+}
+
+/// A window with a plan whose hash is known, connected.
+fn connected() -> (Window, String) {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.connect();
+    let hash = window.app().analysis().hash.clone();
+    (window, hash)
+}
+
+/// Flying the document.
+fn flying() -> (Window, flight_exec::Status) {
+    let (mut window, hash) = connected();
+    let mut value = status(Phase::Flying);
+    value.plan = Some(hash.into());
+    value.place = Some(place("circuit", "side2"));
+    window.hear_position(false);
+    window.hear_status(value.clone());
+    // the window reads the plan aboard; this vehicle does not tell it
+    while window.asked().is_some() {}
+    (window, value)
+}
+
+#[test]
+fn connecting_asks_the_link_and_shows_what_came_of_it() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    assert!(!window.is_enabled("Push"));
+    window.click("○ Connect");
+    window.click("Connect");
+    let order = window.far.orders.try_recv().unwrap();
+    assert_eq!(order, Order::Connect { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() });
+    window.tell(News::Link(LinkState::Failed("nobody listens there".into())));
+    assert!(window.shows("No link"));
+    window.connect();
+    assert!(window.shows("Link 0."));
+    assert!(window.is_enabled("Push"));
+}
+
+#[test]
+fn push_shows_the_difference_and_commits_by_hash() {
+    let (mut window, hash) = connected();
+    assert!(window.shows("draft"));
+    window.click("Push");
+    let Some((ticket, Call::Propose(proposal))) = window.asked() else { panic!("no proposal") };
+    assert!(proposal.xml.contains("side3") && proposal.seen_revision == Some(0));
+    assert!(!window.is_enabled("Push"), "not twice at once");
+    assert!(window.shows("Propose plan: pending"));
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    for text in ["1 added", "side5", "1 removed", "1 changed", "would fly next"] {
+        assert!(window.shows(text), "{text}");
+    }
+    window.click("Commit");
+    let Some((ticket, call)) = window.asked() else { panic!("no commit") };
+    assert_eq!(call, Call::Plan(Command::Commit { hash: hash.as_str().into(), entry: None }));
+    window.answer(ticket, Ok(Reply::Done));
+    assert!(window.shows("Commit plan: accepted"));
+    let mut value = status(Phase::Idle);
+    value.plan = Some(hash.into());
+    window.hear_status(value);
+    assert!(window.shows("aboard"));
+    assert!(!window.is_enabled("Push"), "there is nothing to push");
+}
+
+#[test]
+fn a_refused_proposal_stays_a_draft_and_says_why() {
+    let (mut window, hash) = connected();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, false)))));
+    assert!(window.shows("side2 is too steep"));
+    assert!(!window.is_enabled("Commit"));
+    window.click("Keep as draft");
+    assert!(window.app().vehicle().proposal.is_none());
+    assert!(window.asked().is_none(), "nothing was committed");
+}
+
+#[test]
+fn a_proposal_without_the_current_leg_is_committed_only_with_an_entry() {
+    let (mut window, hash) = connected();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let report = ProposalReport { entry_needed: true, next_leg: None, ..report(&hash, true) };
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+    assert!(!window.is_enabled("Commit"));
+}
+
+#[test]
+fn a_refused_command_says_why() {
+    let (mut window, _) = flying();
+    window.click("⏭ Skip leg");
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Plan(Command::SkipLeg));
+    assert!(window.shows("Skip leg: pending"));
+    window.answer(ticket, Err("the last leg can't be skipped".into()));
+    assert!(window.shows("Skip leg: refused, the last leg can't be skipped"));
+}
+
+#[test]
+fn a_late_answer_is_not_taken_for_a_new_one() {
+    let (mut window, _) = flying();
+    window.click("⏸ Hold");
+    let (first, _) = window.asked().unwrap();
+    window.answer(first, Err("no answer within 5 s".into()));
+    window.click("⏸ Hold");
+    let (second, _) = window.asked().unwrap();
+    window.answer(first, Ok(Reply::Done));
+    assert_eq!(window.app().vehicle().requests.last().unwrap().outcome, Outcome::Pending);
+    window.answer(second, Ok(Reply::Done));
+    assert_eq!(window.app().vehicle().requests.last().unwrap().outcome, Outcome::Accepted);
+}
+
+#[test]
+fn taking_off_needs_a_held_button() {
+    let (mut window, hash) = connected();
+    let mut value = status(Phase::Idle);
+    value.plan = Some(hash.into());
+    window.hear_status(value);
+    while window.asked().is_some() {}
+    window.click("Start and take off (hold)");
+    window.hold("Start and take off (hold)", 30);
+    assert!(window.asked().is_none(), "half a second is not enough");
+    window.hold("Start and take off (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Start)));
+    assert!(window.asked().is_none(), "once");
+}
+
+#[test]
+fn an_emergency_needs_a_held_button_and_is_named_by_its_effect() {
+    let (mut window, mut value) = flying();
+    value.emergency_in_force = Some("return".into());
+    window.hear_status(value);
+    while window.asked().is_some() {}
+    window.hold("Emergency: fly return (hold)", 20);
+    assert!(window.asked().is_none());
+    window.hold("Emergency: fly return (hold)", 80);
+    let call = window.asked().map(|(_, call)| call);
+    assert_eq!(call, Some(Call::Plan(Command::Emergency { cause: flight_plan::Cause::Operator, plan: None })));
+}
+
+#[test]
+fn decisions_by_button_and_by_key() {
+    let (mut window, mut value) = flying();
+    value.decision = Some(decision(Some("again")));
+    window.hear_status(value);
+    assert!(window.shows("Decide at ask") && window.shows("36 s"));
+    window.click("2  Close look");
+    let decide = |branch: &str| Some(Call::Plan(Command::Decide { leg: "ask".into(), branch: branch.into() }));
+    assert_eq!(window.asked().map(|(_, call)| call), decide("close"));
+    window.harness.key_press(Key::Num1);
+    window.steps(2);
+    assert_eq!(window.asked().map(|(_, call)| call), decide("again"));
+    window.harness.key_press(Key::Num3);
+    window.steps(2);
+    assert!(window.asked().is_none(), "there are two branches");
+}
+
+#[test]
+fn without_a_default_the_card_says_that_the_aircraft_will_hold() {
+    let (mut window, mut value) = flying();
+    value.decision = Some(decision(None));
+    window.hear_status(value);
+    assert!(window.shows("holds there and asks again"));
+}
+
+#[test]
+fn values_that_expire_look_expired() {
+    let (mut window, _) = flying();
+    window.hear_attitude();
+    assert!(window.shows("Airspeed") && !window.shows(" old"));
+    window.steps(60 * 3);
+    assert!(window.shows(" old"));
+    assert!(window.shows("Primary flight display. No data"));
+}
+
+#[test]
+fn a_lost_link_is_a_caution_and_then_a_warning() {
+    let (mut window, _) = flying();
+    window.steps(60 * 2);
+    assert!(!window.shows("LINK SILENT"));
+    window.steps(60 * 3);
+    assert!(window.shows("⚠ LINK SILENT") && window.shows("Silent for"));
+    window.steps(60 * 7);
+    assert!(window.shows("⛔ LINK SILENT"));
+    window.hear_position(false);
+    assert!(!window.shows("LINK SILENT"), "it clears itself");
+}
+
+#[test]
+fn alarms_are_listed_the_worst_first_and_go_away() {
+    let (mut window, _) = flying();
+    let alarm = |id: &str, severity| Alarm { id: id.into(), severity, source: "gateway".into(), advice: format!("do something about {id}"), cause: None };
+    window.hear_gateway(vec![alarm("energy-low", Severity::Caution), alarm("gps-lost", Severity::Warning)]);
+    let (warning, caution) = (window.centre("⛔ GPS LOST"), window.centre("⚠ ENERGY LOW"));
+    assert!(warning.y < caution.y);
+    assert!(window.shows("do something about gps-lost"));
+    window.hear_gateway(Vec::new());
+    assert!(!window.shows("GPS LOST") && window.shows("No alarms"));
+}
+
+#[test]
+fn iteration_and_active_leg_are_shown() {
+    let (mut window, mut value) = flying();
+    let mut at = place("circuit", "side2");
+    at.iterations = vec![IterationPlace { leg: "patrol".into(), iteration: 3, of: Some(20), reverse: true }];
+    value.place = Some(at);
+    window.hear_status(value);
+    assert!(window.shows("patrol 3/20"));
+    assert!(window.shows("circuit ▸ side2"));
+    window.click("TF side3");
+    assert!(!window.shows("Go to this leg"), "not while the plan aboard is unknown");
+}
+
+#[test]
+fn an_edit_in_flight_is_a_draft_until_it_is_pushed() {
+    let (mut window, _) = flying();
+    assert!(window.shows("active"));
+    let at = window.centre("Fix C");
+    window.drag(at, egui::vec2(40.0, 0.0));
+    window.until_analysed();
+    assert!(window.shows("edited ≠ aboard"));
+    assert!(window.is_enabled("Push"));
+    window.click("Undo");
+    window.until_analysed();
+    assert!(!window.shows("edited ≠ aboard"));
+}
+
+#[test]
+fn a_flood_of_news_never_stops_the_drawing() {
+    let (mut window, _) = flying();
+    for _ in 0..4000 {
+        let value = status(Phase::Flying);
+        let stamped = usal::contract::Stamped { time_s: 1.0, validity_s: 2.0, value };
+        let _ = window.far.news.try_send(News::Heard(gcs_app::link::Heard::Status(stamped)));
+    }
+    window.steps(2);
+    assert!(window.far.news.capacity() > 4000, "all of it was taken in at once");
+}

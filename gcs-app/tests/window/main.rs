@@ -1,0 +1,99 @@
+//! The window, driven as a person drives it: real buttons, real drags, a vehicle at the far end of
+//! the link that the test plays.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod flying;
+mod planning;
+mod vehicle;
+
+use egui::{Pos2, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use gcs_app::app::App;
+use gcs_app::assets;
+use gcs_app::document::Document;
+use gcs_app::link::{FarEnd, Link};
+use std::time::{Duration, Instant};
+
+const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
+
+/// A window with its far end.
+struct Window {
+    harness: Harness<'static, App>,
+    far: FarEnd,
+}
+
+impl Window {
+    fn open(text: &str) -> Self {
+        let (link, far) = Link::pair();
+        let document = Document::read(text.as_bytes(), None);
+        let harness = Harness::builder()
+            .with_size(vec2(1280.0, 800.0))
+            .with_step_dt(1.0 / 60.0)
+            .build_eframe(move |creation| App::new(creation, document, link, assets::demo_terrain()).unwrap());
+        Self { harness, far }
+    }
+
+    fn app(&self) -> &App {
+        self.harness.state()
+    }
+
+    fn steps(&mut self, steps: usize) {
+        self.harness.run_steps(steps);
+    }
+
+    /// Draws until something is so; the workers behind the window take their time.
+    fn until(&mut self, what: &str, condition: impl Fn(&App) -> bool) {
+        let deadline = Instant::now() + Duration::from_secs(20);
+        while !condition(self.app()) {
+            assert!(Instant::now() < deadline, "waited in vain: {what}");
+            self.harness.step();
+            std::thread::yield_now();
+        }
+        self.steps(2);
+    }
+
+    /// The present version was checked, hashed and previewed.
+    fn until_analysed(&mut self) {
+        self.until("analysis", |app| app.analysis().version == app.document().version());
+    }
+
+    fn click(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        self.steps(3);
+    }
+
+    fn shows(&self, label: &str) -> bool {
+        self.harness.query_all_by_label_contains(label).next().is_some()
+    }
+
+    fn is_enabled(&self, label: &str) -> bool {
+        !self.harness.get_by_label(label).accesskit_node().is_disabled()
+    }
+
+    fn centre(&self, label: &str) -> Pos2 {
+        self.harness.get_by_label(label).rect().center()
+    }
+
+    /// Presses, moves in a few steps, lets go.
+    fn drag(&mut self, from: Pos2, by: Vec2) {
+        self.harness.hover_at(from);
+        self.harness.drag_at(from);
+        for part in 1..=5 {
+            self.harness.hover_at(from + by * (part as f32 / 5.0));
+        }
+        self.harness.drop_at(from + by);
+        self.steps(4);
+    }
+
+    /// Presses and holds for so many frames of a sixtieth of a second.
+    fn hold(&mut self, label: &str, frames: usize) {
+        let at = self.centre(label);
+        self.harness.hover_at(at);
+        self.harness.drag_at(at);
+        self.steps(frames);
+        self.harness.drop_at(at);
+        self.steps(3);
+    }
+}

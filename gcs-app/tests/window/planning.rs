@@ -1,0 +1,178 @@
+//! Before the flight.
+
+use super::{SQUARE, Window};
+use egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable;
+use flight_plan::{Id, LegKind, Value};
+use gcs_app::command::Selection;
+
+fn fix(window: &Window, id: &str) -> geometry::LatLon {
+    window.app().document().plan().fix(&Id::new(id)).unwrap().position
+}
+
+#[test]
+fn a_plan_opens_with_tree_map_and_profile() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    for label in ["TF side1", "T/O take-off", "ALT return", "FIX A", "RWY R05", "Map", "Fix A", "Vertical profile"] {
+        assert!(window.shows(label), "{label}");
+    }
+    let forecast = &window.app().analysis().forecast;
+    assert!(forecast.length_m() > 5000.0 && !forecast.waypoints.is_empty());
+    assert!(window.shows("This plan can be flown"));
+}
+
+#[test]
+fn dragging_a_waypoint_is_one_step_and_undo_puts_it_back_exactly() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = fix(&window, "A");
+    assert!(!window.is_enabled("Undo"));
+    let at = window.centre("Fix A");
+    window.drag(at, vec2(60.0, -40.0));
+    let after = fix(&window, "A");
+    assert!(after.lon_deg > before.lon_deg && after.lat_deg > before.lat_deg, "{before:?} {after:?}");
+    assert!(window.centre("Fix A").distance(at + vec2(60.0, -40.0)) < 2.0, "it is where the pointer left it");
+    assert_eq!(window.app().view().selection, Some(Selection::Fix("A".into())));
+    window.click("Undo");
+    assert_eq!(fix(&window, "A"), before);
+    assert!(!window.is_enabled("Undo"), "the whole drag was one step");
+    window.click("Redo");
+    assert_eq!(fix(&window, "A"), after);
+    window.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.steps(2);
+    assert_eq!(fix(&window, "A"), before);
+    window.harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    window.steps(2);
+    assert_eq!(fix(&window, "A"), after);
+}
+
+#[test]
+fn dragging_the_map_moves_the_map_and_not_the_plan() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let (at, map) = (window.centre("Fix A"), window.centre("Map"));
+    window.drag(map + vec2(0.0, -200.0), vec2(50.0, 30.0));
+    assert!(window.centre("Fix A").distance(at) > 20.0);
+    assert!(!window.is_enabled("Undo"));
+}
+
+#[test]
+fn a_new_path_follows_an_edit() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = window.app().analysis().forecast.length_m();
+    let at = window.centre("Fix C");
+    window.drag(at, vec2(-90.0, 90.0));
+    window.until_analysed();
+    let after = window.app().analysis().forecast.length_m();
+    assert!(after > before + 100.0, "{before} {after}");
+}
+
+const SCAN: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Scan" aircraft="trainer">
+  <runways><runway id="R05" lat="36.3190" lon="-84.1730" elevation="349" heading="52" length="600" priority="1"/></runways>
+  <variables>
+    <variable name="fire" type="position" initial="36.31 -84.15"/>
+    <variable name="size" type="number" unit="m" initial="600" min="100" max="5000"/>
+  </variables>
+  <mainPlan>
+    <stage id="to" type="take-off" runway="R05" altitude="80" altitudeReference="home"/>
+    <stage id="watch" type="mission" altitude="1000">
+      <scan id="sweep" spacing="150"><area centre="= fire" radius="= size + 200.0"/></scan>
+    </stage>
+    <stage id="land" type="land" runway="R05"/>
+  </mainPlan>
+</flightPlan>"#;
+
+fn number(window: &Window, name: &str) -> f64 {
+    match window.app().document().plan().variable(&Id::new(name)).unwrap().initial {
+        flight_plan::VariableValue::Number(n) => n,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_scan_s_area_is_moved_and_resized_through_its_variables() {
+    let mut window = Window::open(SCAN);
+    window.until_analysed();
+    let at = window.centre("Centre of sweep");
+    window.drag(at, vec2(-40.0, 20.0));
+    assert!(window.centre("Centre of sweep").distance(at + vec2(-40.0, 20.0)) < 2.0);
+    let rim = window.centre("Radius of sweep");
+    let radius = (rim - window.centre("Centre of sweep")).x;
+    window.drag(rim, vec2(radius * 0.5, 0.0));
+    assert!((number(&window, "size") - 1000.0).abs() < 15.0, "800 m and a half more, of which 200 m are added: {}", number(&window, "size"));
+    window.click("Undo");
+    assert_eq!(number(&window, "size"), 600.0);
+}
+
+#[test]
+fn the_inspector_edits_what_is_selected() {
+    let mut window = Window::open(SCAN);
+    window.until_analysed();
+    window.click("SCAN sweep");
+    assert_eq!(window.app().view().selection, Some(Selection::Leg("sweep".into())));
+    window.harness.get_by_label("Spacing").click();
+    window.steps(2);
+    for _ in 0..6 {
+        window.harness.key_press(Key::Backspace);
+    }
+    window.harness.event(egui::Event::Text("200".into()));
+    window.harness.key_press(Key::Enter);
+    window.steps(3);
+    let plan = window.app().document().plan().clone();
+    let LegKind::Scan(scan) = &plan.leg(&"sweep".into()).unwrap().leg.kind else { panic!() };
+    assert_eq!(scan.spacing_m, Value::Constant(200.0));
+    window.click("Undo");
+    let plan = window.app().document().plan().clone();
+    let LegKind::Scan(scan) = &plan.leg(&"sweep".into()).unwrap().leg.kind else { panic!() };
+    assert_eq!(scan.spacing_m, Value::Constant(150.0));
+}
+
+#[test]
+fn a_problem_leads_to_its_place() {
+    let broken = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" fix="NOWHERE"/>"#);
+    let mut window = Window::open(&broken);
+    window.until_analysed();
+    assert!(!window.shows("This plan can be flown"));
+    window.harness.query_all_by_label_contains("Problem: ").next().unwrap().click();
+    window.steps(3);
+    assert_eq!(window.app().view().selection, Some(Selection::Leg("side2".into())));
+}
+
+#[test]
+fn broken_text_opens_with_its_problems() {
+    for text in ["", "<", "not a plan", "<flightPlan", "<flightPlan xmlns='urn:legwork:flight-plan:1' name='x'/>"] {
+        let mut window = Window::open(text);
+        window.until_analysed();
+        assert!(window.shows("Problem: "), "{text:?}");
+    }
+}
+
+#[test]
+fn units_change_what_is_shown_and_nothing_else() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let hash = window.app().analysis().hash.clone();
+    window.click("Legwork");
+    window.click("Aviation: ft, kt, NM");
+    assert!(window.shows("NM"));
+    assert_eq!(window.app().analysis().hash, hash);
+    assert!(!window.app().document().is_dirty());
+}
+
+#[test]
+fn keys_delete_and_reorder_the_selected_leg() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let order = |window: &Window| -> Vec<String> {
+        window.app().document().plan().stages[1].legs.iter().map(|l| l.id.to_string()).collect()
+    };
+    window.click("TF side2");
+    window.harness.key_press_modifiers(Modifiers::COMMAND, Key::ArrowDown);
+    window.steps(2);
+    assert_eq!(order(&window), ["side1", "side3", "side2", "side4"]);
+    window.harness.key_press(Key::Delete);
+    window.steps(2);
+    assert_eq!(order(&window), ["side1", "side3", "side4"]);
+}

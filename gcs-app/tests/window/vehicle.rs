@@ -1,0 +1,112 @@
+//! The vehicle that a test plays at the far end of the link.
+
+use super::Window;
+use flight_exec::{DecisionRequest, Phase, PlacePointer, Status};
+use gcs_app::link::{Call, Heard, LinkState, News, Order, Reply};
+use gcs_app::state::Ticket;
+use geometry::LatLon;
+use usal::contract::{Attitude, GatewayState, GatewayStatus, Position, Stamped};
+
+pub fn status(phase: Phase) -> Status {
+    Status {
+        phase,
+        plan: None,
+        revision: 0,
+        place: None,
+        emergency_in_force: None,
+        current: None,
+        outstanding: 0,
+        decision: None,
+        proposed: None,
+    }
+}
+
+pub fn place(stage: &str, leg: &str) -> PlacePointer {
+    PlacePointer {
+        plan: flight_exec::Branching::Main,
+        stage: stage.into(),
+        leg: leg.into(),
+        iterations: Vec::new(),
+        reverse: false,
+        distance_m: 0.0,
+    }
+}
+
+pub fn decision(default: Option<&str>) -> DecisionRequest {
+    DecisionRequest {
+        leg: "ask".into(),
+        options: vec![("again".into(), "Sweep again".into()), ("close".into(), "Close look".into())],
+        default: default.map(Into::into),
+        distance_left_m: 900.0,
+        time_left_s: 36.0,
+    }
+}
+
+impl Window {
+    pub fn tell(&mut self, news: News) {
+        self.far.news.try_send(news).unwrap();
+        self.steps(2);
+    }
+
+    pub fn hear(&mut self, heard: Heard) {
+        self.tell(News::Heard(heard));
+    }
+
+    pub fn hear_status(&mut self, value: Status) {
+        self.hear(Heard::Status(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
+    /// Connected to a vehicle that stands on the runway.
+    pub fn connect(&mut self) {
+        self.tell(News::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+        self.hear_position(true);
+        self.hear_status(status(Phase::Idle));
+    }
+
+    pub fn hear_position(&mut self, on_ground: bool) {
+        let value = Position {
+            position: LatLon::new(36.3190, -84.1730),
+            altitude_amsl_m: 500.0,
+            altitude_home_m: 151.0,
+            velocity_north_mps: 20.0,
+            velocity_east_mps: 15.0,
+            velocity_down_mps: -1.0,
+            track_deg: 37.0,
+            ground_speed_mps: 25.0,
+            on_ground,
+        };
+        self.hear(Heard::Position(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
+    pub fn hear_attitude(&mut self) {
+        let value = Attitude { roll_deg: 20.0, pitch_deg: 4.0, heading_deg: 40.0, roll_rate_dps: 0.0, pitch_rate_dps: 0.0, yaw_rate_dps: 0.0 };
+        self.hear(Heard::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
+    pub fn hear_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
+        let value = GatewayStatus {
+            state: GatewayState::Nav,
+            cause: "waypoints".into(),
+            armed: true,
+            autopilot_mode: "AUTO".into(),
+            autopilot_age_s: 0.1,
+            fp_manager_age_s: Some(0.1),
+            safe_return_in_s: None,
+            alarms,
+        };
+        self.hear(Heard::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
+    /// The next question that was asked, if there is one.
+    pub fn asked(&mut self) -> Option<(Ticket, Call)> {
+        match self.far.orders.try_recv() {
+            Ok(Order::Call { ticket, call }) => Some((ticket, call)),
+            Ok(other) => panic!("{other:?}"),
+            Err(_) => None,
+        }
+    }
+
+    pub fn answer(&mut self, ticket: Ticket, result: Result<Reply, String>) {
+        self.tell(News::Answer { ticket, result });
+    }
+}
