@@ -1,0 +1,266 @@
+//! The FP Manager over loopback, with a gateway that flies at a waypoint a step.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod fake_gateway;
+
+use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
+use onboard_agent::{Trigger, fp_manager, shutdown};
+use std::path::Path;
+use tokio::task::JoinHandle;
+use usal::contract::*;
+use usal::topics::fp_manager as topic;
+use usal::{CallError, Occurrence, Session, Start};
+
+const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
+
+/// An FP Manager in this process, and a client of it.
+struct Flight {
+    gateway: FakeGateway,
+    client: Session,
+    manager: Option<(JoinHandle<anyhow::Result<()>>, Trigger)>,
+    config: fp_manager::Config,
+}
+
+impl Flight {
+    async fn new(state_dir: Option<&Path>) -> Self {
+        let endpoint = free_endpoint();
+        let gateway = FakeGateway::open(&endpoint).await;
+        let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+        let config = fp_manager::Config {
+            simulated: true,
+            state_dir: state_dir.map(Into::into),
+            ..fp_manager::Config::new("uav1", &endpoint)
+        };
+        let mut flight = Self { gateway, client, manager: None, config };
+        flight.start_manager().await;
+        flight
+    }
+
+    async fn start_manager(&mut self) {
+        let (trigger, shutdown) = shutdown();
+        let manager = tokio::spawn(fp_manager::run(self.config.clone(), shutdown));
+        self.manager = Some((manager, trigger));
+        self.gateway.participants(1).await;
+    }
+
+    /// As a SIGKILL does: no goodbye.
+    async fn kill_manager(&mut self) {
+        let (manager, _trigger) = self.manager.take().unwrap();
+        manager.abort();
+        let _ = manager.await;
+        self.gateway.participants(0).await;
+    }
+
+    /// Answers are awaited while time goes on.
+    async fn command(&mut self, command: Command) -> Result<Empty, CallError> {
+        self.gateway.step_until_done(self.client.call(topic::COMMAND, &command, DEADLINE)).await
+    }
+
+    async fn propose(&mut self, xml: &str) -> Result<ProposalReport, CallError> {
+        let propose = Propose { xml: xml.into(), seen_revision: None };
+        self.gateway.step_until_done(self.client.call(topic::PROPOSE, &propose, DEADLINE)).await
+    }
+
+    async fn load(&mut self, xml: &str) {
+        let report = self.propose(xml).await.unwrap();
+        assert!(report.acceptable, "{:?}", report.problems);
+        self.command(Command::Commit { hash: report.hash, entry: None }).await.unwrap();
+    }
+
+    async fn step(&mut self, steps: usize) {
+        for _ in 0..steps {
+            self.gateway.step().await;
+        }
+    }
+
+    async fn step_until(&mut self, condition: impl Fn(&FakeGateway) -> bool) {
+        for _ in 0..2000 {
+            if condition(&self.gateway) {
+                return;
+            }
+            self.gateway.step().await;
+        }
+        panic!("never; requests {:?}, flown {:?}", self.gateway.requests, self.gateway.flown);
+    }
+
+    async fn start(&mut self) {
+        self.command(Command::Start).await.unwrap();
+        self.step_until(|g| g.launched()).await;
+    }
+}
+
+fn legs(gateway: &FakeGateway) -> Vec<String> {
+    let mut legs: Vec<String> = gateway.flown.iter().map(|w| w.leg.to_string()).collect();
+    legs.dedup();
+    legs
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn plan_is_proposed_committed_started_and_flown_to_its_end() {
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    let status = flight.client.follow(topic::STATUS).unwrap();
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(FakeGateway::finished).await;
+    flight.step(3).await;
+    let flown = legs(&flight.gateway);
+    for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
+        assert_eq!(flown.iter().filter(|l| *l == leg).count(), 1, "{leg} in {flown:?}");
+    }
+    let tokens: Vec<u64> = flight.gateway.flown.iter().map(|w| w.token.0).collect();
+    assert!(tokens.is_sorted_by(|a, b| a < b), "{tokens:?}");
+    until(async || status.latest().is_some_and(|s| format!("{:?}", s.stamped.value.phase) == "Finished")).await;
+    let mut entered = Vec::new();
+    while let Some(occurrence) = events.try_recv() {
+        match occurrence {
+            Occurrence::Event { event: Stamped { value: PlanEvent::LegEntered { place }, .. }, .. } => {
+                entered.push(place.leg.to_string());
+            }
+            Occurrence::Event { .. } => {}
+            Occurrence::Gap { missed } => panic!("{missed} events lost"),
+        }
+    }
+    assert!(entered.ends_with(&["land".to_owned()]), "{entered:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn bad_plan_is_refused_with_its_problems() {
+    let mut flight = Flight::new(None).await;
+    for (xml, told) in [("garbage", "error"), (&SQUARE.replace("fix=\"B\"", "fix=\"Z\""), "Z")] {
+        match flight.propose(xml).await {
+            Err(CallError::Refused(refusal)) => {
+                assert_eq!(refusal.code, "plan-errors");
+                assert!(refusal.reason.contains(told), "{}", refusal.reason);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let refused = flight.command(Command::Start).await.unwrap_err();
+    assert!(matches!(refused, CallError::Refused(r) if r.code == "no-plan"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn proposal_against_an_older_revision_is_refused() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    let stale = Propose { xml: SQUARE.into(), seen_revision: Some(0) };
+    let call = flight.client.call(topic::PROPOSE, &stale, DEADLINE);
+    let refused = flight.gateway.step_until_done(call).await.unwrap_err();
+    assert!(matches!(refused, CallError::Refused(r) if r.code == "stale-revision"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn active_plan_and_its_variables_can_be_read() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    let call = flight.client.call(topic::PLAN_DOCUMENT, &Empty {}, DEADLINE);
+    let document = flight.gateway.step_until_done(call).await.unwrap();
+    assert_eq!(document.info.name, "Square circuit");
+    assert_eq!(flight_plan::hash(&flight_plan::read(&document.xml).plan), document.info.hash.unwrap());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn hold_and_resume_reach_the_gateway_in_order() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.len() >= 2).await;
+    flight.command(Command::Hold).await.unwrap();
+    flight.step_until(|g| g.state == GatewayState::Hold).await;
+    let held = flight.gateway.flown.len();
+    flight.step(20).await;
+    assert_eq!(flight.gateway.flown.len(), held);
+    flight.command(Command::Resume).await.unwrap();
+    flight.step_until(FakeGateway::finished).await;
+    let kinds: Vec<_> = flight.gateway.requests.clone();
+    assert_eq!(kinds, [GatewayRequest::Launch, GatewayRequest::Hold, GatewayRequest::Resume]);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn alarm_with_a_cause_flies_the_emergency_plan() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
+    flight.gateway.alarm(Cause::Energy);
+    flight.step_until(FakeGateway::finished).await;
+    let flown = legs(&flight.gateway);
+    assert!(flown.contains(&"r1".to_owned()) && !flown.contains(&"side3".to_owned()), "{flown:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn killed_and_restarted_it_goes_on_at_its_place() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
+    flight.kill_manager().await;
+    flight.step(2).await;
+    flight.start_manager().await;
+    flight.step_until(FakeGateway::finished).await;
+    let flown = legs(&flight.gateway);
+    for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
+        assert_eq!(flown.iter().filter(|l| *l == leg).count(), 1, "{leg} in {flown:?}");
+    }
+    assert_eq!(flight.gateway.joins.len(), 2);
+    assert_eq!(flight.gateway.joins[0].plan, None);
+    assert!(flight.gateway.joins[1].plan.is_some() && flight.gateway.joins[1].last_token.0 > 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn gateway_that_lost_its_buffer_is_fed_again() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
+    flight.gateway.safe_until_joined();
+    flight.step_until(FakeGateway::finished).await;
+    let flown = legs(&flight.gateway);
+    assert!(flown.ends_with(&["land".to_owned()]), "{flown:?}");
+    let tokens: Vec<u64> = flight.gateway.flown.iter().map(|w| w.token.0).collect();
+    assert!(tokens.is_sorted_by(|a, b| a < b), "{tokens:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn waypoints_refused_by_the_gateway_hold_the_flight_and_are_told() {
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    flight.load(SQUARE).await;
+    flight.gateway.refuse_leg = Some("side2".into());
+    flight.command(Command::Start).await.unwrap();
+    let told = within(async {
+        loop {
+            flight.gateway.step().await;
+            while let Some(occurrence) = events.try_recv() {
+                if let Occurrence::Event { event: Stamped { value: PlanEvent::WaypointsRejected { reason, .. }, .. }, .. } = occurrence {
+                    return reason;
+                }
+            }
+        }
+    })
+    .await;
+    assert!(told.contains("not there"), "{told}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn damaged_state_is_set_aside_and_the_manager_runs() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("fp-manager.cbor"), b"\xffgarbage").unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    assert!(directory.path().join("fp-manager.unusable-1").exists());
+    flight.load(SQUARE).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn plan_accepted_is_on_disk_before_it_is_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    flight.load(SQUARE).await;
+    flight.kill_manager().await;
+    flight.start_manager().await;
+    let call = flight.client.call(topic::PLAN_DOCUMENT, &Empty {}, DEADLINE);
+    let document = flight.gateway.step_until_done(call).await.unwrap();
+    assert_eq!(document.info.name, "Square circuit");
+}
