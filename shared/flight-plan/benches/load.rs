@@ -1,0 +1,106 @@
+//! How fast a large plan is read, beside a bare quick-xml pass over the same bytes; then checking it and an expression.
+
+use aircraft::Profile;
+use divan::{Bencher, black_box, counter::BytesCount};
+use flight_plan::{Env, FlightState, Variables};
+use geometry::LatLon;
+use quick_xml::{Reader, events::Event};
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+use terrain::Flat;
+
+/// Legs of the large plan.
+const LEGS: usize = 50_000;
+
+/// A plan of many tracks of 1 km, to and fro.
+fn document() -> String {
+    let mut text = String::from(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Large" aircraft="trainer"><mainPlan><stage id="s" type="en-route" altitude="500" altitudeReference="amsl">"#,
+    );
+    for i in 0..LEGS {
+        let lat = 36.3 + 0.005 * (i / 2 % 40) as f64;
+        let lon = -84.2 + 0.011 * (i.div_ceil(2) % 2) as f64;
+        let _ = writeln!(text, r#"  <TF id="leg-{i}" name="Track {i}" lat="{lat:.6}" lon="{lon:.6}" speed="24"/>"#);
+    }
+    text + "</stage></mainPlan></flightPlan>"
+}
+
+/// Every event, and every attribute of every element.
+fn bare_pass(text: &str) -> usize {
+    let mut reader = Reader::from_str(text);
+    let mut attributes = 0;
+    loop {
+        match reader.read_event() {
+            Ok(Event::Start(tag) | Event::Empty(tag)) => attributes += tag.attributes().filter(Result::is_ok).count(),
+            Ok(Event::Eof) | Err(_) => return attributes,
+            Ok(_) => {}
+        }
+    }
+}
+
+#[divan::bench]
+fn bare_quick_xml(bencher: Bencher) {
+    let text = document();
+    bencher.counter(BytesCount::of_str(&text)).bench_local(|| bare_pass(black_box(&text)));
+}
+
+#[divan::bench]
+fn read(bencher: Bencher) {
+    let text = document();
+    bencher.counter(BytesCount::of_str(&text)).bench_local(|| flight_plan::read(black_box(&text)));
+}
+
+#[divan::bench]
+fn write(bencher: Bencher) {
+    let plan = flight_plan::read(document()).plan;
+    bencher.counter(BytesCount::of_str(&document())).bench_local(|| flight_plan::write(black_box(&plan)));
+}
+
+#[divan::bench(sample_count = 5)]
+fn check_50_000_legs(bencher: Bencher) {
+    let plan = flight_plan::read(document()).plan;
+    bencher.bench_local(|| flight_plan::check(black_box(&plan), &Profile::default(), &Flat(300.0)));
+}
+
+#[divan::bench]
+fn evaluate_a_condition(bencher: Bencher) {
+    let fire_watch = include_bytes!("../../../assets/plans/fire-watch.xml");
+    let Ok(program) = flight_plan::compile_document(fire_watch, &Profile::default(), &Flat(300.0)) else {
+        return;
+    };
+    let variables = Variables::initial(&program.plan);
+    let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(36.3, -84.2)) };
+    bencher.bench_local(|| program.eval_bool(black_box("fire_out || battery < 0.35"), &env));
+}
+
+/// Both over the same bytes, one after the other: the ratio in one line.
+fn print_ratio() {
+    let text = document();
+    let time = |pass: &dyn Fn()| -> Duration {
+        let timed = (0..9).map(|_| {
+            let start = Instant::now();
+            pass();
+            start.elapsed()
+        });
+        timed.min().unwrap_or_default()
+    };
+    let bare = time(&|| {
+        black_box(bare_pass(&text));
+    });
+    let ours = time(&|| {
+        black_box(flight_plan::read(&text));
+    });
+    let speed = |t: Duration| text.len() as f64 / 1e6 / t.as_secs_f64();
+    println!(
+        "plan of {:.1} MB, {LEGS} legs: read {:.0} MB/s, bare quick-xml {:.0} MB/s, {:.2} times its time",
+        text.len() as f64 / 1e6,
+        speed(ours),
+        speed(bare),
+        ours.as_secs_f64() / bare.as_secs_f64(),
+    );
+}
+
+fn main() {
+    print_ratio();
+    divan::main();
+}
