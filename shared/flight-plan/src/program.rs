@@ -2,8 +2,7 @@
 
 use crate::expression::{self, Env, EvalError, Expression};
 use crate::{
-    Altitude, Area, Cause, EmergencyChoice, EmergencyPlan, FlightPlan, HoldingLength, Id, Leg, LegKind,
-    Place, Problem, Stage, Value, check, xml,
+    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, check, xml,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -213,84 +212,6 @@ impl EmergencyChoice {
     }
 }
 
-/// What an expression is used as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Use {
-    /// A number.
-    Number,
-    /// A condition.
-    Condition,
-    /// A position.
-    Position,
-}
-
-impl Leg {
-    /// Every expression of the leg itself (not of the legs inside it), with what it is used as.
-    pub fn for_each_expression(&self, visit: &mut dyn FnMut(&Arc<str>, Use)) {
-        visit_altitude(self.altitude.as_ref(), visit);
-        visit_number(self.speed_mps.as_ref(), visit);
-        match &self.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
-                visit_place(&to.place, visit)
-            }
-            LegKind::Hf(h) | LegKind::Ha(h) => {
-                visit_place(&h.fix.place, visit);
-                visit_number(h.inbound_course_deg.as_ref(), visit);
-                let (HoldingLength::Distance(length) | HoldingLength::Time(length)) = &h.leg;
-                visit_number(Some(length), visit);
-            }
-            LegKind::Iterative { count, until, .. } => {
-                visit_number(count.as_ref(), visit);
-                until.iter().for_each(|source| visit(source, Use::Condition));
-            }
-            LegKind::Intersection { branches, .. } => {
-                branches
-                    .iter()
-                    .filter_map(|b| b.when.as_ref())
-                    .for_each(|source| visit(source, Use::Condition));
-            }
-            LegKind::Scan(scan) => {
-                if let Area::Circle { centre, radius_m } = &scan.area {
-                    visit_place(centre, visit);
-                    visit_number(Some(radius_m), visit);
-                }
-                visit_number(Some(&scan.spacing_m), visit);
-                visit_number(scan.heading_deg.as_ref(), visit);
-                visit_number(Some(&scan.overshoot_m), visit);
-            }
-            LegKind::Orbit { centre, radius_m, turns, .. } => {
-                visit_place(centre, visit);
-                visit_number(Some(radius_m), visit);
-                visit_number(Some(turns), visit);
-            }
-        }
-    }
-}
-
-impl Stage {
-    /// Every expression of the stage itself (not of its legs), with what it is used as.
-    pub fn for_each_expression(&self, visit: &mut dyn FnMut(&Arc<str>, Use)) {
-        visit_altitude(self.altitude.as_ref(), visit);
-        visit_number(self.speed_mps.as_ref(), visit);
-    }
-}
-
-fn visit_altitude(altitude: Option<&Altitude>, visit: &mut dyn FnMut(&Arc<str>, Use)) {
-    visit_number(altitude.map(|a| &a.metres), visit);
-}
-
-fn visit_number(value: Option<&Value<f64>>, visit: &mut dyn FnMut(&Arc<str>, Use)) {
-    if let Some(Value::Expression(source)) = value {
-        visit(source, Use::Number);
-    }
-}
-
-fn visit_place(place: &Place, visit: &mut dyn FnMut(&Arc<str>, Use)) {
-    if let Place::Position(Value::Expression(source)) = place {
-        visit(source, Use::Position);
-    }
-}
-
 fn paths(plan: &FlightPlan) -> HashMap<Id, LegPath> {
     let mut paths = HashMap::new();
     let main = plan.stages.iter().enumerate().map(|(i, s)| (None, i, s));
@@ -316,7 +237,7 @@ fn add_paths(legs: &[Leg], path: &mut LegPath, paths: &mut HashMap<Id, LegPath>)
 /// Every expression of the plan; those that don't compile have been found by the checks.
 fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Expression> {
     let mut compiled = HashMap::new();
-    let mut add = |source: &Arc<str>, _: Use| {
+    let mut add = |source: &Arc<str>, _| {
         if !compiled.contains_key(source) {
             compiled.extend(expression::compile(source, plan).ok().map(|e| (source.clone(), e)));
         }

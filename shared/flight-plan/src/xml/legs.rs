@@ -1,7 +1,8 @@
 //! Legs of a document.
 
 use super::cursor::Element;
-use super::read::{Document, number};
+use super::read::Document;
+use super::values::number;
 use crate::{
     Area, Branch, DecideBefore, EmergencyChoice, Holding, HoldingLength, Id, IterativeForm, Leg, LegKind,
     Place, PlanWaypoint, Problem, Scan, TurnDirection, Value,

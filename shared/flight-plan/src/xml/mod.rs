@@ -7,6 +7,7 @@ mod attributes;
 mod cursor;
 mod legs;
 mod read;
+mod values;
 mod write;
 
 pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEMS};

@@ -1,0 +1,139 @@
+//! Attribute values: identifiers, numbers, positions, expressions.
+
+use super::cursor::{Element, shown};
+use super::read::Document;
+use crate::{Id, Problem, Value};
+use geometry::LatLon;
+
+/// Attributes, each with its problems.
+impl<'a> Document<'a> {
+    pub fn text(&mut self, element: &Element<'a>, name: &str) -> String {
+        element.attributes.take(name).map_or_else(String::new, |v| v.as_ref().into())
+    }
+
+    /// An identifier of this element: required, and its place is kept.
+    pub fn id(&mut self, element: &Element<'a>, name: &str) -> Id {
+        let id = self.reference(element, name).unwrap_or_else(|| self.missing(element, name));
+        self.places.insert(&id, element.location);
+        id
+    }
+
+    /// An identifier of something else.
+    pub fn reference(&mut self, element: &Element<'a>, name: &str) -> Option<Id> {
+        element.attributes.take(name).map(|v| Id::new(v.trim()))
+    }
+
+    /// Reports that an attribute is missing, and stands in for it.
+    pub fn missing(&mut self, element: &Element<'a>, name: &str) -> Id {
+        self.require(element, name);
+        Id::new("")
+    }
+
+    pub fn require(&mut self, element: &Element<'a>, name: &str) {
+        if element.attributes.location(name).is_none() {
+            let message = format!("give <{}> the attribute `{name}`", element.name);
+            self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
+        }
+    }
+
+    /// An attribute through a parser; what it refuses is a problem.
+    pub fn parsed<T>(
+        &mut self,
+        element: &Element<'a>,
+        name: &str,
+        wanted: &str,
+        parse: fn(&str) -> Option<T>,
+    ) -> Option<T> {
+        let text = element.attributes.take(name)?;
+        let parsed = parse(text.trim());
+        if parsed.is_none() {
+            let message = format!("`{name}` must be {wanted}, not \"{}\"", shown(text));
+            let location = element.attributes.location(name).unwrap_or(element.location);
+            self.cursor.report(Problem::error("bad-value", message).at(location));
+        }
+        parsed
+    }
+
+    pub fn choice<T: Copy>(&mut self, element: &Element<'a>, name: &str, allowed: &[(&str, T)]) -> Option<T> {
+        let text = element.attributes.take(name)?;
+        let found = allowed.iter().find(|(word, _)| *word == text.trim()).map(|(_, value)| *value);
+        if found.is_none() {
+            let words: Vec<&str> = allowed.iter().map(|(word, _)| *word).collect();
+            let message = format!("`{name}` must be one of {}, not \"{}\"", words.join(", "), shown(text));
+            let location = element.attributes.location(name).unwrap_or(element.location);
+            self.cursor.report(Problem::error("bad-value", message).at(location));
+        }
+        found
+    }
+
+    pub fn flag(&mut self, element: &Element<'a>, name: &str) -> bool {
+        self.choice(element, name, &[("true", true), ("1", true), ("false", false), ("0", false)])
+            .unwrap_or(false)
+    }
+
+    pub fn number(&mut self, element: &Element<'a>, name: &str) -> Option<f64> {
+        self.parsed(element, name, "a finite number", number)
+    }
+
+    pub fn required_number(&mut self, element: &Element<'a>, name: &str) -> f64 {
+        self.require(element, name);
+        self.number(element, name).unwrap_or(f64::NAN)
+    }
+
+    pub fn whole<T: std::str::FromStr>(&mut self, element: &Element<'a>, name: &str) -> Option<T> {
+        self.parsed(element, name, "a whole number", |text| text.parse().ok())
+    }
+
+    /// A number or `= expression`; what can't be read is NaN.
+    pub fn value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<f64>> {
+        element.attributes.take(name)?;
+        let wanted = "a finite number, or = and an expression";
+        Some(
+            self.parsed(element, name, wanted, |text| value(text, number))
+                .unwrap_or(Value::Constant(f64::NAN)),
+        )
+    }
+
+    pub fn required_value(&mut self, element: &Element<'a>, name: &str) -> Value<f64> {
+        self.require(element, name);
+        self.value(element, name).unwrap_or(Value::Constant(f64::NAN))
+    }
+
+    /// A position as `lat lon`, or `= expression`.
+    pub fn position_value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<LatLon>> {
+        let wanted = "latitude and longitude in degrees, or = and an expression";
+        self.parsed(element, name, wanted, |text| value(text, position))
+    }
+
+    /// A position in two attributes, both required.
+    pub fn lat_lon(&mut self, element: &Element<'a>, lat: &str, lon: &str) -> Option<LatLon> {
+        self.require(element, lat);
+        self.require(element, lon);
+        let latitude = self.parsed(element, lat, "a latitude in degrees, −90 to 90", |text| {
+            number(text).filter(|x| x.abs() <= 90.0)
+        });
+        let longitude = self.parsed(element, lon, "a longitude in degrees, −180 to 180", |text| {
+            number(text).filter(|x| x.abs() <= 180.0)
+        });
+        Some(LatLon::new(latitude?, longitude?))
+    }
+}
+
+/// A finite number (not `inf`, not `NaN`).
+pub(super) fn number(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// `lat lon`, degrees.
+pub(super) fn position(text: &str) -> Option<LatLon> {
+    let (lat, lon) = text.split_once([' ', ','])?;
+    Some(LatLon::new(number(lat.trim())?, number(lon.trim())?)).filter(|p| p.is_valid())
+}
+
+/// `= expression` or a constant.
+fn value<T>(text: &str, constant: fn(&str) -> Option<T>) -> Option<Value<T>> {
+    match text.strip_prefix('=') {
+        Some(source) => Some(Value::Expression(source.trim().into())),
+        None => constant(text).map(Value::Constant),
+    }
+}
