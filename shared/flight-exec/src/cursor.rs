@@ -17,6 +17,9 @@ use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// A climb is commanded so far ahead of what the aircraft can have reached, metres, that it never waits for its target.
+const CLIMB_LEAD_M: f64 = 8.0;
+
 /// So many steps without a single waypoint: a loop that flies nothing.
 const MOST_SILENT_STEPS: usize = 2000;
 
@@ -231,7 +234,15 @@ impl Cursor {
         }
         Emission {
             position: point.position,
-            altitude_amsl_m,
+            altitude_amsl_m: match point.action {
+                // a climb is spread over the waypoints of its leg as fast as the aircraft climbs, a little ahead of
+                // it: nobody could fly it between two of them, and the gateway refuses such a gradient
+                Action::Fly | Action::Loiter { .. } => {
+                    let predicted_m = self.path.predicted_amsl_m;
+                    predicted_m + (altitude_amsl_m - predicted_m).clamp(-CLIMB_LEAD_M, CLIMB_LEAD_M)
+                }
+                Action::TakeOff { .. } | Action::Land { .. } => altitude_amsl_m,
+            },
             airspeed_mps: self.airspeed_mps,
             action: point.action,
             fly_over: point.fly_over,

@@ -113,7 +113,7 @@ fn hold_and_resume_are_flown() {
     let scenario = Scenario {
         triggers: vec![
             trigger(entering("o2", None), Command::Hold),
-            trigger(When::After { seconds: 700.0 }, Command::Resume),
+            trigger(When::After { seconds: 1000.0 }, Command::Resume),
         ],
     };
     let flown = fly(&mission(|t| t), &scenario).unwrap();
