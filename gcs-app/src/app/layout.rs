@@ -23,7 +23,7 @@ impl App {
             });
             tree.show(ui, &scene, queue);
         });
-        Panel::right("details").default_size(304.0).size_range(280.0..=460.0).frame(frame).show(ui, |ui| right(ui, &scene, queue));
+        Panel::right("details").default_size(324.0).size_range(324.0..=460.0).frame(frame).show(ui, |ui| right(ui, &scene, queue));
         Panel::bottom("below").default_size(196.0).size_range(120.0..=480.0).resizable(true).frame(frame).show(ui, |ui| below(ui, &scene, queue));
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             map.show(ui, &scene, queue);

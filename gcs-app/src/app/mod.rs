@@ -10,7 +10,6 @@ mod window;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
-use crate::assets;
 use crate::command::{BottomTab, Queue};
 use crate::document::Document;
 use crate::files::{FileNews, Files};
@@ -79,17 +78,18 @@ impl App {
             tree: Tree::default(),
             queue: Queue::default(),
             link,
-            worker: Worker::spawn(terrain.clone(), wake.clone())?,
+            worker: Worker::spawn(terrain, wake.clone())?,
             files: Files::new(wake),
             asked_aboard_s: f64::NEG_INFINITY,
             screenshot: None,
         };
-        if let Ok(tile) = assets::demo_tile() {
-            let (south_west, north_east) = tile.known_box();
-            app.map.hillshade.begin(Ground { terrain, south_west, north_east }, &ctx);
-        }
         app.map.fit();
         Ok(app)
+    }
+
+    /// Paints the ground in the background, and shows it on the map when it is ready.
+    fn show_ground(&mut self, ground: Ground, ctx: &egui::Context) {
+        self.map.hillshade.begin(ground, ctx);
     }
 
     /// The plan being edited.

@@ -4,6 +4,7 @@ use super::{App, Screenshot};
 use crate::assets;
 use crate::document::Document;
 use crate::link::{Link, Order};
+use crate::map::hillshade::Ground;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
@@ -85,7 +86,12 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     if let Some((vehicle, endpoint)) = options.connect {
         link.order(Order::Connect { endpoint, vehicle });
     }
-    let mut app = App::new(creation, options.document.unwrap_or_default(), link, assets::demo_terrain())?;
+    let terrain = assets::demo_terrain();
+    let mut app = App::new(creation, options.document.unwrap_or_default(), link, terrain.clone())?;
+    if let Ok(tile) = assets::demo_tile() {
+        let (south_west, north_east) = tile.known_box();
+        app.show_ground(Ground { terrain, south_west, north_east }, &creation.egui_ctx);
+    }
     app.screenshot = options.screenshot;
     if options.follow {
         app.view.follow = true;

@@ -34,7 +34,8 @@ impl<T> Change<T> {
 /// A row with a name on the left and a field on the right.
 pub fn row<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        self::name(ui, name, 84.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        self::name(ui, name, 74.0);
         add(ui)
     })
     .inner
@@ -60,7 +61,7 @@ pub fn number(ui: &mut Ui, name: &str, si: f64, unit: Unit, least_si: f64) -> Ch
         .speed(unit.from_si(1.0).max(0.05))
         .range(unit.from_si(least_si)..=f64::MAX)
         .update_while_editing(false);
-    let response = ui.add_sized([96.0, 24.0], drag);
+    let response = ui.add_sized([78.0, 24.0], drag);
     named(&response, name, shown);
     outcome(&response, unit.to_si(shown))
 }

@@ -92,7 +92,7 @@ fn reference_text(reference: AltitudeReference) -> &'static str {
     match reference {
         AltitudeReference::Amsl => "AMSL",
         AltitudeReference::Agl => "AGL",
-        AltitudeReference::Home => "above home",
+        AltitudeReference::Home => "home",
     }
 }
 
@@ -108,7 +108,7 @@ fn altitude_row(ui: &mut Ui, units: Units, of: &Id, altitude: Option<&Altitude>,
         };
         let change = field::number_value(ui, "Altitude", &current.metres, units.altitude(), -500.0);
         send(change.map(|metres| set(Some(Altitude { metres, reference: current.reference }))), queue);
-        egui::ComboBox::from_id_salt(("datum", of)).width(64.0).selected_text(reference_text(current.reference)).show_ui(ui, |ui| {
+        egui::ComboBox::from_id_salt(("datum", of)).width(56.0).selected_text(reference_text(current.reference)).show_ui(ui, |ui| {
             for reference in [AltitudeReference::Amsl, AltitudeReference::Agl, AltitudeReference::Home] {
                 if ui.selectable_label(reference == current.reference, reference_text(reference)).clicked() {
                     queue.edit(set(Some(Altitude { metres: current.metres.clone(), reference })));

@@ -97,7 +97,9 @@ fn a_scan_s_area_is_moved_and_resized_through_its_variables() {
     window.until_analysed();
     let at = window.centre("Centre of sweep");
     window.drag(at, vec2(-40.0, 20.0));
-    assert!(window.centre("Centre of sweep").distance(at + vec2(-40.0, 20.0)) < 2.0);
+    assert_eq!(window.app().view().notice, None);
+    let moved = window.centre("Centre of sweep") - at;
+    assert!((moved - vec2(-40.0, 20.0)).length() < 2.0, "{moved:?}");
     let rim = window.centre("Radius of sweep");
     let radius = (rim - window.centre("Centre of sweep")).x;
     window.drag(rim, vec2(radius * 0.5, 0.0));
@@ -112,7 +114,7 @@ fn the_inspector_edits_what_is_selected() {
     window.until_analysed();
     window.click("SCAN sweep");
     assert_eq!(window.app().view().selection, Some(Selection::Leg("sweep".into())));
-    window.harness.get_by_label("Spacing").click();
+    window.harness.get_by_role_and_label(egui::accesskit::Role::SpinButton, "Spacing").click();
     window.steps(2);
     for _ in 0..6 {
         window.harness.key_press(Key::Backspace);
