@@ -14,6 +14,8 @@ mod link;
 pub mod order;
 mod publish;
 mod shell;
+#[cfg(test)]
+mod shell_tests;
 mod station;
 mod store;
 pub mod window;

@@ -113,6 +113,8 @@ impl Watch {
 pub struct Conduct {
     /// Since when the autopilot has not done as told.
     pub disobeys_since: Option<Time>,
+    /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
+    pub sinks_below_target: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
 }
@@ -169,7 +171,10 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: Conduct, raised: bo
     let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
     match watch {
         Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
-        Watch::EngineOut => t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e)),
+        Watch::EngineOut => {
+            let needed = raised || conduct.sinks_below_target;
+            t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
+        }
         Watch::EnergyLow => {
             let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
             t.power.is_some_and(|(_, p)| p.battery < limit)
@@ -181,8 +186,10 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: Conduct, raised: bo
     }
 }
 
-fn has_stopped(engine: usal::contract::Engine) -> bool {
-    engine.rpm < STOPPED_RPM && engine.throttle > THROTTLE
+/// Not every autopilot's throttle is what was asked for, so that a stopped engine is also known by
+/// the height that is missing. An engine that idles on a descent is well.
+fn has_stopped(engine: usal::contract::Engine, needed: bool) -> bool {
+    engine.rpm < STOPPED_RPM && (needed || engine.throttle > THROTTLE)
 }
 
 fn is_stale(now: Time, t: &Telemetry) -> bool {

@@ -33,6 +33,9 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 const OFF_AFTER: Duration = Duration::from_secs(10);
 /// The list may be flown elsewhere for so long before the aircraft is brought back.
 const ASTRAY_FOR: Duration = Duration::from_secs(2);
+/// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
+const MISSING_M: f64 = 3.0;
+const SINKING_MPS: f64 = 0.5;
 
 /// The gateway. See the module's text.
 pub struct Gateway {
@@ -189,11 +192,20 @@ impl Gateway {
     fn watch(&mut self, now: Time, out: &mut Vec<Output>) {
         let conduct = Conduct {
             disobeys_since: self.control.disobeys_since,
+            sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
         };
         let mut events = vec![];
         self.alarms.update(now, &self.telemetry, conduct, &mut events);
         out.extend(events.into_iter().map(Output::Event));
+    }
+
+    fn sinks_below_target(&self) -> bool {
+        let Some((_, fix)) = self.telemetry.fix.filter(|_| self.is_in_auto()) else { return false };
+        let target = self.window.current().filter(|w| matches!(w.action, Action::Fly));
+        target.is_some_and(|w| {
+            fix.altitude_amsl_m < w.altitude_amsl_m - MISSING_M && fix.down_mps > SINKING_MPS
+        })
     }
 
     fn is_in_auto(&self) -> bool {
@@ -235,7 +247,12 @@ impl Gateway {
         if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
             return None;
         }
-        let seen = match self.window.current()?.action {
+        let Some(waypoint) = self.window.current() else {
+            // adopted, and nothing is known of what it flies: Safe mode will see to it
+            let unknown = self.state == GatewayState::Stop && self.window.at_guard();
+            return unknown.then_some((Trigger::Cruising, "met in flight"));
+        };
+        let seen = match waypoint.action {
             Action::TakeOff { .. } => (Trigger::Departing, "taking off"),
             Action::Land { .. } => (Trigger::Landing, "steering to the touch-down"),
             _ if self.window.next_is_land() => (Trigger::Approaching, "the landing comes next"),

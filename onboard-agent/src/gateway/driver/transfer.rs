@@ -15,7 +15,7 @@ use mavlink::dialects::ardupilotmega::*;
 /// Items in flight.
 const WINDOW: usize = 24;
 /// Timeouts without any progress before a transfer is given up.
-const PATIENCE: u32 = 20;
+const PATIENCE: u32 = 30;
 /// Times that a list that reads back differently is written again.
 const REWRITES: u32 = 5;
 /// More entries than this is no list.
@@ -62,6 +62,8 @@ pub struct Transfer {
     phase: Phase,
     rto: Rto,
     silent: u32,
+    /// Most that was ever acknowledged: only more than that is progress.
+    best: usize,
     rewrites: u32,
     went_back: Option<Time>,
     /// When something was sent whose answer can be timed.
@@ -80,8 +82,18 @@ impl Transfer {
         out: &mut Vec<MavMessage>,
     ) -> Self {
         let phase = Phase::Counting;
-        let mut t =
-            Self { job, start, items, phase, rto, silent: 0, rewrites: 0, went_back: None, probe: Some(now) };
+        let mut t = Self {
+            job,
+            start,
+            items,
+            phase,
+            rto,
+            silent: 0,
+            best: 0,
+            rewrites: 0,
+            went_back: None,
+            probe: Some(now),
+        };
         match job {
             Job::Read => out.push(request_list(peer)),
             _ => t.send_from_start(peer, out),
@@ -161,7 +173,14 @@ impl Transfer {
         if let Some(sent) = self.probe.take() {
             self.rto.sample(now.saturating_sub(sent));
         }
-        self.silent = 0;
+        let reached = match &self.phase {
+            Phase::Sending { acked, .. } => *acked,
+            _ => usize::MAX,
+        };
+        if reached == usize::MAX || reached > self.best {
+            self.silent = 0;
+            self.best = reached.min(self.items.len());
+        }
         self.rto.progress(now);
     }
 
@@ -172,6 +191,7 @@ impl Transfer {
             return;
         }
         self.went_back = Some(now);
+        self.silent += 1;
         self.probe = None;
         if let Phase::Sending { acked, sent, .. } = &mut self.phase {
             *sent = *acked;
@@ -190,7 +210,10 @@ impl Transfer {
     ) -> Option<Outcome> {
         use MavMissionResult::*;
         match (&self.phase, result) {
-            (Phase::Sending { sent, .. }, MAV_MISSION_ACCEPTED) if *sent == self.items.len() => {
+            // one that comes before the last item was asked for may be left over from another transfer
+            (Phase::Sending { sent, acked, .. }, MAV_MISSION_ACCEPTED)
+                if *sent == self.items.len() && *acked + 1 >= self.items.len() =>
+            {
                 self.verify(now, peer, out);
                 None
             }
@@ -301,6 +324,7 @@ impl Transfer {
             let entry = usize::from(self.start) + entry;
             return Some(Outcome::Failed(format!("entry {entry} reads back differently each time")));
         }
+        self.best = 0;
         self.send_from_start(peer, out);
         self.probe = None;
         self.rto.start(now);

@@ -3,7 +3,7 @@
 use super::ring;
 use crate::gateway::order::Item;
 use std::collections::VecDeque;
-use usal::contract::{Token, Waypoint};
+use usal::contract::{Action, Token, Waypoint};
 
 /// The buffer never holds more waypoints.
 pub const CAPACITY: usize = 256;
@@ -120,6 +120,21 @@ impl Chain {
         let steered_to = flying && !self.entries.is_empty();
         self.entries.truncate(usize::from(steered_to));
         self.left_behind = steered_to;
+    }
+
+    /// The aircraft steers to something that is not in the chain; the chain begins behind it.
+    pub fn begin_with_foreign(&mut self, item: &Item) {
+        let Some(first) = self.entries.front() else { return };
+        let foreign = Waypoint {
+            token: Token(0),
+            position: item.position,
+            altitude_amsl_m: item.altitude_amsl_m,
+            action: Action::Fly,
+            end_of_plan: false,
+            ..first.clone()
+        };
+        self.entries.push_front(foreign);
+        self.left_behind = true;
     }
 
     /// Leave the waypoint being steered to for the one after it.

@@ -26,7 +26,7 @@ mod tests;
 pub use chain::{CAPACITY, Chain};
 pub use ring::{JUMP_SLOT, LAST_SLOT, RING, guard_after, matches, slot};
 
-use super::order::{Item, Order};
+use super::order::{Item, ItemKind, Order};
 use ring::{Slots, initial_list};
 use usal::contract::{Action, Token, Waypoint};
 
@@ -55,10 +55,10 @@ pub struct Window {
     /// How far the chain is to be on board: position of the guard.
     end: u64,
     pending: Option<Pending>,
-    /// The entry being steered to was overwritten: it must be loaded anew.
-    reload: bool,
-    /// An entry was reached while it was being written: nobody knows what was loaded.
-    reached_in_doubt: bool,
+    /// What the autopilot had in the entry when it began to steer to it; `None`: not certain.
+    loaded: Option<Item>,
+    /// This position was reached while it was being written: nobody knows what was loaded.
+    reached_in_doubt: Option<u64>,
 }
 
 impl Default for Window {
@@ -70,8 +70,8 @@ impl Default for Window {
             entered: false,
             end: 0,
             pending: None,
-            reload: false,
-            reached_in_doubt: false,
+            loaded: None,
+            reached_in_doubt: None,
         }
     }
 }
@@ -88,11 +88,12 @@ impl Window {
         let flying = self.entered;
         self.chain.feed(cancel_after, waypoints, flying);
         self.end = self.end.min(self.chain.end());
+        self.leave_foreign();
     }
 
     /// Everything on board is in order and the aircraft may be let loose on it.
     pub fn ready(&self) -> bool {
-        let settled = self.pending.is_none() && !self.reload && self.chain.jump().is_none();
+        let settled = self.pending.is_none() && !self.must_reload() && self.chain.jump().is_none();
         self.installed && self.entered && settled && self.deviation().is_none()
     }
 
@@ -108,7 +109,7 @@ impl Window {
 
     /// The waypoint being steered to; `None` at the guard, and while it is not certain.
     pub fn current(&self) -> Option<&Waypoint> {
-        self.chain.active().filter(|_| !self.reload)
+        self.chain.active().filter(|w| self.loaded.is_some_and(|l| matches(&l, &ring::item(w))))
     }
 
     /// The autopilot says it steers to entry `seq`. True: it went on to another waypoint.
@@ -117,14 +118,41 @@ impl Window {
         let position = self.position_of(seq).filter(|p| self.entered && *p > first);
         let Some(position) = position else { return false };
         if self.is_being_written(position) {
-            // it will say so again when the outcome is known
-            self.reached_in_doubt = true;
+            self.reached_in_doubt = Some(position);
             return false;
         }
         self.chain.advance_to(position);
-        let stale = !self.board.holds(position, &self.wanted(position));
-        self.reload = stale || std::mem::take(&mut self.reached_in_doubt);
+        self.loaded = self.board.get(position);
+        self.leave_foreign();
         true
+    }
+
+    /// The write is over, during which an entry of it was reached.
+    fn resolve_doubt(&mut self) -> bool {
+        let Some(position) = self.reached_in_doubt.take() else { return false };
+        self.chain.advance_to(position);
+        self.loaded = None;
+        self.leave_foreign();
+        true
+    }
+
+    /// When the aircraft steers to something that is not in the chain (it was faster than the cut,
+    /// or was met on its way there), that is left like any cancelled waypoint.
+    fn leave_foreign(&mut self) {
+        let circling = matches!(self.loaded, Some(Item { kind: ItemKind::Loiter { .. }, .. }));
+        if self.entered && self.must_reload() && !circling {
+            let first = self.chain.first();
+            let item = self.loaded.unwrap_or_else(|| self.guard(first));
+            self.chain.begin_with_foreign(&item);
+        }
+    }
+
+    /// The autopilot steers to something else than what is in the entry now: overwriting an entry
+    /// changes nothing until it is made current again.
+    fn must_reload(&self) -> bool {
+        let first = self.chain.first();
+        let wanted = self.wanted(first);
+        !self.chain.is_left_behind(first) && !self.loaded.is_some_and(|l| matches(&l, &wanted))
     }
 
     fn is_being_written(&self, position: u64) -> bool {
@@ -148,7 +176,7 @@ impl Window {
 
     /// Make the autopilot steer to the chain again.
     pub fn bring_back(&mut self) {
-        self.reload = true;
+        self.loaded = None;
     }
 
     /// A position of the chain (or its guard) by slot.
@@ -174,7 +202,7 @@ impl Window {
     fn guard(&self, position: u64) -> Item {
         match self.chain.before(position) {
             Some(item) => guard_after(&item),
-            None => self.board.get(position).unwrap_or_else(|| guard_after(&self.board.home)),
+            None => guard_after(&self.board.get(position).unwrap_or(self.board.home)),
         }
     }
 
@@ -265,7 +293,7 @@ impl Window {
     fn set_current(&mut self) -> Option<Order> {
         let position = match self.chain.jump() {
             Some(jump) => jump,
-            None if !self.entered || self.reload => self.chain.first(),
+            None if !self.entered || self.must_reload() => self.chain.first(),
             None => return None,
         };
         self.pending = Some(Pending::SetCurrent { position });
@@ -282,10 +310,8 @@ impl Window {
                 false
             }
             Some(Pending::Write { position, items }) => {
-                let first = self.chain.first();
-                self.reload |= (position..position + items.len() as u64).contains(&first);
                 self.board.put(position, items);
-                false
+                self.resolve_doubt()
             }
             Some(Pending::SetCurrent { position }) => self.arrived_at(position),
             None => false,
@@ -296,7 +322,7 @@ impl Window {
         let new = !self.entered || position > self.chain.first();
         self.entered = true;
         if position >= self.chain.first() {
-            self.reload = false;
+            self.loaded = self.board.get(position);
             self.chain.advance_to(position);
         }
         new
@@ -306,6 +332,7 @@ impl Window {
     /// be written again.
     pub fn failed(&mut self) {
         self.pending = None;
+        self.resolve_doubt();
     }
 
     /// The list on board is no longer known (reboot, another station's upload).
@@ -331,6 +358,7 @@ impl Window {
         self.board = Slots::from_list(list);
         self.installed = true;
         self.entered = true;
+        self.loaded = list.get(usize::from(current)).copied();
         let first = u64::from(current - 2);
         let known = ring::known_on_board(list, first, waypoints);
         self.end = first + known.len() as u64;

@@ -1,0 +1,47 @@
+//! The whole gateway over sockets: simulator, link, session.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use super::{Address, Config, run};
+use std::net::TcpListener;
+use std::time::{Duration, Instant};
+use usal::Session;
+use usal::contract::GatewayState;
+use usal::topics::gateway;
+
+fn free_endpoint() -> String {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    format!("tcp/127.0.0.1:{port}")
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_lockstep_simulator_is_seen_on_the_network_and_time_runs_fast() {
+    let sim = sim::spawn(sim::Config { lockstep: true, speed: 0.0, ..sim::Config::default() }).unwrap();
+    let autopilot: Address = format!("tcp:{}", sim.address()).parse().unwrap();
+    let listen = free_endpoint();
+    let (trigger, shutdown) = crate::shutdown();
+    let config = Config { simulated: true, ..Config::new("test", &listen, autopilot) };
+    let task = tokio::spawn(run(config, shutdown));
+    let session = Session::open(usal::Config::client("test", &listen)).await.unwrap();
+    let mut state = session.follow(gateway::STATE).unwrap();
+    let wait = async {
+        loop {
+            let status = state.changed().await.unwrap();
+            if status.stamped.value.state == GatewayState::Stop && status.stamped.time_s > 20.0 {
+                return status.stamped.time_s;
+            }
+        }
+    };
+    let begun_s =
+        tokio::time::timeout(Duration::from_secs(60), wait).await.expect("the gateway hears the simulator");
+    let (begun, mut now_s) = (Instant::now(), begun_s);
+    while now_s < begun_s + 100.0 {
+        let next = tokio::time::timeout(Duration::from_secs(20), state.changed()).await.unwrap().unwrap();
+        now_s = next.stamped.time_s;
+    }
+    let steps_per_s = (now_s - begun_s) * 10.0 / begun.elapsed().as_secs_f64();
+    println!("{steps_per_s:.0} lockstep steps a second");
+    assert!(steps_per_s > 50.0, "{steps_per_s}");
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
+    sim.stop();
+}
