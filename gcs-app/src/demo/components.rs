@@ -98,7 +98,12 @@ impl Components {
 }
 
 /// Gateway and FP Manager as tasks.
-fn services(setup: &Setup, autopilot: SocketAddr, endpoint: &str, shutdown: &Shutdown) -> anyhow::Result<Vec<Service>> {
+fn services(
+    setup: &Setup,
+    autopilot: SocketAddr,
+    endpoint: &str,
+    shutdown: &Shutdown,
+) -> anyhow::Result<Vec<Service>> {
     let mut for_gateway = gateway::Config::new(VEHICLE, endpoint, format!("tcp:{autopilot}").parse()?);
     for_gateway.profile = setup.profile.clone();
     for_gateway.terrain = Some(setup.terrain.clone());

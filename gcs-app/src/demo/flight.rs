@@ -12,8 +12,8 @@ use flight_plan::{Edit, FlightPlan, Runway};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use usal::contract::{
-    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus, Position, Power, ProposalReport,
-    Propose, TimedGatewayEvent,
+    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus,
+    Position, Power, ProposalReport, Propose, TimedGatewayEvent,
 };
 use usal::topics::{fp_manager, gateway};
 use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber};
@@ -26,6 +26,8 @@ const READY_WITHIN: Duration = Duration::from_secs(30);
 const TICK_WITHIN: Duration = Duration::from_secs(15);
 /// A flight longer than the preview by this factor and these seconds has failed.
 const TOO_LONG: (f64, f64) = (1.3, 240.0);
+/// Nobody in the demo orders a hold: one that lasts for so many simulated seconds is a failure.
+const HOLD_WITHIN_S: f64 = 60.0;
 /// Simulated seconds after the plan's end in which the aircraft must have come to rest.
 const REST_WITHIN_S: f64 = 90.0;
 
@@ -139,20 +141,35 @@ impl<'a> Flight<'a> {
         self.started_s = self.now_s;
         self.wall = Instant::now();
         let limit_s = self.planned_s * TOO_LONG.0 + TOO_LONG.1;
-        let mut finished_s = None;
+        let (mut phase, mut since_s) = (Phase::Idle, self.now_s);
         loop {
             let tick = self.next_tick(components).await?;
             self.look(components);
             self.react().await?;
             self.clock.acknowledge(tick);
-            if self.heard.status().is_some_and(|s| s.phase == Phase::Finished) {
-                let since_s = self.now_s - *finished_s.get_or_insert(self.now_s);
-                if is_at_rest(components) || since_s > REST_WITHIN_S {
-                    break;
+            let now = self.heard.status().map_or(Phase::Idle, |s| s.phase);
+            if now != phase {
+                (phase, since_s) = (now, self.now_s);
+            }
+            let lasts_s = self.now_s - since_s;
+            match phase {
+                Phase::Finished if is_at_rest(components) || lasts_s > REST_WITHIN_S => break,
+                Phase::Finished | Phase::Flying => {}
+                Phase::Idle | Phase::Holding | Phase::AwaitingDecision => {
+                    ensure!(
+                        lasts_s < HOLD_WITHIN_S,
+                        "the flight does not go on: {phase:?}; {}",
+                        self.last_refusal()
+                    );
                 }
             }
             let flown_s = self.now_s - self.started_s;
-            ensure!(flown_s < limit_s, "after {:.0} min the flight still goes on, {:.0} min were previewed", flown_s / 60.0, self.planned_s / 60.0);
+            ensure!(
+                flown_s < limit_s,
+                "after {:.0} min the flight still goes on, {:.0} min were previewed",
+                flown_s / 60.0,
+                self.planned_s / 60.0
+            );
             ensure!(!self.ended.load(Ordering::Relaxed), "the window was closed before the flight had ended");
         }
         self.look(components);
@@ -189,6 +206,10 @@ impl<'a> Flight<'a> {
         Ending { points, events, plan: self.plan.clone(), outcome }
     }
 
+    fn last_refusal(&self) -> &str {
+        self.recorder.refusals.last().map_or("nothing was refused", String::as_str)
+    }
+
     async fn wait_until_ready(&mut self, components: &mut Components) -> anyhow::Result<()> {
         let deadline = Instant::now() + READY_WITHIN;
         loop {
@@ -215,7 +236,11 @@ impl<'a> Flight<'a> {
             bail!(failure);
         }
         let Ok(tick) = tick else {
-            bail!("the simulated clock stands still since {} s, at {:.1} s", TICK_WITHIN.as_secs(), self.now_s)
+            bail!(
+                "the simulated clock stands still since {} s, at {:.1} s",
+                TICK_WITHIN.as_secs(),
+                self.now_s
+            )
         };
         let tick = tick.context("the connection to the gateway was closed")?;
         self.now_s = tick.time_s;
@@ -236,19 +261,27 @@ impl<'a> Flight<'a> {
                     self.script.hear(&event.value);
                     recorder.plan_event(event);
                 }
-                Occurrence::Gap { missed } => recorder.refusals.push(format!("{missed} events of the FP Manager were lost")),
+                Occurrence::Gap { missed } => {
+                    recorder.refusals.push(format!("{missed} events of the FP Manager were lost"))
+                }
             }
         }
         while let Some(occurrence) = self.heard.gateway_events.try_recv() {
             match occurrence {
                 Occurrence::Event { event, .. } => recorder.gateway_event(&event),
-                Occurrence::Gap { missed } => recorder.refusals.push(format!("{missed} events of the gateway were lost")),
+                Occurrence::Gap { missed } => {
+                    recorder.refusals.push(format!("{missed} events of the gateway were lost"))
+                }
             }
         }
         self.log_variables();
         if let Some(status) = self.heard.status() {
             self.script.steers_to(status.place.as_ref(), status.current);
-            self.progress.show(self.now_s - self.started_s, self.wall.elapsed().as_secs_f64(), status.place.as_ref());
+            self.progress.show(
+                self.now_s - self.started_s,
+                self.wall.elapsed().as_secs_f64(),
+                status.place.as_ref(),
+            );
         }
     }
 
@@ -276,7 +309,11 @@ impl<'a> Flight<'a> {
     async fn react(&mut self) -> anyhow::Result<()> {
         while let Some(step) = self.script.next_due() {
             let flown_s = self.now_s - self.started_s;
-            self.progress.tell(&format!("{:>6}  mission logic: {}", crate::report::clock(flown_s), step.name));
+            self.progress.tell(&format!(
+                "{:>6}  mission logic: {}",
+                crate::report::clock(flown_s),
+                step.name
+            ));
             self.take(&step).await.with_context(|| format!("mission logic, {}", step.name))?;
         }
         Ok(())

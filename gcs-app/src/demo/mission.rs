@@ -128,7 +128,14 @@ pub struct Script {
 impl Script {
     /// Before the flight.
     pub fn new(steps: Vec<Step>) -> Self {
-        Self { count: steps.len(), steps: steps.into(), place: None, flown: 0, steering_to: None, asked: None }
+        Self {
+            count: steps.len(),
+            steps: steps.into(),
+            place: None,
+            flown: 0,
+            steering_to: None,
+            asked: None,
+        }
     }
 
     /// The executor told something.
@@ -211,7 +218,9 @@ pub fn scenario(
         for act in &step.acts {
             then.push(match act {
                 Act::Command(command) => preview::Act::Command(command.clone()),
-                Act::Update(edit) => preview::Act::Update { program: compile(edit.apply(plan)?)?, entry: None },
+                Act::Update(edit) => {
+                    preview::Act::Update { program: compile(edit.apply(plan)?)?, entry: None }
+                }
             });
         }
         triggers.push(Trigger { at, then });
@@ -238,7 +247,13 @@ mod tests {
 
     fn ask() -> Event {
         let (options, default) = (vec![], None);
-        Event::DecisionRequested(DecisionRequest { leg: "ask".into(), options, default, distance_left_m: 0.0, time_left_s: 0.0 })
+        Event::DecisionRequested(DecisionRequest {
+            leg: "ask".into(),
+            options,
+            default,
+            distance_left_m: 0.0,
+            time_left_s: 0.0,
+        })
     }
 
     #[test]
@@ -262,7 +277,10 @@ mod tests {
         assert_eq!(fly(&mut script, "sweep", 1, 20), ["another round"]);
         assert!(fly(&mut script, "regroup", 1, 9).is_empty());
         assert_eq!(fly(&mut script, "sweep", 2, 9), ["the fire moves"]);
-        assert_eq!(script.missing().map(|s| s.name).collect::<Vec<_>>(), ["a closer look", "the fire is out", "another way home"]);
+        assert_eq!(
+            script.missing().map(|s| s.name).collect::<Vec<_>>(),
+            ["a closer look", "the fire is out", "another way home"]
+        );
     }
 
     #[test]

@@ -137,8 +137,9 @@ async fn fly(
     endpoint: &Sender<String>,
     ended: &AtomicBool,
 ) -> anyhow::Result<ExitCode> {
-    std::fs::create_dir_all(&args.report)
-        .with_context(|| format!("can't make the report folder {}: choose another with --report", args.report.display()))?;
+    std::fs::create_dir_all(&args.report).with_context(|| {
+        format!("can't make the report folder {}: choose another with --report", args.report.display())
+    })?;
     let recorder = Recorder::new(&args.report.join("log.jsonl"))?;
     let mut components = Components::start(&Setup {
         home: &prepared.home,
@@ -154,7 +155,8 @@ async fn fly(
     let script = mission::Script::new(prepared.steps.clone());
     let plan = prepared.program.plan.clone();
     let mut flight =
-        Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, ended).await?;
+        Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, ended)
+            .await?;
     let flown = flight.fly(&mut components).await;
     progress.end();
     let ending = flight.ending(&components, &prepared.destination);

@@ -43,8 +43,10 @@ pub fn prepare(args: &Args) -> anyhow::Result<Prepared> {
         anyhow::anyhow!("the plan can't be flown:\n{}", list.join("\n"))
     })?;
     let program = Arc::new(program);
-    let home = program.plan.home().context("the plan has no take-off stage with a runway: give it one")?.clone();
-    let destination = destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
+    let home =
+        program.plan.home().context("the plan has no take-off stage with a runway: give it one")?.clone();
+    let destination =
+        destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
     let steps = mission::steps_for(&program.plan);
     let (preview, last_plan) = preview(&loaded, &program, &profile, args.wind, &steps)?;
     let planned = forecast::track(&preview, &[&program.plan, &last_plan]);
@@ -94,10 +96,18 @@ fn preview(
         let scenario = mission::scenario(steps, &program.plan, compile, &asked_s)?;
         let preview = forecast::fly(program, profile, &loaded.terrain, wind, &scenario)
             .context("the plan can't be flown to its end")?;
-        let asked: Vec<f64> = preview.events.iter().filter(|(_, e)| matches!(e, Event::DecisionRequested(_))).map(|(t, _)| *t).collect();
+        let asked: Vec<f64> = preview
+            .events
+            .iter()
+            .filter(|(_, e)| matches!(e, Event::DecisionRequested(_)))
+            .map(|(t, _)| *t)
+            .collect();
         if asked_s.len() < decisions {
             let Some(next) = asked.get(asked_s.len()) else {
-                bail!("the mission logic waits for {decisions} decisions, the preview was asked for {}", asked.len())
+                bail!(
+                    "the mission logic waits for {decisions} decisions, the preview was asked for {}",
+                    asked.len()
+                )
             };
             asked_s.push(*next);
             continue;
@@ -154,7 +164,11 @@ mod tests {
         for leg in ["d2", "sweep", "look", "regroup", "p2", "h2", "ap1"] {
             assert!(legs.contains(&leg), "{leg} is not in {legs:?}");
         }
-        assert_eq!(legs.iter().filter(|l| **l == "sweep").count(), 2, "the fire is out after the second round");
+        assert_eq!(
+            legs.iter().filter(|l| **l == "sweep").count(),
+            2,
+            "the fire is out after the second round"
+        );
         assert_eq!(prepared.destination.id.as_str(), "R05");
     }
 }

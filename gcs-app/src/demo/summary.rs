@@ -21,15 +21,21 @@ pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) {
         folder.join("report.html").display()
     );
     let good = record.verdict.iter().all(|(holds, _)| *holds);
-    println!("{}", if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." });
+    println!(
+        "{}",
+        if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." }
+    );
 }
 
 fn table(findings: &Findings) -> String {
-    let mut text = format!("{:<26} {:<10} {:>7} {:>7} {:>9}   cross-track RMS / 95 % / max\n", "leg", "type", "entered", "time", "distance");
+    let mut text = format!(
+        "{:<26} {:<10} {:>7} {:>7} {:>9}   cross-track RMS / 95 % / max\n",
+        "leg", "type", "entered", "time", "distance"
+    );
     for row in &findings.passages {
-        let cross = row
-            .cross_track
-            .map_or("not previewed".to_owned(), |s| format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m));
+        let cross = row.cross_track.map_or("not previewed".to_owned(), |s| {
+            format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m)
+        });
         text += &format!(
             "{:<26} {:<10} {:>7} {:>7} {:>6.2} km   {cross}\n",
             row.passage.key.to_string(),

@@ -189,6 +189,11 @@ impl Canvas {
     }
 
     fn fill(&mut self, path: &Path, ink: Ink) {
+        let bounds = path.bounds();
+        if bounds.width() <= 0.0 || bounds.height() <= 0.0 {
+            // a point or a line has no inside
+            return;
+        }
         self.pixmap.fill_path(path, &paint(ink), FillRule::Winding, Transform::identity(), None);
     }
 

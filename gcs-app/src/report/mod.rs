@@ -16,9 +16,9 @@ mod style;
 mod tables;
 
 pub use coverage::Coverage;
-pub use tables::clock;
 pub use deviation::{PassageReport, Statistics};
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
+pub use tables::clock;
 
 use std::path::Path;
 
