@@ -4,7 +4,7 @@ use crate::api::{AircraftState, Answer, Event, Input, Output, Phase, Refusal, Re
 use crate::config::Config;
 use crate::cursor::Cursor;
 use crate::decision::Decision;
-use crate::handed::{Handed, Onward, Stretch, lay_out};
+use crate::handed::{Handed, Onward};
 use crate::path::{Level, Passing, PathState, distance_m};
 use crate::world::World;
 use aircraft::Profile;
@@ -214,7 +214,7 @@ impl Executor {
     }
 
     /// What is changed now must wait to be fed.
-    fn is_muted(&self) -> bool {
+    pub(crate) fn is_muted(&self) -> bool {
         self.state.phase == Phase::Holding || self.state.gateway_controls
     }
 
@@ -299,199 +299,6 @@ impl Executor {
             return 0.0;
         }
         (self.to_current_m() + at_m - front.end_m).max(0.0)
-    }
-
-    /// Tops the horizon up.
-    fn fill(&mut self, out: &mut Vec<Output>) {
-        if self.is_muted() || self.state.onward != Onward::Open {
-            return;
-        }
-        let (count, from_s) = (self.state.handed.len(), self.time_at_aircraft_s());
-        let more = self.horizon(count, from_s);
-        let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
-        let Some(world) = self.world() else { return };
-        let stretch = lay_out(tail, &world, false, false, more);
-        let first = self.state.handed.len();
-        self.append(stretch, out);
-        self.feed(None, first, out);
-    }
-
-    /// Asks for more until there are enough waypoints and seconds ahead.
-    fn horizon(&self, count: usize, from_s: f64) -> impl Fn(usize, &Cursor) -> bool + use<> {
-        let c = &self.config;
-        let (most, least, horizon_s) =
-            (c.horizon_waypoints.max(4), c.least_waypoints.max(2), c.horizon_s.max(60.0));
-        move |new, cursor| {
-            let ahead = count + new;
-            ahead < most && (ahead < least || cursor.path.time_s - from_s < horizon_s)
-        }
-    }
-
-    /// Flying time of the path where the aircraft is, seconds.
-    fn time_at_aircraft_s(&self) -> f64 {
-        let speed = |h: &Handed| h.waypoint.airspeed_mps.max(1.0);
-        let front = self.state.handed.front();
-        let left_s = front.map_or(0.0, |h| self.to_current_m() / speed(h));
-        let end_s = front.map(|h| h.end_s).or(self.state.tail.as_ref().map(|t| t.path.time_s));
-        end_s.unwrap_or(0.0) - left_s
-    }
-
-    /// Takes a stretch over behind what is handed out, numbering its waypoints.
-    fn append(&mut self, stretch: Stretch, out: &mut Vec<Output>) {
-        for mut handed in stretch.handed {
-            self.state.last_token += 1;
-            handed.waypoint.token = Token(self.state.last_token);
-            self.state.last_passage = self.state.last_passage.max(handed.passage);
-            self.state.handed.push_back(handed);
-        }
-        self.state.tail = Some(stretch.tail);
-        self.state.onward = stretch.onward;
-        self.state.tail_has_choices = !stretch.tail_choices.is_empty();
-        for (leg, reason) in stretch.refused {
-            self.tell_refused(leg, reason, out);
-        }
-        if stretch.onward == Onward::Stalled {
-            self.stalled(out);
-        }
-    }
-
-    pub(crate) fn tell_refused(&mut self, leg: Id, reason: String, out: &mut Vec<Output>) {
-        let told = Some((leg.clone(), reason.clone()));
-        if self.state.told != told {
-            self.state.told = told;
-            out.push(Output::Event(Event::PatternRefused { leg, reason }));
-        }
-    }
-
-    /// A loop without waypoints: nothing will ever follow, so the aircraft holds where its path ends.
-    fn stalled(&mut self, out: &mut Vec<Output>) {
-        let leg = self.state.tail.as_ref().and_then(|t| Some(t.loop_ids(&self.world()?).last()?.clone()));
-        let reason = "this loop flies no waypoint; change its body by a plan update, or go to another leg";
-        let leg = leg.unwrap_or_else(|| Id::new("plan"));
-        self.tell_refused(leg, reason.into(), out);
-        if self.state.handed.is_empty() {
-            self.hold(out);
-        }
-    }
-
-    fn feed(&self, cancel_after: Option<Token>, first: usize, out: &mut Vec<Output>) {
-        let waypoints: Vec<_> = self.state.handed.iter().skip(first).map(|h| h.waypoint.clone()).collect();
-        if !self.is_muted() && (cancel_after.is_some() || !waypoints.is_empty()) {
-            out.push(Output::Feed { cancel_after, waypoints });
-        }
-    }
-
-    /// How many of the waypoints ahead can't be altered: those nearer than the stopping distance (turn and
-    /// latency), and those whose pattern has been regenerated behind them.
-    pub(crate) fn alterable_from(&self) -> usize {
-        let pinned = self.state.handed.iter().rposition(|h| h.pinned).map_or(0, |i| i + 1);
-        pinned.max(self.kept_by_distance())
-    }
-
-    fn kept_by_distance(&self) -> usize {
-        let Some(front) = self.state.handed.front().filter(|h| !h.is_loiter()) else { return 0 };
-        if !matches!(front.waypoint.action, crate::api::Action::Fly) {
-            return 1;
-        }
-        let Some(aircraft) = &self.state.aircraft else { return 1 };
-        let speed_mps = aircraft.ground_speed_mps.max(self.profile.min_airspeed_mps);
-        let stop_m = self.profile.turn_radius_m(speed_mps) + self.config.latency_s * speed_mps;
-        let to_front_m = self.to_current_m();
-        let near = |h: &&Handed| to_front_m + h.end_m - front.end_m <= stop_m;
-        self.state.handed.iter().take_while(near).count()
-    }
-
-    /// Lays the path out anew behind what can't be altered, and feeds what differs.
-    pub(crate) fn replan(&mut self, out: &mut Vec<Output>) {
-        let from = self.alterable_from();
-        if let Some(cursor) = self.bookmark(from).cloned() {
-            self.replan_with(from, cursor, false, out);
-        }
-    }
-
-    /// The cursor before waypoint number `index`, or behind the last one.
-    pub(crate) fn bookmark(&self, index: usize) -> Option<&Cursor> {
-        self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref())
-    }
-
-    /// Replaces the waypoints from number `from` on by what `cursor` gives. Waypoints that come out the same keep their
-    /// numbers; one transaction cancels and appends the rest.
-    pub(crate) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
-        let Some(world) = self.world() else { return };
-        let from = from.min(self.state.handed.len());
-        let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
-        let more = self.horizon(from, self.time_at_aircraft_s());
-        let at_least = old.len();
-        let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
-        let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
-        let stretch = lay_out(&cursor, &world, arriving, marked, |n, c| n < at_least || more(n, c));
-        let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
-        let tokens: Vec<Token> = old.iter().take(same).map(|h| h.waypoint.token).collect();
-        self.state.handed.truncate(from);
-        let before = self.state.last_token;
-        let appended = stretch.handed.len() - same;
-        self.append(stretch, out);
-        self.keep_tokens(from, &tokens, before);
-        let cancel = (old.len() > same).then(|| self.last_token_before(from + same, &old));
-        if cancel.is_some() || appended > 0 {
-            self.feed(cancel, from + same, out);
-        }
-        self.settle_phase(out);
-    }
-
-    /// Waypoints that stayed the same get their old numbers back; the others count on from `before`.
-    fn keep_tokens(&mut self, from: usize, tokens: &[Token], before: u64) {
-        self.state.last_token = before;
-        for (i, handed) in self.state.handed.iter_mut().skip(from).enumerate() {
-            handed.waypoint.token = match tokens.get(i) {
-                Some(kept) => *kept,
-                None => {
-                    self.state.last_token += 1;
-                    Token(self.state.last_token)
-                }
-            };
-        }
-    }
-
-    /// The token after which everything is cancelled, to replace waypoints from `index` on.
-    fn last_token_before(&self, index: usize, old: &[Handed]) -> Token {
-        match index.checked_sub(1).and_then(|i| self.state.handed.get(i)) {
-            Some(kept) => kept.waypoint.token,
-            None => Token(old.first().map_or(0, |h| h.waypoint.token.0.saturating_sub(1))),
-        }
-    }
-
-    /// Goes from here to wherever `cursor` is: everything not flown is cancelled.
-    pub(crate) fn jump(&mut self, mut cursor: Cursor, out: &mut Vec<Output>) {
-        cursor.passage = self.state.last_passage;
-        self.state.handed.clear();
-        self.state.held_at = None;
-        let Some(world) = self.world() else { return };
-        let more = self.horizon(0, cursor.path.time_s);
-        let stretch = lay_out(&cursor, &world, false, false, more);
-        self.append(stretch, out);
-        self.feed(Some(Token(0)), 0, out);
-        self.settle_phase(out);
-    }
-
-    /// Sends everything ahead once more, with new numbers: the gateway may have lost it.
-    pub(crate) fn refeed(&mut self, out: &mut Vec<Output>) {
-        for handed in &mut self.state.handed {
-            self.state.last_token += 1;
-            handed.waypoint.token = Token(self.state.last_token);
-        }
-        self.feed(Some(Token(0)), 0, out);
-        self.settle_phase(out);
-    }
-
-    /// Waiting for a decision or not, whatever it steers to.
-    pub(crate) fn settle_phase(&mut self, out: &mut Vec<Output>) {
-        let waits = self.state.handed.front().is_some_and(Handed::is_loiter);
-        match self.state.phase {
-            Phase::Flying if waits => self.enter_phase(Phase::AwaitingDecision, out),
-            Phase::AwaitingDecision if !waits => self.enter_phase(Phase::Flying, out),
-            _ => {}
-        }
     }
 
     fn has_provisional_choices(&self) -> bool {

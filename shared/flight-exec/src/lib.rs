@@ -22,6 +22,7 @@ mod handed;
 pub mod path;
 pub mod preview;
 mod progress;
+mod replan;
 mod snapshot;
 mod status;
 mod update;

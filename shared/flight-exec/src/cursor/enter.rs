@@ -150,7 +150,7 @@ impl Cursor {
         let (Some(leg), Some(old)) = (self.leg(world), self.expansion.clone()) else {
             return Ok(false);
         };
-        if self.doing != Doing::Flying || self.given == 0 {
+        if self.doing != Doing::Flying {
             return Ok(false);
         }
         let fresh = match old.as_ref() {

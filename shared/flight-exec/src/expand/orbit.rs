@@ -1,8 +1,9 @@
 //! A circle about a point, flown a number of times, left where it is nearest to what follows.
 
-use super::{ExpandError, Point, arc::Arc};
+use super::{ExpandError, Point};
 use flight_plan::TurnDirection;
 use geometry::LatLon;
+use geometry::arc::Flattening;
 use geometry::geodesy::normalise_360;
 use serde::{Deserialize, Serialize};
 
@@ -42,9 +43,8 @@ impl Circle {
         let onward_deg =
             onward.map_or(0.0, |to| normalise_360(side * (centre.bearing_deg(to) - start_bearing_deg)));
         let sweep_deg = 360.0 * turns + onward_deg;
-        let one = Arc { centre, radius_m, start_bearing_deg, sweep_deg: 360.0 };
-        let finest_deg = 360.0 / one.vertices(tolerance_m).count() as f64;
-        let steps = (sweep_deg / finest_deg).ceil();
+        let widest_deg = Flattening::Circumscribed.step_rad(radius_m, tolerance_m).to_degrees().max(0.5);
+        let steps = (sweep_deg / widest_deg).ceil();
         let step_deg = side * sweep_deg / steps;
         Ok(Self { centre, radius_m, start_bearing_deg, step_deg, steps: steps as u64 })
     }

@@ -5,10 +5,15 @@ use crate::cursor::Visit;
 use crate::path::PathState;
 use crate::world::World;
 use flight_plan::{Holding, HoldingLength, Leg, LegKind, PlanWaypoint, TurnDirection};
-use geometry::LatLon;
+use geometry::holding::Racetrack as Shape;
+use geometry::turn::Turn;
+use geometry::{LatLon, PathElement};
 
 /// Nearer than this two positions are the same place, metres.
 pub const SAME_PLACE_M: f64 = 1.0;
+
+/// Longest straight leg of a racetrack, metres.
+const LONGEST_LEG_M: f64 = 50_000.0;
 
 /// What a leg needs to know about its place in the path.
 #[derive(Debug, Clone, Copy)]
@@ -99,13 +104,15 @@ fn direct(to: Point, turn: Option<TurnDirection>, approach: &Approach, world: &W
     let radius_m = world.turn_radius_m(approach.airspeed_mps);
     let turn_deg = 360.0 - off_deg.abs();
     let centre = path.last.position.destination(path.course_deg + side * 90.0, radius_m);
-    let round = arc::Arc {
+    let round = PathElement::Arc {
         centre,
         radius_m,
         start_bearing_deg: path.course_deg - side * 90.0,
         sweep_deg: side * turn_deg,
     };
-    let mut points: Vec<_> = round.vertices(world.config.arc_tolerance_m).map(Point::fly).collect();
+    let mut points = arc::vertices(&[round], world.config.arc_tolerance_m);
+    // the turn is left where it points to the fix: its computed end lies a little before that
+    points.pop();
     points.push(to);
     Expansion::Points(points)
 }
@@ -130,15 +137,15 @@ fn racetrack(
         HoldingLength::Distance(metres) => world.number(metres)?,
         HoldingLength::Time(seconds) => world.number(seconds)? * approach.airspeed_mps,
     };
-    let layout = holding::Layout {
+    let shape = Shape {
         fix: fix.position,
-        inbound_deg,
-        turn: holding.turn,
-        leg_m: leg_m.clamp(0.0, 50_000.0),
+        inbound_course_deg: inbound_deg,
+        turn: side(holding.turn),
+        leg_m: leg_m.clamp(0.0, LONGEST_LEG_M),
         radius_m: world.turn_radius_m(approach.airspeed_mps),
-        tolerance_m: world.config.arc_tolerance_m,
     };
-    Ok(Expansion::Holding(layout.racetrack(fix, arrival_deg, once)))
+    let tolerance_m = world.config.arc_tolerance_m;
+    Ok(Expansion::Holding(holding::Racetrack::new(&shape, fix, arrival_deg, once, tolerance_m)))
 }
 
 fn circle(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
@@ -154,15 +161,16 @@ fn circle(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, Ex
 
 /// The full turn at the end of a pass of a form-A loop.
 pub fn turn_round(path: &PathState, turn: TurnDirection, airspeed_mps: f64, world: &World) -> Expansion {
-    let layout = holding::Layout {
-        fix: path.last.position,
-        inbound_deg: path.course_deg + 180.0,
-        turn,
-        leg_m: 0.0,
-        radius_m: world.turn_radius_m(airspeed_mps),
-        tolerance_m: world.config.arc_tolerance_m,
-    };
-    Expansion::Points(layout.turn_round())
+    let radius_m = world.turn_radius_m(airspeed_mps);
+    let round = geometry::holding::turn_round(path.last.position, path.course_deg, side(turn), radius_m);
+    Expansion::Points(arc::vertices(&round, world.config.arc_tolerance_m))
+}
+
+fn side(turn: TurnDirection) -> Turn {
+    match turn {
+        TurnDirection::Left => Turn::Left,
+        TurnDirection::Right => Turn::Right,
+    }
 }
 
 fn waypoint(waypoint: &PlanWaypoint, world: &World) -> Result<Point, ExpandError> {
