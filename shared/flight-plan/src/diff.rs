@@ -1,7 +1,11 @@
 //! What changed between two plans.
 
 use crate::{FlightPlan, Id, Leg, LegContext, LegKind};
+use geometry::LatLon;
 use std::collections::BTreeMap;
+
+/// Where the fixes of a plan are.
+type Fixes = BTreeMap<Id, LatLon>;
 
 /// Identifiers of legs by what became of them, in document order.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -22,12 +26,16 @@ impl Difference {
         let by_id = |legs: &[LegContext<'_>]| -> BTreeMap<Id, usize> {
             legs.iter().enumerate().map(|(i, c)| (c.leg.id.clone(), i)).collect()
         };
+        let fixes = |plan: &'_ FlightPlan| -> Fixes {
+            plan.fixes.iter().map(|f| (f.id.clone(), f.position)).collect()
+        };
+        let (old, new) = (fixes(old), fixes(new));
         let (in_old, in_new) = (by_id(&before), by_id(&after));
         let mut difference = Difference::default();
         for context in &after {
             match in_old.get(&context.leg.id).and_then(|i| before.get(*i)) {
                 None => difference.added.push(context.leg.id.clone()),
-                Some(was) if differs((old, was), (new, context)) => {
+                Some(was) if differs((&old, was), (&new, context)) => {
                     difference.changed.push(context.leg.id.clone())
                 }
                 Some(_) => {}
@@ -44,7 +52,7 @@ impl Difference {
     }
 }
 
-fn differs((old, was): (&FlightPlan, &LegContext), (new, is): (&FlightPlan, &LegContext)) -> bool {
+fn differs((old, was): (&Fixes, &LegContext), (new, is): (&Fixes, &LegContext)) -> bool {
     let around =
         |c: &LegContext| (c.stage.id.clone(), c.loops.iter().map(|l| l.id.clone()).collect::<Vec<_>>());
     let inherited = |c: &LegContext| (c.stage.altitude.clone(), c.stage.speed_mps.clone());
@@ -54,9 +62,9 @@ fn differs((old, was): (&FlightPlan, &LegContext), (new, is): (&FlightPlan, &Leg
         || shallow(was.leg) != shallow(is.leg)
 }
 
-fn fix_position(plan: &FlightPlan, leg: &Leg) -> Option<geometry::LatLon> {
+fn fix_position(fixes: &Fixes, leg: &Leg) -> Option<LatLon> {
     match leg.place()? {
-        crate::Place::Fix(id) => plan.fix(id).map(|f| f.position),
+        crate::Place::Fix(id) => fixes.get(id).copied(),
         crate::Place::Position(_) => None,
     }
 }
@@ -75,7 +83,6 @@ fn shallow(leg: &Leg) -> (Leg, Vec<Id>) {
 mod tests {
     use super::*;
     use crate::{Edit, Spot, read};
-    use geometry::LatLon;
 
     const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
 

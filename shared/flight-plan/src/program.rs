@@ -1,6 +1,6 @@
 //! A checked plan, ready for the executor.
 
-use crate::expression::{self, Env, EvalError, Expression};
+use crate::expression::{self, Env, EvalError, Expression, Names};
 use crate::{
     Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, check, xml,
 };
@@ -236,10 +236,11 @@ fn add_paths(legs: &[Leg], path: &mut LegPath, paths: &mut HashMap<Id, LegPath>)
 
 /// Every expression of the plan; those that don't compile have been found by the checks.
 fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Expression> {
+    let names = Names::of(plan);
     let mut compiled = HashMap::new();
     let mut add = |source: &Arc<str>, _| {
         if !compiled.contains_key(source) {
-            compiled.extend(expression::compile(source, plan).ok().map(|e| (source.clone(), e)));
+            compiled.extend(expression::compile_with(source, &names).ok().map(|e| (source.clone(), e)));
         }
     };
     plan.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut add));

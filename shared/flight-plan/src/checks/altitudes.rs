@@ -6,15 +6,17 @@ use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
-        let home = view.plan.home();
-        let at = stage.runway.as_ref().and_then(|id| view.plan.runway(id)).or(home).map(|r| r.threshold);
+        let home = view.home();
+        let at =
+            stage.runway.as_ref().and_then(|id| view.runways.get(id).copied()).or(home).map(|r| r.threshold);
         let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at));
         ceiling(view, amsl_m, &stage.id, problems);
     }
     for step in &view.steps {
         ceiling(view, own_altitude_m(view, step), &step.context.leg.id, problems);
-        unknown(view, step, problems);
     }
+    // legs in document order: the first one is the main plan's first, if that has any
+    view.steps.first().into_iter().for_each(|step| unknown(view, step, problems));
 }
 
 /// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
@@ -42,20 +44,10 @@ fn unknown(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = step.context.leg;
     let moves = !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. });
     let main = step.context.section == crate::Section::Main;
-    let takes_off = view.plan.home().is_some();
-    if moves
-        && main
-        && !takes_off
-        && step.before.is_none()
-        && step.context.index == 0
-        && altitude_of(&step.context).is_none()
-    {
-        let first = view.plan.stages.iter().find_map(|s| s.legs.first());
-        if first.is_some_and(|f| f.id == leg.id) {
-            let message =
-                "give this leg or its stage an `altitude`: nothing before it says how high it is flown";
-            problems.push(Problem::error("no-altitude", message).of(&leg.id));
-        }
+    let takes_off = view.home().is_some();
+    if moves && main && !takes_off && altitude_of(&step.context).is_none() {
+        let message = "give this leg or its stage an `altitude`: nothing before it says how high it is flown";
+        problems.push(Problem::error("no-altitude", message).of(&leg.id));
     }
 }
 

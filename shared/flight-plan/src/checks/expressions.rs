@@ -2,7 +2,7 @@
 //! something else than is needed; `no-value`: one that has no value at the variables' initial values.
 
 use super::Inspection;
-use crate::expression::{self, Type};
+use crate::expression::Type;
 use crate::{Id, Problem, Use};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -21,7 +21,11 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
         Use::Condition => Type::Bool,
         Use::Position => Type::Position,
     };
-    match expression::compile(source, view.plan) {
+    let Some(compiled) = view.compiled(source) else {
+        let message = "use fewer different expressions: a plan may have 10,000";
+        return problems.push(Problem::error("expression-too-large", message).of(of));
+    };
+    match compiled {
         Err(error) => problems.push(Problem::error(error.code, error.to_string()).of(of)),
         Ok(compiled) if !compiled.gives(wanted) => {
             let message = format!(

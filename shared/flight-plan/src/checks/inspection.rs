@@ -1,9 +1,9 @@
 //! What the rules look at: the plan's legs with their geometry at the variables' initial values.
 
-use crate::expression::{self, Expression};
+use crate::expression::{self, Expression, ExpressionError, Names};
 use crate::{
     Altitude, AltitudeReference, Branch, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Place,
-    Section, Stage, StageKind, TurnDirection, Use, Value, Variables,
+    Runway, Section, Stage, StageKind, TurnDirection, Use, Value, Variables,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -11,6 +11,9 @@ use geometry::geodesy::{normalise_180, normalise_360};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
+
+/// Most different expressions of a plan: compiling one takes some 50 µs.
+const MOST_EXPRESSIONS: usize = 10_000;
 
 /// Standard gravity, m/s².
 const GRAVITY_MPS2: f64 = 9.80665;
@@ -22,10 +25,15 @@ pub(super) struct Inspection<'a> {
     pub terrain: &'a dyn Terrain,
     /// Every leg in document order.
     pub steps: Vec<Step<'a>>,
-    /// Identifiers of the plan's fixes.
-    pub fixes: HashSet<&'a Id>,
+    /// The plan's fixes.
+    pub fixes: HashMap<&'a Id, LatLon>,
+    /// The plan's runways.
+    pub runways: HashMap<&'a Id, &'a Runway>,
+    /// Identifiers of its emergency plans.
+    pub emergency_plans: HashSet<&'a Id>,
     variables: Variables,
-    expressions: HashMap<Arc<str>, Option<Expression>>,
+    expressions: HashMap<Arc<str>, Result<Expression, ExpressionError>>,
+    home: Option<&'a Runway>,
 }
 
 /// A leg with the geometry that is known before the flight.
@@ -119,16 +127,35 @@ pub(super) fn course_change_deg(from_deg: f64, to_deg: f64) -> f64 {
 impl<'a> Inspection<'a> {
     pub fn new(plan: &'a FlightPlan, profile: &'a Profile, terrain: &'a dyn Terrain) -> Self {
         let variables = Variables::initial(plan);
-        let fixes = plan.fixes.iter().map(|f| &f.id).collect();
-        let mut inspection =
-            Self { plan, profile, terrain, steps: Vec::new(), fixes, variables, expressions: compiled(plan) };
+        let mut inspection = Self {
+            plan,
+            profile,
+            terrain,
+            steps: Vec::new(),
+            fixes: plan.fixes.iter().map(|f| (&f.id, f.position)).collect(),
+            runways: plan.runways.iter().map(|r| (&r.id, r)).collect(),
+            emergency_plans: plan.emergency_plans.iter().map(|e| &e.id).collect(),
+            variables,
+            expressions: compiled(plan),
+            home: plan.home(),
+        };
         inspection.trace();
         inspection
     }
 
     /// An expression that compiles.
     fn expression(&self, source: &str) -> Option<&Expression> {
-        self.expressions.get(source)?.as_ref()
+        self.compiled(source)?.as_ref().ok()
+    }
+
+    /// What became of an expression; `None`: the plan has too many to look at.
+    pub fn compiled(&self, source: &str) -> Option<&Result<Expression, ExpressionError>> {
+        self.expressions.get(source)
+    }
+
+    /// The runway where the aircraft stands.
+    pub fn home(&self) -> Option<&'a Runway> {
+        self.home
     }
 
     /// A compiled expression has a value at the start.
@@ -141,7 +168,7 @@ impl<'a> Inspection<'a> {
     }
 
     fn env(&self) -> Env<'_> {
-        let home = self.plan.home().map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
+        let home = self.home().map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
         Env {
             variables: &self.variables,
             flight: FlightState { iteration: 1, ..FlightState::on_ground(home) },
@@ -167,7 +194,7 @@ impl<'a> Inspection<'a> {
     /// Where a place is at the start.
     pub fn place(&self, place: &Place) -> Option<LatLon> {
         match place {
-            Place::Fix(id) => self.plan.fix(id).map(|f| f.position).filter(|p| p.is_valid()),
+            Place::Fix(id) => self.fixes.get(id).copied().filter(|p| p.is_valid()),
             Place::Position(value) => self.position(value),
         }
     }
@@ -177,7 +204,7 @@ impl<'a> Inspection<'a> {
         let datum_m = match altitude.reference {
             AltitudeReference::Amsl => 0.0,
             AltitudeReference::Agl => self.terrain.elevation_m(at)?,
-            AltitudeReference::Home => self.plan.home()?.elevation_amsl_m,
+            AltitudeReference::Home => self.home()?.elevation_amsl_m,
         };
         Some(self.number(&altitude.metres)? + datum_m)
     }
@@ -203,7 +230,7 @@ impl<'a> Inspection<'a> {
 
     /// Where a take-off ends: straight on from the runway's end, at the best climb.
     fn climb_out(&self, stage: &Stage) -> Option<Point> {
-        let runway = self.plan.runway(stage.runway.as_ref()?).filter(|r| r.threshold.is_valid())?;
+        let runway = self.runways.get(stage.runway.as_ref()?).filter(|r| r.threshold.is_valid())?;
         let metres = self.number(&stage.altitude.as_ref()?.metres)?;
         let height_m = match stage.altitude.as_ref()?.reference {
             AltitudeReference::Amsl => metres - runway.elevation_amsl_m,
@@ -313,10 +340,14 @@ fn path_of(leg: &Leg, from: LatLon, to: LatLon) -> Option<Path> {
     }
 }
 
-fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Option<Expression>> {
-    let mut compiled = HashMap::new();
+fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Result<Expression, ExpressionError>> {
+    let names = Names::of(plan);
+    let mut compiled: HashMap<Arc<str>, Result<Expression, ExpressionError>> = HashMap::new();
     let mut add = |source: &Arc<str>, _| {
-        compiled.entry(source.clone()).or_insert_with(|| expression::compile(source, plan).ok());
+        if compiled.len() < MOST_EXPRESSIONS {
+            let compile = || expression::compile_with(source, &names);
+            compiled.entry(source.clone()).or_insert_with(compile);
+        }
     };
     plan.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut add));
     plan.all_legs().iter().for_each(|c| c.leg.for_each_expression(&mut add));

@@ -1,7 +1,8 @@
 //! `unknown-fix`, `unknown-runway`, `unknown-emergency-plan`, `unknown-leg`: something is named that is not there.
 
 use super::Inspection;
-use crate::{Area, EmergencyChoice, Id, LegContext, LegKind, Place, Problem};
+use crate::{Area, EmergencyChoice, Id, Leg, LegContext, LegKind, Place, Problem};
+use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
@@ -13,18 +14,19 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         emergencies(view, &stage.emergency, Some(&stage.id), problems);
         stage.runway.iter().for_each(|id| runway(view, id, &stage.id, problems));
     }
+    let known: Known = view.steps.iter().map(|s| (s.context.siblings.as_ptr(), &s.context.leg.id)).collect();
     for step in &view.steps {
         let leg = step.context.leg;
         emergencies(view, &leg.emergency, Some(&leg.id), problems);
         place(leg.place(), view, &leg.id, problems);
-        next(&step.context, leg.next.as_ref(), problems);
+        next(&known, &step.context, leg.next.as_ref(), problems);
         if let LegKind::Intersection { branches, .. } = &leg.kind {
-            branches.iter().for_each(|b| next(&step.context, b.next.as_ref(), problems));
+            branches.iter().for_each(|b| next(&known, &step.context, b.next.as_ref(), problems));
         }
     }
 }
 
-impl crate::Leg {
+impl Leg {
     /// Where it goes, holds, or what it is about; `None` for control legs and polygons.
     pub fn place(&self) -> Option<&Place> {
         match &self.kind {
@@ -43,7 +45,7 @@ impl crate::Leg {
 }
 
 fn emergencies(view: &Inspection, choice: &EmergencyChoice, of: Option<&Id>, problems: &mut Vec<Problem>) {
-    for (_, id) in choice.by_cause.iter().filter(|(_, id)| view.plan.emergency_plan(id).is_none()) {
+    for (_, id) in choice.by_cause.iter().filter(|(_, id)| !view.emergency_plans.contains(id)) {
         let message = format!("there is no emergency plan `{id}`: add it or name another");
         let problem = Problem::error("unknown-emergency-plan", message);
         problems.push(of.map_or(problem.clone(), |of| problem.of(of)));
@@ -51,7 +53,7 @@ fn emergencies(view: &Inspection, choice: &EmergencyChoice, of: Option<&Id>, pro
 }
 
 fn runway(view: &Inspection, id: &Id, of: &Id, problems: &mut Vec<Problem>) {
-    if view.plan.runway(id).is_none() {
+    if !view.runways.contains_key(id) {
         let message = format!("there is no runway `{id}`: add it or name another");
         problems.push(Problem::error("unknown-runway", message).of(of));
     }
@@ -59,15 +61,18 @@ fn runway(view: &Inspection, id: &Id, of: &Id, problems: &mut Vec<Problem>) {
 
 fn place(place: Option<&Place>, view: &Inspection, of: &Id, problems: &mut Vec<Problem>) {
     if let Some(Place::Fix(id)) = place
-        && !view.fixes.contains(id)
+        && !view.fixes.contains_key(id)
     {
         let message = format!("there is no fix `{id}`: add it or name another");
         problems.push(Problem::error("unknown-fix", message).of(of));
     }
 }
 
-fn next(context: &LegContext, next: Option<&Id>, problems: &mut Vec<Problem>) {
-    if let Some(id) = next.filter(|id| !context.siblings.iter().any(|l| l.id == **id)) {
+/// Each leg with the list it is in.
+type Known<'a> = HashSet<(*const Leg, &'a Id)>;
+
+fn next(known: &Known, context: &LegContext, next: Option<&Id>, problems: &mut Vec<Problem>) {
+    if let Some(id) = next.filter(|id| !known.contains(&(context.siblings.as_ptr(), *id))) {
         let message = format!(
             "`next` names `{id}`, which is no leg of the same list: name a leg of this stage or loop"
         );

@@ -1,17 +1,47 @@
 //! From CEL source to a checked tree.
 
 use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type};
-use crate::{FlightPlan, Id, VariableValue};
+use crate::{FlightPlan, Id, Variable, VariableValue};
 use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
 use cel::parser::Parser;
+use geometry::LatLon;
+use std::collections::HashMap;
 
 /// Longest expression, bytes.
 pub const MAX_LENGTH: usize = 1000;
 /// Deepest nesting, both of brackets and of the tree.
 pub const MAX_DEPTH: usize = 48;
 
-/// Parses and type-checks `source` over the plan's fixes and variables.
+/// The names of a plan, looked up at once however many there are.
+#[derive(Debug)]
+pub struct Names<'a> {
+    variables: HashMap<&'a str, &'a Variable>,
+    fixes: HashMap<&'a str, LatLon>,
+}
+
+impl<'a> Names<'a> {
+    /// The names of a plan.
+    pub fn of(plan: &'a FlightPlan) -> Self {
+        Self {
+            variables: plan.variables.iter().map(|v| (v.name.as_str(), v)).collect(),
+            fixes: plan.fixes.iter().map(|f| (f.id.as_str(), f.position)).collect(),
+        }
+    }
+}
+
+/// Parses and type-checks `source` over a plan's fixes and variables.
+///
+/// # Errors
+/// What is wrong with it, and where.
 pub fn compile(source: &str, plan: &FlightPlan) -> Result<Expression, ExpressionError> {
+    compile_with(source, &Names::of(plan))
+}
+
+/// As [`compile`], for many expressions of one plan.
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_with(source: &str, names: &Names) -> Result<Expression, ExpressionError> {
     let at_start =
         |code, message: String| ExpressionError { code, column: 1, source_text: shorten(source), message };
     if source.len() > MAX_LENGTH || bracket_depth(source) > MAX_DEPTH {
@@ -29,7 +59,7 @@ pub fn compile(source: &str, plan: &FlightPlan) -> Result<Expression, Expression
         .max_recursion_depth(2 * MAX_DEPTH as u16)
         .parse_with_source_info(source)
         .map_err(|errors| syntax_error(source, errors))?;
-    let mut checker = Checker { plan, source, places, variables: Vec::new() };
+    let mut checker = Checker { names, source, places, variables: Vec::new() };
     let (node, kind) = checker.check(&tree, 0)?;
     Ok(Expression { kind, variables: checker.variables, node })
 }
@@ -75,7 +105,7 @@ type Checked = Result<(Node, Type), ExpressionError>;
 
 /// Walks the parser's tree with the plan's names at hand.
 struct Checker<'a> {
-    plan: &'a FlightPlan,
+    names: &'a Names<'a>,
     source: &'a str,
     places: SourceInfo,
     variables: Vec<Id>,
@@ -136,7 +166,7 @@ impl Checker<'_> {
         if let Some((_, flight, kind)) = FlightName::ALL.iter().find(|(n, ..)| *n == name) {
             return Ok((Node::Flight(*flight), *kind));
         }
-        let Some(variable) = self.plan.variables.iter().find(|v| v.name.as_str() == name) else {
+        let Some(variable) = self.names.variables.get(name) else {
             return Err(self.error(
                 at,
                 "unknown-name",
@@ -258,7 +288,7 @@ impl Checker<'_> {
     fn distance_to(&mut self, to: &IdedExpr, depth: usize) -> Checked {
         let target = match &to.expr {
             Expr::Literal(LiteralValue::String(id)) => {
-                let fix = self.plan.fixes.iter().find(|f| f.id.as_str() == id.inner());
+                let fix = self.names.fixes.get(id.inner());
                 let unknown = || {
                     self.error(
                         to,
@@ -266,7 +296,7 @@ impl Checker<'_> {
                         format!("there is no fix `{}`: add it or correct its name", id.inner()),
                     )
                 };
-                Node::Position(fix.ok_or_else(unknown)?.position)
+                Node::Position(*fix.ok_or_else(unknown)?)
             }
             _ => *self.expect(to, Type::Position, depth)?,
         };

@@ -10,7 +10,7 @@
 mod compile;
 mod eval;
 
-pub use compile::{MAX_DEPTH, MAX_LENGTH, compile};
+pub use compile::{MAX_DEPTH, MAX_LENGTH, Names, compile, compile_with};
 pub use eval::{Env, EvalError, FlightState};
 
 use crate::Id;
