@@ -283,7 +283,7 @@ impl Cursor {
 
     /// True if no point of the present passage is left, so that the next step decides what follows.
     pub fn at_the_end_of_its_leg(&self) -> bool {
-        self.expansion.as_ref().is_none_or(|e| e.len().is_none_or(|n| self.given >= n))
+        self.expansion.as_ref().is_none_or(|e| e.count().is_none_or(|n| self.given >= n))
     }
 
     /// Moves the end of the path to where the aircraft is: what follows is flown from there.

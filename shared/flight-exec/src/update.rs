@@ -82,7 +82,7 @@ impl Executor {
         match self.carried_over(&proposed, entry)? {
             Carried::Enter(cursor) => {
                 self.activate(proposed, out);
-                self.jump(cursor, out);
+                self.jump(*cursor, out);
             }
             Carried::On(bookmarks) => self.go_on_in(proposed, bookmarks, out),
         }
@@ -150,14 +150,14 @@ impl Executor {
         let mut here = self.here();
         here.last.level = now.path.last.level;
         cursor.move_path_to(here);
-        Ok(Carried::Enter(cursor))
+        Ok(Carried::Enter(Box::new(cursor)))
     }
 }
 
 /// How a flight goes over to a new plan.
 enum Carried {
     /// Directly to an entry leg.
-    Enter(Cursor),
+    Enter(Box<Cursor>),
     /// Bookmarks before each waypoint that stays, and behind the last of them.
     On(Vec<Cursor>),
 }

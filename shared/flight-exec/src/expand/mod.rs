@@ -90,19 +90,19 @@ impl Expansion {
     }
 
     /// How many points it has; `None`: no end (a holding that is left by decision).
-    pub fn len(&self) -> Option<u64> {
+    pub fn count(&self) -> Option<u64> {
         match self {
             Expansion::Points(points) => Some(points.len() as u64),
             Expansion::Holding(_) => None,
-            Expansion::Orbit(circle) => Some(circle.len()),
-            Expansion::Scan(sweep) => Some(sweep.len()),
+            Expansion::Orbit(circle) => Some(circle.count()),
+            Expansion::Scan(sweep) => Some(sweep.count()),
             Expansion::Reversed { points, .. } => Some((*points).max(1)),
         }
     }
 
     /// The same pattern backwards, ending at `start`; `with_last`: beginning with its last point, because the path isn't there.
     pub fn reversed(self: &Arc<Self>, start: Point, with_last: bool) -> Expansion {
-        match self.len() {
+        match self.count() {
             Some(points) => {
                 let points = points + u64::from(with_last);
                 Expansion::Reversed { pattern: self.clone(), points, start }

@@ -68,13 +68,8 @@ impl Circle {
     }
 
     /// How many points it has.
-    pub fn len(&self) -> u64 {
+    pub fn count(&self) -> u64 {
         self.steps + 2
-    }
-
-    /// Never: a circle has points.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 }
 
@@ -96,8 +91,8 @@ mod tests {
             let c = Circle::new((CENTRE, 250.0, turns, turn), from, Some(onward), 3.0).unwrap();
             let swept = c.step_deg.abs() * c.steps as f64;
             assert!((swept - sweep_deg).abs() < 1e-6 || (swept - sweep_deg - 360.0).abs() < 1e-6, "{swept}");
-            assert!(c.point(c.len()).is_none());
-            for i in 0..c.len() {
+            assert!(c.point(c.count()).is_none());
+            for i in 0..c.count() {
                 let out = CENTRE.distance_m(c.point(i).unwrap().position) - 250.0;
                 assert!((-0.01..3.1).contains(&out), "{i}: {out}");
             }

@@ -178,13 +178,8 @@ impl Sweep {
     }
 
     /// How many points it has.
-    pub fn len(&self) -> u64 {
+    pub fn count(&self) -> u64 {
         self.tracks.saturating_mul(2)
-    }
-
-    /// Everything was flown already.
-    pub fn is_empty(&self) -> bool {
-        self.tracks == 0
     }
 
     /// The point number `index`: two a track.

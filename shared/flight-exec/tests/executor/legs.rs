@@ -115,11 +115,9 @@ fn an_orbit_is_flown_as_often_as_asked() {
 
 #[test]
 fn a_scan_covers_its_area_and_turns_outside() {
-    let legs = format!(
-        r#"<TF id="a" fix="B1"/><scan id="s" spacing="150" heading="0" overshoot="50"><area><centre/></area></scan><TF id="c" fix="A2"/>"#
-    );
-    let legs = legs.replace("<area><centre/></area>", r#"<area fix="C3" radius="590"/>"#);
-    let rig = check(&legs, "a s c");
+    let legs = r#"<TF id="a" fix="B1"/>
+        <scan id="s" spacing="150" heading="0" overshoot="50"><area fix="C3" radius="590"/></scan><TF id="c" fix="A2"/>"#;
+    let rig = check(legs, "a s c");
     let points: Vec<_> = rig.flown.iter().filter(|w| w.leg.as_str() == "s").collect();
     assert_eq!(points.len(), 2 * 8, "1180 m in lines of 150 m, two points each");
     let out = points.iter().map(|w| fix("C3").distance_m(w.position)).fold(f64::INFINITY, f64::min);
