@@ -119,7 +119,12 @@ impl Selection {
     /// The identifier it stands for.
     pub fn id(&self) -> &Id {
         match self {
-            Self::Leg(id) | Self::Stage(id) | Self::Emergency(id) | Self::Fix(id) | Self::Runway(id) | Self::Variable(id) => id,
+            Self::Leg(id)
+            | Self::Stage(id)
+            | Self::Emergency(id)
+            | Self::Fix(id)
+            | Self::Runway(id)
+            | Self::Variable(id) => id,
         }
     }
 }

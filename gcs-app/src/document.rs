@@ -158,7 +158,12 @@ mod tests {
     use geometry::LatLon;
 
     fn document() -> Document {
-        let fix = Fix { id: "A".into(), position: LatLon::new(1.0, 1.0), name: String::new(), description: String::new() };
+        let fix = Fix {
+            id: "A".into(),
+            position: LatLon::new(1.0, 1.0),
+            name: String::new(),
+            description: String::new(),
+        };
         Document::new(FlightPlan { fixes: vec![fix], ..new_plan() }, None, Vec::new())
     }
 

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// What came of it.
@@ -110,7 +110,11 @@ fn seen(dialog: impl FnOnce() -> Option<PathBuf>) -> Result<Option<PathBuf>, Str
 
 fn open(path: &Path) -> FileNews {
     let read = std::fs::metadata(path).and_then(|meta| {
-        if meta.len() > LARGEST { Err(std::io::Error::other("it is larger than 80 MiB")) } else { std::fs::read(path) }
+        if meta.len() > LARGEST {
+            Err(std::io::Error::other("it is larger than 80 MiB"))
+        } else {
+            std::fs::read(path)
+        }
     });
     match read {
         Ok(bytes) => FileNews::Opened { path: path.to_owned(), bytes },
@@ -121,7 +125,9 @@ fn open(path: &Path) -> FileNews {
 fn save(path: PathBuf, text: &str, version: u64) -> FileNews {
     match write_whole(&path, text.as_bytes()) {
         Ok(()) => FileNews::Saved { path, version },
-        Err(error) => FileNews::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display())),
+        Err(error) => {
+            FileNews::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
+        }
     }
 }
 

@@ -109,7 +109,13 @@ mod tests {
             ground_amsl_m: None,
             passage,
         };
-        let passage = |leg: &str, iteration, first, end| Passage { leg: leg.into(), stage: "s".into(), iteration, first, end };
+        let passage = |leg: &str, iteration, first, end| Passage {
+            leg: leg.into(),
+            stage: "s".into(),
+            iteration,
+            first,
+            end,
+        };
         Forecast {
             points: vec![point(0, 0), point(1, 0), point(2, 1), point(3, 2), point(4, 2)],
             passages: vec![passage("a", 1, 0, 2), passage("b", 1, 2, 3), passage("a", 2, 3, 5)],
@@ -126,7 +132,11 @@ mod tests {
         }
         let here = LatLon::new(0.0, 2.1e-3);
         assert_eq!(f.nearest(here, None).map(|p| p.time_s), Some(4.0));
-        assert_eq!(f.nearest(here, Some(&"a".into())).map(|p| p.time_s), Some(6.0), "the other leg is nearer");
+        assert_eq!(
+            f.nearest(here, Some(&"a".into())).map(|p| p.time_s),
+            Some(6.0),
+            "the other leg is nearer"
+        );
         assert_eq!(f.nearest(here, Some(&"c".into())), None);
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);

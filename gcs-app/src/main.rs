@@ -56,7 +56,9 @@ struct Window {
 
 fn main() -> ExitCode {
     tracing_subscriber::fmt()
-        .with_env_filter(tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn".into()))
+        .with_env_filter(
+            tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn".into()),
+        )
         .with_writer(std::io::stderr)
         .init();
     let cli = Cli::parse();
@@ -82,7 +84,8 @@ fn open(window: Window) -> anyhow::Result<ExitCode> {
 }
 
 fn read(path: PathBuf) -> anyhow::Result<Document> {
-    let bytes = std::fs::read(&path).map_err(|error| anyhow::anyhow!("{} can't be opened: {error}", path.display()))?;
+    let bytes = std::fs::read(&path)
+        .map_err(|error| anyhow::anyhow!("{} can't be opened: {error}", path.display()))?;
     Ok(Document::read(&bytes, Some(path)))
 }
 

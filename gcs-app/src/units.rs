@@ -39,7 +39,12 @@ impl Unit {
     }
     /// The number without its unit; a dash for what is not a number.
     pub fn number(self, si: f64) -> String {
-        if si.is_finite() { format!("{:.*}", self.decimals, self.from_si(si)) } else { "–".into() }
+        if !si.is_finite() {
+            return "–".into();
+        }
+        let text = format!("{:.*}", self.decimals, self.from_si(si));
+        // no minus before nothing
+        if text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.')) { text.replace('-', "") } else { text }
     }
     /// Number and unit.
     pub fn show(self, si: f64) -> String {
@@ -138,11 +143,15 @@ mod tests {
         assert_eq!(Units::Aviation.speed().show(25.0), "49 kt");
         assert_eq!(Units::Aviation.distance().show(18520.0), "10.0 NM");
         assert_eq!(Units::Si.distance().show(f64::NAN), "– km");
+        assert_eq!(Units::Si.climb().show(-0.01), "0.0 m/s");
+        assert_eq!(Units::Si.climb().show(-0.1), "-0.1 m/s");
     }
 
     #[test]
     fn durations_and_bearings_read_naturally() {
-        for (s, text) in [(0.2, "0 s"), (59.4, "59 s"), (65.0, "1:05"), (3665.0, "1:01:05"), (-1.0, "–"), (f64::NAN, "–")] {
+        for (s, text) in
+            [(0.2, "0 s"), (59.4, "59 s"), (65.0, "1:05"), (3665.0, "1:01:05"), (-1.0, "–"), (f64::NAN, "–")]
+        {
             assert_eq!(duration(s), text);
         }
         for (deg, text) in [(0.0, "000°"), (359.7, "000°"), (-90.0, "270°"), (52.0, "052°")] {

@@ -62,7 +62,8 @@ fn leg_keys(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
         queue.edit(Edit::DeleteLeg { leg: leg() });
     }
     let Some(context) = scene.document.plan().leg(id) else { return };
-    let neighbour = |offset: isize| context.index.checked_add_signed(offset).and_then(|i| context.siblings.get(i));
+    let neighbour =
+        |offset: isize| context.index.checked_add_signed(offset).and_then(|i| context.siblings.get(i));
     if ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::ArrowUp))
         && let Some(before) = neighbour(-1)
     {

@@ -2,7 +2,9 @@
 
 use super::App;
 use crate::command::{BottomTab, DocumentCommand, Queue, ViewCommand};
-use crate::panels::{Scene, alarms, bar, decision, flight, inspector, log, pfd, problems, profile, push, table};
+use crate::panels::{
+    Scene, alarms, bar, decision, flight, inspector, log, pfd, problems, profile, push, table,
+};
 use crate::theme;
 use crate::units;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, ScrollArea, Ui};
@@ -13,18 +15,33 @@ impl App {
         let Self { document, vehicle, view, analysis, map, tree, .. } = self;
         let scene = Scene { document, analysis, vehicle, view, now_s };
         let frame = theme::panel(ui);
-        Panel::top("bar").exact_size(42.0).frame(frame.inner_margin(egui::Margin::symmetric(10, 4))).show(ui, |ui| bar::show(ui, &scene, queue));
+        Panel::top("bar")
+            .exact_size(42.0)
+            .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
+            .show(ui, |ui| bar::show(ui, &scene, queue));
         notice(ui, &scene, queue);
         Panel::left("plan").default_size(268.0).size_range(200.0..=460.0).frame(frame).show(ui, |ui| {
             let height = if scene.problems().next().is_some() { 168.0 } else { 64.0 };
-            Panel::bottom("problems").resizable(false).exact_size(height).frame(Frame::new()).show(ui, |ui| {
-                ui.add_space(6.0);
-                problems::show(ui, &scene, queue);
-            });
+            Panel::bottom("problems").resizable(false).exact_size(height).frame(Frame::new()).show(
+                ui,
+                |ui| {
+                    ui.add_space(6.0);
+                    problems::show(ui, &scene, queue);
+                },
+            );
             tree.show(ui, &scene, queue);
         });
-        Panel::right("details").default_size(324.0).size_range(324.0..=460.0).frame(frame).show(ui, |ui| right(ui, &scene, queue));
-        Panel::bottom("below").default_size(196.0).size_range(120.0..=480.0).resizable(true).frame(frame).show(ui, |ui| below(ui, &scene, queue));
+        Panel::right("details")
+            .default_size(324.0)
+            .size_range(324.0..=460.0)
+            .frame(frame)
+            .show(ui, |ui| right(ui, &scene, queue));
+        Panel::bottom("below")
+            .default_size(196.0)
+            .size_range(120.0..=480.0)
+            .resizable(true)
+            .frame(frame)
+            .show(ui, |ui| below(ui, &scene, queue));
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             map.show(ui, &scene, queue);
             over_map(ui, &scene, queue);
@@ -50,23 +67,30 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 /// Inspector above; below it, once a vehicle was heard, the flight.
 fn right(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if scene.vehicle.heard_s.is_some() {
-        Panel::bottom("flight").default_size(500.0).size_range(220.0..=640.0).resizable(true).frame(Frame::new()).show(ui, |ui| {
-            ui.add_space(8.0);
-            pfd::show(ui, scene);
-            ui.add_space(4.0);
-            ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
-                alarms::show(ui, scene);
+        Panel::bottom("flight")
+            .default_size(500.0)
+            .size_range(220.0..=640.0)
+            .resizable(true)
+            .frame(Frame::new())
+            .show(ui, |ui| {
+                ui.add_space(8.0);
+                pfd::show(ui, scene);
                 ui.add_space(4.0);
-                flight::show(ui, scene);
+                ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
+                    alarms::show(ui, scene);
+                    ui.add_space(4.0);
+                    flight::show(ui, scene);
+                });
             });
-        });
     }
     inspector::show(ui, scene, queue);
 }
 
 fn below(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     ui.horizontal(|ui| {
-        for (tab, text) in [(BottomTab::Profile, "Profile"), (BottomTab::Table, "Table"), (BottomTab::Log, "Log")] {
+        for (tab, text) in
+            [(BottomTab::Profile, "Profile"), (BottomTab::Table, "Table"), (BottomTab::Log, "Log")]
+        {
             if ui.selectable_label(scene.view.bottom == tab, text).clicked() {
                 queue.view(ViewCommand::BottomTab(tab));
             }
@@ -104,7 +128,8 @@ fn timeline(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.spinner();
     }
     if let Some(why) = forecast.cut_short.as_ref().or(scene.analysis.no_forecast.as_ref()) {
-        ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate()).on_hover_text(why);
+        ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
+            .on_hover_text(why);
     }
 }
 

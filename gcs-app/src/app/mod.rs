@@ -17,7 +17,7 @@ use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{Call, Link, Order};
 use crate::map::{MapState, hillshade::Ground};
 use crate::panels::{Scene, ViewState, tree::Tree};
-use crate::state::Vehicle;
+use crate::state::{READ_ABOARD, Vehicle};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
@@ -60,7 +60,12 @@ impl App {
     ///
     /// # Errors
     /// No thread can be started.
-    pub fn new(creation: &eframe::CreationContext<'_>, document: Document, link: Link, terrain: Arc<dyn Terrain>) -> std::io::Result<Self> {
+    pub fn new(
+        creation: &eframe::CreationContext<'_>,
+        document: Document,
+        link: Link,
+        terrain: Arc<dyn Terrain>,
+    ) -> std::io::Result<Self> {
         let ctx = creation.egui_ctx.clone();
         theme::install(&ctx);
         let wake: Arc<dyn Fn() + Send + Sync> = {
@@ -110,7 +115,13 @@ impl App {
     }
 
     fn scene(&self, now_s: f64) -> Scene<'_> {
-        Scene { document: &self.document, analysis: &self.analysis, vehicle: &self.vehicle, view: &self.view, now_s }
+        Scene {
+            document: &self.document,
+            analysis: &self.analysis,
+            vehicle: &self.vehicle,
+            view: &self.view,
+            now_s,
+        }
     }
 
     fn drain(&mut self, ctx: &egui::Context) {
@@ -122,7 +133,7 @@ impl App {
         self.adopt_plan_aboard();
         if lacks_plan && now_s - self.asked_aboard_s > ASK_ABOARD_S {
             self.asked_aboard_s = now_s;
-            self.call("Read the plan aboard", Call::PlanAboard, now_s);
+            self.call(READ_ABOARD, Call::PlanAboard, now_s);
         }
         if let Some(analysis) = self.worker.answer() {
             self.analysis = analysis;
@@ -136,7 +147,8 @@ impl App {
     /// A window without a plan of its own shows the one that is aboard.
     fn adopt_plan_aboard(&mut self) {
         let Some(aboard) = &self.vehicle.aboard else { return };
-        let untouched = self.document.path().is_none() && !self.document.can_undo() && !self.document.can_redo();
+        let untouched =
+            self.document.path().is_none() && !self.document.can_undo() && !self.document.can_redo();
         if untouched && self.document.plan().stages.is_empty() {
             self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
             self.map.fit();
@@ -152,9 +164,12 @@ impl App {
                 self.view.notice = None;
                 self.map.fit();
             }
-            FileNews::Saved { path, version } if version == self.document.version() => self.document.saved_as(path),
+            FileNews::Saved { path, version } if version == self.document.version() => {
+                self.document.saved_as(path)
+            }
             FileNews::Saved { path, .. } => {
-                self.view.notice = Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
+                self.view.notice =
+                    Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
             }
             FileNews::Failed(why) => self.view.notice = Some(why),
         }
@@ -164,7 +179,8 @@ impl App {
     fn call(&mut self, label: &str, call: Call, now_s: f64) {
         let ticket = self.vehicle.requests.open(label, now_s);
         if !self.link.order(Order::Call { ticket, call }) {
-            let outcome = crate::state::Outcome::Refused("the link's thread has ended: restart the program".into());
+            let outcome =
+                crate::state::Outcome::Refused("the link's thread has ended: restart the program".into());
             self.vehicle.requests.settle(ticket, outcome, now_s);
         }
     }

@@ -155,7 +155,9 @@ fn plan_label(command: &PlanCommand) -> String {
         PlanCommand::GoTo { leg } => format!("Go to {leg}"),
         PlanCommand::SetCount { leg, count } => format!("{leg}: count {count}"),
         PlanCommand::Decide { leg, branch } => format!("{leg}: take {branch}"),
-        PlanCommand::SetVariable { name, value } => format!("Set {name} to {}", crate::state::log::variable(value)),
+        PlanCommand::SetVariable { name, value } => {
+            format!("Set {name} to {}", crate::state::log::variable(value))
+        }
         PlanCommand::Emergency { plan: Some(plan), .. } => format!("Emergency: fly {plan}"),
         PlanCommand::Emergency { plan: None, .. } => "Emergency: fly the alternate in force".into(),
         PlanCommand::ReturnToMain { leg } => format!("Return to the main plan at {leg}"),

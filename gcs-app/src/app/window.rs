@@ -27,7 +27,9 @@ pub struct Options {
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
     /// There is nothing to open it on.
-    #[error("there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set): log in to a desktop, or use the commands that work without a window (legwork --help)")]
+    #[error(
+        "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set): log in to a desktop, or use the commands that work without a window (legwork --help)"
+    )]
     NoDisplay,
     /// A library of the desktop is missing.
     #[error("the window can't be opened: {0}. On Debian and Ubuntu, install: {PACKAGES}")]
@@ -63,7 +65,11 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     };
     // winit panics when a library it loads at run time is missing
     let opened = std::panic::catch_unwind(AssertUnwindSafe(|| {
-        eframe::run_native("legwork", native, Box::new(move |creation| Ok(Box::new(build(creation, options)?))))
+        eframe::run_native(
+            "legwork",
+            native,
+            Box::new(move |creation| Ok(Box::new(build(creation, options)?))),
+        )
     }));
     match opened {
         Ok(Ok(())) => Ok(()),
@@ -73,7 +79,8 @@ pub fn run(options: Options) -> Result<(), WindowError> {
 }
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let text =
+        panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
     text.unwrap_or("a library of the desktop is missing").to_owned()
 }
 

@@ -19,9 +19,18 @@ pub fn fly(plan: &FlightPlan, profile: &Profile, terrain: &Arc<dyn Terrain>) -> 
     let program = flight_plan::compile(plan.clone(), profile, terrain.as_ref())
         .map_err(|_| "This plan can't be flown yet: see its problems.".to_owned())?;
     let options = Options::default();
-    let options = Options { track_every_s: (options.most_s / MOST_POINTS).max(options.track_every_s), ..options };
+    let options =
+        Options { track_every_s: (options.most_s / MOST_POINTS).max(options.track_every_s), ..options };
     let start = if plan.home().is_some() { Start::Runway } else { in_flight(plan)? };
-    let flown = flight_exec::preview(&Arc::new(program), profile, terrain, Wind::default(), start, &Scenario::default(), &options);
+    let flown = flight_exec::preview(
+        &Arc::new(program),
+        profile,
+        terrain,
+        Wind::default(),
+        start,
+        &Scenario::default(),
+        &options,
+    );
     flown.map(|preview| forecast(&preview, terrain.as_ref())).map_err(|error| error.to_string())
 }
 

@@ -3,8 +3,8 @@
 use super::Shared;
 use aircraft::Profile;
 use flight_plan::{FlightPlan, Problem};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use terrain::Terrain;
 
@@ -90,7 +90,12 @@ impl Worker {
     }
 }
 
-fn work(inbox: &Receiver<Question>, outbox: &Sender<Analysis>, terrain: &Arc<dyn Terrain>, wake: &(dyn Fn() + Send + Sync)) {
+fn work(
+    inbox: &Receiver<Question>,
+    outbox: &Sender<Analysis>,
+    terrain: &Arc<dyn Terrain>,
+    wake: &(dyn Fn() + Send + Sync),
+) {
     let mut last = Analysis::default();
     while let Some(question) = newest(inbox) {
         last = analyse(&question, terrain, last);
@@ -122,5 +127,12 @@ fn analyse(question: &Question, terrain: &Arc<dyn Terrain>, last: Analysis) -> A
         Ok(forecast) => (Arc::new(forecast), None),
         Err(why) => (last.forecast, Some(why)),
     };
-    Analysis { version: question.version, hash, problems, forecast, forecast_version: question.version, no_forecast }
+    Analysis {
+        version: question.version,
+        hash,
+        problems,
+        forecast,
+        forecast_version: question.version,
+        no_forecast,
+    }
 }

@@ -8,8 +8,8 @@ use flight_exec::{Command as PlanCommand, ProposalReport, Status};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 use usal::contract::{
-    Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation, PlanEvent, PlanVariables, Position,
-    Power, Propose, Stamped,
+    Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation, PlanEvent,
+    PlanVariables, Position, Power, Propose, Stamped,
 };
 
 /// What the window wants of the link.
@@ -48,6 +48,7 @@ pub enum Call {
 
 /// What the link has to tell.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "most news are of the large kind")]
 pub enum News {
     /// The session changed.
     Link(LinkState),

@@ -103,7 +103,12 @@ async fn connect(endpoint: &str, vehicle: &str, outlet: &Outlet) -> Result<Open,
 }
 
 impl Open {
-    fn follow<T>(&mut self, variable: Variable<T>, heard: fn(Stamped<T>) -> Heard, outlet: &Outlet) -> Result<(), usal::SessionError>
+    fn follow<T>(
+        &mut self,
+        variable: Variable<T>,
+        heard: fn(Stamped<T>) -> Heard,
+        outlet: &Outlet,
+    ) -> Result<(), usal::SessionError>
     where
         T: serde::de::DeserializeOwned + Clone + Send + Sync + 'static,
     {
@@ -169,8 +174,12 @@ async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
             let report = session.call(fp_manager::PROPOSE, &proposal, PLAN_TIMEOUT).await?;
             Ok(Reply::Proposal(Box::new(report)))
         }
-        Call::Plan(command) => session.call(fp_manager::COMMAND, &command, COMMAND_TIMEOUT).await.map(|_| Reply::Done),
-        Call::Gateway(request) => session.call(gateway::REQUEST, &request, COMMAND_TIMEOUT).await.map(|_| Reply::Done),
+        Call::Plan(command) => {
+            session.call(fp_manager::COMMAND, &command, COMMAND_TIMEOUT).await.map(|_| Reply::Done)
+        }
+        Call::Gateway(request) => {
+            session.call(gateway::REQUEST, &request, COMMAND_TIMEOUT).await.map(|_| Reply::Done)
+        }
         Call::PlanAboard => {
             let document = session.call(fp_manager::PLAN_DOCUMENT, &Empty {}, PLAN_TIMEOUT).await?;
             Ok(Reply::Plan(document.info.hash.map(|hash| Aboard {

@@ -34,9 +34,12 @@ fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
     text::haloed(painter, end + vec2(6.0, 0.0), Align2::LEFT_CENTER, &label, 11.0, p.text, p);
 }
 
+/// Draws a line of some style from here to there.
+type Line = fn(&Painter, Pos2, Pos2, &Palette);
+
 /// Line styles and what they mean.
 fn legend(painter: &Painter, map: Rect, p: &Palette) {
-    let rows: [(&str, fn(&Painter, Pos2, Pos2, &Palette)); 4] = [
+    let rows: [(&str, Line); 4] = [
         ("planned", |painter, a, b, p| {
             painter.line_segment([a, b], Stroke::new(2.0, p.accent));
         }),
@@ -56,7 +59,13 @@ fn legend(painter: &Painter, map: Rect, p: &Palette) {
     for (i, (name, line)) in rows.iter().enumerate() {
         let y = origin.y + 8.0 + 16.0 * i as f32;
         line(painter, pos2(origin.x, y), pos2(origin.x + 30.0, y), p);
-        painter.text(pos2(origin.x + 38.0, y), Align2::LEFT_CENTER, name, egui::FontId::proportional(11.0), p.text);
+        painter.text(
+            pos2(origin.x + 38.0, y),
+            Align2::LEFT_CENTER,
+            name,
+            egui::FontId::proportional(11.0),
+            p.text,
+        );
     }
 }
 
@@ -76,7 +85,8 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
     if button(&mut column, "⛶", "Show the whole plan (F)", false) {
         queue.view(ViewCommand::Fit);
     }
-    if scene.vehicle.position.is_some() && button(&mut column, "✈", "Follow the aircraft", scene.view.follow) {
+    if scene.vehicle.position.is_some() && button(&mut column, "✈", "Follow the aircraft", scene.view.follow)
+    {
         queue.view(ViewCommand::Follow(!scene.view.follow));
     }
 }

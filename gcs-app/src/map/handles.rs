@@ -25,11 +25,19 @@ pub struct Tool {
 
 impl Tool {
     /// Draws the handles and turns drags into edits. True if the pointer clicked on one.
-    pub fn run(&mut self, ui: &mut Ui, view: &View, sketch: &Sketch, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+    pub fn run(
+        &mut self,
+        ui: &mut Ui,
+        view: &View,
+        sketch: &Sketch,
+        scene: &Scene<'_>,
+        queue: &mut Queue,
+    ) -> bool {
         let mut clicked = false;
         let mut labels = Vec::new();
         let p = theme::of(ui);
-        let near = sketch.handles.iter().map(|h| (h, view.place(h.at))).filter(|(_, at)| view.rect.contains(*at));
+        let near =
+            sketch.handles.iter().map(|h| (h, view.place(h.at))).filter(|(_, at)| view.rect.contains(*at));
         for (handle, at) in near.take(MOST) {
             let selected = is_selected(scene, handle);
             if matches!(handle.what, Handled::Radius(_) | Handled::Corner { .. }) && !selected {
@@ -49,7 +57,16 @@ impl Tool {
     }
 
     #[expect(clippy::too_many_arguments, reason = "a gesture meets everything that is on the map")]
-    fn react(&mut self, response: &Response, at: Pos2, view: &View, handle: &Handle, sketch: &Sketch, scene: &Scene<'_>, queue: &mut Queue) {
+    fn react(
+        &mut self,
+        response: &Response,
+        at: Pos2,
+        view: &View,
+        handle: &Handle,
+        sketch: &Sketch,
+        scene: &Scene<'_>,
+        queue: &mut Queue,
+    ) {
         if response.clicked() || response.drag_started() {
             queue.view(ViewCommand::Select(Some(selection(handle))));
         }
@@ -77,7 +94,10 @@ impl Tool {
 fn selection(handle: &Handle) -> Selection {
     match &handle.what {
         Handled::Fix(id) => Selection::Fix(id.clone()),
-        Handled::Waypoint(leg) | Handled::Centre(leg) | Handled::Radius(leg) | Handled::Corner { leg, .. } => Selection::Leg(leg.clone()),
+        Handled::Waypoint(leg)
+        | Handled::Centre(leg)
+        | Handled::Radius(leg)
+        | Handled::Corner { leg, .. } => Selection::Leg(leg.clone()),
     }
 }
 

@@ -1,7 +1,9 @@
 //! Terrain as a shaded picture: computed once on a worker thread, then a texture.
 
 use super::view::{Mercator, View};
-use egui::{Color32, ColorImage, Context, Mesh, Painter, Pos2, Rect, Shape, TextureHandle, TextureOptions, pos2};
+use egui::{
+    Color32, ColorImage, Context, Mesh, Painter, Pos2, Rect, Shape, TextureHandle, TextureOptions, pos2,
+};
 use geometry::LatLon;
 use std::sync::{Arc, mpsc};
 use terrain::Terrain;
@@ -78,7 +80,7 @@ impl Layer {
 /// Dark and light pictures of the ground, in the map's projection.
 fn paint(ground: &Ground) -> [ColorImage; 2] {
     let heights = Heights::sample(ground);
-    let pictures = [true, false].map(|dark| {
+    [true, false].map(|dark| {
         let mut pixels = Vec::with_capacity(heights.width * heights.height);
         for row in 0..heights.height {
             for column in 0..heights.width {
@@ -86,8 +88,7 @@ fn paint(ground: &Ground) -> [ColorImage; 2] {
             }
         }
         ColorImage::new([heights.width, heights.height], pixels)
-    });
-    pictures
+    })
 }
 
 struct Heights {

@@ -65,8 +65,14 @@ impl MapState {
         let of_leg = |leg| self.sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
         match selection {
             Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
-            Selection::Stage(id) => plan.stage(id)?.legs.iter().find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
-            Selection::Emergency(id) => self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied(),
+            Selection::Stage(id) => plan
+                .stage(id)?
+                .legs
+                .iter()
+                .find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
+            Selection::Emergency(id) => {
+                self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied()
+            }
             Selection::Fix(id) => plan.fix(id).map(|f| f.position),
             Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
             Selection::Variable(_) => None,
@@ -80,13 +86,17 @@ impl MapState {
             self.fit_now(ui.available_size());
         }
         let here = scene.vehicle.position.as_ref().map(|p| p.value.position);
-        let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(LatLon::new(36.3, -84.3));
+        let here = here
+            .or_else(|| scene.document.plan().home().map(|r| r.threshold))
+            .unwrap_or(LatLon::new(36.3, -84.3));
         let mut memory = std::mem::take(&mut self.memory);
         let followed = memory.detached().is_none();
         Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
             .zoom_with_ctrl(false)
             .double_click_to_zoom(false)
-            .show(ui, |ui, response, projector, _| self.draw(ui, response, &View::of(projector), scene, queue));
+            .show(ui, |ui, response, projector, _| {
+                self.draw(ui, response, &View::of(projector), scene, queue)
+            });
         if followed && scene.view.follow && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
         }
@@ -94,7 +104,14 @@ impl MapState {
         self.memory = memory;
     }
 
-    fn draw(&mut self, ui: &mut Ui, response: &egui::Response, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
+    fn draw(
+        &mut self,
+        ui: &mut Ui,
+        response: &egui::Response,
+        view: &View,
+        scene: &Scene<'_>,
+        queue: &mut Queue,
+    ) {
         response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, "Map"));
         let p = theme::of(ui);
         let painter = ui.painter_at(view.rect);

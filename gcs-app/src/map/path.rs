@@ -55,14 +55,20 @@ fn highlight_selection(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Pa
     };
     let forecast = scene.forecast();
     for passage in forecast.passages.iter().filter(|passage| selected(&passage.leg, &passage.stage)) {
-        let line: Vec<Mercator> = forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
+        let line: Vec<Mercator> =
+            forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
         let parts = polyline::visible_parts(&line, view);
         polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Solid, p.halo);
     }
 }
 
 fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-    let near = scene.forecast().waypoints.iter().map(|w| (w, view.place(w.position))).filter(|(_, at)| view.is_near(*at));
+    let near = scene
+        .forecast()
+        .waypoints
+        .iter()
+        .map(|w| (w, view.place(w.position)))
+        .filter(|(_, at)| view.is_near(*at));
     let mut last: Option<Pos2> = None;
     for (waypoint, at) in near.take(MOST_WAYPOINTS) {
         if last.is_some_and(|l| l.distance(at) < 7.0) {
@@ -92,8 +98,10 @@ pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palett
 pub fn leg_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<Id> {
     const REACH: f32 = 9.0;
     let forecast = scene.forecast();
-    let near = |i: &usize| forecast.points.get(*i).map_or(f32::INFINITY, |q| view.place(q.position).distance(at));
-    let closest = (0..forecast.points.len()).min_by(|a, b| near(a).total_cmp(&near(b))).filter(|i| near(i) < REACH)?;
+    let near =
+        |i: &usize| forecast.points.get(*i).map_or(f32::INFINITY, |q| view.place(q.position).distance(at));
+    let closest =
+        (0..forecast.points.len()).min_by(|a, b| near(a).total_cmp(&near(b))).filter(|i| near(i) < REACH)?;
     let passage = forecast.points.get(closest)?.passage;
     forecast.passages.get(passage).map(|passage| passage.leg.clone())
 }

@@ -50,12 +50,21 @@ pub fn draw_emergencies(painter: &Painter, view: &View, sketch: &Sketch, scene: 
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref());
     for (id, line) in &sketch.emergencies {
         let points: Vec<Mercator> = line.iter().map(|at| (*at).into()).collect();
-        let emphasised = in_force == Some(id) || matches!(&scene.view.selection, Some(Selection::Emergency(e)) if e == id);
+        let emphasised =
+            in_force == Some(id) || matches!(&scene.view.selection, Some(Selection::Emergency(e)) if e == id);
         let width = if emphasised { 3.0 } else { 2.0 };
         let parts = polyline::visible_parts(&points, view);
         polyline::draw(painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
         if let (true, Some(first)) = (emphasised, line.first()) {
-            text::haloed(painter, view.place(*first) + vec2(8.0, -8.0), Align2::LEFT_BOTTOM, &format!("⚑ {id}"), 12.0, p.contingency, p);
+            text::haloed(
+                painter,
+                view.place(*first) + vec2(8.0, -8.0),
+                Align2::LEFT_BOTTOM,
+                &format!("⚑ {id}"),
+                12.0,
+                p.contingency,
+                p,
+            );
         }
     }
 }
@@ -63,7 +72,12 @@ pub fn draw_emergencies(painter: &Painter, view: &View, sketch: &Sketch, scene: 
 /// Runways: their true length and direction, with the threshold and the name.
 pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, p: &Palette) {
     for runway in plan.runways.iter().filter(|r| r.threshold.is_valid() && r.heading_deg.is_finite()) {
-        let (start, end) = (view.place(runway.threshold), view.place(runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0))));
+        let (start, end) = (
+            view.place(runway.threshold),
+            view.place(
+                runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0)),
+            ),
+        );
         if !view.is_near(start) && !view.is_near(end) {
             continue;
         }
@@ -74,6 +88,14 @@ pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, p: &Palet
         painter.line_segment([start, end], Stroke::new(4.0, p.text));
         let across = (end - start).normalized().rot90() * 7.0;
         painter.line_segment([start - across, start + across], Stroke::new(2.0, p.text));
-        text::haloed(painter, start - (end - start).normalized() * 8.0, Align2::CENTER_TOP, runway.id.as_str(), 12.0, p.text, p);
+        text::haloed(
+            painter,
+            start - (end - start).normalized() * 8.0,
+            Align2::CENTER_TOP,
+            runway.id.as_str(),
+            12.0,
+            p.text,
+            p,
+        );
     }
 }

@@ -110,11 +110,21 @@ mod tests {
 
     #[test]
     fn a_line_that_leaves_and_returns_has_two_parts_and_a_far_one_none() {
-        let line = |lons: &[f64]| lons.iter().map(|lon| LatLon::new(0.0, *lon).into()).collect::<Vec<Mercator>>();
+        let line =
+            |lons: &[f64]| lons.iter().map(|lon| LatLon::new(0.0, *lon).into()).collect::<Vec<Mercator>>();
         let there_and_back = line(&[0.0, 0.01, 60.0, 61.0, 62.0, 0.02, 0.01]);
         assert_eq!(visible_parts(&there_and_back, &view(12.0)).len(), 2);
-        assert!(visible_parts(&line(&[70.0, 71.0]), &view(12.0)).iter().flatten().all(|p| !view(12.0).rect.contains(*p)));
-        assert_eq!(visible_parts(&line(&[-70.0, 71.0]), &view(12.0)).len(), 1, "a segment across the screen stays");
+        assert!(
+            visible_parts(&line(&[70.0, 71.0]), &view(12.0))
+                .iter()
+                .flatten()
+                .all(|p| !view(12.0).rect.contains(*p))
+        );
+        assert_eq!(
+            visible_parts(&line(&[-70.0, 71.0]), &view(12.0)).len(),
+            1,
+            "a segment across the screen stays"
+        );
         assert!(visible_parts(&[], &view(12.0)).is_empty());
     }
 }

@@ -2,8 +2,8 @@
 //! plans. Broken drafts give what can be made of them.
 
 use flight_plan::{
-    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Place, PlanWaypoint, Section, Value, VariableValue, Variables,
-    expression,
+    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Place, PlanWaypoint, Section, Value, VariableValue,
+    Variables, expression,
 };
 use geometry::LatLon;
 
@@ -43,7 +43,9 @@ impl Handled {
     pub fn leg(&self) -> Option<&Id> {
         match self {
             Self::Fix(_) => None,
-            Self::Waypoint(leg) | Self::Centre(leg) | Self::Radius(leg) | Self::Corner { leg, .. } => Some(leg),
+            Self::Waypoint(leg) | Self::Centre(leg) | Self::Radius(leg) | Self::Corner { leg, .. } => {
+                Some(leg)
+            }
         }
     }
     /// Its name.
@@ -54,7 +56,9 @@ impl Handled {
             Self::Centre(id) => format!("Centre of {id}"),
             Self::Radius(id) => format!("Radius of {id}"),
             Self::Corner { leg, hole: None, corner } => format!("Corner {} of {leg}", corner + 1),
-            Self::Corner { leg, hole: Some(hole), corner } => format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1),
+            Self::Corner { leg, hole: Some(hole), corner } => {
+                format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1)
+            }
         }
     }
 }
@@ -105,7 +109,9 @@ impl Sketch {
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
         match &leg.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => self.add_waypoint(leg, to, reader),
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
+                self.add_waypoint(leg, to, reader)
+            }
             LegKind::Hf(h) | LegKind::Ha(h) => self.add_waypoint(leg, &h.fix, reader),
             LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Scan(scan) => match &scan.area {
@@ -125,7 +131,14 @@ impl Sketch {
         }
     }
 
-    fn add_circle(&mut self, leg: &Leg, centre: &Place, radius_m: &Value<f64>, is_area: bool, reader: &Reader<'_>) {
+    fn add_circle(
+        &mut self,
+        leg: &Leg,
+        centre: &Place,
+        radius_m: &Value<f64>,
+        is_area: bool,
+        reader: &Reader<'_>,
+    ) {
         let (Some(at), Some(radius_m)) = (reader.place(centre), reader.number(radius_m)) else { return };
         if !(radius_m > 0.0 && radius_m < 1.0e6) {
             return;
@@ -135,12 +148,14 @@ impl Sketch {
         if !taken {
             self.handles.push(Handle { what: Handled::Centre(leg.id.clone()), at });
         }
-        self.handles.push(Handle { what: Handled::Radius(leg.id.clone()), at: at.destination(90.0, radius_m) });
+        self.handles
+            .push(Handle { what: Handled::Radius(leg.id.clone()), at: at.destination(90.0, radius_m) });
         self.circles.push(Circle { leg: leg.id.clone(), centre: at, radius_m, is_area });
     }
 
     fn add_polygon(&mut self, leg: &Leg, corners: &[LatLon], holes: &[Vec<LatLon>]) {
-        let rings: Vec<Vec<LatLon>> = std::iter::once(corners.to_vec()).chain(holes.iter().cloned()).collect();
+        let rings: Vec<Vec<LatLon>> =
+            std::iter::once(corners.to_vec()).chain(holes.iter().cloned()).collect();
         for (ring, points) in rings.iter().enumerate() {
             for (corner, at) in points.iter().enumerate().filter(|(_, at)| at.is_valid()) {
                 let what = Handled::Corner { leg: leg.id.clone(), hole: ring.checked_sub(1), corner };
@@ -159,17 +174,22 @@ impl Sketch {
             }
             match section {
                 Section::Main => self.main.push(line),
-                Section::Emergency(emergency) => match self.emergencies.iter_mut().find(|(id, _)| *id == emergency.id) {
-                    Some((_, before)) => before.extend(line),
-                    None => self.emergencies.push((emergency.id.clone(), line)),
-                },
+                Section::Emergency(emergency) => {
+                    match self.emergencies.iter_mut().find(|(id, _)| *id == emergency.id) {
+                        Some((_, before)) => before.extend(line),
+                        None => self.emergencies.push((emergency.id.clone(), line)),
+                    }
+                }
             }
         }
     }
 
     /// Every place, to fit the map to.
     pub fn places(&self) -> Vec<LatLon> {
-        let rims = self.circles.iter().flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
+        let rims = self
+            .circles
+            .iter()
+            .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
         self.handles.iter().map(|h| h.at).chain(self.main.iter().flatten().copied()).chain(rims).collect()
     }
 }
@@ -201,7 +221,9 @@ impl Reader<'_> {
 
     fn line_of(&self, leg: &Leg, line: &mut Vec<LatLon>) {
         let place = match &leg.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => Some(&to.place),
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
+                Some(&to.place)
+            }
             LegKind::Hf(h) | LegKind::Ha(h) => Some(&h.fix.place),
             LegKind::Orbit { centre, .. } => Some(centre),
             LegKind::Scan(scan) => match &scan.area {
@@ -258,7 +280,11 @@ mod tests {
             ("a + b", None),
             ("", None),
         ] {
-            assert_eq!(bound_radius(source), expected.map(|(name, added)| (Id::new(name), added)), "{source}");
+            assert_eq!(
+                bound_radius(source),
+                expected.map(|(name, added)| (Id::new(name), added)),
+                "{source}"
+            );
         }
     }
 }

@@ -4,7 +4,15 @@ use crate::theme::Palette;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, vec2};
 
 /// Text with a halo, readable on any ground. Returns where it is.
-pub fn haloed(painter: &Painter, at: Pos2, anchor: Align2, text: &str, size: f32, colour: Color32, p: &Palette) -> Rect {
+pub fn haloed(
+    painter: &Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+    size: f32,
+    colour: Color32,
+    p: &Palette,
+) -> Rect {
     let galley = painter.layout_no_wrap(text.into(), FontId::proportional(size), Color32::PLACEHOLDER);
     let rect = anchor.anchor_size(at, galley.size());
     let halo = p.halo.gamma_multiply(0.8);

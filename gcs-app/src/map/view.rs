@@ -134,7 +134,9 @@ mod tests {
             let back = view.geo(view.place(p));
             assert!(back.distance_m(p) < 1e-4 * view.rect.width() as f64 / view.points_per_metre());
             let metre = view.place(p.destination(90.0, 100.0)).x - view.place(p).x;
-            assert!((f64::from(metre) - 100.0 * view.points_per_metre()).abs() < 0.02 * f64::from(metre).max(1.0));
+            assert!(
+                (f64::from(metre) - 100.0 * view.points_per_metre()).abs() < 0.02 * f64::from(metre).max(1.0)
+            );
         }
     }
 

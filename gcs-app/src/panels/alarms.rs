@@ -29,7 +29,11 @@ fn one(ui: &mut Ui, alarm: &Alarm) {
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
             ui.spacing_mut().item_spacing.y = 2.0;
-            ui.label(RichText::new(format!("{symbol} {}", alarm.id.replace('-', " ").to_uppercase())).strong().color(colour));
+            ui.label(
+                RichText::new(format!("{symbol} {}", alarm.id.replace('-', " ").to_uppercase()))
+                    .strong()
+                    .color(colour),
+            );
             ui.label(RichText::new(&alarm.advice).size(12.0));
         });
 }

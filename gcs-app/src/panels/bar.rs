@@ -39,7 +39,11 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
     let p = theme::of(ui);
     let dirty = if scene.document.is_dirty() { " ●" } else { "" };
     let text = format!("{}{dirty}", scene.document.plan().name);
-    let hover = format!("{}{}", scene.document.file_name(), if dirty.is_empty() { "" } else { ", with unsaved changes" });
+    let hover = format!(
+        "{}{}",
+        scene.document.file_name(),
+        if dirty.is_empty() { "" } else { ", with unsaved changes" }
+    );
     ui.add(egui::Label::new(RichText::new(text).color(p.weak)).truncate()).on_hover_text(hover);
 }
 
@@ -58,7 +62,11 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
                 continue;
             }
             if ui.add(egui::Button::new(text).shortcut_text(keys)).clicked() {
-                if aboard { queue.fly(FlyCommand::TakeAboard) } else { queue.document(command) }
+                if aboard {
+                    queue.fly(FlyCommand::TakeAboard)
+                } else {
+                    queue.document(command)
+                }
                 ui.close();
             }
         }
@@ -124,8 +132,12 @@ fn link(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let (text, colour) = match (&scene.vehicle.link, silence) {
         (LinkState::Off, _) => ("○ Connect".to_owned(), p.text),
         (LinkState::Failed(_), _) => ("✖ No link".to_owned(), p.caution),
-        (LinkState::Connecting(_), _) | (LinkState::Connected(_), None) => ("◌ Looking for it…".to_owned(), p.weak),
-        (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => (format!("⚠ Silent for {}", units::age(age)), p.caution),
+        (LinkState::Connecting(_), _) | (LinkState::Connected(_), None) => {
+            ("◌ Looking for it…".to_owned(), p.weak)
+        }
+        (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => {
+            (format!("⚠ Silent for {}", units::age(age)), p.caution)
+        }
         (LinkState::Connected(_), Some(age)) => (format!("● Link {}", units::age(age)), p.good),
     };
     let menu = ui.menu_button(RichText::new(text).color(colour), |ui| form(ui, scene, queue));
@@ -159,7 +171,8 @@ fn state(ui: &mut Ui, scene: &Scene<'_>) {
     let v = &gateway.value;
     let armed = if v.armed { "armed" } else { "disarmed" };
     let text = RichText::new(format!("{:?} · {} · {armed}", v.state, v.autopilot_mode));
-    let text = if gateway.is_expired(scene.now_s) { text.color(p.weak).strikethrough() } else { text.color(p.good) };
+    let text =
+        if gateway.is_expired(scene.now_s) { text.color(p.weak).strikethrough() } else { text.color(p.good) };
     let hover = format!("{}\nAutopilot heard {} ago", v.cause, units::age(v.autopilot_age_s));
     ui.label(text).on_hover_text(hover);
     if let Some(seconds) = v.safe_return_in_s {
@@ -169,8 +182,12 @@ fn state(ui: &mut Ui, scene: &Scene<'_>) {
 
 /// Where the document stands: edited, proposed, aboard or active, and its hash.
 pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
-    let Some(hash) = scene.analysis.hash_of(scene.document.version()) else { return ("checking", Standing::Draft) };
-    let Some(status) = scene.vehicle.status.as_ref().map(|s| &s.value) else { return ("draft", Standing::Draft) };
+    let Some(hash) = scene.analysis.hash_of(scene.document.version()) else {
+        return ("checking", Standing::Draft);
+    };
+    let Some(status) = scene.vehicle.status.as_ref().map(|s| &s.value) else {
+        return ("draft", Standing::Draft);
+    };
     if status.plan.as_deref() == Some(hash) {
         return match status.phase {
             Phase::Idle => ("aboard", Standing::Aboard),
@@ -225,7 +242,10 @@ fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let button = super::primary_button("⬆ Push", theme::of(ui));
     let response = ui.add_enabled(enabled, if enabled { button } else { egui::Button::new("⬆ Push") });
     named(&response, "Push");
-    if response.on_hover_text("Propose this plan to the vehicle, look at what it would do, then commit").clicked() {
+    if response
+        .on_hover_text("Propose this plan to the vehicle, look at what it would do, then commit")
+        .clicked()
+    {
         queue.fly(FlyCommand::Propose);
     }
 }

@@ -34,10 +34,12 @@ pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'
     let typing = ui.ctx().text_edit_focused();
     for (i, (branch, label)) in request.options.iter().enumerate() {
         let key = KEYS.get(i);
-        let pressed = key.is_some_and(|k| !typing && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, *k)));
+        let pressed = key
+            .is_some_and(|k| !typing && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, *k)));
         let number = key.map_or_else(String::new, |_| format!("{}  ", i + 1));
         let default = if request.default.as_ref() == Some(branch) { "  (default)" } else { "" };
-        let button = egui::Button::new(format!("{number}{label}{default}")).min_size(egui::vec2(ui.available_width(), 30.0));
+        let button = egui::Button::new(format!("{number}{label}{default}"))
+            .min_size(egui::vec2(ui.available_width(), 30.0));
         if ui.add(button).clicked() || pressed {
             queue.plan(Command::Decide { leg: request.leg.clone(), branch: branch.clone() });
         }

@@ -86,7 +86,13 @@ fn outcome<T>(response: &Response, value: T) -> Change<T> {
 }
 
 /// A number or an expression; the small button changes between the two.
-pub fn number_value(ui: &mut Ui, name: &str, value: &Value<f64>, unit: Unit, least_si: f64) -> Change<Value<f64>> {
+pub fn number_value(
+    ui: &mut Ui,
+    name: &str,
+    value: &Value<f64>,
+    unit: Unit,
+    least_si: f64,
+) -> Change<Value<f64>> {
     let change = match value {
         Value::Constant(si) => number(ui, name, *si, unit, least_si).map(Value::Constant),
         Value::Expression(source) => expression(ui, name, source).map(Value::Expression),
@@ -143,7 +149,8 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let name = format!("{text} (hold)");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    let held = response.is_pointer_button_down_on() || (response.has_focus() && ui.input(|i| i.key_down(Key::Space)));
+    let held = response.is_pointer_button_down_on()
+        || (response.has_focus() && ui.input(|i| i.key_down(Key::Space)));
     let progress = progress(ui, response.id, held);
     let p = theme::of(ui);
     let painter = ui.painter();
@@ -151,7 +158,11 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     let mut done = rect;
     done.set_width(rect.width() * progress.min(1.0) as f32);
     painter.rect_filled(done, 5.0, colour.gamma_multiply(0.45));
-    painter.galley_with_override_text_color(rect.center() - galley.size() / 2.0, galley, if progress > 0.0 { p.text } else { colour });
+    painter.galley_with_override_text_color(
+        rect.center() - galley.size() / 2.0,
+        galley,
+        if progress > 0.0 { p.text } else { colour },
+    );
     if response.has_focus() {
         painter.rect_stroke(rect.expand(2.0), 6.0, Stroke::new(1.0, p.text), egui::StrokeKind::Outside);
     }

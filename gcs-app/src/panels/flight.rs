@@ -35,9 +35,9 @@ fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
     }
     let navigation = &scene.vehicle.navigation;
     let u = scene.units();
-    let next = navigation.as_ref().map(|n| {
-        format!("{} · {}", u.distance().show(n.value.distance_m), units::duration(n.value.eta_s))
-    });
+    let next = navigation
+        .as_ref()
+        .map(|n| format!("{} · {}", u.distance().show(n.value.distance_m), units::duration(n.value.eta_s)));
     value_with_age(ui, "Next", &next.unwrap_or_default(), age_of(navigation, scene.now_s));
     let off = navigation.as_ref().map(|n| {
         let side = if n.value.cross_track_m < 0.0 { "left" } else { "right" };
@@ -74,7 +74,8 @@ fn air_rows(ui: &mut Ui, scene: &Scene<'_>) {
     let u = scene.units();
     let position = &scene.vehicle.position;
     let age = age_of(position, scene.now_s);
-    let home = position.as_ref().map(|v| format!("{} above home", u.altitude().show(v.value.altitude_home_m)));
+    let home =
+        position.as_ref().map(|v| format!("{} above home", u.altitude().show(v.value.altitude_home_m)));
     value_with_age(ui, "Height", &home.unwrap_or_default(), age);
     let ground = position.as_ref().map(|v| {
         format!("{} · track {}", u.speed().show(v.value.ground_speed_mps), units::bearing(v.value.track_deg))
@@ -86,9 +87,18 @@ fn air_rows(ui: &mut Ui, scene: &Scene<'_>) {
 
 fn systems_rows(ui: &mut Ui, scene: &Scene<'_>) {
     let v = scene.vehicle;
-    let power = v.power.as_ref().map(|p| format!("{:.0} % · {:.1} V · {:.1} A", p.value.battery * 100.0, p.value.voltage_v, p.value.current_a));
+    let power = v.power.as_ref().map(|p| {
+        format!("{:.0} % · {:.1} V · {:.1} A", p.value.battery * 100.0, p.value.voltage_v, p.value.current_a)
+    });
     value_with_age(ui, "Battery", &power.unwrap_or_default(), age_of(&v.power, scene.now_s));
-    let engine = v.engine.as_ref().map(|e| format!("{:.0} rpm · {:.0} °C · {:.0} %", e.value.rpm, e.value.temperature_c, e.value.throttle * 100.0));
+    let engine = v.engine.as_ref().map(|e| {
+        format!(
+            "{:.0} rpm · {:.0} °C · {:.0} %",
+            e.value.rpm,
+            e.value.temperature_c,
+            e.value.throttle * 100.0
+        )
+    });
     value_with_age(ui, "Engine", &engine.unwrap_or_default(), age_of(&v.engine, scene.now_s));
     let gps = v.gps.as_ref().map(|g| {
         let fix = if g.value.fix_3d { "3D fix" } else { "NO FIX" };
@@ -131,7 +141,10 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let id = ui.make_persistent_id("emergency plan");
     let mut chosen: Option<Id> = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.clone());
-    let name = chosen.as_ref().or(in_force.as_ref()).map_or_else(|| "the alternate in force".to_owned(), Id::to_string);
+    let name = chosen
+        .as_ref()
+        .or(in_force.as_ref())
+        .map_or_else(|| "the alternate in force".to_owned(), Id::to_string);
     let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();
     if plans.len() > 1 {
         let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
@@ -151,7 +164,9 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 fn recover(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
-    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) && ui.button("Leave Safe mode").clicked() {
+    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn))
+        && ui.button("Leave Safe mode").clicked()
+    {
         queue.fly(FlyCommand::Gateway(usal::contract::GatewayRequest::Recover));
     }
 }
@@ -163,11 +178,15 @@ pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
     let p = theme::of(ui);
     let Some(request) = scene.vehicle.requests.last() else { return };
     let (text, colour) = match &request.outcome {
-        Outcome::Pending => (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text),
+        Outcome::Pending => {
+            (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text)
+        }
         Outcome::Accepted => (format!("✔ {}: accepted", request.label), p.good),
         Outcome::Refused(reason) => (format!("✖ {}: refused, {reason}", request.label), p.caution),
     };
-    let fresh = request.settled_s.is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)));
+    let fresh = request
+        .settled_s
+        .is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)));
     if fresh {
         ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
     }

@@ -10,7 +10,8 @@ use crate::units::{self, Units};
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::Command;
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value, Variable, VariableValue,
+    Altitude, AltitudeReference, Edit, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value, Variable,
+    VariableValue,
 };
 
 /// Draws the inspector.
@@ -21,12 +22,20 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let plan = scene.document.plan();
         match &scene.view.selection {
             None => summary(ui, scene),
-            Some(Selection::Leg(id)) => found(ui, plan.leg(id), |ui, context| leg::show(ui, scene, &context, queue)),
-            Some(Selection::Stage(id)) => found(ui, plan.stage(id), |ui, stage| show_stage(ui, scene, stage, queue)),
+            Some(Selection::Leg(id)) => {
+                found(ui, plan.leg(id), |ui, context| leg::show(ui, scene, &context, queue))
+            }
+            Some(Selection::Stage(id)) => {
+                found(ui, plan.stage(id), |ui, stage| show_stage(ui, scene, stage, queue))
+            }
             Some(Selection::Emergency(id)) => found(ui, plan.emergency_plan(id), show_emergency),
             Some(Selection::Fix(id)) => found(ui, plan.fix(id), |ui, fix| show_fix(ui, fix, queue)),
-            Some(Selection::Runway(id)) => found(ui, plan.runway(id), |ui, runway| show_runway(ui, scene, runway)),
-            Some(Selection::Variable(id)) => found(ui, plan.variable(id), |ui, v| show_variable(ui, scene, v, queue)),
+            Some(Selection::Runway(id)) => {
+                found(ui, plan.runway(id), |ui, runway| show_runway(ui, scene, runway))
+            }
+            Some(Selection::Variable(id)) => {
+                found(ui, plan.variable(id), |ui, v| show_variable(ui, scene, v, queue))
+            }
         }
     });
 }
@@ -67,7 +76,9 @@ fn summary(ui: &mut Ui, scene: &Scene<'_>) {
     if let Some(why) = &forecast.cut_short {
         ui.label(RichText::new(format!("⚠ {why}")).color(p.caution));
     }
-    ui.label(RichText::new("Select something in the tree or on the map to change it.").size(12.0).color(p.weak));
+    ui.label(
+        RichText::new("Select something in the tree or on the map to change it.").size(12.0).color(p.weak),
+    );
 }
 
 /// Sends what happened to a field as an edit: a drag becomes one undo step.
@@ -102,19 +113,28 @@ fn altitude_row(ui: &mut Ui, units: Units, of: &Id, altitude: Option<&Altitude>,
     field::row(ui, "Altitude", |ui| {
         let Some(current) = altitude else {
             if ui.button("inherited").on_hover_text("Give it an altitude of its own").clicked() {
-                queue.edit(set(Some(Altitude { metres: Value::Constant(1000.0), reference: AltitudeReference::Amsl })));
+                queue.edit(set(Some(Altitude {
+                    metres: Value::Constant(1000.0),
+                    reference: AltitudeReference::Amsl,
+                })));
             }
             return;
         };
         let change = field::number_value(ui, "Altitude", &current.metres, units.altitude(), -500.0);
         send(change.map(|metres| set(Some(Altitude { metres, reference: current.reference }))), queue);
-        egui::ComboBox::from_id_salt(("datum", of)).width(56.0).selected_text(reference_text(current.reference)).show_ui(ui, |ui| {
-            for reference in [AltitudeReference::Amsl, AltitudeReference::Agl, AltitudeReference::Home] {
-                if ui.selectable_label(reference == current.reference, reference_text(reference)).clicked() {
-                    queue.edit(set(Some(Altitude { metres: current.metres.clone(), reference })));
+        egui::ComboBox::from_id_salt(("datum", of))
+            .width(56.0)
+            .selected_text(reference_text(current.reference))
+            .show_ui(ui, |ui| {
+                for reference in [AltitudeReference::Amsl, AltitudeReference::Agl, AltitudeReference::Home] {
+                    if ui
+                        .selectable_label(reference == current.reference, reference_text(reference))
+                        .clicked()
+                    {
+                        queue.edit(set(Some(Altitude { metres: current.metres.clone(), reference })));
+                    }
                 }
-            }
-        });
+            });
         if ui.small_button("✖").on_hover_text("Inherit the altitude").clicked() {
             queue.edit(set(None));
         }
@@ -140,7 +160,13 @@ fn speed_row(ui: &mut Ui, units: Units, of: &Id, speed: Option<&Value<f64>>, que
 }
 
 /// Which emergency plan applies to a leg or stage; by-cause associations are listed.
-fn emergency_row(ui: &mut Ui, plan: &FlightPlan, of: &Id, choice: &flight_plan::EmergencyChoice, queue: &mut Queue) {
+fn emergency_row(
+    ui: &mut Ui,
+    plan: &FlightPlan,
+    of: &Id,
+    choice: &flight_plan::EmergencyChoice,
+    queue: &mut Queue,
+) {
     let fallback = choice.by_cause.iter().find(|(cause, _)| cause.is_none()).map(|(_, id)| id);
     field::row(ui, "Alternate", |ui| {
         let text = fallback.map_or("inherited", Id::as_str);
@@ -188,7 +214,13 @@ fn show_fix(ui: &mut Ui, fix: &Fix, queue: &mut Queue) {
 }
 
 /// A position as text, `latitude, longitude` in degrees.
-fn position_row(ui: &mut Ui, name: &str, at: geometry::LatLon, edit: impl Fn(geometry::LatLon) -> Edit, queue: &mut Queue) {
+fn position_row(
+    ui: &mut Ui,
+    name: &str,
+    at: geometry::LatLon,
+    edit: impl Fn(geometry::LatLon) -> Edit,
+    queue: &mut Queue,
+) {
     field::row(ui, name, |ui| {
         let text = field::text(ui, name, &units::position(at), false);
         if let Some(to) = text.as_deref().and_then(parse_position) {
@@ -208,7 +240,9 @@ fn show_runway(ui: &mut Ui, scene: &Scene<'_>, runway: &Runway) {
     let u = scene.units();
     heading(ui, "runway", &runway.id);
     field::row(ui, "Threshold", |ui| ui.label(units::position(runway.threshold)));
-    field::row(ui, "Elevation", |ui| ui.label(format!("{} AMSL", u.altitude().show(runway.elevation_amsl_m))));
+    field::row(ui, "Elevation", |ui| {
+        ui.label(format!("{} AMSL", u.altitude().show(runway.elevation_amsl_m)))
+    });
     field::row(ui, "Heading", |ui| ui.label(units::bearing(runway.heading_deg)));
     field::row(ui, "Length", |ui| ui.label(u.length().show(runway.length_m)));
     field::row(ui, "Priority", |ui| ui.label(runway.priority.to_string()));
@@ -237,12 +271,20 @@ fn show_variable(ui: &mut Ui, scene: &Scene<'_>, variable: &Variable, queue: &mu
         Change::None | Change::Ended => {}
     }
     if ui.add(super::primary_button("Set aboard", theme::of(ui))).clicked() {
-        queue.fly(FlyCommand::Plan(Command::SetVariable { name: variable.name.clone(), value: draft.clone() }));
+        queue.fly(FlyCommand::Plan(Command::SetVariable {
+            name: variable.name.clone(),
+            value: draft.clone(),
+        }));
     }
     ui.data_mut(|d| d.insert_temp(id, draft));
 }
 
-fn variable_field(ui: &mut Ui, name: &str, variable: &Variable, value: &VariableValue) -> Change<VariableValue> {
+fn variable_field(
+    ui: &mut Ui,
+    name: &str,
+    variable: &Variable,
+    value: &VariableValue,
+) -> Change<VariableValue> {
     let number_unit = units::Unit { symbol: "", per_si: 1.0, decimals: 2 };
     field::row(ui, name, |ui| match value {
         VariableValue::Number(n) => {
@@ -253,7 +295,11 @@ fn variable_field(ui: &mut Ui, name: &str, variable: &Variable, value: &Variable
         VariableValue::Bool(current) => {
             let mut new = *current;
             let text = if new { "true" } else { "false" };
-            if ui.checkbox(&mut new, text).changed() { Change::Set(VariableValue::Bool(new)) } else { Change::None }
+            if ui.checkbox(&mut new, text).changed() {
+                Change::Set(VariableValue::Bool(new))
+            } else {
+                Change::None
+            }
         }
         VariableValue::Text(current) => match field::text(ui, name, current, false) {
             Some(new) => Change::Set(VariableValue::Text(new)),

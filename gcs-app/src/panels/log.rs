@@ -19,11 +19,16 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
 fn commands(ui: &mut Ui, scene: &Scene<'_>) {
     super::group_title(ui, "Commands");
     let requests: Vec<&Request> = scene.vehicle.requests.newest_first().collect();
-    ScrollArea::vertical().id_salt("commands").auto_shrink(false).show_rows(ui, 20.0, requests.len(), |ui, rows| {
-        for request in requests.get(rows).unwrap_or_default() {
-            command(ui, request, scene.now_s);
-        }
-    });
+    ScrollArea::vertical().id_salt("commands").auto_shrink(false).show_rows(
+        ui,
+        20.0,
+        requests.len(),
+        |ui, rows| {
+            for request in requests.get(rows).unwrap_or_default() {
+                command(ui, request, scene.now_s);
+            }
+        },
+    );
 }
 
 fn command(ui: &mut Ui, request: &Request, now_s: f64) {

@@ -24,7 +24,7 @@ use egui::{RichText, Ui};
 use flight_plan::Problem;
 
 /// What the operator looks at.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ViewState {
     /// In which units.
     pub units: Units,
@@ -40,20 +40,6 @@ pub struct ViewState {
     pub playing: bool,
     /// Something the operator should read: a file that can't be opened, and the like.
     pub notice: Option<String>,
-}
-
-impl Default for ViewState {
-    fn default() -> Self {
-        Self {
-            units: Units::default(),
-            selection: None,
-            bottom: BottomTab::default(),
-            follow: false,
-            cursor_s: None,
-            playing: false,
-            notice: None,
-        }
-    }
 }
 
 /// Everything there is to draw, borrowed for a frame.
@@ -111,6 +97,8 @@ pub fn value_with_age(ui: &mut Ui, name: &str, text: &str, age: Option<(f64, boo
         };
         ui.add(egui::Label::new(shown).truncate());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            // clear of the scroll bar
+            ui.add_space(8.0);
             ui.label(RichText::new(age_text).size(10.5).color(p.weak));
         });
     });

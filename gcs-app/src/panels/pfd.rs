@@ -12,17 +12,26 @@ use tape::Side;
 
 /// Draws the display over the full width.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
-    let size = vec2(ui.available_width(), 190.0);
+    let size = vec2(ui.available_width(), 204.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let text = summary(scene);
-    response.widget_info(|| egui::WidgetInfo::labeled(Role::Image, true, format!("Primary flight display. {text}")));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(Role::Image, true, format!("Primary flight display. {text}"))
+    });
     let painter = ui.painter_at(rect);
     let p = theme::of(ui);
     let (left, middle, right) = columns(rect);
     let level = live(&scene.vehicle.attitude, scene.now_s);
     attitude::draw(&painter, middle, level.map(|a| (a.roll_deg, a.pitch_deg)));
     let speed = live(&scene.vehicle.air, scene.now_s).map(|a| a.airspeed_mps);
-    tape::draw(&painter, left, Side::Left, speed.map(|v| scene.units().speed().from_si(v)), tape_step(scene.units().speed()), p);
+    tape::draw(
+        &painter,
+        left,
+        Side::Left,
+        speed.map(|v| scene.units().speed().from_si(v)),
+        tape_step(scene.units().speed()),
+        p,
+    );
     let altitude = live(&scene.vehicle.position, scene.now_s).map(|v| v.altitude_amsl_m);
     let unit = scene.units().altitude();
     tape::draw(&painter, right, Side::Right, altitude.map(|v| unit.from_si(v)), tape_step(unit), p);
@@ -42,7 +51,7 @@ fn columns(rect: Rect) -> (Rect, Rect, Rect) {
     let column = |from: f32, to: f32| Rect::from_min_max(pos2(from, top), pos2(to, bottom));
     (
         column(rect.left(), rect.left() + tape),
-        Rect::from_min_max(pos2(rect.left() + tape + 2.0, rect.top()), pos2(rect.right() - tape - 2.0, bottom)),
+        column(rect.left() + tape + 2.0, rect.right() - tape - 2.0),
         column(rect.right() - tape, rect.right()),
     )
 }

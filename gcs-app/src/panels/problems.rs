@@ -21,11 +21,16 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         return;
     }
     let height = 44.0;
-    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show_rows(ui, height, problems.len(), |ui, rows| {
-        for problem in problems.get(rows).unwrap_or_default() {
-            row(ui, scene, problem, height, queue);
-        }
-    });
+    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show_rows(
+        ui,
+        height,
+        problems.len(),
+        |ui, rows| {
+            for problem in problems.get(rows).unwrap_or_default() {
+                row(ui, scene, problem, height, queue);
+            }
+        },
+    );
 }
 
 fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &mut Queue) {

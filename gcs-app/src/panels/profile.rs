@@ -31,7 +31,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     draw_ground(&painter, &axes, forecast, p);
     draw_path(&painter, &axes, scene, p);
     draw_cursor(&painter, &axes, scene, p);
-    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+    if let Some(pointer) =
+        response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
+    {
         queue.view(ViewCommand::Scrub(Some(axes.time_at(pointer))));
     }
 }
@@ -58,7 +60,8 @@ impl Axes {
         self.plot.left() + (time_s / self.duration_s) as f32 * self.plot.width()
     }
     fn y(&self, altitude_m: f64) -> f32 {
-        self.plot.bottom() - ((altitude_m - self.low_m) / (self.high_m - self.low_m)) as f32 * self.plot.height()
+        self.plot.bottom()
+            - ((altitude_m - self.low_m) / (self.high_m - self.low_m)) as f32 * self.plot.height()
     }
     fn place(&self, point: &Point) -> Pos2 {
         pos2(self.x(point.time_s), self.y(point.altitude_amsl_m))
@@ -83,13 +86,26 @@ fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     while value < high {
         let y = axes.y(unit.to_si(value));
         painter.hline(axes.plot.x_range(), y, Stroke::new(1.0, p.line));
-        painter.text(pos2(axes.plot.left() - 5.0, y), Align2::RIGHT_CENTER, format!("{value:.0}"), font.clone(), p.weak);
+        painter.text(
+            pos2(axes.plot.left() - 5.0, y),
+            Align2::RIGHT_CENTER,
+            format!("{value:.0}"),
+            font.clone(),
+            p.weak,
+        );
         value += step;
     }
     let head = format!("{} AMSL", unit.symbol);
-    painter.text(pos2(axes.plot.left() - 5.0, axes.plot.top() - 11.0), Align2::RIGHT_CENTER, head, font.clone(), p.weak);
+    painter.text(
+        pos2(axes.plot.left() - 5.0, axes.plot.top() - 11.0),
+        Align2::RIGHT_CENTER,
+        head,
+        font.clone(),
+        p.weak,
+    );
     let marks = f64::from(axes.plot.width() / 90.0).max(1.0);
-    let step = round_step(axes.duration_s, marks, &[10., 30., 60., 120., 300., 600., 1200., 1800., 3600., 7200.]);
+    let step =
+        round_step(axes.duration_s, marks, &[10., 30., 60., 120., 300., 600., 1200., 1800., 3600., 7200.]);
     for mark in 0..=(axes.duration_s / step) as usize {
         let time = mark as f64 * step;
         let at = pos2(axes.x(time), axes.plot.bottom() + 3.0);
@@ -115,7 +131,8 @@ fn draw_stages(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette)
 }
 
 fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: &Palette) {
-    let rect = Rect::from_min_max(pos2(from + 1.0, axes.plot.top() - 17.0), pos2(to - 1.0, axes.plot.top() - 3.0));
+    let rect =
+        Rect::from_min_max(pos2(from + 1.0, axes.plot.top() - 17.0), pos2(to - 1.0, axes.plot.top() - 3.0));
     painter.rect_filled(rect, 2.0, p.line);
     let galley = painter.layout_no_wrap(name.into(), FontId::proportional(10.5), p.text);
     if galley.size().x + 4.0 < rect.width() {
@@ -177,7 +194,9 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
 
 fn draw_aircraft(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let Some(position) = scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground) else { return };
-    let Some(near) = scene.forecast().nearest(position.value.position, scene.vehicle.current_leg()) else { return };
+    let Some(near) = scene.forecast().nearest(position.value.position, scene.vehicle.current_leg()) else {
+        return;
+    };
     let at = pos2(axes.x(near.time_s), axes.y(position.value.altitude_amsl_m));
     let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
     painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));
@@ -190,8 +209,14 @@ fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     painter.circle(at, 4.0, p.text, Stroke::new(1.5, p.halo));
     let leg = scene.forecast().passages.get(point.passage).map_or("", |passage| passage.leg.as_str());
     let altitude = scene.units().altitude();
-    let above = point.ground_amsl_m.map_or_else(String::new, |g| format!(" · {} AGL", altitude.show(point.altitude_amsl_m - g)));
-    let text = format!("{leg} · {} · {}{above}", units::duration(point.time_s), altitude.show(point.altitude_amsl_m));
+    let above = point
+        .ground_amsl_m
+        .map_or_else(String::new, |g| format!(" · {} AGL", altitude.show(point.altitude_amsl_m - g)));
+    let text = format!(
+        "{leg} · {} · {}{above}",
+        units::duration(point.time_s),
+        altitude.show(point.altitude_amsl_m)
+    );
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), p.text);
     let x = (at.x + 8.0).min(axes.plot.right() - galley.size().x - 6.0);
     let plate = Rect::from_min_size(pos2(x, axes.plot.top() + 4.0), galley.size()).expand2(vec2(5.0, 3.0));

@@ -84,7 +84,9 @@ fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue)
         ui.label("The leg it is on is gone. Enter at:");
         let current = proposal.entry.as_ref().map_or("choose a leg", Id::as_str);
         egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {
-            for context in scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main) {
+            for context in
+                scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main)
+            {
                 let chosen = proposal.entry.as_ref() == Some(&context.leg.id);
                 if ui.selectable_label(chosen, context.leg.id.as_str()).clicked() {
                     queue.fly(FlyCommand::EnterAt(context.leg.id.clone()));

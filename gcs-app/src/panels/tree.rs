@@ -39,13 +39,18 @@ impl Tree {
         let problems = worst(scene);
         let mut toggled = None;
         ui.spacing_mut().item_spacing.y = 1.0;
-        ScrollArea::vertical().id_salt("tree").auto_shrink(false).show_rows(ui, HEIGHT, self.rows.len(), |ui, shown| {
-            for row in self.rows.get(shown).unwrap_or_default() {
-                if draw(ui, row, scene, &problems, &self.folded, queue) {
-                    toggled.clone_from(&row.folds);
+        ScrollArea::vertical().id_salt("tree").auto_shrink(false).show_rows(
+            ui,
+            HEIGHT,
+            self.rows.len(),
+            |ui, shown| {
+                for row in self.rows.get(shown).unwrap_or_default() {
+                    if draw(ui, row, scene, &problems, &self.folded, queue) {
+                        toggled.clone_from(&row.folds);
+                    }
                 }
-            }
-        });
+            },
+        );
         if let Some(fold) = toggled {
             if !self.folded.remove(&fold) {
                 self.folded.insert(fold);
@@ -158,7 +163,13 @@ impl Builder<'_> {
                 let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
                 let is_default = default.as_ref() == Some(&branch.id);
                 let detail = if is_default { format!("{to}, default") } else { to };
-                self.item(depth + 1, "▸", &title(&branch.label, branch.id.as_str()), detail, Selection::Leg(leg.id.clone()));
+                self.item(
+                    depth + 1,
+                    "▸",
+                    &title(&branch.label, branch.id.as_str()),
+                    detail,
+                    Selection::Leg(leg.id.clone()),
+                );
             }
         }
     }
@@ -266,7 +277,8 @@ fn draw(
     response.widget_info(|| egui::WidgetInfo::selected(Role::TreeItem, true, selected, &name));
     if ui.is_rect_visible(rect) {
         let p = theme::of(ui);
-        let active = matches!(&row.selection, Some(Selection::Leg(id)) if scene.vehicle.current_leg() == Some(id));
+        let active =
+            matches!(&row.selection, Some(Selection::Leg(id)) if scene.vehicle.current_leg() == Some(id));
         background(ui, rect, selected, response.hovered(), p);
         contents(ui, rect, row, active, folded, problems, p);
     }

@@ -26,7 +26,7 @@ impl<T> Aged<T> {
     }
     /// No longer to be believed. What says it is valid for no sensible time is never believed.
     pub fn is_expired(&self, now_s: f64) -> bool {
-        !(self.age_s(now_s) <= self.validity_s)
+        self.validity_s.is_nan() || self.age_s(now_s) > self.validity_s
     }
 }
 
@@ -37,9 +37,13 @@ mod tests {
     #[test]
     fn a_value_expires_when_its_validity_is_over() {
         let value = |validity_s| Aged::new(Stamped { time_s: 7.0, validity_s, value: () }, 100.0);
-        for (validity, now, expired) in
-            [(2.0, 101.9, false), (2.0, 102.1, true), (f64::NAN, 100.0, true), (-1.0, 100.0, true), (2.0, 99.0, false)]
-        {
+        for (validity, now, expired) in [
+            (2.0, 101.9, false),
+            (2.0, 102.1, true),
+            (f64::NAN, 100.0, true),
+            (-1.0, 100.0, true),
+            (2.0, 99.0, false),
+        ] {
             assert_eq!(value(validity).is_expired(now), expired, "{validity} at {now}");
         }
     }

@@ -84,15 +84,20 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
     match event {
         PlanEvent::LegEntered { place } => info(format!("Leg {} of stage {}", place.leg, place.stage)),
-        PlanEvent::IterationFinished { leg, finished, of } => {
-            info(format!("Loop {leg}: pass {finished}{} done", of.map(|n| format!(" of {n}")).unwrap_or_default()))
-        }
+        PlanEvent::IterationFinished { leg, finished, of } => info(format!(
+            "Loop {leg}: pass {finished}{} done",
+            of.map(|n| format!(" of {n}")).unwrap_or_default()
+        )),
         PlanEvent::DecisionRequested(d) => {
             (Level::Caution, format!("Decision asked for at {}: {} choices", d.leg, d.options.len()))
         }
-        PlanEvent::DecisionTaken { leg, branch, by } => info(format!("{leg}: branch {branch}, decided by {by}")),
+        PlanEvent::DecisionTaken { leg, branch, by } => {
+            info(format!("{leg}: branch {branch}, decided by {by}"))
+        }
         PlanEvent::VariableChanged { name, value } => info(format!("{name} is now {}", variable(value))),
-        PlanEvent::PatternRefused { leg, reason } => (Level::Caution, format!("{leg} keeps its old pattern: {reason}")),
+        PlanEvent::PatternRefused { leg, reason } => {
+            (Level::Caution, format!("{leg} keeps its old pattern: {reason}"))
+        }
         PlanEvent::PlanActivated { hash, revision } => {
             info(format!("Plan {} is active, revision {revision}", short_hash(hash)))
         }
@@ -120,7 +125,9 @@ pub fn gateway_event(event: &GatewayEvent) -> Option<(Level, String)> {
         GatewayEvent::BufferLow { waypoints, seconds } => {
             Some((Level::Caution, format!("Buffer low: {waypoints} waypoints, {seconds:.0} s")))
         }
-        GatewayEvent::AlarmRaised(alarm) => Some((alarm.severity.into(), format!("{}: {}", alarm.id, alarm.advice))),
+        GatewayEvent::AlarmRaised(alarm) => {
+            Some((alarm.severity.into(), format!("{}: {}", alarm.id, alarm.advice)))
+        }
         GatewayEvent::AlarmCleared { id } => Some((Level::Info, format!("{id}: cleared"))),
     }
 }

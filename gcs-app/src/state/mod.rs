@@ -8,7 +8,7 @@ mod trail;
 
 pub use aged::Aged;
 pub use log::{Level, Line, Log};
-pub use requests::{Outcome, Request, Requests, Ticket};
+pub use requests::{Outcome, READ_ABOARD, Request, Requests, Ticket};
 pub use trail::Trail;
 
 use crate::link::{Heard, LinkState, News, Reply};
@@ -16,8 +16,8 @@ use flight_exec::{Phase, Status};
 use flight_plan::{FlightPlan, Id};
 use std::sync::Arc;
 use usal::contract::{
-    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanEvent, PlanVariables, Position, Power,
-    ProposalReport, Severity, Stamped,
+    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanEvent,
+    PlanVariables, Position, Power, ProposalReport, Severity, Stamped,
 };
 
 /// A vehicle, as far as the ground station knows it.

@@ -40,6 +40,8 @@ pub struct Requests {
     list: VecDeque<Request>,
 }
 
+/// What the window asks by itself, to show what is aboard.
+pub const READ_ABOARD: &str = "Read the plan aboard";
 /// Most requests remembered.
 const CAPACITY: usize = 64;
 
@@ -69,9 +71,9 @@ impl Requests {
         Some(request.label.clone())
     }
 
-    /// The newest request.
+    /// The newest request that somebody made, rather than the window for itself.
     pub fn last(&self) -> Option<&Request> {
-        self.list.back()
+        self.list.iter().rev().find(|r| r.label != READ_ABOARD)
     }
     /// All that are remembered, newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Request> {
@@ -92,7 +94,10 @@ mod tests {
         let mut requests = Requests::default();
         let first = requests.open("Hold", 1.0);
         let second = requests.open("Hold", 2.0);
-        assert_eq!(requests.settle(first, Outcome::Refused("on the ground".into()), 3.0).as_deref(), Some("Hold"));
+        assert_eq!(
+            requests.settle(first, Outcome::Refused("on the ground".into()), 3.0).as_deref(),
+            Some("Hold")
+        );
         assert_eq!(requests.last().map(|r| &r.outcome), Some(&Outcome::Pending));
         assert_eq!(requests.settle(first, Outcome::Accepted, 4.0), None, "answered twice");
         assert!(requests.settle(second, Outcome::Accepted, 5.0).is_some());

@@ -158,7 +158,10 @@ fn an_emergency_needs_a_held_button_and_is_named_by_its_effect() {
     assert!(window.asked().is_none());
     window.hold("Emergency: fly return (hold)", 80);
     let call = window.asked().map(|(_, call)| call);
-    assert_eq!(call, Some(Call::Plan(Command::Emergency { cause: flight_plan::Cause::Operator, plan: None })));
+    assert_eq!(
+        call,
+        Some(Call::Plan(Command::Emergency { cause: flight_plan::Cause::Operator, plan: None }))
+    );
 }
 
 #[test]
@@ -168,7 +171,8 @@ fn decisions_by_button_and_by_key() {
     window.hear_status(value);
     assert!(window.shows("Decide at ask") && window.shows("36 s"));
     window.click("2  Close look");
-    let decide = |branch: &str| Some(Call::Plan(Command::Decide { leg: "ask".into(), branch: branch.into() }));
+    let decide =
+        |branch: &str| Some(Call::Plan(Command::Decide { leg: "ask".into(), branch: branch.into() }));
     assert_eq!(window.asked().map(|(_, call)| call), decide("close"));
     window.harness.key_press(Key::Num1);
     window.steps(2);
@@ -212,7 +216,13 @@ fn a_lost_link_is_a_caution_and_then_a_warning() {
 #[test]
 fn alarms_are_listed_the_worst_first_and_go_away() {
     let (mut window, _) = flying();
-    let alarm = |id: &str, severity| Alarm { id: id.into(), severity, source: "gateway".into(), advice: format!("do something about {id}"), cause: None };
+    let alarm = |id: &str, severity| Alarm {
+        id: id.into(),
+        severity,
+        source: "gateway".into(),
+        advice: format!("do something about {id}"),
+        cause: None,
+    };
     window.hear_gateway(vec![alarm("energy-low", Severity::Caution), alarm("gps-lost", Severity::Warning)]);
     let (warning, caution) = (window.centre("⛔ GPS LOST"), window.centre("⚠ ENERGY LOW"));
     assert!(warning.y < caution.y);

@@ -28,10 +28,10 @@ impl Window {
     fn open(text: &str) -> Self {
         let (link, far) = Link::pair();
         let document = Document::read(text.as_bytes(), None);
-        let harness = Harness::builder()
-            .with_size(vec2(1280.0, 800.0))
-            .with_step_dt(1.0 / 60.0)
-            .build_eframe(move |creation| App::new(creation, document, link, assets::demo_terrain()).unwrap());
+        let harness =
+            Harness::builder().with_size(vec2(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(
+                move |creation| App::new(creation, document, link, assets::demo_terrain()).unwrap(),
+            );
         Self { harness, far }
     }
 

@@ -14,7 +14,9 @@ fn fix(window: &Window, id: &str) -> geometry::LatLon {
 fn a_plan_opens_with_tree_map_and_profile() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
-    for label in ["TF side1", "T/O take-off", "ALT return", "FIX A", "RWY R05", "Map", "Fix A", "Vertical profile"] {
+    for label in
+        ["TF side1", "T/O take-off", "ALT return", "FIX A", "RWY R05", "Map", "Fix A", "Vertical profile"]
+    {
         assert!(window.shows(label), "{label}");
     }
     let forecast = &window.app().analysis().forecast;
@@ -103,7 +105,11 @@ fn a_scan_s_area_is_moved_and_resized_through_its_variables() {
     let rim = window.centre("Radius of sweep");
     let radius = (rim - window.centre("Centre of sweep")).x;
     window.drag(rim, vec2(radius * 0.5, 0.0));
-    assert!((number(&window, "size") - 1000.0).abs() < 15.0, "800 m and a half more, of which 200 m are added: {}", number(&window, "size"));
+    assert!(
+        (number(&window, "size") - 1000.0).abs() < 15.0,
+        "800 m and a half more, of which 200 m are added: {}",
+        number(&window, "size")
+    );
     window.click("Undo");
     assert_eq!(number(&window, "size"), 600.0);
 }
@@ -144,7 +150,9 @@ fn a_problem_leads_to_its_place() {
 
 #[test]
 fn broken_text_opens_with_its_problems() {
-    for text in ["", "<", "not a plan", "<flightPlan", "<flightPlan xmlns='urn:legwork:flight-plan:1' name='x'/>"] {
+    for text in
+        ["", "<", "not a plan", "<flightPlan", "<flightPlan xmlns='urn:legwork:flight-plan:1' name='x'/>"]
+    {
         let mut window = Window::open(text);
         window.until_analysed();
         assert!(window.shows("Problem: "), "{text:?}");

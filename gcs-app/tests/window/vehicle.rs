@@ -79,7 +79,14 @@ impl Window {
     }
 
     pub fn hear_attitude(&mut self) {
-        let value = Attitude { roll_deg: 20.0, pitch_deg: 4.0, heading_deg: 40.0, roll_rate_dps: 0.0, pitch_rate_dps: 0.0, yaw_rate_dps: 0.0 };
+        let value = Attitude {
+            roll_deg: 20.0,
+            pitch_deg: 4.0,
+            heading_deg: 40.0,
+            roll_rate_dps: 0.0,
+            pitch_rate_dps: 0.0,
+            yaw_rate_dps: 0.0,
+        };
         self.hear(Heard::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 

@@ -1,7 +1,7 @@
 //! A leg: what every leg has, then what its kind has.
 
-use super::super::field::{self, Change};
 use super::super::Scene;
+use super::super::field::{self, Change};
 use super::{altitude_row, emergency_row, heading, name_row, position_row, send, speed_row};
 use crate::command::Queue;
 use crate::theme;
@@ -9,8 +9,8 @@ use crate::units::{Unit, Units};
 use egui::{RichText, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{
-    Area, DecideBefore, Edit, Holding, HoldingLength, Id, Leg, LegContext, LegKind, Place, PlanWaypoint, Scan,
-    TurnDirection, Value,
+    Area, DecideBefore, Edit, Holding, HoldingLength, Id, Leg, LegContext, LegKind, Place, PlanWaypoint,
+    Scan, TurnDirection, Value,
 };
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
@@ -45,7 +45,12 @@ fn fly_row(ui: &mut Ui, scene: &Scene<'_>, context: &LegContext<'_>, queue: &mut
         if ui.button("Go to this leg").clicked() {
             queue.plan(Command::GoTo { leg: id.clone() });
         }
-        let emergency = scene.vehicle.status.as_ref().and_then(|s| s.value.place.as_ref()).is_some_and(|p| p.plan != flight_exec::Branching::Main);
+        let emergency = scene
+            .vehicle
+            .status
+            .as_ref()
+            .and_then(|s| s.value.place.as_ref())
+            .is_some_and(|p| p.plan != flight_exec::Branching::Main);
         if emergency && ui.button("Return to the main plan here").clicked() {
             queue.plan(Command::ReturnToMain { leg: id.clone() });
         }
@@ -74,12 +79,18 @@ fn kind_rows(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
             field::row(ui, "Centre", |ui| ui.label(crate::units::position(*centre)));
             field::row(ui, "Turn", |ui| ui.label(turn_text(*turn)));
         }
-        LegKind::Hf(h) => holding_rows(ui, u, leg, h, |h| LegKind::Hf(h), queue),
-        LegKind::Ha(h) => holding_rows(ui, u, leg, h, |h| LegKind::Ha(h), queue),
-        LegKind::Iterative { count, until, .. } => loop_rows(ui, leg, count.as_ref(), until.as_deref(), queue),
-        LegKind::Intersection { default, decide_before, .. } => fork_rows(ui, u, leg, default.as_ref(), decide_before, queue),
+        LegKind::Hf(h) => holding_rows(ui, u, leg, h, LegKind::Hf, queue),
+        LegKind::Ha(h) => holding_rows(ui, u, leg, h, LegKind::Ha, queue),
+        LegKind::Iterative { count, until, .. } => {
+            loop_rows(ui, leg, count.as_ref(), until.as_deref(), queue)
+        }
+        LegKind::Intersection { default, decide_before, .. } => {
+            fork_rows(ui, u, leg, default.as_ref(), decide_before, queue)
+        }
         LegKind::Scan(scan) => scan_rows(ui, u, leg, scan, queue),
-        LegKind::Orbit { radius_m, turns, centre, turn } => orbit_rows(ui, u, leg, (centre, radius_m, turns, *turn), queue),
+        LegKind::Orbit { radius_m, turns, centre, turn } => {
+            orbit_rows(ui, u, leg, (centre, radius_m, turns, *turn), queue)
+        }
     }
 }
 
@@ -123,12 +134,27 @@ fn turn_row(ui: &mut Ui, turn: TurnDirection) -> Change<TurnDirection> {
     })
 }
 
-fn value_row(ui: &mut Ui, name: &str, value: &Value<f64>, unit: Unit, least: f64, edit: impl FnOnce(Value<f64>) -> Edit, queue: &mut Queue) {
+fn value_row(
+    ui: &mut Ui,
+    name: &str,
+    value: &Value<f64>,
+    unit: Unit,
+    least: f64,
+    edit: impl FnOnce(Value<f64>) -> Edit,
+    queue: &mut Queue,
+) {
     let change = field::row(ui, name, |ui| field::number_value(ui, name, value, unit, least));
     send(change.map(edit), queue);
 }
 
-fn holding_rows(ui: &mut Ui, u: Units, leg: &Leg, h: &Holding, kind: fn(Holding) -> LegKind, queue: &mut Queue) {
+fn holding_rows(
+    ui: &mut Ui,
+    u: Units,
+    leg: &Leg,
+    h: &Holding,
+    kind: fn(Holding) -> LegKind,
+    queue: &mut Queue,
+) {
     waypoint_rows(ui, leg, &h.fix, queue);
     send(turn_row(ui, h.turn).map(|turn| with_kind(leg, kind(Holding { turn, ..h.clone() }))), queue);
     if let Some(course) = &h.inbound_course_deg {
@@ -167,17 +193,29 @@ fn loop_rows(ui: &mut Ui, leg: &Leg, count: Option<&Value<f64>>, until: Option<&
     });
 }
 
-fn fork_rows(ui: &mut Ui, u: Units, leg: &Leg, default: Option<&Id>, before: &DecideBefore, queue: &mut Queue) {
+fn fork_rows(
+    ui: &mut Ui,
+    u: Units,
+    leg: &Leg,
+    default: Option<&Id>,
+    before: &DecideBefore,
+    queue: &mut Queue,
+) {
     let LegKind::Intersection { branches, .. } = &leg.kind else { return };
     field::row(ui, "Default", |ui| {
-        egui::ComboBox::from_id_salt("default branch").selected_text(default.map_or("none: hold and ask", Id::as_str)).show_ui(ui, |ui| {
-            let ids = branches.iter().map(|b| Some(&b.id));
-            for id in std::iter::once(None).chain(ids) {
-                if ui.selectable_label(id == default, id.map_or("none: hold and ask", Id::as_str)).clicked() {
-                    queue.edit(Edit::SetDefault { leg: leg.id.clone(), branch: id.cloned() });
+        egui::ComboBox::from_id_salt("default branch")
+            .selected_text(default.map_or("none: hold and ask", Id::as_str))
+            .show_ui(ui, |ui| {
+                let ids = branches.iter().map(|b| Some(&b.id));
+                for id in std::iter::once(None).chain(ids) {
+                    if ui
+                        .selectable_label(id == default, id.map_or("none: hold and ask", Id::as_str))
+                        .clicked()
+                    {
+                        queue.edit(Edit::SetDefault { leg: leg.id.clone(), branch: id.cloned() });
+                    }
                 }
-            }
-        });
+            });
     });
     let text = match before {
         DecideBefore::Time(seconds) => crate::units::duration(*seconds),
@@ -196,17 +234,46 @@ fn scan_rows(ui: &mut Ui, u: Units, leg: &Leg, scan: &Scan, queue: &mut Queue) {
     match &scan.area {
         Area::Circle { centre, radius_m } => {
             field::row(ui, "Centre", |ui| ui.label(place_text(centre)));
-            let edit = |radius_m| Edit::SetArea { leg: leg.id.clone(), area: Area::Circle { centre: centre.clone(), radius_m } };
+            let edit = |radius_m| Edit::SetArea {
+                leg: leg.id.clone(),
+                area: Area::Circle { centre: centre.clone(), radius_m },
+            };
             value_row(ui, "Radius", radius_m, u.length(), 1.0, edit, queue);
         }
         Area::Polygon { corners, holes } => {
-            field::row(ui, "Area", |ui| ui.label(format!("{} corners, {} holes", corners.len(), holes.len())));
+            field::row(ui, "Area", |ui| {
+                ui.label(format!("{} corners, {} holes", corners.len(), holes.len()))
+            });
         }
     }
-    value_row(ui, "Spacing", &scan.spacing_m, u.length(), 1.0, |v| with(Scan { spacing_m: v, ..scan.clone() }), queue);
-    value_row(ui, "Overshoot", &scan.overshoot_m, u.length(), 0.0, |v| with(Scan { overshoot_m: v, ..scan.clone() }), queue);
+    value_row(
+        ui,
+        "Spacing",
+        &scan.spacing_m,
+        u.length(),
+        1.0,
+        |v| with(Scan { spacing_m: v, ..scan.clone() }),
+        queue,
+    );
+    value_row(
+        ui,
+        "Overshoot",
+        &scan.overshoot_m,
+        u.length(),
+        0.0,
+        |v| with(Scan { overshoot_m: v, ..scan.clone() }),
+        queue,
+    );
     match &scan.heading_deg {
-        Some(heading) => value_row(ui, "Tracks", heading, DEGREES, 0.0, |v| with(Scan { heading_deg: Some(v), ..scan.clone() }), queue),
+        Some(heading) => value_row(
+            ui,
+            "Tracks",
+            heading,
+            DEGREES,
+            0.0,
+            |v| with(Scan { heading_deg: Some(v), ..scan.clone() }),
+            queue,
+        ),
         None => field::row(ui, "Tracks", |ui| {
             if ui.button("fewest turns").on_hover_text("Give the tracks a direction").clicked() {
                 queue.edit(with(Scan { heading_deg: Some(Value::Constant(0.0)), ..scan.clone() }));
@@ -217,7 +284,13 @@ fn scan_rows(ui: &mut Ui, u: Units, leg: &Leg, scan: &Scan, queue: &mut Queue) {
 
 type OrbitParts<'a> = (&'a Place, &'a Value<f64>, &'a Value<f64>, TurnDirection);
 
-fn orbit_rows(ui: &mut Ui, u: Units, leg: &Leg, (centre, radius_m, turns, turn): OrbitParts<'_>, queue: &mut Queue) {
+fn orbit_rows(
+    ui: &mut Ui,
+    u: Units,
+    leg: &Leg,
+    (centre, radius_m, turns, turn): OrbitParts<'_>,
+    queue: &mut Queue,
+) {
     let orbit = |radius_m: Value<f64>, turns: Value<f64>, turn| {
         with_kind(leg, LegKind::Orbit { centre: centre.clone(), radius_m, turns, turn })
     };

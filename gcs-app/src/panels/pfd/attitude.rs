@@ -71,7 +71,13 @@ fn ladder(painter: &Painter, h: &Horizon, pitch: f32) {
         painter.line_segment([h.at(-half, down), h.at(half, down)], Stroke::new(1.2, Color32::WHITE));
         if step % 2 == 0 {
             let text = format!("{}", deg.abs());
-            painter.text(h.at(half + 10.0, down), Align2::CENTER_CENTER, text, FontId::proportional(10.0), Color32::WHITE);
+            painter.text(
+                h.at(half + 10.0, down),
+                Align2::CENTER_CENTER,
+                text,
+                FontId::proportional(10.0),
+                Color32::WHITE,
+            );
         }
     }
 }

@@ -31,6 +31,9 @@ fn marks(painter: &Painter, rect: Rect, side: Side, value: f64, step: f64, p: &P
     let nearest = (value / step).round() as i64;
     for mark in nearest.saturating_sub(reach)..=nearest.saturating_add(reach) {
         let at = mark as f64 * step;
+        if side == Side::Left && at < 0.0 {
+            continue;
+        }
         let y = rect.center().y - ((at - value) / step * GAP) as f32;
         let (edge, inward) = match side {
             Side::Left => (rect.right(), -1.0),
@@ -38,13 +41,22 @@ fn marks(painter: &Painter, rect: Rect, side: Side, value: f64, step: f64, p: &P
         };
         painter.line_segment([pos2(edge, y), pos2(edge + inward * 7.0, y)], Stroke::new(1.0, p.weak));
         let anchor = if side == Side::Left { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
-        painter.text(pos2(edge + inward * 11.0, y), anchor, format!("{at:.0}"), FontId::monospace(11.0), p.weak);
+        painter.text(
+            pos2(edge + inward * 11.0, y),
+            anchor,
+            format!("{at:.0}"),
+            FontId::monospace(11.0),
+            p.weak,
+        );
     }
 }
 
 fn window(painter: &Painter, rect: Rect, value: Option<f64>, p: &Palette) {
     let plate = Rect::from_center_size(rect.center(), vec2(rect.width(), 24.0));
     painter.rect(plate, 2.0, Color32::BLACK, Stroke::new(1.2, p.weak), egui::StrokeKind::Inside);
-    let text = value.map_or_else(|| "–––".into(), |v| if v.abs() < 100.0 { format!("{v:.1}") } else { format!("{v:.0}") });
+    let text = value.map_or_else(
+        || "–––".into(),
+        |v| if v.abs() < 100.0 { format!("{v:.1}") } else { format!("{v:.0}") },
+    );
     painter.text(plate.center(), Align2::CENTER_CENTER, text, FontId::monospace(15.0), Color32::WHITE);
 }
