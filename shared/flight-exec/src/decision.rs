@@ -67,9 +67,7 @@ impl Executor {
             None => self.state.tail.as_ref().map_or(0, |t| t.crossings_of(leg)) + 1,
         };
         let changes = pending.as_ref().is_some_and(|p| p.branch.as_ref() != Some(branch));
-        if let Some(p) = pending.as_ref().filter(|_| changes)
-            && p.index < self.alterable_from()
-        {
+        if pending.as_ref().is_some_and(|p| changes && self.is_too_close(p)) {
             let advice = "it is too close to change the way now; decide earlier or use go-to";
             return Err(refusal("too-late", format!("intersection `{leg}`: {advice}")));
         }
@@ -79,6 +77,15 @@ impl Executor {
             self.replan(out);
         }
         Ok(())
+    }
+
+    /// The turn into the branch that is laid out has begun, or nearly so. One that is waited at is never too close.
+    fn is_too_close(&self, pending: &Pending) -> bool {
+        let Some(handed) = self.state.handed.get(pending.index).filter(|_| pending.branch.is_some()) else {
+            return false;
+        };
+        let left_m = self.path_left_m(handed.before.path.distance_m);
+        pending.index < self.alterable_from() || left_m <= self.stopping_distance_m()
     }
 
     /// The intersection has been passed: its decision is history.

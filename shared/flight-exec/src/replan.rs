@@ -94,14 +94,22 @@ impl Executor {
         pinned.max(self.kept_by_distance())
     }
 
+    /// Nearer than this nothing is altered: the radius of a turn, and the way made until an order takes effect, metres.
+    pub(crate) fn stopping_distance_m(&self) -> f64 {
+        let speed_mps = self.state.aircraft.as_ref().map_or(0.0, |a| a.ground_speed_mps);
+        let speed_mps = speed_mps.max(self.profile.min_airspeed_mps);
+        self.profile.turn_radius_m(speed_mps) + self.config.latency_s * speed_mps
+    }
+
     fn kept_by_distance(&self) -> usize {
         let Some(front) = self.state.handed.front().filter(|h| !h.is_loiter()) else { return 0 };
         if !matches!(front.waypoint.action, Action::Fly) {
             return 1;
         }
-        let Some(aircraft) = &self.state.aircraft else { return 1 };
-        let speed_mps = aircraft.ground_speed_mps.max(self.profile.min_airspeed_mps);
-        let stop_m = self.profile.turn_radius_m(speed_mps) + self.config.latency_s * speed_mps;
+        if self.state.aircraft.is_none() {
+            return 1;
+        }
+        let stop_m = self.stopping_distance_m();
         let to_front_m = self.to_current_m();
         let near = |h: &&Handed| to_front_m + h.end_m - front.end_m <= stop_m;
         self.state.handed.iter().take_while(near).count()

@@ -186,10 +186,10 @@ fn after_the_deadline_conditions_no_longer_count_but_people_do() {
 
 #[test]
 fn a_decision_inside_the_stopping_distance_is_too_late() {
-    let mut rig = near_the_fork(60.0);
-    rig.position = fix("B3").destination(270.0, 20.0);
-    rig.report();
-    // B5 is 4 km away: still open; so the refusal comes when the fork has been passed
+    let mut rig = near_the_fork(150.0);
+    assert_eq!(decide(&mut rig, "right").unwrap_err().code, "too-late");
+    assert!(decide(&mut rig, "left").is_ok(), "what is being done anyway may be confirmed");
+    assert_eq!(rig.buffer[1].leg.as_str(), "l");
     rig.fly_to("l");
     assert!(decide(&mut rig, "right").is_ok(), "kept for the next crossing");
     assert_eq!(rig.buffer[0].leg.as_str(), "l");
