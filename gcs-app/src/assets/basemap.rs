@@ -37,10 +37,8 @@ impl Bounds {
     pub fn around(points: &[[f32; 2]]) -> Self {
         let mut bounds = Self { min: [f32::INFINITY; 2], max: [f32::NEG_INFINITY; 2] };
         for p in points {
-            for axis in 0..2 {
-                bounds.min[axis] = bounds.min[axis].min(p[axis]);
-                bounds.max[axis] = bounds.max[axis].max(p[axis]);
-            }
+            bounds.min = [bounds.min[0].min(p[0]), bounds.min[1].min(p[1])];
+            bounds.max = [bounds.max[0].max(p[0]), bounds.max[1].max(p[1])];
         }
         bounds
     }

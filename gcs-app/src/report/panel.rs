@@ -122,15 +122,21 @@ fn summary(cursor: &mut Cursor, record: &Record, findings: &Findings) {
     cursor.y += 12.0;
 }
 
+/// Only what does not hold is spelled out here; the tables have all of it.
 fn verdict(cursor: &mut Cursor, record: &Record) {
     if record.verdict.is_empty() {
         return;
     }
-    let good = record.verdict.iter().all(|(holds, _)| *holds);
-    cursor.heading(if good { "Flown as planned" } else { "Not flown as planned" });
-    for (holds, text) in &record.verdict {
-        tick(cursor, *holds);
-        cursor.paragraph(24.0, text, Type::plain(SIZE, if *holds { TEXT } else { BAD }));
+    let failed: Vec<&String> =
+        record.verdict.iter().filter(|(holds, _)| !*holds).map(|(_, text)| text).collect();
+    cursor.heading(if failed.is_empty() { "Flown as planned" } else { "Not flown as planned" });
+    let held = record.verdict.len() - failed.len();
+    tick(cursor, failed.is_empty());
+    let text = format!("{held} of {} conditions hold", record.verdict.len());
+    cursor.paragraph(24.0, &text, Type::plain(SIZE, TEXT));
+    for text in failed {
+        tick(cursor, false);
+        cursor.paragraph(24.0, text, Type::plain(SIZE, BAD));
     }
     cursor.y += 12.0;
 }
