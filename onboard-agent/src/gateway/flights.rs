@@ -350,7 +350,7 @@ fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
 
 #[test]
 fn an_emergency_replaces_everything_at_once_and_no_stale_waypoint_is_steered_to() {
-    for (loss, within_s) in [("packet-loss=0", 1.5), ("packet-loss=0.2", 10.0)] {
+    for (loss, within_s) in [("packet-loss=0", 1.5), ("packet-loss=0.2", 15.0)] {
         for more in [45.0, 47.0, 49.0, 51.0] {
             let mut flight = Flight::new(5, &[loss]);
             let mut plan = vec![take_off()];

@@ -39,12 +39,23 @@ pub struct Telemetry {
     pub on_ground: Option<bool>,
 }
 
+/// Anything that the autopilot says of itself is a sign of life: heartbeats alone are too few on
+/// a link that loses some.
+fn is_voice(report: &Report) -> bool {
+    !matches!(
+        report,
+        Report::Done(_) | Report::Failed(..) | Report::List(..) | Report::Rebooted | Report::Capability(_)
+    )
+}
+
 impl Telemetry {
     /// Takes in a report.
     pub fn take(&mut self, now: Time, report: &Report) {
+        if is_voice(report) {
+            self.heard = Some(now);
+        }
         match report {
             Report::Heard { mode, armed } => {
-                self.heard = Some(now);
                 self.mode = Some(*mode);
                 self.armed = *armed;
             }

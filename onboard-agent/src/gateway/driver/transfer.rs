@@ -187,7 +187,7 @@ impl Transfer {
     /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
     /// each of a window's remaining items is answered with the same complaint.
     fn go_back(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
-        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 2) {
+        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 3) {
             return;
         }
         self.went_back = Some(now);
