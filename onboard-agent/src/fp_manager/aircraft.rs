@@ -34,11 +34,6 @@ impl Aircraft {
         }
     }
 
-    /// On the ground, as far as is known.
-    pub fn is_on_ground(&self) -> bool {
-        self.position.is_some_and(|p| p.on_ground)
-    }
-
     /// Everything together, once a position is known. Without air data there is no wind; without
     /// battery data it is taken as full, as conditions on it must not fire on nothing.
     pub fn state(&self) -> Option<AircraftState> {

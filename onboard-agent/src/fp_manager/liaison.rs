@@ -57,9 +57,8 @@ impl Liaison {
     /// Its state, as published.
     pub fn state(&mut self, now: Time, state: GatewayState) {
         self.state = Some(state);
-        let grounded = matches!(state, GatewayState::Off | GatewayState::Stop);
-        if self.wanted == Some(GatewayRequest::Launch) && !grounded {
-            self.wanted = None;
+        if !matches!(state, GatewayState::Off | GatewayState::Stop) {
+            self.unwant_launch();
         }
         let settling = self.joined && self.joined_at.is_some_and(|at| now < at + SETTLING);
         if takes_control(state) && !settling {
@@ -108,6 +107,13 @@ impl Liaison {
         self.wanted = Some(request);
         self.refusals = 0;
         self.ask_not_before = None;
+    }
+
+    /// The take-off is no longer to come.
+    pub fn unwant_launch(&mut self) {
+        if self.wanted == Some(GatewayRequest::Launch) {
+            self.wanted = None;
+        }
     }
 
     /// The executor flies on: if the gateway holds, it should too.

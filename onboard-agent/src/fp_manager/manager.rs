@@ -190,30 +190,27 @@ impl Manager {
         }
         let flying = matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
         if flying {
-            self.agree(now, answer.last, out);
+            self.agree(now, &answer, out);
         } else {
             self.step(now, Input::GatewayControls(false), out);
         }
         self.send(now, out);
     }
 
-    /// After a join in flight: the gateway must have what we believe it has.
-    fn agree(&mut self, now: Time, last: Option<Token>, out: &mut Vec<Effect>) {
+    /// After a join in flight: the gateway must have what we believe it has. Waypoints that it
+    /// took and has no more, while the aircraft stands, have been flown: nothing is flown twice.
+    fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
         let ours = self.executor.ahead().last().map(|w| w.token);
-        let landed = self.liaison.is_on_ground() && self.aircraft.is_on_ground() && !self.takes_off_next();
-        if landed && last.is_none() {
+        let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
+        if self.liaison.is_on_ground() && answer.last.is_none() && taken {
+            self.liaison.unwant_launch();
             self.step(now, Input::Progress { current: None }, out);
-        } else if self.liaison.take_controlled() || (ours != last && self.feeder.is_idle()) {
+        } else if self.liaison.take_controlled() || (ours != answer.last && self.feeder.is_idle()) {
             self.feeder.clear();
             // having given control back, the executor sends everything ahead anew
             self.step(now, Input::GatewayControls(true), out);
             self.step(now, Input::GatewayControls(false), out);
         }
-    }
-
-    fn takes_off_next(&self) -> bool {
-        let first = self.executor.ahead().next();
-        first.is_some_and(|w| matches!(w.action, Action::TakeOff { .. }))
     }
 
     fn progress(&mut self, now: Time, current: Token, out: &mut Vec<Effect>) {

@@ -6,6 +6,7 @@ mod fake_gateway;
 use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
 use onboard_agent::{Trigger, fp_manager, shutdown};
 use std::path::Path;
+use tokio::process::Child;
 use tokio::task::JoinHandle;
 use usal::contract::*;
 use usal::topics::fp_manager as topic;
@@ -13,11 +14,30 @@ use usal::{CallError, Occurrence, Session, Start};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
 
-/// An FP Manager in this process, and a client of it.
+/// An FP Manager: a real process where it is to be killed, else in this one.
+enum Manager {
+    Embedded { _task: JoinHandle<anyhow::Result<()>>, _trigger: Trigger },
+    Process(Child),
+}
+
+impl Manager {
+    fn start(config: &fp_manager::Config) -> Self {
+        let Some(directory) = &config.state_dir else {
+            let (trigger, shutdown) = shutdown();
+            let task = tokio::spawn(fp_manager::run(config.clone(), shutdown));
+            return Self::Embedded { _task: task, _trigger: trigger };
+        };
+        let mut command = tokio::process::Command::new(env!("CARGO_BIN_EXE_onboard-agent"));
+        command.args(["fp-manager", "--simulated", "--connect", &config.connect, "--state-dir"]).arg(directory);
+        Self::Process(command.kill_on_drop(true).spawn().unwrap())
+    }
+}
+
+/// A flight with its gateway, FP Manager and a client.
 struct Flight {
     gateway: FakeGateway,
     client: Session,
-    manager: Option<(JoinHandle<anyhow::Result<()>>, Trigger)>,
+    manager: Option<Manager>,
     config: fp_manager::Config,
 }
 
@@ -37,17 +57,14 @@ impl Flight {
     }
 
     async fn start_manager(&mut self) {
-        let (trigger, shutdown) = shutdown();
-        let manager = tokio::spawn(fp_manager::run(self.config.clone(), shutdown));
-        self.manager = Some((manager, trigger));
+        self.manager = Some(Manager::start(&self.config));
         self.gateway.participants(1).await;
     }
 
-    /// As a SIGKILL does: no goodbye.
+    /// SIGKILL: no goodbye.
     async fn kill_manager(&mut self) {
-        let (manager, _trigger) = self.manager.take().unwrap();
-        manager.abort();
-        let _ = manager.await;
+        let Some(Manager::Process(mut process)) = self.manager.take() else { panic!("no process") };
+        process.kill().await.unwrap();
         self.gateway.participants(0).await;
     }
 
@@ -195,7 +212,7 @@ async fn killed_and_restarted_it_goes_on_at_its_place() {
     let mut flight = Flight::new(Some(directory.path())).await;
     flight.load(SQUARE).await;
     flight.start().await;
-    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
     flight.kill_manager().await;
     flight.step(2).await;
     flight.start_manager().await;
@@ -263,4 +280,19 @@ async fn plan_accepted_is_on_disk_before_it_is_told() {
     let call = flight.client.call(topic::PLAN_DOCUMENT, &Empty {}, DEADLINE);
     let document = flight.gateway.step_until_done(call).await.unwrap();
     assert_eq!(document.info.name, "Square circuit");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn landed_while_it_was_dead_it_does_not_take_off_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.kill_manager().await;
+    flight.step_until(FakeGateway::finished).await;
+    let flown = flight.gateway.flown.len();
+    flight.start_manager().await;
+    flight.step(30).await;
+    assert_eq!(flight.gateway.flown.len(), flown);
+    assert_eq!(flight.gateway.requests, [GatewayRequest::Launch]);
 }
