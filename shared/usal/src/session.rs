@@ -6,10 +6,14 @@ use crate::keys::{Key, KeyError, Kind};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
 
 /// Where a vehicle's hub listens unless told otherwise: this machine only.
 pub const DEFAULT_ENDPOINT: &str = "tcp/127.0.0.1:7447";
+
+/// A hub that is there answers within this time.
+const PRESENT_HUB: Duration = Duration::from_secs(1);
 
 /// Called, from a network thread, whenever something has been received; must return at once.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -152,31 +156,43 @@ impl Session {
 }
 
 async fn open_zenoh(role: &Role) -> Result<zenoh::Session, SessionError> {
-    let endpoint = match role {
-        Role::Hub { listen } => listen,
-        Role::Client { connect } => connect,
+    let (mode, endpoint) = match role {
+        Role::Hub { listen } => ("router", listen),
+        Role::Client { connect } => ("client", connect),
     };
-    let bad = |reason: String| SessionError::Endpoint { endpoint: endpoint.clone(), reason };
-    let config = zenoh_config(role).map_err(|e| bad(e.to_string()))?;
-    zenoh::open(config).await.map_err(|e| bad(e.to_string()))
+    let bad = |e: zenoh::Error| SessionError::Endpoint { endpoint: endpoint.clone(), reason: e.to_string() };
+    if mode == "router" {
+        let config = zenoh_config(mode, &[endpoint.as_str()], &[]).map_err(bad)?;
+        return zenoh::open(config).await.map_err(bad);
+    }
+    let config = zenoh_config(mode, &[], &[endpoint.as_str()]).map_err(bad)?;
+    match tokio::time::timeout(PRESENT_HUB, zenoh::open(config)).await {
+        Ok(Ok(session)) => Ok(session),
+        Ok(Err(_)) | Err(_) => open_without_hub(endpoint).await.map_err(bad),
+    }
 }
 
-/// No multicast, no gossip: only the endpoint given. Everybody is a Zenoh router, found by trying
-/// (1.10): it forwards between the others, can be opened while the hub is absent and connects
-/// again by itself. A Zenoh client cannot be opened without its router, and two peers of the
-/// same router do not hear each other. Outside clients may be of any mode.
-fn zenoh_config(role: &Role) -> zenoh::Result<zenoh::Config> {
-    let (listen, connect) = match role {
-        Role::Hub { listen } => (vec![listen], vec![]),
-        Role::Client { connect } => (vec![], vec![connect]),
-    };
+/// A Zenoh client cannot be opened while its router is absent, but it finds a router that it has
+/// lost. So it is opened at one of our own, which then goes away.
+async fn open_without_hub(endpoint: &str) -> zenoh::Result<zenoh::Session> {
+    let stand_in = zenoh::open(zenoh_config("router", &["tcp/127.0.0.1:0"], &[])?).await?;
+    let own = stand_in.info().locators().await.into_iter().next().map(|l| l.to_string()).unwrap_or_default();
+    let session = zenoh::open(zenoh_config("client", &[], &[endpoint, &own])?).await;
+    stand_in.close().await?;
+    session
+}
+
+/// No multicast, no gossip: only the endpoints given. The hub is a router, which forwards between
+/// the others; these are clients. (Found by trying 1.10: two peers of the same router do not hear
+/// each other; among routers, one that comes within 0.1 s of another's going is never told what
+/// is there.)
+fn zenoh_config(mode: &str, listen: &[&str], connect: &[&str]) -> zenoh::Result<zenoh::Config> {
     let mut config = zenoh::Config::default();
     let values = [
-        ("mode", serde_json::json!("router")),
+        ("mode", serde_json::json!(mode)),
         ("listen/endpoints", serde_json::json!(listen)),
         ("connect/endpoints", serde_json::json!(connect)),
-        ("connect/timeout_ms", serde_json::json!(-1)),
-        ("connect/exit_on_failure", serde_json::json!(false)),
+        ("connect/timeout_ms", serde_json::json!(0)),
         (
             "connect/retry",
             serde_json::json!({"period_init_ms": 50, "period_max_ms": 500, "period_increase_factor": 1.5}),
