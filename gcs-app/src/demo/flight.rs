@@ -20,6 +20,8 @@ use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start, Var
 
 /// A service that does not answer for so long has failed, wall-clock.
 const ANSWER_WITHIN: Duration = Duration::from_secs(15);
+/// A session that does not close within this time is left alone, wall-clock.
+const CLOSE_WITHIN: Duration = Duration::from_secs(2);
 /// The agent must be ready to fly after this, wall-clock.
 const READY_WITHIN: Duration = Duration::from_secs(30);
 /// No tick of the simulated clock for so long is a failure, wall-clock.
@@ -179,7 +181,10 @@ impl<'a> Flight<'a> {
 
     /// Ends the session: the clock does not wait for it any more.
     pub async fn leave(self) {
-        self.session.close().await;
+        // seen to take ten seconds, with nothing left to be said
+        if tokio::time::timeout(CLOSE_WITHIN, self.session.close()).await.is_err() {
+            tracing::debug!("the mission logic's session does not close, it is left alone");
+        }
     }
 
     /// What was seen of the flight so far; times count from the start of the plan.

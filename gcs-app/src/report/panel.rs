@@ -168,6 +168,6 @@ fn happenings(cursor: &mut Cursor, record: &Record) {
         }
         let text = format!("{}  {}", tables::clock(happening.time_s - start), happening.text);
         cursor.paragraph(32.0, &text, Type::plain(SIZE, TEXT));
-        cursor.y += 5.0;
+        cursor.y += 1.0;
     }
 }
