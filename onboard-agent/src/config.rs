@@ -82,8 +82,9 @@ impl Options {
     pub fn completed(self) -> anyhow::Result<Self> {
         let Some(path) = &self.config else { return Ok(self) };
         let bytes = read(path)?;
-        let file: Self = serde_json::from_slice(&bytes)
-            .with_context(|| format!("{}: correct it (`onboard-agent run --help` names the options)", path.display()))?;
+        let file: Self = serde_json::from_slice(&bytes).with_context(|| {
+            format!("{}: correct it (`onboard-agent run --help` names the options)", path.display())
+        })?;
         Ok(Self {
             vehicle: self.vehicle.or(file.vehicle),
             listen: self.listen.or(file.listen),
@@ -188,8 +189,12 @@ impl Options {
     fn tiles(&self) -> anyhow::Result<Option<Tiles>> {
         let mut tiles = Tiles::new();
         for path in &self.terrain {
-            let name = path.file_name().and_then(|n| n.to_str()).context("--terrain: a tile's name, like N36W085.hgt")?;
-            let tile = Tile::from_hgt(name, &read(path)?).with_context(|| format!("--terrain {}", path.display()))?;
+            let name = path
+                .file_name()
+                .and_then(|n| n.to_str())
+                .context("--terrain: a tile's name, like N36W085.hgt")?;
+            let tile = Tile::from_hgt(name, &read(path)?)
+                .with_context(|| format!("--terrain {}", path.display()))?;
             tiles.add(tile);
         }
         Ok((!self.terrain.is_empty()).then_some(tiles))
@@ -226,7 +231,10 @@ mod tests {
                     --aircraft trainer --plan p.xml --state-dir s --terrain a.hgt --terrain b.hgt --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
-            ["onboard-agent".into(), "gateway".into()].into_iter().chain(options.arguments()).collect::<Vec<std::ffi::OsString>>(),
+            ["onboard-agent".into(), "gateway".into()]
+                .into_iter()
+                .chain(options.arguments())
+                .collect::<Vec<std::ffi::OsString>>(),
         )
         .unwrap();
         let Task::Gateway(again) = &mut again.task else { panic!("another task") };
@@ -238,7 +246,9 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("agent.json");
         std::fs::write(&path, r#"{"vehicle": "file", "state_dir": "kept", "simulated": true}"#).unwrap();
-        let options = parse(&format!("onboard-agent run --vehicle line --config {}", path.display())).completed().unwrap();
+        let options = parse(&format!("onboard-agent run --vehicle line --config {}", path.display()))
+            .completed()
+            .unwrap();
         assert_eq!(options.vehicle.as_deref(), Some("line"));
         assert_eq!(options.state_dir.as_deref(), Some(Path::new("kept")));
         assert!(options.simulated);
@@ -250,7 +260,10 @@ mod tests {
         let path = directory.path().join("agent.json");
         std::fs::write(&path, r#"{"vehikel": "x"}"#).unwrap();
         let error = parse(&format!("onboard-agent run --config {}", path.display())).completed().unwrap_err();
-        assert!(format!("{error:#}").contains("vehikel") && format!("{error:#}").contains("agent.json"), "{error:#}");
+        assert!(
+            format!("{error:#}").contains("vehikel") && format!("{error:#}").contains("agent.json"),
+            "{error:#}"
+        );
     }
 
     #[test]

@@ -67,11 +67,20 @@ async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> any
             () = shutdown.requested() => return end(process.name, &mut child).await,
             status = child.wait() => status.with_context(|| format!("waiting for {}", process.name))?,
         };
-        anyhow::ensure!(status.code() != Some(USAGE), "{} was started wrongly: see its message above", process.name);
+        anyhow::ensure!(
+            status.code() != Some(USAGE),
+            "{} was started wrongly: see its message above",
+            process.name
+        );
         if started.elapsed() >= STABLE {
             pause = PAUSE_MIN;
         }
-        tracing::error!("{} died ({}); restarting it in {} ms", process.name, told(status), pause.as_millis());
+        tracing::error!(
+            "{} died ({}); restarting it in {} ms",
+            process.name,
+            told(status),
+            pause.as_millis()
+        );
         tokio::select! {
             () = shutdown.requested() => return Ok(()),
             () = tokio::time::sleep(pause) => {}
@@ -167,7 +176,10 @@ mod tests {
     async fn children_end_with_the_supervisor() {
         let directory = tempfile::tempdir().unwrap();
         let ended = directory.path().join("ended");
-        let path = program(directory.path(), &format!("trap 'touch {}; exit 0' TERM\nwhile :; do sleep 0.02; done", ended.display()));
+        let path = program(
+            directory.path(),
+            &format!("trap 'touch {}; exit 0' TERM\nwhile :; do sleep 0.02; done", ended.display()),
+        );
         let (trigger, shutdown) = shutdown();
         let processes = [Process::new("gateway", vec![])];
         let supervisor = tokio::spawn(async move { run(&path, &processes, shutdown).await });
@@ -190,7 +202,8 @@ mod tests {
     #[tokio::test]
     async fn program_that_is_not_there_is_an_error() {
         let (_trigger, shutdown) = shutdown();
-        let error = run(Path::new("/nowhere/agent"), &[Process::new("gateway", vec![])], shutdown).await.unwrap_err();
+        let error =
+            run(Path::new("/nowhere/agent"), &[Process::new("gateway", vec![])], shutdown).await.unwrap_err();
         assert!(error.to_string().contains("/nowhere/agent"), "{error}");
     }
 }

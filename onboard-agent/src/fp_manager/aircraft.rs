@@ -38,7 +38,8 @@ impl Aircraft {
     /// battery data it is taken as full, as conditions on it must not fire on nothing.
     pub fn state(&self) -> Option<AircraftState> {
         let p = self.position?;
-        let (wind_east_mps, wind_north_mps) = self.air.map_or((0.0, 0.0), |a| (a.wind_east_mps, a.wind_north_mps));
+        let (wind_east_mps, wind_north_mps) =
+            self.air.map_or((0.0, 0.0), |a| (a.wind_east_mps, a.wind_north_mps));
         Some(AircraftState {
             position: p.position,
             altitude_amsl_m: p.altitude_amsl_m,

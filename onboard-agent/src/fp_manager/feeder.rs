@@ -144,7 +144,8 @@ fn merged(first: Feed, then: Feed) -> Feed {
 
 /// The first faults, for people.
 fn sentence(faults: &[(Token, String, String)]) -> String {
-    let told = faults.iter().take(3).map(|(token, code, reason)| format!("waypoint {}: {reason} ({code})", token.0));
+    let told =
+        faults.iter().take(3).map(|(token, code, reason)| format!("waypoint {}: {reason} ({code})", token.0));
     let mut text = told.collect::<Vec<_>>().join("; ");
     if faults.len() > 3 {
         text.push_str(&format!("; and {} more", faults.len() - 3));

@@ -101,7 +101,12 @@ impl Manager {
     ///
     /// # Errors
     /// The executor's refusal.
-    pub fn propose(&mut self, now: Time, program: Program, out: &mut Vec<Effect>) -> Result<ProposalReport, Refusal> {
+    pub fn propose(
+        &mut self,
+        now: Time,
+        program: Program,
+        out: &mut Vec<Effect>,
+    ) -> Result<ProposalReport, Refusal> {
         let request = self.next_request();
         match self.step(now, Input::Propose { request, program: Arc::new(program) }, out) {
             Some(Ok(Answer::Proposal(report))) => Ok(*report),
@@ -141,7 +146,9 @@ impl Manager {
                 self.step(now, Input::Progress { current: None }, out);
                 out.push(Effect::Save);
             }
-            GatewayEvent::AlarmRaised(Alarm { severity: Severity::Warning, cause: Some(cause), id, .. }) => {
+            GatewayEvent::AlarmRaised(Alarm {
+                severity: Severity::Warning, cause: Some(cause), id, ..
+            }) => {
                 tracing::warn!(id, ?cause, "alarm of the gateway: emergency");
                 if let Err(refusal) = self.command(now, Command::Emergency { cause, plan: None }, out) {
                     tracing::warn!(id, "no emergency plan flown: {refusal}");
@@ -174,7 +181,13 @@ impl Manager {
     }
 
     /// The answer to [`Effect::Request`].
-    pub fn requested(&mut self, now: Time, request: &GatewayRequest, answer: Result<(), String>, out: &mut Vec<Effect>) {
+    pub fn requested(
+        &mut self,
+        now: Time,
+        request: &GatewayRequest,
+        answer: Result<(), String>,
+        out: &mut Vec<Effect>,
+    ) {
         self.liaison.requested(now, request, answer);
         out.push(Effect::Save);
         self.send(now, out);
@@ -188,7 +201,8 @@ impl Manager {
         if let Some(current) = answer.current {
             self.progress(now, current, out);
         }
-        let flying = matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
+        let flying =
+            matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
         if flying {
             self.agree(now, &answer, out);
         } else {
@@ -274,5 +288,8 @@ impl Manager {
 }
 
 fn unanswered() -> Refusal {
-    Refusal { code: "unanswered".into(), reason: "the executor gave no answer; look at the log and try again".into() }
+    Refusal {
+        code: "unanswered".into(),
+        reason: "the executor gave no answer; look at the log and try again".into(),
+    }
 }

@@ -1,11 +1,11 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
+use super::Config;
 use super::manager::{Effect, Manager};
 use super::publish::{self, Publishers};
 use super::store::{self, Saved, Store};
-use super::Config;
-use crate::clock::Clock;
 use crate::Shutdown;
+use crate::clock::Clock;
 use anyhow::Context;
 use flight_exec::Executor;
 use flight_plan::{Problem, Program};
@@ -14,8 +14,8 @@ use std::time::Duration;
 use usal::contract::*;
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
 use usal::{
-    Announcement, CallError, Description, EventSubscriber, Incoming, Occurrence, Participant, PendingCall, Presence,
-    Server, Session, Start, VariableSubscriber,
+    Announcement, CallError, Description, EventSubscriber, Incoming, Occurrence, Participant, PendingCall,
+    Presence, Server, Session, Start, VariableSubscriber,
 };
 
 /// The gateway answers at once or not at all, wall-clock.
@@ -240,10 +240,13 @@ fn refusal(code: &str, reason: String) -> Refusal {
 impl Shell {
     /// The plan it was started with becomes the active one, unless one was restored.
     fn load_plan(&mut self) -> anyhow::Result<()> {
-        let Some(xml) = self.config.plan.take().filter(|_| self.manager.executor().program().is_none()) else {
+        let Some(xml) = self.config.plan.take().filter(|_| self.manager.executor().program().is_none())
+        else {
             return Ok(());
         };
-        let report = self.propose(&Propose { xml, seen_revision: None }).map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
+        let report = self
+            .propose(&Propose { xml, seen_revision: None })
+            .map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
         self.command(commit).map_err(|r| anyhow::anyhow!("the plan: {r}"))
     }
@@ -303,7 +306,9 @@ impl Shell {
     fn occurred(&mut self, occurrence: Occurrence<TimedGatewayEvent>) {
         let mut effects = Vec::new();
         match occurrence {
-            Occurrence::Event { event, .. } => self.manager.gateway_event(self.clock.now(), event.value, &mut effects),
+            Occurrence::Event { event, .. } => {
+                self.manager.gateway_event(self.clock.now(), event.value, &mut effects)
+            }
             Occurrence::Gap { missed } => tracing::warn!(missed, "events of the gateway were lost"),
         }
         self.perform(effects);
@@ -385,8 +390,12 @@ impl Shell {
                     self.publishers.event(now, event);
                     self.publishers.hurry();
                 }
-                Effect::Feed(feed) => self.pending.feed = Some(self.session.call(gateway::FEED, &feed, CALL_TIMEOUT)),
-                Effect::Join(join) => self.pending.join = Some(self.session.call(gateway::JOIN, &join, CALL_TIMEOUT)),
+                Effect::Feed(feed) => {
+                    self.pending.feed = Some(self.session.call(gateway::FEED, &feed, CALL_TIMEOUT))
+                }
+                Effect::Join(join) => {
+                    self.pending.join = Some(self.session.call(gateway::JOIN, &join, CALL_TIMEOUT))
+                }
                 Effect::Request(request) => {
                     let call = self.session.call(gateway::REQUEST, &request, CALL_TIMEOUT);
                     self.pending.request = Some((request, call));

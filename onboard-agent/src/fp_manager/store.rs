@@ -56,8 +56,9 @@ impl Store {
     /// # Errors
     /// The directory can't be made.
     pub fn open(directory: &Path) -> anyhow::Result<(Self, Option<Saved>)> {
-        fs::create_dir_all(directory)
-            .with_context(|| format!("state directory {}: make it, or name another by --state-dir", directory.display()))?;
+        fs::create_dir_all(directory).with_context(|| {
+            format!("state directory {}: make it, or name another by --state-dir", directory.display())
+        })?;
         let path = file(directory);
         let saved = load(&path);
         let desk = Arc::<Desk>::default();
@@ -110,7 +111,9 @@ fn write_all(path: &Path, desk: &Desk, written: &watch::Sender<u64>) {
             && complained.is_none_or(|at| at.elapsed() >= COMPLAINT)
         {
             complained = Some(Instant::now());
-            tracing::error!("the flight's state cannot be saved ({error:#}): free some space; the flight goes on");
+            tracing::error!(
+                "the flight's state cannot be saved ({error:#}): free some space; the flight goes on"
+            );
         }
         written.send_replace(number);
     }
@@ -158,7 +161,10 @@ fn read(path: &Path) -> anyhow::Result<Option<Saved>> {
 pub fn set_aside(path: &Path, reason: &str) {
     let aside = free_name(path);
     match fs::rename(path, &aside) {
-        Ok(()) => tracing::error!("unusable state ({reason}) set aside as {}; starting without a plan", aside.display()),
+        Ok(()) => tracing::error!(
+            "unusable state ({reason}) set aside as {}; starting without a plan",
+            aside.display()
+        ),
         Err(error) => tracing::error!("unusable state in {} ({reason}; {error})", path.display()),
     }
 }

@@ -6,7 +6,9 @@ use std::future::Future;
 use std::time::Duration;
 use usal::contract::*;
 use usal::topics::{GATEWAY, gateway};
-use usal::{Announcement, CallError, Conductor, EventPublisher, PendingCall, Server, Session, VariablePublisher};
+use usal::{
+    Announcement, CallError, Conductor, EventPublisher, PendingCall, Server, Session, VariablePublisher,
+};
 
 /// Longer than anything takes on a slow machine.
 pub const DEADLINE: Duration = Duration::from_secs(60);
@@ -88,6 +90,10 @@ impl FakeGateway {
         self.requests.contains(&GatewayRequest::Launch)
     }
 
+    pub fn end_is_aboard(&self) -> bool {
+        self.buffer.back().is_some_and(|w| w.end_of_plan)
+    }
+
     pub fn finished(&self) -> bool {
         self.buffer.is_empty() && self.flown.last().is_some_and(|w| w.end_of_plan)
     }
@@ -164,7 +170,9 @@ impl FakeGateway {
         }
         let refused = self.refuse_leg.as_ref().and_then(|leg| feed.waypoints.iter().find(|w| w.leg == *leg));
         if let Some(waypoint) = refused {
-            return FeedAnswer::Refused { faults: vec![(waypoint.token, "fence".into(), "not there".into())] };
+            return FeedAnswer::Refused {
+                faults: vec![(waypoint.token, "fence".into(), "not there".into())],
+            };
         }
         if let Some(keep) = feed.cancel_after {
             self.buffer.retain(|w| w.token <= keep);

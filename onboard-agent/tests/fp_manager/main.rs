@@ -28,7 +28,9 @@ impl Manager {
             return Self::Embedded { _task: task, _trigger: trigger };
         };
         let mut command = tokio::process::Command::new(env!("CARGO_BIN_EXE_onboard-agent"));
-        command.args(["fp-manager", "--simulated", "--connect", &config.connect, "--state-dir"]).arg(directory);
+        command
+            .args(["fp-manager", "--simulated", "--connect", &config.connect, "--state-dir"])
+            .arg(directory);
         Self::Process(command.kill_on_drop(true).spawn().unwrap())
     }
 }
@@ -127,7 +129,8 @@ async fn plan_is_proposed_committed_started_and_flown_to_its_end() {
     }
     let tokens: Vec<u64> = flight.gateway.flown.iter().map(|w| w.token.0).collect();
     assert!(tokens.is_sorted_by(|a, b| a < b), "{tokens:?}");
-    until(async || status.latest().is_some_and(|s| format!("{:?}", s.stamped.value.phase) == "Finished")).await;
+    until(async || status.latest().is_some_and(|s| format!("{:?}", s.stamped.value.phase) == "Finished"))
+        .await;
     let mut entered = Vec::new();
     while let Some(occurrence) = events.try_recv() {
         match occurrence {
@@ -251,7 +254,11 @@ async fn waypoints_refused_by_the_gateway_hold_the_flight_and_are_told() {
         loop {
             flight.gateway.step().await;
             while let Some(occurrence) = events.try_recv() {
-                if let Occurrence::Event { event: Stamped { value: PlanEvent::WaypointsRejected { reason, .. }, .. }, .. } = occurrence {
+                if let Occurrence::Event {
+                    event: Stamped { value: PlanEvent::WaypointsRejected { reason, .. }, .. },
+                    ..
+                } = occurrence
+                {
                     return reason;
                 }
             }
@@ -288,6 +295,7 @@ async fn landed_while_it_was_dead_it_does_not_take_off_again() {
     let mut flight = Flight::new(Some(directory.path())).await;
     flight.load(SQUARE).await;
     flight.start().await;
+    flight.step_until(|g| g.end_is_aboard()).await;
     flight.kill_manager().await;
     flight.step_until(FakeGateway::finished).await;
     let flown = flight.gateway.flown.len();

@@ -70,7 +70,8 @@ impl Hop {
 
 fn zenoh_config(listen: Option<&str>, connect: Option<&str>) -> zenoh::Config {
     let mut config = zenoh::Config::default();
-    let list = |endpoint: Option<&str>| serde_json::to_string(&endpoint.into_iter().collect::<Vec<_>>()).unwrap();
+    let list =
+        |endpoint: Option<&str>| serde_json::to_string(&endpoint.into_iter().collect::<Vec<_>>()).unwrap();
     config.insert_json5("listen/endpoints", &list(listen)).unwrap();
     config.insert_json5("connect/endpoints", &list(connect)).unwrap();
     config.insert_json5("scouting/multicast/enabled", "false").unwrap();
@@ -112,7 +113,13 @@ async fn variable_hop(hub: &Session, client: &Session) -> Hop {
             let _ = sender.try_send(value.at);
         }
     });
-    let air = Air { airspeed_mps: 22.5, wind_east_mps: 1.25, wind_north_mps: -3.5, pressure_hpa: 985.2, temperature_c: 11.5 };
+    let air = Air {
+        airspeed_mps: 22.5,
+        wind_east_mps: 1.25,
+        wind_north_mps: -3.5,
+        pressure_hpa: 985.2,
+        temperature_c: 11.5,
+    };
     let mut time_s = 0.0;
     let send = Box::new(move || {
         time_s += 0.1;
@@ -130,8 +137,11 @@ async fn event_hop(hub: &Session, client: &Session) -> Hop {
             let _ = sender.try_send(Instant::now());
         }
     });
-    let event: TimedGatewayEvent =
-        Stamped { time_s: 1.5, validity_s: 1.0, value: GatewayEvent::BufferLow { waypoints: 2, seconds: 7.5 } };
+    let event: TimedGatewayEvent = Stamped {
+        time_s: 1.5,
+        validity_s: 1.0,
+        value: GatewayEvent::BufferLow { waypoints: 2, seconds: 7.5 },
+    };
     Hop { send: Box::new(move || emitter.emit(&event)), received }.ready().await
 }
 
