@@ -3,6 +3,7 @@
 import os
 import re
 import select
+import socket
 import subprocess
 import time
 from pathlib import Path
@@ -68,6 +69,13 @@ def simulator(start):
     """A simulator on a free TCP port, five times as fast as life; gives the port."""
     process = start("legwork-sim", "--tcp", "127.0.0.1:0", "--speed", "5")
     return int(process.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1])
+
+
+def free_port():
+    """A TCP port that nobody uses now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
 
 
 def until(condition, seconds, what):

@@ -5,7 +5,7 @@ import json
 import cbor2
 import pytest
 import zenoh
-from conftest import TOP, until
+from conftest import TOP, free_port, until
 
 VEHICLE = "legwork/peer"
 
@@ -13,13 +13,13 @@ VEHICLE = "legwork/peer"
 @pytest.fixture
 def agent(start, tmp_path):
     """Simulator and agent, as their users start them; gives an open Zenoh session."""
-    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep")
+    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0")
     port = simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1]
-    process = start(
-        "onboard-agent", "run", "--vehicle", "peer", "--listen", "tcp/127.0.0.1:0", "--simulated",
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    start(
+        "onboard-agent", "run", "--vehicle", "peer", "--listen", endpoint, "--simulated",
         "--autopilot", f"tcp:127.0.0.1:{port}", "--state-dir", tmp_path / "state",
     )
-    endpoint = process.wait_for(r"listening on (tcp/127\.0\.0\.1:\d+)")[1]
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))

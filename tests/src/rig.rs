@@ -136,7 +136,11 @@ impl Ground {
 impl Rig {
     /// Starts everything; further arguments go to the simulator.
     pub async fn start(simulator_arguments: &[&str]) -> anyhow::Result<Self> {
-        let mut arguments = vec!["--tcp", "127.0.0.1:0", "--lockstep"];
+        let home = format!(
+            "{},{},{},{}",
+            FIELD.threshold.lat_deg, FIELD.threshold.lon_deg, FIELD.elevation_m, FIELD.heading_deg
+        );
+        let mut arguments = vec!["--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", &home];
         arguments.extend(simulator_arguments);
         let simulator = Program::start("legwork-sim", &arguments)?;
         let autopilot = format!("tcp:{}", simulator.wait_for("listening on tcp ")?);
@@ -162,11 +166,11 @@ impl Rig {
     async fn assemble(simulator: Option<Program>, autopilot: &str, pace: Pace) -> anyhow::Result<Self> {
         let state = tempfile::tempdir()?;
         let folder = state.path().join("gateway").display().to_string();
-        let mut arguments = vec!["gateway", "--vehicle", VEHICLE, "--listen", "tcp/127.0.0.1:0"];
+        let endpoint = format!("tcp/127.0.0.1:{}", free_port()?);
+        let mut arguments = vec!["gateway", "--vehicle", VEHICLE, "--listen", &endpoint];
         arguments.extend(["--autopilot", autopilot, "--state-dir", &folder]);
         arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
         let gateway = Program::start("onboard-agent", &arguments)?;
-        let endpoint = gateway.wait_for("listening on ")?;
         let fp_manager = start_fp_manager(&endpoint, state.path(), pace)?;
         let ground = Some(Ground::open(&endpoint, pace).await?);
         let seen = Seen::default();
@@ -324,6 +328,11 @@ impl Rig {
         ensure!(off_m < 600.0, "it stands {off_m:.0} m from the threshold\n{}", self.story());
         Ok(())
     }
+}
+
+/// A TCP port that nobody uses now.
+fn free_port() -> anyhow::Result<u16> {
+    Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port())
 }
 
 fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace) -> anyhow::Result<Program> {
