@@ -8,12 +8,21 @@ import zenoh
 from conftest import TOP, free_port, until
 
 VEHICLE = "legwork/peer"
+HOME = "36.3190,-84.1730,349,52"
+
+
+def opened(config):
+    """A session, or None while the hub is not there."""
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError:
+        return None
 
 
 @pytest.fixture
 def agent(start, tmp_path):
     """Simulator and agent, as their users start them; gives an open Zenoh session."""
-    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0")
+    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", HOME)
     port = simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1]
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     start(
@@ -24,7 +33,7 @@ def agent(start, tmp_path):
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))
     config.insert_json5("scouting/multicast/enabled", "false")
-    session = zenoh.open(config)
+    session = until(lambda: opened(config), 30, "the hub listens")
     yield session
     session.close()
 
@@ -57,5 +66,46 @@ def latest(session, key):
 def test_it_reads_telemetry(agent):
     box = latest(agent, "gateway/variable/position")
     value = until(lambda: box.get("value"), 20, "a position")
-    assert value["value"]["position"]["lat_deg"] == pytest.approx(36.49, abs=0.05)
+    assert value["value"]["position"]["lat_deg"] == pytest.approx(36.319, abs=0.01)
     assert value["validity_s"] > 0
+
+
+def events(session):
+    """A list that grows with the FP Manager's events."""
+    seen = []
+    session_events = session.declare_subscriber(
+        f"{VEHICLE}/fp-manager/event/events", lambda sample: seen.append(decode(sample)["value"])
+    )
+    return seen, session_events
+
+
+def test_it_answers_an_intersection(agent):
+    seen, _keep = events(agent)
+    plan = (TOP / "assets/plans/fire-watch.xml").read_text()
+    report = until(lambda: call(agent, "fp-manager", "propose", {"xml": plan, "seen_revision": None}), 20, "a report")
+    assert report["acceptable"], report
+    call(agent, "fp-manager", "command", {"command": "commit", "hash": report["hash"], "entry": None})
+    call(agent, "fp-manager", "command", {"command": "start"})
+    asked = until(lambda: [e for e in seen if e["event"] == "decision-requested"], 120, "a decision is asked for")[0]
+    assert {option[0] for option in asked["options"]} == {"again", "close"}
+    answer = call(agent, "fp-manager", "command", {"command": "decide", "leg": "ask", "branch": "close"})
+    assert "code" not in (answer or {}), answer
+    until(
+        lambda: [e for e in seen if e["event"] == "leg-entered" and e["place"]["leg"] == "look"], 240, "the close look"
+    )
+
+
+@pytest.mark.parametrize(
+    "request_", [{"command": "fly-to-the-moon"}, {"command": "decide"}, 42, "start", {"command": "start", "x": [0] * 1000}],
+    ids=["unknown", "incomplete", "number", "text", "no-plan"],
+)
+def test_a_malformed_command_is_refused_with_a_reason(agent, request_):
+    answer = until(lambda: call(agent, "fp-manager", "command", request_), 20, "an answer")
+    assert answer["code"] and answer["reason"], answer
+
+
+def test_garbage_on_a_variable_does_no_harm(agent):
+    for _ in range(100):
+        agent.put(f"{VEHICLE}/fp-manager/variable/heartbeat", b"\xff\x00garbage")
+    answer = until(lambda: call(agent, "gateway", "describe", {}), 20, "an answer")
+    assert answer["service"] == "gateway", answer
