@@ -2,7 +2,7 @@
 
 use crate::clock::Time;
 use std::time::Duration;
-use usal::contract::{GatewayRequest, GatewayState, JoinAnswer};
+use usal::contract::{GatewayRequest, GatewayState, JoinAnswer, SafeRunway};
 
 /// Pause between two attempts to join, or to have a request granted.
 const RETRY: Duration = Duration::from_secs(1);
@@ -20,11 +20,45 @@ pub struct Liaison {
     joined_at: Option<Time>,
     state: Option<GatewayState>,
     controlled: bool,
-    wanted: Option<GatewayRequest>,
+    wanted: Option<Wish>,
+    /// The storing of runways; it waits for nothing and stands in nobody's way.
+    runways: Option<Wish>,
     asking: bool,
-    refusals: u32,
-    ask_not_before: Option<Time>,
     last_reason: String,
+}
+
+/// Something wanted of the gateway and not granted yet.
+#[derive(Debug)]
+struct Wish {
+    request: GatewayRequest,
+    refusals: u32,
+    not_before: Option<Time>,
+    last_reason: String,
+}
+
+impl Wish {
+    fn new(request: GatewayRequest) -> Self {
+        Self { request, refusals: 0, not_before: None, last_reason: String::new() }
+    }
+
+    fn is_due(&self, now: Time) -> bool {
+        self.not_before.is_none_or(|t| now >= t)
+    }
+
+    /// Not granted; whether it is to be given up.
+    fn refused(&mut self, now: Time, reason: &str) -> bool {
+        self.refusals += 1;
+        self.not_before = Some(now + RETRY);
+        if self.last_reason != reason {
+            tracing::warn!(request = ?self.request, "not granted by the gateway: {reason}");
+            self.last_reason = reason.to_owned();
+        }
+        let last = self.refusals >= ATTEMPTS && self.request != GatewayRequest::Launch;
+        if last {
+            tracing::error!(request = ?self.request, "given up: {reason}");
+        }
+        last
+    }
 }
 
 impl Liaison {
@@ -99,34 +133,43 @@ impl Liaison {
 
     /// What is wanted of the gateway and not granted yet.
     pub fn wanted(&self) -> Option<&GatewayRequest> {
-        self.wanted.as_ref()
+        self.wanted.as_ref().map(|wish| &wish.request)
     }
 
     /// Wants something; what was wanted before is no longer.
     pub fn want(&mut self, request: GatewayRequest) {
-        self.wanted = Some(request);
-        self.refusals = 0;
-        self.ask_not_before = None;
+        self.wanted = Some(Wish::new(request));
+    }
+
+    /// Wants runways stored, best first; Safe mode needs them.
+    pub fn want_runways(&mut self, runways: Vec<SafeRunway>) {
+        self.runways = Some(Wish::new(GatewayRequest::SetRunways { runways }));
     }
 
     /// The take-off is no longer to come.
     pub fn unwant_launch(&mut self) {
-        if self.wanted == Some(GatewayRequest::Launch) {
+        if self.wanted() == Some(&GatewayRequest::Launch) {
             self.wanted = None;
         }
     }
 
     /// The executor flies on: if the gateway holds, it should too.
     pub fn flies_on(&mut self) {
-        if self.state == Some(GatewayState::Hold) || self.wanted == Some(GatewayRequest::Hold) {
+        if self.state == Some(GatewayState::Hold) || self.wanted() == Some(&GatewayRequest::Hold) {
             self.want(GatewayRequest::Resume);
         }
     }
 
-    /// The request to be made now, if any; all but a hold wait for the waypoints.
+    /// The request to be made now, if any; runways come first, and all but them and a hold wait
+    /// for the waypoints.
     pub fn request(&mut self, now: Time, fed: bool) -> Option<GatewayRequest> {
-        let due = !self.asking && self.ask_not_before.is_none_or(|t| now >= t);
-        let request = self.wanted.clone().filter(|r| due && (fed || *r == GatewayRequest::Hold))?;
+        if self.asking {
+            return None;
+        }
+        let ready = |wish: &&Wish| fed || wish.request == GatewayRequest::Hold;
+        let due = |wish: &&Wish| wish.is_due(now);
+        let runways = self.runways.as_ref().filter(due);
+        let request = runways.or(self.wanted.as_ref().filter(due).filter(ready))?.request.clone();
         self.asking = true;
         Some(request)
     }
@@ -134,21 +177,13 @@ impl Liaison {
     /// How it went.
     pub fn requested(&mut self, now: Time, request: &GatewayRequest, answer: Result<(), String>) {
         self.asking = false;
-        if self.wanted.as_ref() != Some(request) {
-            return;
-        }
-        let Err(reason) = answer else {
-            self.wanted = None;
-            return;
+        let slot = match request {
+            GatewayRequest::SetRunways { .. } => &mut self.runways,
+            _ => &mut self.wanted,
         };
-        self.refusals += 1;
-        self.ask_not_before = Some(now + RETRY);
-        if self.refusals == 1 {
-            tracing::warn!(?request, "not granted by the gateway: {reason}");
-        }
-        if self.refusals >= ATTEMPTS && *request != GatewayRequest::Launch {
-            tracing::error!(?request, "given up: {reason}");
-            self.wanted = None;
+        let Some(wish) = slot.as_mut().filter(|wish| wish.request == *request) else { return };
+        if answer.is_ok() || answer.is_err_and(|reason| wish.refused(now, &reason)) {
+            *slot = None;
         }
     }
 }

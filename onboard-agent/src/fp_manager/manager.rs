@@ -4,6 +4,7 @@
 use super::aircraft::Aircraft;
 use super::feeder::{Fate, Feeder};
 use super::liaison::Liaison;
+use super::runways::safe_runways;
 use crate::clock::Time;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
 use flight_plan::Program;
@@ -196,6 +197,7 @@ impl Manager {
     /// The answer to [`Effect::Join`]; `None`: none came.
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
         let Some(answer) = self.liaison.joined(now, answer) else { return };
+        self.want_runways();
         self.feeder.settle(answer.highest);
         self.executor.number_after(answer.highest);
         if let Some(current) = answer.current {
@@ -263,8 +265,19 @@ impl Manager {
         if let PlanEvent::PhaseChanged { phase: Phase::Flying | Phase::AwaitingDecision } = event {
             self.liaison.flies_on();
         }
+        if matches!(event, PlanEvent::PlanActivated { .. }) {
+            self.want_runways();
+        }
         out.push(Effect::Event(event));
         out.push(Effect::Save);
+    }
+
+    /// The gateway should know the plan's runways. A plan without any leaves it those it has.
+    fn want_runways(&mut self) {
+        let runways = self.executor.program().map(|p| safe_runways(&p.plan)).unwrap_or_default();
+        if !runways.is_empty() {
+            self.liaison.want_runways(runways);
+        }
     }
 
     /// Sends what is due: first the join, then waypoints, then what wants them to be there.

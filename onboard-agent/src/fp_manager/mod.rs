@@ -1,4 +1,5 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`) around
+//! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`,
+//! `runways`) around
 //! the executor, and the shell that owns session, clock and disk.
 
 mod aircraft;
@@ -6,6 +7,7 @@ mod feeder;
 mod liaison;
 mod manager;
 mod publish;
+mod runways;
 mod shell;
 mod store;
 

@@ -51,7 +51,10 @@ pub struct FakeGateway {
     pub state: GatewayState,
     pub flown: Vec<Waypoint>,
     pub joins: Vec<Join>,
+    /// All but the storing of runways.
     pub requests: Vec<GatewayRequest>,
+    /// As they were stored, each time.
+    pub runways: Vec<Vec<SafeRunway>>,
     pub refuse_leg: Option<Id>,
     resume_on_feed: bool,
 }
@@ -77,6 +80,7 @@ impl FakeGateway {
             flown: Vec::new(),
             joins: Vec::new(),
             requests: Vec::new(),
+            runways: Vec::new(),
             refuse_leg: None,
             resume_on_feed: false,
         }
@@ -210,6 +214,7 @@ impl FakeGateway {
                 self.state = GatewayState::Nav;
             }
             GatewayRequest::Hold => self.state = GatewayState::Hold,
+            GatewayRequest::SetRunways { runways } => return self.runways.push(runways),
             _ => panic!("{request:?}"),
         }
         self.requests.push(request);
