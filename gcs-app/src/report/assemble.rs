@@ -161,6 +161,9 @@ fn sentence(event: &Event) -> (String, bool) {
             let leg = leg.as_ref().map_or(String::new(), |l| format!(" of {l}"));
             (format!("waypoints{leg} refused: {reason}"), true)
         }
+        Event::NotGranted { request, reason } => {
+            (format!("`{request}` not granted by the gateway: {reason}"), true)
+        }
     }
 }
 

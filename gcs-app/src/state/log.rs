@@ -112,6 +112,9 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
             let leg = leg.as_ref().map(|l| format!(" of {l}")).unwrap_or_default();
             (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
         }
+        PlanEvent::NotGranted { request, reason } => {
+            (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
+        }
     }
 }
 

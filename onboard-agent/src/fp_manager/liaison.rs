@@ -45,19 +45,17 @@ impl Wish {
         self.not_before.is_none_or(|t| now >= t)
     }
 
-    /// Not granted; whether it is to be given up.
+    /// Not granted; whether the reason is new.
     fn refused(&mut self, now: Time, reason: &str) -> bool {
         self.refusals += 1;
         self.not_before = Some(now + RETRY);
-        if self.last_reason != reason {
-            tracing::warn!(request = ?self.request, "not granted by the gateway: {reason}");
-            self.last_reason = reason.to_owned();
-        }
-        let last = self.refusals >= ATTEMPTS && self.request != GatewayRequest::Launch;
-        if last {
-            tracing::error!(request = ?self.request, "given up: {reason}");
-        }
-        last
+        let new = self.last_reason != reason;
+        self.last_reason = reason.to_owned();
+        new
+    }
+
+    fn is_hopeless(&self) -> bool {
+        self.refusals >= ATTEMPTS && self.request != GatewayRequest::Launch
     }
 }
 
@@ -174,17 +172,29 @@ impl Liaison {
         Some(request)
     }
 
-    /// How it went.
-    pub fn requested(&mut self, now: Time, request: &GatewayRequest, answer: Result<(), String>) {
+    /// How it went; a reason against it that people have not been told yet.
+    pub fn requested(
+        &mut self,
+        now: Time,
+        request: &GatewayRequest,
+        answer: Result<(), String>,
+    ) -> Option<String> {
         self.asking = false;
         let slot = match request {
             GatewayRequest::SetRunways { .. } => &mut self.runways,
             _ => &mut self.wanted,
         };
-        let Some(wish) = slot.as_mut().filter(|wish| wish.request == *request) else { return };
-        if answer.is_ok() || answer.is_err_and(|reason| wish.refused(now, &reason)) {
+        let wish = slot.as_mut().filter(|wish| wish.request == *request)?;
+        let Err(reason) = answer else {
+            *slot = None;
+            return None;
+        };
+        let new = wish.refused(now, &reason);
+        if wish.is_hopeless() {
+            tracing::error!(request = request.name(), "given up: {reason}");
             *slot = None;
         }
+        new.then_some(reason)
     }
 }
 

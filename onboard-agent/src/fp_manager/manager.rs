@@ -2,12 +2,14 @@
 //! what has to be said to the outside comes out as [`Effect`]s.
 
 use super::aircraft::Aircraft;
+use super::alarms::Alarms;
 use super::feeder::{Fate, Feeder};
 use super::liaison::Liaison;
 use super::runways::safe_runways;
 use crate::clock::Time;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
 use flight_plan::Program;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use usal::contract::*;
 
@@ -32,6 +34,7 @@ pub struct Manager {
     feeder: Feeder,
     liaison: Liaison,
     aircraft: Aircraft,
+    alarms: Alarms,
     /// Highest token that the autopilot was seen steering to.
     steered: Token,
     last_request: u64,
@@ -49,9 +52,20 @@ impl Manager {
             feeder: Feeder::default(),
             liaison,
             aircraft: Aircraft::default(),
+            alarms: Alarms::default(),
             steered: Token(0),
             last_request: 0,
         }
+    }
+
+    /// With the alarms that were answered before a restart.
+    pub fn having_answered(self, alarms: BTreeSet<String>) -> Self {
+        Self { alarms: Alarms::restored(alarms), ..self }
+    }
+
+    /// Identifiers of the alarms that were answered.
+    pub fn answered_alarms(&self) -> &BTreeSet<String> {
+        self.alarms.answered()
     }
 
     /// The executor, to be looked at.
@@ -135,6 +149,11 @@ impl Manager {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
+        if self.liaison.is_joined() {
+            for cause in self.alarms.listed(&status.alarms) {
+                self.emergency(now, cause, out);
+            }
+        }
         self.send(now, out);
     }
 
@@ -147,18 +166,25 @@ impl Manager {
                 self.step(now, Input::Progress { current: None }, out);
                 out.push(Effect::Save);
             }
-            GatewayEvent::AlarmRaised(Alarm {
-                severity: Severity::Warning, cause: Some(cause), id, ..
-            }) => {
-                tracing::warn!(id, ?cause, "alarm of the gateway: emergency");
-                if let Err(refusal) = self.command(now, Command::Emergency { cause, plan: None }, out) {
-                    tracing::warn!(id, "no emergency plan flown: {refusal}");
+            GatewayEvent::AlarmRaised(alarm) => {
+                if let Some(cause) = self.alarms.raised(&alarm) {
+                    self.emergency(now, cause, out);
                 }
             }
+            GatewayEvent::AlarmCleared { id } => self.alarms.cleared(&id),
             GatewayEvent::BufferLow { .. } => self.feeder.hurry(),
             _ => {}
         }
         self.send(now, out);
+    }
+
+    /// An alarm of the gateway asks for an emergency plan.
+    fn emergency(&mut self, now: Time, cause: Cause, out: &mut Vec<Effect>) {
+        tracing::warn!(?cause, "alarm of the gateway: emergency");
+        if let Err(refusal) = self.command(now, Command::Emergency { cause, plan: None }, out) {
+            tracing::warn!(?cause, "no emergency plan flown: {refusal}");
+        }
+        out.push(Effect::Save);
     }
 
     /// The gateway appeared: it has to be joined (again).
@@ -189,7 +215,9 @@ impl Manager {
         answer: Result<(), String>,
         out: &mut Vec<Effect>,
     ) {
-        self.liaison.requested(now, request, answer);
+        if let Some(reason) = self.liaison.requested(now, request, answer) {
+            out.push(Effect::Event(PlanEvent::NotGranted { request: request.name().into(), reason }));
+        }
         out.push(Effect::Save);
         self.send(now, out);
     }
@@ -198,6 +226,7 @@ impl Manager {
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
         let Some(answer) = self.liaison.joined(now, answer) else { return };
         self.want_runways();
+        self.alarms.joined();
         self.feeder.settle(answer.highest);
         self.executor.number_after(answer.highest);
         if let Some(current) = answer.current {

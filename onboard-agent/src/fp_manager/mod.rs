@@ -1,8 +1,9 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`,
+//! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`, `alarms`,
 //! `runways`) around
 //! the executor, and the shell that owns session, clock and disk.
 
 mod aircraft;
+mod alarms;
 mod feeder;
 mod liaison;
 mod manager;

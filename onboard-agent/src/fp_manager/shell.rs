@@ -198,11 +198,11 @@ fn open(config: &Config) -> anyhow::Result<(Option<Store>, Manager)> {
     let Some(directory) = &config.state_dir else { return Ok((None, Manager::new(fresh(), false))) };
     let (store, saved) = Store::open(directory)?;
     let Some(saved) = saved else { return Ok((Some(store), Manager::new(fresh(), false))) };
-    let launch_wanted = saved.launch_wanted;
+    let (launch_wanted, answered_alarms) = (saved.launch_wanted, saved.answered_alarms.clone());
     let manager = match restore(config, saved) {
         Ok(executor) => {
             tracing::info!(phase = ?executor.status_phase(), "going on where the last FP Manager was");
-            Manager::new(executor, launch_wanted)
+            Manager::new(executor, launch_wanted).having_answered(answered_alarms)
         }
         Err(error) => {
             store::set_aside(&store::file(directory), &format!("{error:#}"));
@@ -411,6 +411,7 @@ impl Shell {
             plan: executor.program().map(|p| flight_plan::write(&p.plan).into()),
             snapshot: executor.snapshot(),
             launch_wanted: self.manager.is_launch_wanted(),
+            answered_alarms: self.manager.answered_alarms().clone(),
         });
     }
 

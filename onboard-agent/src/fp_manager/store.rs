@@ -4,6 +4,7 @@
 use anyhow::Context;
 use flight_exec::Snapshot;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -26,6 +27,9 @@ pub struct Saved {
     pub snapshot: Snapshot,
     /// The take-off was ordered and not yet confirmed.
     pub launch_wanted: bool,
+    /// Alarms of the gateway that were answered by an emergency plan, or found none.
+    #[serde(default)]
+    pub answered_alarms: BTreeSet<String>,
 }
 
 /// The directory where a flight is kept.
@@ -189,7 +193,12 @@ mod tests {
 
     fn saved(plan: &str) -> Saved {
         let executor = Executor::new(flight_exec::Config::default(), Arc::new(Flat(0.0)), Profile::default());
-        Saved { plan: Some(plan.into()), snapshot: executor.snapshot(), launch_wanted: true }
+        Saved {
+            plan: Some(plan.into()),
+            snapshot: executor.snapshot(),
+            launch_wanted: true,
+            answered_alarms: BTreeSet::from(["energy-low".into()]),
+        }
     }
 
     async fn saved_once(directory: &Path, plans: &[&str]) {
@@ -209,6 +218,7 @@ mod tests {
         assert_eq!(found.plan.as_deref(), Some("<c/>"));
         assert_eq!(found.snapshot, saved("").snapshot);
         assert!(found.launch_wanted);
+        assert_eq!(found.answered_alarms, saved("").answered_alarms);
     }
 
     #[tokio::test]

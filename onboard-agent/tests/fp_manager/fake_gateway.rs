@@ -56,6 +56,10 @@ pub struct FakeGateway {
     /// As they were stored, each time.
     pub runways: Vec<Vec<SafeRunway>>,
     pub refuse_leg: Option<Id>,
+    /// Launches are refused with this.
+    pub refuse_launch: Option<String>,
+    /// Raised now.
+    alarms: Vec<Alarm>,
     resume_on_feed: bool,
 }
 
@@ -82,6 +86,8 @@ impl FakeGateway {
             requests: Vec::new(),
             runways: Vec::new(),
             refuse_leg: None,
+            refuse_launch: None,
+            alarms: Vec::new(),
             resume_on_feed: false,
         }
     }
@@ -110,7 +116,8 @@ impl FakeGateway {
             advice: "land".into(),
             cause: Some(cause),
         };
-        self.emit(GatewayEvent::AlarmRaised(alarm));
+        self.emit(GatewayEvent::AlarmRaised(alarm.clone()));
+        self.alarms.push(alarm);
     }
 
     /// Safe.Hold with an empty buffer, until the FP Manager joins.
@@ -160,8 +167,7 @@ impl FakeGateway {
                 }
                 Some(incoming) = self.request.recv() => {
                     let (request, reply) = incoming.split();
-                    self.request(request);
-                    reply(Ok(Empty {}));
+                    reply(self.request(request));
                 }
                 late = self.conductor.settle() => return late,
             }
@@ -207,17 +213,25 @@ impl FakeGateway {
         }
     }
 
-    fn request(&mut self, request: GatewayRequest) {
+    fn request(&mut self, request: GatewayRequest) -> Result<Empty, Refusal> {
         match request {
+            GatewayRequest::Launch if self.refuse_launch.is_some() => {
+                let reason = self.refuse_launch.clone().unwrap_or_default();
+                return Err(Refusal { code: "refused".into(), reason });
+            }
             GatewayRequest::Launch | GatewayRequest::Resume => {
                 assert!(!self.buffer.is_empty(), "{request:?} before the waypoints");
                 self.state = GatewayState::Nav;
             }
             GatewayRequest::Hold => self.state = GatewayState::Hold,
-            GatewayRequest::SetRunways { runways } => return self.runways.push(runways),
+            GatewayRequest::SetRunways { runways } => {
+                self.runways.push(runways);
+                return Ok(Empty {});
+            }
             _ => panic!("{request:?}"),
         }
         self.requests.push(request);
+        Ok(Empty {})
     }
 
     fn fly(&mut self) {
@@ -268,7 +282,7 @@ impl FakeGateway {
             autopilot_age_s: 0.0,
             fp_manager_age_s: None,
             safe_return_in_s: None,
-            alarms: vec![],
+            alarms: self.alarms.clone(),
         };
         self.status.set(self.time_s, 1.0, &status);
     }

@@ -210,6 +210,63 @@ async fn alarm_with_a_cause_flies_the_emergency_plan() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "take-off")).await;
+    flight.kill_manager().await;
+    flight.gateway.alarm(Cause::Energy);
+    // both times it finds the alarm raised
+    for _ in 0..2 {
+        flight.gateway.safe_until_joined();
+        flight.start_manager().await;
+        let runways = flight.gateway.runways.len();
+        flight.step_until(|g| g.runways.len() > runways).await;
+        flight.step(1).await;
+        flight.kill_manager().await;
+    }
+    flight.gateway.safe_until_joined();
+    flight.start_manager().await;
+    flight.step_until(FakeGateway::finished).await;
+    let flown = legs(&flight.gateway);
+    assert!(flown.contains(&"r1".to_owned()) && !flown.contains(&"side3".to_owned()), "{flown:?}");
+    let mut started = 0;
+    while let Some(occurrence) = events.try_recv() {
+        let Occurrence::Event { event, .. } = occurrence else { continue };
+        started += usize::from(matches!(event.value, PlanEvent::EmergencyStarted { .. }));
+    }
+    assert_eq!(started, 1);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn launch_refused_is_told_once_with_its_reason_and_asked_again() {
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    flight.load(SQUARE).await;
+    flight.gateway.refuse_launch = Some("There is no GPS fix.".into());
+    flight.command(Command::Start).await.unwrap();
+    flight.step(20).await;
+    flight.gateway.refuse_launch = None;
+    flight.step_until(|g| g.launched()).await;
+    flight.step_until(FakeGateway::finished).await;
+    let mut told = Vec::new();
+    while let Some(occurrence) = events.try_recv() {
+        if let Occurrence::Event {
+            event: Stamped { value: PlanEvent::NotGranted { request, reason }, .. },
+            ..
+        } = occurrence
+        {
+            told.push((request, reason));
+        }
+    }
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].0 == "launch" && told[0].1.contains("no GPS fix"), "{told:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn killed_and_restarted_it_goes_on_at_its_place() {
     let directory = tempfile::tempdir().unwrap();
     let mut flight = Flight::new(Some(directory.path())).await;

@@ -436,4 +436,12 @@ pub enum Event {
         /// Why.
         reason: String,
     },
+    /// The gateway does not grant what the flight needs; it is asked again, for the take-off until
+    /// it is granted. Told once for each reason, by the FP Manager.
+    NotGranted {
+        /// `launch`, `hold`, `resume` or `set-runways`.
+        request: String,
+        /// Why.
+        reason: String,
+    },
 }

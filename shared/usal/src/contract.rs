@@ -340,6 +340,23 @@ pub enum GatewayRequest {
     },
 }
 
+impl GatewayRequest {
+    /// Its name, as on the wire.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Launch => "launch",
+            Self::Hold => "hold",
+            Self::Resume => "resume",
+            Self::Direct { .. } => "direct",
+            Self::Safe => "safe",
+            Self::Recover => "recover",
+            Self::SetRunways { .. } => "set-runways",
+            Self::SetSafe(_) => "set-safe",
+            Self::Terminate { .. } => "terminate",
+        }
+    }
+}
+
 /// A runway as the gateway stores it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SafeRunway {
