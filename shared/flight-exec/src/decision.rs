@@ -94,7 +94,8 @@ impl Executor {
         self.state.requested.retain(|(l, n)| l != leg || *n > crossing);
     }
 
-    fn record(&mut self, decision: Decision, out: &mut Vec<Output>) {
+    /// Keeps a decision and tells about it.
+    pub(crate) fn record(&mut self, decision: Decision, out: &mut Vec<Output>) {
         let Decision { leg, branch, by, crossing } = decision.clone();
         self.state.decisions.retain(|d| d.leg != leg || d.crossing != crossing);
         let surplus = (self.state.decisions.len() + 1).saturating_sub(MOST_DECISIONS);
@@ -105,7 +106,12 @@ impl Executor {
     }
 
     fn is_decided(&self, pending: &Pending) -> bool {
-        self.state.decisions.iter().any(|d| d.leg == pending.leg && d.crossing == pending.crossing)
+        self.has_decision(&pending.leg, pending.crossing)
+    }
+
+    /// Somebody or something has decided for this passing of an intersection.
+    pub(crate) fn has_decision(&self, leg: &Id, crossing: u64) -> bool {
+        self.state.decisions.iter().any(|d| d.leg == *leg && d.crossing == crossing)
     }
 
     fn pending(&self) -> Vec<Pending> {

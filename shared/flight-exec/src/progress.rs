@@ -3,6 +3,7 @@
 use crate::api::{Event, Output, Phase, PlacePointer, Token};
 use crate::choice::Choice;
 use crate::cursor::Step;
+use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::handed::{Handed, Onward};
 use crate::world::World;
@@ -68,7 +69,13 @@ impl Executor {
                     }
                     out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
                 }
-                Choice::Branch { leg, crossing, .. } => self.forget_decision(&leg, crossing),
+                Choice::Branch { leg, crossing, branch, by } => {
+                    // the turn into it may begin before its deadline: then what is being flown is the decision
+                    if let Some(branch) = branch.filter(|_| !self.has_decision(&leg, crossing)) {
+                        self.record(Decision { leg: leg.clone(), crossing, branch, by }, out);
+                    }
+                    self.forget_decision(&leg, crossing);
+                }
                 Choice::Hold { .. } => {}
             }
         }

@@ -152,6 +152,39 @@ fn flights_without_an_end_are_refused_with_the_place() {
     assert!(matches!(fly(asks, &Options::default(), 3e6), Err(PreviewError::Waiting { .. })));
 }
 
+/// Asked once and decided once at each passing: by default at its deadline, before the leg behind it begins.
+#[test]
+fn decision_by_default_at_its_deadline() {
+    let legs = r#"<TF id="a" fix="A"/>
+        <iterative id="loop" form="forward" count="3" turn="right">
+          <scan id="sweep" spacing="200" overshoot="0"><area fix="A" radius="350"/></scan>
+          <intersection id="ask" default="on" decideBefore="15s">
+            <branch id="on" label="Sweep again"/><branch id="look" label="Close look" next="close"/>
+          </intersection>
+          <TF id="mark" fix="B" next="end"/>
+          <orbit id="close" radius="250" turns="1" turn="right"><centre fix="B"/></orbit>
+          <TF id="end" fix="C"/>
+        </iterative>"#;
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let options = Options::default();
+    let scenario = Scenario::default();
+    let flown =
+        preview(&small(legs), &Profile::default(), &flat, Wind::CALM, Start::Runway, &scenario, &options)
+            .unwrap();
+    let times = |is: &dyn Fn(&Event) -> bool| -> Vec<f64> {
+        flown.events.iter().filter(|(_, e)| is(e)).map(|(t, _)| *t).collect()
+    };
+    let asked = times(&|e| matches!(e, Event::DecisionRequested(r) if r.leg.as_str() == "ask"));
+    let taken = times(
+        &|e| matches!(e, Event::DecisionTaken { branch, by, .. } if branch.as_str() == "on" && by == "default"),
+    );
+    let behind = times(&|e| matches!(e, Event::LegEntered { place } if place.leg.as_str() == "mark"));
+    assert_eq!((asked.len(), taken.len(), behind.len()), (3, 3, 3), "{asked:?} {taken:?} {behind:?}");
+    for ((asked, taken), behind) in asked.iter().zip(&taken).zip(&behind) {
+        assert!(asked < taken && taken < behind, "{asked} {taken} {behind}");
+    }
+}
+
 #[test]
 fn it_can_be_cancelled() {
     let mut told = 0;

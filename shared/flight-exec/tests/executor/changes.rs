@@ -150,6 +150,24 @@ fn the_default_is_taken_at_the_deadline() {
     assert_eq!(rig.legs(), "a b l z");
 }
 
+/// A wide turn begins before the deadline, or the reports are rare: what is being flown was decided all the same.
+#[test]
+fn flown_past_before_its_deadline_a_decision_is_told() {
+    for (n, leg, expected) in [(0.0, "l", ("left", "default")), (9.0, "r", ("right", "condition"))] {
+        let mut rig = near_the_fork(1500.0);
+        rig.set("n", n).unwrap();
+        rig.now += Time::from_secs(2);
+        rig.report();
+        assert_eq!(taken(&rig), []);
+        rig.buffer.pop_front();
+        rig.steer();
+        assert_eq!(rig.leg(), leg);
+        assert_eq!(taken(&rig), [(expected.0.to_string(), expected.1.to_string())]);
+        rig.fly_to_the_end();
+        assert_eq!(taken(&rig).len(), 1);
+    }
+}
+
 #[test]
 fn explicit_before_condition_before_default() {
     for (n, explicit, branch, by) in [
