@@ -65,6 +65,25 @@ pub enum Mode {
     Other(u32),
 }
 
+/// ArduPlane's numbers and names of the modes that the gateway never orders.
+const OTHER_MODES: [(u32, &str); 15] = [
+    (0, "MANUAL"),
+    (1, "CIRCLE"),
+    (2, "STABILIZE"),
+    (3, "TRAINING"),
+    (4, "ACRO"),
+    (5, "FBWA"),
+    (6, "FBWB"),
+    (7, "CRUISE"),
+    (8, "AUTOTUNE"),
+    (13, "TAKEOFF"),
+    (14, "AVOID_ADSB"),
+    (16, "INITIALISING"),
+    (24, "THERMAL"),
+    (25, "LOITER_ALT_QLAND"),
+    (26, "AUTOLAND"),
+];
+
 impl std::fmt::Display for Mode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -72,7 +91,10 @@ impl std::fmt::Display for Mode {
             Mode::Loiter => f.write_str("LOITER"),
             Mode::Guided => f.write_str("GUIDED"),
             Mode::Return => f.write_str("RTL"),
-            Mode::Other(n) => write!(f, "mode {n}"),
+            Mode::Other(n) => match OTHER_MODES.iter().find(|(number, _)| number == n) {
+                Some((_, name)) => f.write_str(name),
+                None => write!(f, "mode {n}"),
+            },
         }
     }
 }

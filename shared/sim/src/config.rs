@@ -47,8 +47,8 @@ impl Default for Config {
         Self {
             link: Link::Tcp(SocketAddr::from(([127, 0, 0, 1], 0))),
             home: Home {
-                position: LatLon::new(36.4905, -84.2710),
-                altitude_amsl_m: 322.0,
+                position: LatLon::new(36.3190, -84.1730),
+                altitude_amsl_m: 349.0,
                 heading_deg: 52.0,
             },
             wind: Wind::CALM,
@@ -98,7 +98,7 @@ impl FromStr for Control {
 /// # Errors
 /// What is wrong with it.
 pub fn parse_home(text: &str) -> Result<Home, String> {
-    let wrong = || format!("{text:?} is no home; write LAT,LON,ALT,HEADING, as 36.4905,-84.2710,322,52");
+    let wrong = || format!("{text:?} is no home; write LAT,LON,ALT,HEADING, as 36.3190,-84.1730,349,52");
     let [lat, lon, altitude_amsl_m, heading_deg] = numbers(text).ok_or_else(wrong)?;
     let position = LatLon::new(lat, lon);
     if !position.is_valid() || !(-500.0..9000.0).contains(&altitude_amsl_m) {
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn homes() {
-        let home = parse_home("36.4905, -84.2710, 322, 52").unwrap();
+        let home = parse_home("36.3190, -84.1730, 349, 52").unwrap();
         assert_eq!(home, Config::default().home);
         for bad in ["", "1,2,3", "91,0,0,0", "1,2,1e9,0", "a,b,c,d", "1,2,3,4,5"] {
             assert!(parse_home(bad).is_err(), "{bad}");

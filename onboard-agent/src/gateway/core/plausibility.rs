@@ -254,7 +254,8 @@ mod tests {
 
     #[test]
     fn each_rule_refuses_what_it_is_there_for() {
-        let cases: [(&str, fn(&mut Waypoint)); 16] = [
+        type Spoil = fn(&mut Waypoint);
+        let cases: [(&str, Spoil); 16] = [
             ("not-a-number", |w| w.position.lat_deg = f64::NAN),
             ("not-a-number", |w| w.altitude_amsl_m = f64::INFINITY),
             ("not-a-number", |w| w.airspeed_mps = f64::NAN),

@@ -188,7 +188,8 @@ mod tests {
         let downwind = runway("downwind", 0.0, 8.0, 90.0, 1);
         let mut short = runway("short", 0.0, 1.0, 0.0, 1);
         short.length_m = 80.0;
-        let cases: [(&str, Vec<SafeRunway>, f64, f64, Option<&str>); 6] = [
+        type Case<'a> = (&'a str, Vec<SafeRunway>, f64, f64, Option<&'a str>);
+        let cases: [Case; 6] = [
             ("nothing stored", vec![], 1.0, 0.0, None),
             ("much closer alternate", vec![main.clone(), near.clone()], 1.0, 0.0, Some("near")),
             ("hardly closer alternate", vec![main.clone(), similar], 1.0, 0.0, Some("main")),

@@ -20,7 +20,7 @@ pub struct Decoder {
 
 enum Found {
     /// `(header, message)`, if it was understood, and the frame's length.
-    Frame(Option<Decoded>, usize),
+    Frame(Option<Box<Decoded>>, usize),
     Incomplete,
     Nothing,
 }
@@ -45,7 +45,7 @@ impl Decoder {
         while let Some(tail) = self.rest.get(at..).filter(|t| !t.is_empty()) {
             match find(tail) {
                 Found::Frame(Some(decoded), length) => {
-                    out.push(decoded);
+                    out.push(*decoded);
                     at += length;
                 }
                 Found::Frame(None, length) => {
@@ -81,7 +81,7 @@ fn find(bytes: &[u8]) -> Found {
     let total = sum + 2 + if v2 && flags & SIGNED != 0 { 13 } else { 0 };
     debug_assert!(total <= LONGEST);
     let Some(frame) = bytes.get(..total) else { return Found::Incomplete };
-    parse(frame, v2, head, sum).map_or(Found::Nothing, |decoded| Found::Frame(decoded, total))
+    parse(frame, v2, head, sum).map_or(Found::Nothing, |decoded| Found::Frame(decoded.map(Box::new), total))
 }
 
 /// `None`: the checksum is wrong. `Some(None)`: a frame, but not one that is understood.

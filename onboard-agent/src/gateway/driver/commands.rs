@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Times that a command is sent.
-const TRIES: u32 = 8;
+const TRIES: u32 = 16;
 /// An acknowledged command has to show its effect within this.
 const EFFECT: Duration = Duration::from_secs(3);
 /// Commands that wait; more than the core ever gives.
@@ -97,7 +97,7 @@ impl Commands {
             && let Some((id, wish)) = self.queue.pop_front()
         {
             self.flight = Some(Given { id, wish, tries: 1, acked: None, sent: now });
-            out.push(encode(wish, 0, peer));
+            out.extend((0..self.rto.copies()).map(|_| encode(wish, 0, peer)));
             self.rto.start(now);
         }
         ended
@@ -118,7 +118,8 @@ impl Commands {
             }
             None => {
                 given.tries += 1;
-                out.push(encode(given.wish, given.tries as u8 - 1, peer));
+                let message = encode(given.wish, given.tries as u8 - 1, peer);
+                out.extend((0..self.rto.copies()).map(|_| message.clone()));
                 None
             }
         }

@@ -8,6 +8,7 @@ mod codec;
 mod commands;
 mod items;
 mod rto;
+mod salvo;
 mod streams;
 mod telemetry;
 #[cfg(test)]
@@ -16,11 +17,12 @@ mod transfer;
 
 pub use codec::{Decoded, Decoder, encode};
 
-use super::order::{Order, OrderId, Report, Time};
+use super::order::{Item, Order, OrderId, Report, Time};
 use commands::{Commands, Ended, Shown, Wish};
 use mavlink::MavHeader;
 use mavlink::dialects::ardupilotmega::*;
 use rto::Rto;
+use salvo::Salvo;
 use std::collections::VecDeque;
 use std::time::Duration;
 use streams::Streams;
@@ -53,6 +55,7 @@ pub struct Driver {
     /// Messages of other systems, and such without sense.
     pub ignored: u64,
     transfer: Option<(OrderId, Transfer)>,
+    salvo: Option<(OrderId, Salvo)>,
     waiting: VecDeque<(OrderId, Order)>,
     link: Rto,
     commands: Commands,
@@ -136,7 +139,8 @@ impl Driver {
     /// When `tick` is due.
     pub fn deadline(&self) -> Time {
         let transfer = self.transfer.as_ref().and_then(|(_, t)| t.deadline());
-        [transfer, self.commands.deadline()].into_iter().flatten().fold(self.beat_at, Time::min)
+        let salvo = self.salvo.as_ref().and_then(|(_, s)| s.deadline());
+        [transfer, salvo, self.commands.deadline()].into_iter().flatten().fold(self.beat_at, Time::min)
     }
 
     /// Time passed.
@@ -153,22 +157,42 @@ impl Driver {
             let outcome = transfer.tick(now, peer, &mut self.out);
             self.finish(outcome);
         }
+        if let Some((_, salvo)) = &mut self.salvo {
+            let failed = salvo.tick(now, peer, &mut self.out);
+            self.finish_salvo(failed);
+        }
         self.next_transfer(now, peer);
     }
 
     fn next_transfer(&mut self, now: Time, peer: Peer) {
-        if self.transfer.is_some() {
+        if self.transfer.is_some() || self.salvo.is_some() {
             return;
         }
         let Some((id, order)) = self.waiting.pop_front() else { return };
-        let (job, start, items) = match order {
-            Order::Write { start, items } => (Job::Partial, start, items),
-            Order::Upload { items } => (Job::Whole, 0, items),
-            _ => (Job::Read, 0, vec![]),
+        let (job, items) = match order {
+            Order::Write { start, items } => return self.begin_salvo(now, id, start, items, peer),
+            Order::Upload { items } => (Job::Whole, items),
+            _ => (Job::Read, vec![]),
         };
         let rto = std::mem::take(&mut self.link);
-        let transfer = Transfer::begin(now, job, start, items, rto, peer, &mut self.out);
+        let transfer = Transfer::begin(now, job, items, rto, peer, &mut self.out);
         self.transfer = Some((id, transfer));
+    }
+
+    fn begin_salvo(&mut self, now: Time, id: OrderId, start: u16, items: Vec<Item>, peer: Peer) {
+        let rto = std::mem::take(&mut self.link);
+        self.salvo = Some((id, Salvo::begin(now, start, items, rto, peer, &mut self.out)));
+    }
+
+    /// Ends the salvo if it is complete or failed.
+    fn finish_salvo(&mut self, failed: Option<String>) {
+        let over = |(_, s): &mut (OrderId, Salvo)| failed.is_some() || s.is_complete();
+        let Some((id, salvo)) = self.salvo.take_if(over) else { return };
+        self.link = salvo.into_rto();
+        self.reports.push(match failed {
+            None => Report::Done(id),
+            Some(why) => Report::Failed(id, why),
+        });
     }
 
     fn finish(&mut self, outcome: Option<Outcome>) {
@@ -222,6 +246,9 @@ impl Driver {
     // ArduPilot asks by the deprecated message, and has to be answered
     #[expect(deprecated)]
     fn receive_mission(&mut self, now: Time, peer: Peer, message: &MavMessage) {
+        if self.salvo.is_some() {
+            return self.receive_salvo(now, message);
+        }
         let Some((_, transfer)) = &mut self.transfer else {
             return self.readings.take(now, message, &mut self.reports, &mut self.ignored);
         };
@@ -244,6 +271,20 @@ impl Driver {
             _ => return self.readings.take(now, message, &mut self.reports, &mut self.ignored),
         };
         self.finish(outcome);
+    }
+
+    fn receive_salvo(&mut self, now: Time, message: &MavMessage) {
+        let Some((_, salvo)) = &mut self.salvo else { return };
+        let plan = mission_type();
+        let failed = match message {
+            MavMessage::MISSION_ACK(a) if a.mission_type == plan => salvo.acked(a.mavtype),
+            MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => {
+                salvo.item(now, i);
+                None
+            }
+            _ => return self.readings.take(now, message, &mut self.reports, &mut self.ignored),
+        };
+        self.finish_salvo(failed);
     }
 
     /// The first autopilot that is heard is ours; the rest are strangers.

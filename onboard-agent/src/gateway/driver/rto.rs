@@ -5,16 +5,19 @@ use crate::gateway::order::Time;
 use std::time::Duration;
 
 const FIRST: Duration = Duration::from_millis(500);
-const SHORTEST: Duration = Duration::from_millis(250);
+const SHORTEST: Duration = Duration::from_millis(150);
 const LONGEST: Duration = Duration::from_millis(3000);
 /// A radio link loses frames by noise more than by congestion: backing off further only wastes time.
 const MOST_DOUBLINGS: u32 = 1;
+/// A timeout makes a link suspect for so many exchanges.
+const SUSPECT_FOR: u32 = 16;
 
 /// The estimator, and the one timer that goes with it.
 #[derive(Debug, Clone, Default)]
 pub struct Rto {
     smoothed_s: Option<(f64, f64)>,
     doublings: u32,
+    suspect: u32,
     started: Option<Time>,
 }
 
@@ -27,6 +30,12 @@ impl Rto {
             Some((mean, spread)) => (0.875 * mean + 0.125 * t, 0.75 * spread + 0.25 * (mean - t).abs()),
         });
         self.doublings = 0;
+        self.suspect = self.suspect.saturating_sub(1);
+    }
+
+    /// How often what is short and matters is sent at once: twice on a link that loses frames.
+    pub fn copies(&self) -> usize {
+        if self.suspect > 0 { 2 } else { 1 }
     }
 
     /// The present timeout.
@@ -44,8 +53,13 @@ impl Rto {
     }
 
     /// Something came through: no more backing off.
-    pub fn progress(&mut self, now: Time) {
+    pub fn no_doubling(&mut self) {
         self.doublings = 0;
+    }
+
+    /// Something came through: no more backing off, and the timer starts anew.
+    pub fn progress(&mut self, now: Time) {
+        self.no_doubling();
         self.started = Some(now);
     }
 
@@ -59,6 +73,7 @@ impl Rto {
         let late = self.deadline().is_some_and(|d| now >= d);
         if late {
             self.doublings += 1;
+            self.suspect = SUSPECT_FOR;
             self.started = Some(now);
         }
         late
@@ -85,5 +100,8 @@ mod tests {
         assert!(rto.timeout() < ms(900), "{:?}", rto.timeout());
         rto.progress(ms(0));
         assert!(rto.timeout() < ms(450));
+        assert_eq!(rto.copies(), 2, "it lost something lately");
+        (0..SUSPECT_FOR).for_each(|_| rto.sample(ms(100)));
+        assert_eq!(rto.copies(), 1);
     }
 }

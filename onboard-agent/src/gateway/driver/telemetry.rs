@@ -41,7 +41,10 @@ impl Readings {
             MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(Report::Air(a))),
             MavMessage::WIND(m) => self.wind(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
-            MavMessage::GPS_RAW_INT(m) => Some(out.push(Report::Gps(gps(m)))),
+            MavMessage::GPS_RAW_INT(m) => {
+                out.push(Report::Gps(gps(m)));
+                Some(())
+            }
             MavMessage::SYS_STATUS(m) => power(m).map(|p| out.push(Report::Power(p))),
             MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push(Report::Engine(e))),
             MavMessage::EFI_STATUS(m) => self.efi(m),

@@ -24,8 +24,6 @@ const MOST_ITEMS: u16 = 2000;
 /// What a transfer is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Job {
-    /// Overwrite a range.
-    Partial,
     /// Replace the list.
     Whole,
     /// Read the list.
@@ -57,7 +55,6 @@ pub enum Outcome {
 #[derive(Debug, Clone)]
 pub struct Transfer {
     job: Job,
-    start: u16,
     items: Vec<Item>,
     phase: Phase,
     rto: Rto,
@@ -75,7 +72,6 @@ impl Transfer {
     pub fn begin(
         now: Time,
         job: Job,
-        start: u16,
         items: Vec<Item>,
         rto: Rto,
         peer: Peer,
@@ -84,7 +80,6 @@ impl Transfer {
         let phase = Phase::Counting;
         let mut t = Self {
             job,
-            start,
             items,
             phase,
             rto,
@@ -119,37 +114,27 @@ impl Transfer {
     }
 
     fn opening(&self, peer: Peer) -> MavMessage {
-        let count = self.items.len() as u16;
-        match self.job {
-            Job::Whole => MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
-                count,
-                target_system: peer.system,
-                target_component: peer.component,
-                mission_type: mission_type(),
-                opaque_id: 0,
-            }),
-            _ => MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
-                start_index: self.start as i16,
-                end_index: (self.start + count.saturating_sub(1)) as i16,
-                target_system: peer.system,
-                target_component: peer.component,
-                mission_type: mission_type(),
-            }),
-        }
+        MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+            count: self.items.len() as u16,
+            target_system: peer.system,
+            target_component: peer.component,
+            mission_type: mission_type(),
+            opaque_id: 0,
+        })
     }
 
     fn send_window(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
         let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
         let end = (*acked + WINDOW).min(self.items.len());
         for (i, item) in self.items.iter().enumerate().take(end).skip(*sent) {
-            out.push(MavMessage::MISSION_ITEM_INT(encode(self.start + i as u16, item, peer)));
+            out.push(MavMessage::MISSION_ITEM_INT(encode(i as u16, item, peer)));
         }
         *sent = end.max(*sent);
     }
 
     /// The autopilot asks for an entry.
     pub fn requested(&mut self, now: Time, seq: u16, peer: Peer, out: &mut Vec<MavMessage>) {
-        let Some(index) = seq.checked_sub(self.start).map(usize::from) else { return };
+        let index = usize::from(seq);
         let Phase::Sending { acked, asked, .. } = &mut self.phase else { return };
         if index >= self.items.len() || index < *acked {
             return;
@@ -256,13 +241,12 @@ impl Transfer {
 
     /// Asks for what is missing, a window at a time.
     fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
-        let start = self.start;
         let Phase::Reading { got, next } = &mut self.phase else { return };
         let have = got.iter().flatten().count();
         let end = (have + WINDOW).min(got.len());
         for (i, _) in got.iter().enumerate().take(end).skip(*next).filter(|(_, g)| g.is_none()) {
             out.push(MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
-                seq: start + i as u16,
+                seq: i as u16,
                 target_system: peer.system,
                 target_component: peer.component,
                 mission_type: mission_type(),
@@ -298,7 +282,7 @@ impl Transfer {
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Option<Outcome> {
-        let index = usize::from(data.seq.checked_sub(self.start)?);
+        let index = usize::from(data.seq);
         let Phase::Reading { got, .. } = &mut self.phase else { return None };
         let slot = got.get_mut(index)?;
         if slot.is_some() {
@@ -321,7 +305,6 @@ impl Transfer {
         let Some(entry) = differs else { return Some(Outcome::Verified) };
         self.rewrites += 1;
         if self.rewrites > REWRITES {
-            let entry = usize::from(self.start) + entry;
             return Some(Outcome::Failed(format!("entry {entry} reads back differently each time")));
         }
         self.best = 0;
@@ -351,7 +334,7 @@ impl Transfer {
                 self.read(now, self.items.len(), peer, out);
                 self.probe = None;
             }
-            Phase::Sending { .. } if self.silent % 4 == 0 => self.send_from_start(peer, out),
+            Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_from_start(peer, out),
             Phase::Sending { acked, sent, .. } => {
                 *sent = *acked;
                 self.send_window(peer, out);

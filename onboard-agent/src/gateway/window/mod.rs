@@ -9,8 +9,8 @@
 //! on board and makes one write at a time, always the one that keeps the aircraft safe whatever
 //! happens next:
 //!
-//! 1. what differs first is not a guard: put a guard there (one entry, so atomic). What lies beyond
-//!    can't be reached any more;
+//! 1. what differs first is not a guard: put a guard there (entries are written in order, so this is
+//!    atomic). What lies beyond can't be reached any more, and may follow in the same write;
 //! 2. it is a guard: bring what lies *behind* it in order, up to the new guard;
 //! 3. that is in order: replace the guard by the waypoint (one entry, so atomic).
 //!
@@ -35,6 +35,9 @@ pub const AHEAD: u64 = 28;
 /// The ring is topped up when fewer waypoints than this are ahead.
 const REFILL: u64 = 16;
 
+/// Most entries of one write: an emergency does not wait for a long one.
+const AT_ONCE: u64 = 8;
+
 /// A write in flight.
 #[derive(Debug, Clone, PartialEq)]
 enum Pending {
@@ -44,7 +47,7 @@ enum Pending {
 }
 
 /// The windowed feed. See the module's text.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Window {
     chain: Chain,
     board: Slots,
@@ -59,21 +62,6 @@ pub struct Window {
     loaded: Option<Item>,
     /// This position was reached while it was being written: nobody knows what was loaded.
     reached_in_doubt: Option<u64>,
-}
-
-impl Default for Window {
-    fn default() -> Self {
-        Self {
-            chain: Chain::default(),
-            board: Slots::default(),
-            installed: false,
-            entered: false,
-            end: 0,
-            pending: None,
-            loaded: None,
-            reached_in_doubt: None,
-        }
-    }
 }
 
 impl Window {
@@ -266,22 +254,32 @@ impl Window {
     }
 
     fn write_towards(&mut self, position: u64) -> Order {
-        if !self.board.is_guard(position) {
-            return self.write(position, vec![self.guard(position)]);
-        }
         // When the aircraft waits for it, three waypoints now are better than many later.
         let urgent = self.chain.jump().is_some() || position == self.chain.first();
         let end = if urgent { self.end.min(position + 3) } else { self.end };
         self.end = end;
+        if !self.board.is_guard(position) {
+            return self.cut(position, end);
+        }
         let behind = (position + 1..=end).find(|p| !self.board.holds(*p, &self.wanted(*p)));
         match behind {
             Some(start) => {
-                let stop = end.min(ring::last_before_wrap(start));
+                let stop = end.min(start + AT_ONCE - 1).min(ring::last_before_wrap(start));
                 let items = (start..=stop).map(|p| self.wanted(p)).collect();
                 self.write(start, items)
             }
             None => self.write(position, vec![self.wanted(position)]),
         }
+    }
+
+    /// A guard, and behind it (which is written after it, and out of reach once it is there) what comes
+    /// after the waypoint that will replace it.
+    fn cut(&mut self, position: u64, end: u64) -> Order {
+        let stop = end.min(position + AT_ONCE - 1).min(ring::last_before_wrap(position));
+        let guard = self.guard(position);
+        let behind = (position + 1..=stop).map(|p| self.wanted(p));
+        let items = std::iter::once(guard).chain(behind).collect();
+        self.write(position, items)
     }
 
     fn write(&mut self, position: u64, items: Vec<Item>) -> Order {

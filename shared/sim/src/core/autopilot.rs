@@ -8,6 +8,7 @@ use super::mode::Mode;
 use super::params::Params;
 use super::run::{Phase, Run};
 use super::transfer::Mission;
+use aircraft::power::demanded_power_w;
 use aircraft::{Action, Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
 use geometry::LatLon;
 
@@ -67,6 +68,7 @@ pub struct Autopilot {
     speed_mps: Option<f64>,
     take_off_done: bool,
     standing_s: f64,
+    demanded: Demand,
     notices: Vec<Notice>,
     reached: Vec<u16>,
 }
@@ -91,6 +93,7 @@ impl Autopilot {
             speed_mps: None,
             take_off_done: false,
             standing_s: 0.0,
+            demanded: Demand::default(),
             notices: Vec::new(),
             reached: Vec::new(),
         }
@@ -104,6 +107,20 @@ impl Autopilot {
     /// Armed.
     pub fn is_armed(&self) -> bool {
         self.armed
+    }
+
+    /// The throttle it commands, 0..1, whether the engine obeys or not: the power for the airspeed and climb
+    /// demanded, as a share of that for the best climb.
+    pub fn throttle(&self) -> f64 {
+        let (s, p, demand) = (self.aircraft.state(), self.aircraft.profile(), &self.demanded);
+        if !self.armed || (s.on_ground && demand.airspeed_mps <= 0.0) {
+            return 0.0;
+        }
+        // it does not try to climb better than the aircraft can; on the take-off roll it gives all
+        let climb_mps = if s.on_ground { p.max_climb_mps } else { demand.climb_mps.min(p.max_climb_mps) };
+        let load = 1.0 / s.bank_rad.cos().max(0.1);
+        let full_w = p.cruise_power_w + p.climb_power_w_per_mps * p.max_climb_mps;
+        (demanded_power_w(p, s.airspeed_mps, climb_mps, load) / full_w).clamp(0.0, 1.0)
     }
 
     /// What was to be said since the last call.
@@ -256,6 +273,7 @@ impl Autopilot {
         }
         self.aircraft.step(dt_s, &demand, &self.wind);
         self.disarm_when_landed(dt_s, &demand);
+        self.demanded = demand;
     }
 
     fn demand(&mut self) -> Demand {

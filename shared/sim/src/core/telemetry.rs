@@ -217,15 +217,13 @@ fn nav_controller(a: &Autopilot) -> MavMessage {
 
 fn vfr_hud(a: &Autopilot) -> MavMessage {
     let s = a.aircraft.state();
-    let full_w = a.aircraft.profile().cruise_power_w
-        + a.aircraft.profile().climb_power_w_per_mps * a.aircraft.profile().max_climb_mps;
     MavMessage::VFR_HUD(VFR_HUD_DATA {
         airspeed: s.airspeed_mps as f32,
         groundspeed: s.ground_speed_mps() as f32,
         alt: s.altitude_amsl_m as f32,
         climb: s.climb_mps as f32,
         heading: s.heading_deg() as i16,
-        throttle: (100.0 * a.aircraft.engine().power_w / full_w).clamp(0.0, 100.0) as u16,
+        throttle: (100.0 * a.throttle()) as u16,
     })
 }
 

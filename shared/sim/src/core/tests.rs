@@ -123,7 +123,7 @@ impl Ground {
     /// Uploads a whole mission after home, streamed.
     fn upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) {
         self.count(items.len() as u16 + 1);
-        let home = Item::home(self.home(), 322.0).wire;
+        let home = Item::home(self.home(), 349.0).wire;
         let mut last = self.item(&MISSION_ITEM_INT_DATA { seq: 0, ..home });
         for (i, wire) in items.iter().enumerate() {
             last = self.item(&MISSION_ITEM_INT_DATA { seq: i as u16 + 1, ..wire.clone() });
@@ -281,7 +281,7 @@ fn when_items_run_out_it_returns_and_circles_home_without_landing() {
         let off = ground.position().distance_m(home) - 137.0;
         assert!(off.abs() < 15.0, "{off}");
     }
-    let height = ground.sim.autopilot.aircraft.state().altitude_amsl_m - 322.0;
+    let height = ground.sim.autopilot.aircraft.state().altitude_amsl_m - 349.0;
     assert!((height - 100.0).abs() < 2.0, "{height}");
     // appended to, AUTO starts again at item 1
     ground.mode(Mode::Auto);
@@ -423,7 +423,7 @@ fn a_position_target_changes_the_altitude_of_guided_and_nothing_else() {
     }));
     ground.fly_until(120.0, |_| false);
     let s = *ground.sim.autopilot.aircraft.state();
-    assert!((s.altitude_amsl_m - 522.0).abs() < 2.0, "{}", s.altitude_amsl_m);
+    assert!((s.altitude_amsl_m - 549.0).abs() < 2.0, "{}", s.altitude_amsl_m);
     assert!(s.position.distance_m(centre) < 160.0);
 }
 
@@ -488,7 +488,7 @@ fn take_off_mode_climbs_and_circles() {
     assert_eq!(ground.command(MavCmd::MAV_CMD_NAV_TAKEOFF, height), MavResult::MAV_RESULT_ACCEPTED);
     ground.fly_until(120.0, |_| false);
     let s = *ground.sim.autopilot.aircraft.state();
-    assert!((s.altitude_amsl_m - 402.0).abs() < 4.0, "{}", s.altitude_amsl_m);
+    assert!((s.altitude_amsl_m - 429.0).abs() < 4.0, "{}", s.altitude_amsl_m);
     assert!(s.position.distance_m(ground.home()) < 1500.0 && s.bank_rad.abs() > 0.1);
 }
 
@@ -522,6 +522,10 @@ fn engine_out_glides_to_the_ground_and_disarms() {
     let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
     assert!(ground.fly_until(300.0, |sim| sim.autopilot.run.current == 4));
     ground.sim.inject("engine-out".parse().unwrap());
+    ground.fly_until(2.0, |_| false);
+    let autopilot = &ground.sim.autopilot;
+    assert!(autopilot.throttle() > 0.1, "throttle is what it commands, not what the engine gives");
+    assert!(autopilot.aircraft.engine().rpm < 300.0);
     assert!(ground.fly_until(300.0, |sim| !sim.autopilot.is_armed()));
     assert!(ground.texts().iter().any(|t| t == "Engine failure"));
     assert!(ground.sim.autopilot.aircraft.state().on_ground);
@@ -582,7 +586,7 @@ fn packet_loss_of_a_fifth_delays_an_upload_but_does_not_break_it() {
                 return;
             }
             for seq in asked.into_iter().flatten() {
-                let home = Item::home(ground.home(), 322.0).wire;
+                let home = Item::home(ground.home(), 349.0).wire;
                 let item = seq.checked_sub(1).map_or(&home, |i| &items[usize::from(i)]);
                 let answer = MISSION_ITEM_INT_DATA { seq, ..item.clone() };
                 ground.sim.receive(PEER, Frame::new(GROUND, MavMessage::MISSION_ITEM_INT(answer)));
@@ -674,7 +678,7 @@ fn a_mission_is_flown_where_bare_guidance_flies_it() {
         .iter()
         .map(|wire| Target {
             position: LatLon::new(f64::from(wire.x) * 1e-7, f64::from(wire.y) * 1e-7),
-            altitude_amsl_m: 322.0 + f64::from(wire.z),
+            altitude_amsl_m: 349.0 + f64::from(wire.z),
             airspeed_mps: 25.0,
             action: match wire.command {
                 MavCmd::MAV_CMD_NAV_TAKEOFF => Action::TakeOff { heading_deg: 52.0 },
@@ -684,7 +688,7 @@ fn a_mission_is_flown_where_bare_guidance_flies_it() {
             fly_over: false,
         })
         .collect();
-    let mut aircraft = Aircraft::on_runway(Profile::default(), home.position, 322.0, 52.0);
+    let mut aircraft = Aircraft::on_runway(Profile::default(), home.position, 349.0, 52.0);
     let mut guidance = Guidance::new(Profile::default());
     guidance.direct(aircraft.state(), targets[0]);
     let mut track = vec![*aircraft.state()];
