@@ -54,11 +54,13 @@ struct Window {
     after: f64,
 }
 
+/// What is logged unless RUST_LOG says otherwise. Zenoh reports each connection that is tried in vain or torn down, winit
+/// each setting the desktop lacks; what matters of it reaches the user as a link's state or as an error.
+const LOG: &str = "warn,zenoh=off,winit=error";
+
 fn main() -> ExitCode {
     tracing_subscriber::fmt()
-        .with_env_filter(
-            tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| "warn".into()),
-        )
+        .with_env_filter(tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| LOG.into()))
         .with_writer(std::io::stderr)
         .init();
     let cli = Cli::parse();

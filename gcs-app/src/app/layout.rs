@@ -68,7 +68,7 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn right(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if scene.vehicle.heard_s.is_some() {
         Panel::bottom("flight")
-            .default_size(500.0)
+            .default_size(460.0)
             .size_range(220.0..=640.0)
             .resizable(true)
             .frame(Frame::new())
@@ -142,7 +142,7 @@ fn over_map(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             decision::show(ui, &request, left_s, scene, queue);
         });
     }
-    if scene.vehicle.status.is_some() {
+    if scene.vehicle.status.is_some() && flight::has_commands(scene) {
         floating(ui, "commands", map, Align2::CENTER_BOTTOM, |ui| {
             flight::last_command(ui, scene);
             ui.horizontal(|ui| flight::commands(ui, scene, queue));

@@ -39,6 +39,8 @@ pub struct App {
     worker: Worker,
     files: Files,
     asked_aboard_s: f64,
+    /// Version of the document that is the plan aboard.
+    mirrored: Option<u64>,
     screenshot: Option<Screenshot>,
 }
 
@@ -86,6 +88,7 @@ impl App {
             worker: Worker::spawn(terrain, wake.clone())?,
             files: Files::new(wake),
             asked_aboard_s: f64::NEG_INFINITY,
+            mirrored: None,
             screenshot: None,
         };
         app.map.fit();
@@ -144,14 +147,24 @@ impl App {
         }
     }
 
-    /// A window without a plan of its own shows the one that is aboard.
+    /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
     fn adopt_plan_aboard(&mut self) {
         let Some(aboard) = &self.vehicle.aboard else { return };
+        let version = self.document.version();
+        let here = self.analysis.hash_of(version);
+        if here.is_some_and(|hash| *hash == *aboard.hash) {
+            self.mirrored = Some(version);
+            return;
+        }
         let untouched =
             self.document.path().is_none() && !self.document.can_undo() && !self.document.can_redo();
-        if untouched && self.document.plan().stages.is_empty() {
+        let is_empty = self.document.plan().stages.is_empty();
+        let was_aboard = here.is_some() && self.mirrored == Some(version);
+        if untouched && (is_empty || was_aboard) {
             self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
-            self.map.fit();
+            if is_empty {
+                self.map.fit();
+            }
         }
     }
 

@@ -5,11 +5,11 @@ use super::judge::Outcome;
 use super::mission::{Act, Script, Step};
 use super::progress::Progress;
 use super::recorder::Recorder;
+use super::watcher::Watcher;
 use crate::report::TrackPoint;
 use anyhow::{Context, bail, ensure};
 use flight_exec::{Command, Phase};
 use flight_plan::{Edit, FlightPlan, Runway};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use usal::contract::{
     Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus,
@@ -26,6 +26,8 @@ const CLOSE_WITHIN: Duration = Duration::from_secs(2);
 const READY_WITHIN: Duration = Duration::from_secs(30);
 /// No tick of the simulated clock for so long is a failure, wall-clock.
 const TICK_WITHIN: Duration = Duration::from_secs(15);
+/// While the clock stands still, failed components are looked for so often, wall-clock.
+const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// A flight longer than the preview by this factor and these seconds has failed.
 const TOO_LONG: (f64, f64) = (1.3, 240.0);
 /// Nobody in the demo orders a hold: one that lasts for so many simulated seconds is a failure.
@@ -43,7 +45,7 @@ pub struct Flight<'a> {
     /// With its updates.
     plan: FlightPlan,
     progress: &'a Progress,
-    ended: &'a AtomicBool,
+    watcher: &'a Watcher,
     planned_s: f64,
     /// Simulated time at which the plan was started, seconds.
     started_s: f64,
@@ -101,7 +103,8 @@ impl Heard {
 }
 
 impl<'a> Flight<'a> {
-    /// Joins the flight: a session, the clock, the subscriptions. `ended` is set from outside when the flight is to end early.
+    /// Joins the flight: a session, the clock, the subscriptions. It ends early when the
+    /// watcher leaves.
     ///
     /// # Errors
     /// The session can't be opened.
@@ -112,7 +115,7 @@ impl<'a> Flight<'a> {
         recorder: Recorder,
         planned_s: f64,
         progress: &'a Progress,
-        ended: &'a AtomicBool,
+        watcher: &'a Watcher,
     ) -> anyhow::Result<Self> {
         let session = Session::open(Config::client(VEHICLE, &components.endpoint)).await?;
         Ok(Self {
@@ -123,7 +126,7 @@ impl<'a> Flight<'a> {
             recorder,
             plan,
             progress,
-            ended,
+            watcher,
             planned_s,
             started_s: 0.0,
             now_s: 0.0,
@@ -142,7 +145,6 @@ impl<'a> Flight<'a> {
         self.command(&Command::Start).await.context("the plan was not started")?;
         self.started_s = self.now_s;
         self.wall = Instant::now();
-        let limit_s = self.planned_s * TOO_LONG.0 + TOO_LONG.1;
         let (mut phase, mut since_s) = (Phase::Idle, self.now_s);
         loop {
             let tick = self.next_tick(components).await?;
@@ -153,30 +155,37 @@ impl<'a> Flight<'a> {
             if now != phase {
                 (phase, since_s) = (now, self.now_s);
             }
-            let lasts_s = self.now_s - since_s;
-            match phase {
-                Phase::Finished if is_at_rest(components) || lasts_s > REST_WITHIN_S => break,
-                Phase::Finished | Phase::Flying => {}
-                Phase::Idle | Phase::Holding | Phase::AwaitingDecision => {
-                    ensure!(
-                        lasts_s < HOLD_WITHIN_S,
-                        "the flight does not go on: {phase:?}; {}",
-                        self.last_refusal()
-                    );
-                }
+            if self.is_over(phase, self.now_s - since_s, components)? {
+                break;
             }
-            let flown_s = self.now_s - self.started_s;
-            ensure!(
-                flown_s < limit_s,
-                "after {:.0} min the flight still goes on, {:.0} min were previewed",
-                flown_s / 60.0,
-                self.planned_s / 60.0
-            );
-            ensure!(!self.ended.load(Ordering::Relaxed), "the window was closed before the flight had ended");
         }
         self.look(components);
         self.recorder.flush();
         Ok(())
+    }
+
+    /// The flight has come to its end; an error if it will not.
+    fn is_over(&self, phase: Phase, lasts_s: f64, components: &Components) -> anyhow::Result<bool> {
+        ensure!(!self.watcher.has_left(), "the window was closed before the flight had ended");
+        if phase == Phase::Finished {
+            return Ok(is_at_rest(components) || lasts_s > REST_WITHIN_S);
+        }
+        if self.watcher.is_watching() {
+            return Ok(false);
+        }
+        ensure!(
+            phase == Phase::Flying || lasts_s < HOLD_WITHIN_S,
+            "the flight does not go on: {phase:?}; {}",
+            self.last_refusal()
+        );
+        let flown_s = self.now_s - self.started_s;
+        ensure!(
+            flown_s < self.planned_s * TOO_LONG.0 + TOO_LONG.1,
+            "after {:.0} min the flight still goes on, {:.0} min were previewed",
+            flown_s / 60.0,
+            self.planned_s / 60.0
+        );
+        Ok(false)
     }
 
     /// Ends the session: the clock does not wait for it any more.
@@ -236,10 +245,16 @@ impl<'a> Flight<'a> {
     }
 
     async fn next_tick(&mut self, components: &mut Components) -> anyhow::Result<ClockTick> {
-        let tick = tokio::time::timeout(TICK_WITHIN, self.clock.next()).await;
-        if let Some(failure) = components.failure().await {
-            bail!(failure);
-        }
+        let mut tick = std::pin::pin!(tokio::time::timeout(TICK_WITHIN, self.clock.next()));
+        let tick = loop {
+            let waited = tokio::time::timeout(LOOK_EVERY, &mut tick).await;
+            if let Some(failure) = components.failure().await {
+                bail!(failure);
+            }
+            if let Ok(tick) = waited {
+                break tick;
+            }
+        };
         let Ok(tick) = tick else {
             bail!(
                 "the simulated clock stands still since {} s, at {:.1} s",

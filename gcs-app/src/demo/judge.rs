@@ -43,17 +43,25 @@ pub struct Outcome {
 
 /// The verdict's sentences, each with whether it holds.
 pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(bool, String)> {
-    vec![
-        landed(outcome),
-        finished(outcome),
-        as_previewed(record),
-        scripted(outcome),
-        deviation(findings, "TF", TF_LIMIT_M),
-        deviation(findings, "RF", RF_LIMIT_M),
-        covered(findings),
-        never_safe(outcome),
-        nothing_refused(outcome),
-    ]
+    let mut verdict = vec![landed(outcome), finished(outcome), as_previewed(record)];
+    if outcome.steps > 0 {
+        verdict.push(scripted(outcome));
+    }
+    for (kind, limit_m) in [("TF", TF_LIMIT_M), ("RF", RF_LIMIT_M)] {
+        if is_planned(record, kind) {
+            verdict.push(deviation(findings, kind, limit_m));
+        }
+    }
+    if is_planned(record, "scan") {
+        verdict.push(covered(findings));
+    }
+    verdict.extend([never_safe(outcome), nothing_refused(outcome)]);
+    verdict
+}
+
+/// The preview has legs of this type.
+fn is_planned(record: &Record, kind: &str) -> bool {
+    record.planned.passages().iter().any(|p| p.kind == kind)
 }
 
 fn landed(outcome: &Outcome) -> (bool, String) {
@@ -224,8 +232,12 @@ mod tests {
     }
 
     #[test]
-    fn a_flight_without_the_legs_in_question_is_not_good() {
-        let nothing = Findings::default();
-        assert!(!deviation(&nothing, "TF", TF_LIMIT_M).0 && !covered(&nothing).0);
+    fn legs_that_were_planned_but_not_flown_are_missed_and_no_others() {
+        let record = crate::report::made_up_record();
+        let failed: Vec<String> = verdict(&record, &Findings::default(), &outcome())
+            .into_iter()
+            .filter_map(|(holds, text)| (!holds).then_some(text))
+            .collect();
+        assert_eq!(failed, ["no TF leg was flown", "nothing was scanned"]);
     }
 }

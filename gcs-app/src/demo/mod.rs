@@ -11,6 +11,7 @@ mod plan;
 mod progress;
 mod recorder;
 mod summary;
+mod watcher;
 
 use crate::app;
 use crate::document::Document;
@@ -26,16 +27,18 @@ use recorder::Recorder;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
+use watcher::Watcher;
 
 /// Simulated seconds per second beside a window, unless told otherwise: slow enough to watch.
-const WATCHABLE_SPEED: f64 = 15.0;
+const WATCHABLE_SPEED: f64 = 20.0;
 /// Wall-clock seconds that a demo may take besides its flight.
 const SPARE_S: f64 = 180.0;
 /// The slowest pace at which a flight "as fast as possible" is still waited for, × real time.
 const LEAST_PACE: f64 = 5.0;
+/// When the window is closed, everything else must have ended after this, wall-clock.
+const CLOSING: Duration = Duration::from_secs(60);
 
 /// Arguments of `legwork demo`.
 #[derive(Debug, Clone, clap::Args)]
@@ -52,9 +55,15 @@ pub struct Args {
     /// Where the wind comes from (degrees true) and its speed (m/s).
     #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "270,5")]
     pub wind: Wind,
-    /// Simulated seconds per second; 0: as fast as possible. [default: 15 with a window, else 0]
+    /// Simulated seconds per second; 0: as fast as possible. [default: 20 with a window, else 0]
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     pub speed: Option<f64>,
+    /// Write a picture of the window (PNG) and close it.
+    #[arg(long, value_name = "FILE", conflicts_with = "headless")]
+    pub screenshot: Option<PathBuf>,
+    /// Seconds until that picture is taken.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "screenshot")]
+    pub after: f64,
 }
 
 fn speed(text: &str) -> Result<f64, String> {
@@ -75,14 +84,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         eprintln!("no display here: flying without a window");
     }
     let speed = args.speed.unwrap_or(if windowed { WATCHABLE_SPEED } else { 0.0 });
-    watch_over(&prepared, speed);
     if windowed { with_window(args, prepared, speed) } else { without_window(args, &prepared, speed) }
 }
 
-/// Ends the process when the flight takes longer than anything could explain: a demo never hangs.
-fn watch_over(prepared: &Prepared, speed: f64) {
+/// Longer than this no flight takes that nobody holds, wall-clock.
+fn limit(planned_s: f64, speed: f64) -> Duration {
     let pace = if speed > 0.0 { speed.min(LEAST_PACE) } else { LEAST_PACE };
-    let limit = Duration::from_secs_f64(prepared.planned.duration_s() / pace + SPARE_S);
+    Duration::from_secs_f64(planned_s / pace + SPARE_S)
+}
+
+/// Ends the process when it still runs then: a demo never hangs.
+fn give_up_after(limit: Duration) {
     std::thread::spawn(move || {
         std::thread::sleep(limit);
         eprintln!("legwork: the demo has not ended after {} s: given up", limit.as_secs());
@@ -91,36 +103,43 @@ fn watch_over(prepared: &Prepared, speed: f64) {
 }
 
 fn without_window(args: &Args, prepared: &Prepared, speed: f64) -> anyhow::Result<ExitCode> {
+    give_up_after(limit(prepared.planned.duration_s(), speed));
     let (endpoint, _) = channel();
-    runtime()?.block_on(fly(args, prepared, speed, &endpoint, &AtomicBool::new(false)))
+    runtime()?.block_on(fly(args, prepared, speed, &endpoint, &Watcher::nobody()))
 }
 
 /// The flight on a thread of its own, the window on this one.
 fn with_window(args: &Args, prepared: Prepared, speed: f64) -> anyhow::Result<ExitCode> {
-    let ended = Arc::new(AtomicBool::new(false));
+    let watcher = Arc::new(Watcher::someone());
     let (sender, endpoint) = channel();
     let document = Document::new(prepared.program.plan.clone(), None, Vec::new());
-    let (args, flag) = (args.clone(), ended.clone());
+    let planned_s = prepared.planned.duration_s();
+    let (for_flight, beside) = (args.clone(), watcher.clone());
     let flight = std::thread::Builder::new()
         .name("demo".into())
-        .spawn(move || runtime()?.block_on(fly(&args, &prepared, speed, &sender, &flag)))
+        .spawn(move || runtime()?.block_on(fly(&for_flight, &prepared, speed, &sender, &beside)))
         .context("can't start a thread for the flight")?;
-    open_window(document, &endpoint, &ended);
+    open_window(args, document, &endpoint, &watcher);
+    give_up_after(if watcher.has_left() { CLOSING } else { limit(planned_s, speed) });
     flight.join().unwrap_or_else(|_| Err(anyhow::anyhow!("the flight's thread has crashed")))
 }
 
 /// Returns when the window is closed; without a window the flight goes on.
-fn open_window(document: Document, endpoint: &Receiver<String>, ended: &AtomicBool) {
+fn open_window(args: &Args, document: Document, endpoint: &Receiver<String>, watcher: &Watcher) {
     // no endpoint: the flight has failed already and says why
     let Ok(endpoint) = endpoint.recv() else { return };
     let options = app::Options {
         document: Some(document),
         connect: Some((VEHICLE.to_owned(), endpoint)),
+        screenshot: args.screenshot.clone().map(|file| app::Screenshot::new(file, args.after)),
         ..app::Options::default()
     };
     match app::run(options) {
-        Ok(()) => ended.store(true, Ordering::Relaxed),
-        Err(error) => eprintln!("{error}\ngoing on without a window"),
+        Ok(()) => watcher.leave(),
+        Err(error) => {
+            eprintln!("{error}\ngoing on without a window");
+            watcher.give_up();
+        }
     }
 }
 
@@ -128,44 +147,71 @@ fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
     tokio::runtime::Builder::new_multi_thread().enable_all().build().context("can't start the runtime")
 }
 
-/// Starts the components, flies, stops them, writes the report and prints the summary. The gateway's endpoint is sent
-/// as soon as it is known.
+/// Starts the components and flies. The gateway's endpoint is sent as soon as it is known.
 async fn fly(
     args: &Args,
     prepared: &Prepared,
     speed: f64,
     endpoint: &Sender<String>,
-    ended: &AtomicBool,
+    watcher: &Watcher,
 ) -> anyhow::Result<ExitCode> {
     std::fs::create_dir_all(&args.report).with_context(|| {
         format!("can't make the report folder {}: choose another with --report", args.report.display())
     })?;
     let recorder = Recorder::new(&args.report.join("log.jsonl"))?;
-    let mut components = Components::start(&Setup {
+    let components = Components::start(&setup(args, prepared, speed))?;
+    // without a window nobody listens
+    let _ = endpoint.send(components.endpoint.clone());
+    fly_with(args, prepared, components, recorder, watcher).await
+}
+
+fn setup<'a>(args: &Args, prepared: &'a Prepared, speed: f64) -> Setup<'a> {
+    Setup {
         home: &prepared.home,
         profile: prepared.profile.clone(),
         wind: args.wind,
         speed,
         terrain: prepared.terrain.clone(),
-    })?;
-    // without a window nobody listens
-    let _ = endpoint.send(components.endpoint.clone());
+    }
+}
+
+/// Flies, writes the report, prints the summary, and stops the components: with a window, when that is closed.
+async fn fly_with(
+    args: &Args,
+    prepared: &Prepared,
+    mut components: Components,
+    recorder: Recorder,
+    watcher: &Watcher,
+) -> anyhow::Result<ExitCode> {
     let began = Instant::now();
     let progress = Progress::new(prepared.planned.duration_s());
     let script = mission::Script::new(prepared.steps.clone());
     let plan = prepared.program.plan.clone();
     let mut flight =
-        Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, ended)
+        Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, watcher)
             .await?;
     let flown = flight.fly(&mut components).await;
     progress.end();
     let ending = flight.ending(&components, &prepared.destination);
     flight.leave().await;
+    let good = conclude(args, prepared, &ending, began.elapsed().as_secs_f64());
+    stay_open(watcher, flown.as_ref().err()).await;
     components.stop().await;
-    let wall_s = began.elapsed().as_secs_f64();
-    let good = conclude(args, prepared, &ending, wall_s)?;
+    let good = good?;
     flown?;
     Ok(ExitCode::from(u8::from(!good)))
+}
+
+/// The window shows where the aircraft stands, until it is closed.
+async fn stay_open(watcher: &Watcher, failure: Option<&anyhow::Error>) {
+    if !watcher.is_watching() {
+        return;
+    }
+    if let Some(failure) = failure {
+        eprintln!("legwork: {failure:#}");
+    }
+    println!("Close the window to end the demo.");
+    watcher.gone().await;
 }
 
 /// Judges the flight, writes the report, prints the summary; gives whether everything is as planned.
@@ -178,4 +224,42 @@ fn conclude(args: &Args, prepared: &Prepared, ending: &flight::Ending, wall_s: f
     let findings = report::write(&record, &args.report)?;
     summary::print(&record, &findings, wall_s, &args.report);
     Ok(record.verdict.iter().all(|(holds, _)| *holds))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    #[test]
+    fn simulator_that_ends_fails_the_demo() {
+        let folder = tempfile::tempdir().unwrap();
+        let square = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/plans/square.xml");
+        let args = Args {
+            headless: true,
+            report: folder.path().to_owned(),
+            plan: Some(square.into()),
+            wind: Wind::default(),
+            speed: None,
+            screenshot: None,
+            after: 0.0,
+        };
+        let prepared = plan::prepare(&args).unwrap();
+        let recorder = Recorder::new(&folder.path().join("log.jsonl")).unwrap();
+        let result = runtime().unwrap().block_on(async {
+            let components = Components::start(&setup(&args, &prepared, 0.0)).unwrap();
+            assert!(components.simulator.control(sim::Control::Stop));
+            fly_with(&args, &prepared, components, recorder, &Watcher::nobody()).await
+        });
+        let why = result.map(|_| ()).unwrap_err().to_string();
+        assert_eq!(why, "the simulator has ended");
+    }
+
+    #[test]
+    fn flights_are_given_up_later_than_they_can_take() {
+        for (planned_s, speed) in [(3000.0, 0.0), (3000.0, 1.0), (3000.0, 20.0), (0.0, 0.0)] {
+            let needs_s = if speed > 0.0 { planned_s / speed } else { 0.0 };
+            assert!(limit(planned_s, speed).as_secs_f64() >= needs_s + SPARE_S, "{planned_s} {speed}");
+        }
+    }
 }

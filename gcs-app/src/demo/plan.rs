@@ -157,6 +157,8 @@ mod tests {
             plan: None,
             wind: Wind::from_direction(270.0, 5.0),
             speed: None,
+            screenshot: None,
+            after: 0.0,
         };
         let prepared = prepare(&args).unwrap();
         assert_eq!(prepared.steps.len(), 6);

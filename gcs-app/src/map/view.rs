@@ -30,6 +30,11 @@ impl Mercator {
     }
 }
 
+/// Free space around what is fitted, screen points.
+const MARGIN: f32 = 48.0;
+/// More of it at the bottom, where the strip of commands floats over the map, screen points.
+const STRIP: f32 = 56.0;
+
 /// The part of the world that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
@@ -92,7 +97,7 @@ impl View {
         self.rect.expand(40.0).contains(p)
     }
 
-    /// The map's middle and zoom level at which all of `points` are shown with a margin.
+    /// The map's middle and zoom level at which all of `points` are shown with a margin, clear of the strip of commands.
     pub fn fit(points: &[LatLon], size: egui::Vec2) -> Option<(walkers::Position, f64)> {
         let mut all = points.iter().filter(|p| p.is_valid()).map(|p| Mercator::from(*p));
         let first = all.next()?;
@@ -102,10 +107,12 @@ impl View {
                 Mercator { x: high.x.max(m.x), y: high.y.max(m.y) },
             )
         });
-        let middle = Mercator { x: (low.x + high.x) / 2.0, y: (low.y + high.y) / 2.0 }.to_geo();
-        let room = |points: f32, extent: f64| f64::from((points - 96.0).max(64.0)) / extent.max(1e-6);
-        let scale = room(size.x, high.x - low.x).min(room(size.y, high.y - low.y));
-        Some((lat_lon(middle.lat_deg, middle.lon_deg), (scale / 256.0).log2().clamp(1.0, 17.0)))
+        let room = |points: f32, extent: f64| f64::from((points - 2.0 * MARGIN).max(64.0)) / extent.max(1e-6);
+        let scale = room(size.x, high.x - low.x).min(room(size.y - STRIP, high.y - low.y));
+        let zoom = (scale / 256.0).log2().clamp(1.0, 17.0);
+        let aside = f64::from(STRIP) / 2.0 / (256.0 * zoom.exp2());
+        let middle = Mercator { x: (low.x + high.x) / 2.0, y: (low.y + high.y) / 2.0 + aside }.to_geo();
+        Some((lat_lon(middle.lat_deg, middle.lon_deg), zoom))
     }
 }
 
@@ -149,8 +156,9 @@ mod tests {
         assert!(memory.set_zoom(zoom).is_ok());
         let rect = Rect::from_min_size(Pos2::ZERO, size);
         let view = View::of(&Projector::new(rect, &MercatorProjection, &memory, centre));
+        let clear = Rect::from_min_max(rect.min, pos2(rect.max.x, rect.max.y - STRIP)).shrink(MARGIN - 1.0);
         for p in &points[..2] {
-            assert!(rect.shrink(30.0).contains(view.place(*p)));
+            assert!(clear.contains(view.place(*p)), "{:?}", view.place(*p));
         }
         assert!(View::fit(&points[2..], size).is_none());
     }

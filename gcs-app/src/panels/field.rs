@@ -138,6 +138,8 @@ pub fn text(ui: &mut Ui, name: &str, current: &str, code: bool) -> Option<String
     (response.lost_focus() && draft != current).then_some(draft)
 }
 
+/// Height of a button to hold, screen points.
+pub const HOLD_HEIGHT: f32 = 30.0;
 /// Seconds a dangerous button must be held.
 pub const HOLD_S: f64 = 1.0;
 
@@ -145,7 +147,7 @@ pub const HOLD_S: f64 = 1.0;
 /// with the pointer or with the space bar. True in the frame in which it has been held long enough.
 pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool {
     let galley = ui.painter().layout_no_wrap(text.into(), egui::FontId::proportional(13.5), colour);
-    let size = vec2((galley.size().x + 24.0).max(width), 30.0);
+    let size = vec2((galley.size().x + 24.0).max(width), HOLD_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let name = format!("{text} (hold)");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));

@@ -2,6 +2,7 @@
 
 use super::{Scene, age_of, field, value_with_age};
 use crate::command::{FlyCommand, Queue};
+use crate::state::{Outcome, Request};
 use crate::theme;
 use crate::units;
 use egui::{RichText, Ui};
@@ -11,7 +12,9 @@ use usal::contract::GatewayState;
 
 /// Draws what the vehicle does now.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
-    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.spacing_mut().item_spacing.y = 1.0;
+    // nothing here is clicked: rows hardly higher than their text
+    ui.spacing_mut().interact_size.y = 17.0;
     plan_rows(ui, scene);
     ui.add_space(4.0);
     buffer(ui, scene);
@@ -110,6 +113,7 @@ fn systems_rows(ui: &mut Ui, scene: &Scene<'_>) {
 /// The strip of commands; each is there when it makes sense.
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
+    ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
     let phase = scene.vehicle.phase();
     if can_launch(scene) && field::hold_button(ui, "Start and take off", p.accent, 150.0) {
         queue.fly(FlyCommand::Launch);
@@ -128,6 +132,15 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         emergency(ui, scene, queue);
     }
     recover(ui, scene, queue);
+}
+
+/// There is a command to give, or the answer to one to be read.
+pub fn has_commands(scene: &Scene<'_>) -> bool {
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding)
+        || can_launch(scene)
+        || matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn))
+        || last_request(scene).is_some()
 }
 
 fn can_launch(scene: &Scene<'_>) -> bool {
@@ -173,10 +186,8 @@ fn recover(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 /// What became of the last command: pending, accepted, or refused and why.
 pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
-    use crate::state::Outcome;
-    const SHOWN_S: f64 = 8.0;
     let p = theme::of(ui);
-    let Some(request) = scene.vehicle.requests.last() else { return };
+    let Some(request) = last_request(scene) else { return };
     let (text, colour) = match &request.outcome {
         Outcome::Pending => {
             (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text)
@@ -184,10 +195,15 @@ pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
         Outcome::Accepted => (format!("✔ {}: accepted", request.label), p.good),
         Outcome::Refused(reason) => (format!("✖ {}: refused, {reason}", request.label), p.caution),
     };
-    let fresh = request
-        .settled_s
-        .is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)));
-    if fresh {
-        ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
-    }
+    ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
+}
+
+/// The last command, while it is pending, refused, or was accepted a moment ago.
+fn last_request<'a>(scene: &Scene<'a>) -> Option<&'a Request> {
+    const SHOWN_S: f64 = 8.0;
+    scene.vehicle.requests.last().filter(|request| {
+        request
+            .settled_s
+            .is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)))
+    })
 }

@@ -20,7 +20,7 @@ const SHADE_SCALE: f32 = 2.0;
 const TIME_MARK_MIN: u32 = 5;
 
 /// Side of the enlarged view of the scanned areas, pixels.
-const INSET: f32 = 332.0;
+const INSET: f32 = 300.0;
 /// Areas that fill more of the map than this need no enlarged view.
 const INSET_BELOW: f64 = 0.4;
 
@@ -34,19 +34,23 @@ pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
     let shown = tracks.chain(record.areas.iter().flat_map(|a| a.outline.iter().copied()));
     let view = View::around(shown, (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT))
         .ok_or_else(|| anyhow::anyhow!("the track is empty: nothing to draw"))?;
+    let enlarged = inset_view(record, &view);
+    let elsewhere = enlarged.as_ref().map(|inset| Frame::of(inset, &view));
     draw_ground(&mut canvas, record, &view);
     draw_flight(&mut canvas, record, &view);
-    label_areas(&mut canvas, record, &view);
-    draw_time_marks(&mut canvas, record, &view);
-    draw_happenings(&mut canvas, record, &view);
+    draw_time_marks(&mut canvas, record, &view, elsewhere);
+    draw_happenings(&mut canvas, record, &view, elsewhere);
+    match elsewhere {
+        Some(frame) => draw_frame(&mut canvas, frame),
+        None => label_areas(&mut canvas, record, &view),
+    }
     draw_scale(&mut canvas, &view);
     draw_north(&mut canvas);
     draw_header(&mut canvas, record);
-    let inset = inset(record, &view)?;
-    let bottom = if inset.is_some() { HEIGHT - INSET - 56.0 } else { HEIGHT };
+    let bottom = if enlarged.is_some() { HEIGHT - INSET - 56.0 } else { HEIGHT };
     panel::draw(&mut canvas, record, findings, (MAP_WIDTH, HEADER, WIDTH, bottom));
-    if let Some(inset) = inset {
-        place_inset(&mut canvas, &inset);
+    if let Some(view) = enlarged {
+        place_inset(&mut canvas, &inset(record, &view)?);
     }
     canvas.png()
 }
@@ -59,18 +63,51 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
     record.places.iter().for_each(|place| draw_place(canvas, view, place));
 }
 
-/// The scanned areas enlarged, where the map shows them too small.
-fn inset(record: &Record, map: &View) -> anyhow::Result<Option<Canvas>> {
+/// The enlarged view of the scanned areas, where the map shows them too small.
+fn inset_view(record: &Record, map: &View) -> Option<View> {
     let corners = record.areas.iter().flat_map(|a| a.outline.iter().copied());
-    let Some(view) = View::around(corners, (0.0, 0.0, INSET, INSET)) else { return Ok(None) };
-    if f64::from(INSET) * view.metres_per_pixel > f64::from(MAP_WIDTH) * map.metres_per_pixel * INSET_BELOW {
-        return Ok(None);
-    }
+    let view = View::around(corners, (0.0, 0.0, INSET, INSET))?;
+    let is_small =
+        f64::from(INSET) * view.metres_per_pixel <= f64::from(MAP_WIDTH) * map.metres_per_pixel * INSET_BELOW;
+    is_small.then_some(view)
+}
+
+fn inset(record: &Record, view: &View) -> anyhow::Result<Canvas> {
     let mut canvas = Canvas::new(INSET as u32, INSET as u32, PAPER)?;
-    draw_ground(&mut canvas, record, &view);
-    draw_flight(&mut canvas, record, &view);
-    draw_happenings(&mut canvas, record, &view);
-    Ok(Some(canvas))
+    draw_ground(&mut canvas, record, view);
+    draw_flight(&mut canvas, record, view);
+    draw_happenings(&mut canvas, record, view, None);
+    label_areas(&mut canvas, record, view);
+    Ok(canvas)
+}
+
+/// What the map leaves to the enlarged view: there, marks and names would cover everything.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    left: f32,
+    top: f32,
+    right: f32,
+    bottom: f32,
+}
+
+impl Frame {
+    /// What `inset` shows, on the map.
+    fn of(inset: &View, map: &View) -> Self {
+        let half_m = f64::from(INSET) / 2.0 * inset.metres_per_pixel;
+        let corner = |e: f64, n: f64| map.place(inset.frame.to_geo(Vec2::new(e, n)));
+        let ((left, top), (right, bottom)) = (corner(-half_m, half_m), corner(half_m, -half_m));
+        Self { left, top, right, bottom }
+    }
+
+    fn contains(self, (x, y): (f32, f32)) -> bool {
+        (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    }
+}
+
+fn draw_frame(canvas: &mut Canvas, Frame { left, top, right, bottom }: Frame) {
+    canvas.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], Pen::solid(TEXT, 1.4));
+    let below = ((left + right) / 2.0, bottom + 13.0);
+    canvas.text(below, Anchor::Middle, "enlarged on the right", Type::plain(14.0, TEXT).on(PAPER));
 }
 
 fn place_inset(canvas: &mut Canvas, inset: &Canvas) {
@@ -153,7 +190,7 @@ fn draw_area(canvas: &mut Canvas, view: &View, area: &Area) {
     canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
 }
 
-/// Labels stand at the top of their area, one below the other where areas overlap; areas that lie in the same place
+/// Labels stand at the bottom of their area, one above the other where areas overlap; areas that lie in the same place
 /// (within a few pixels) share the first one's.
 fn label_areas(canvas: &mut Canvas, record: &Record, view: &View) {
     let mut taken: Vec<(f32, f32)> = Vec::new();
@@ -166,7 +203,7 @@ fn label_areas(canvas: &mut Canvas, record: &Record, view: &View) {
             continue;
         }
         named.push(((x, top), bottom));
-        let mut y = top - 14.0;
+        let mut y = bottom - 12.0;
         while taken.iter().any(|(tx, ty)| (tx - x).abs() < 150.0 && (ty - y).abs() < 19.0) {
             y -= 20.0;
         }
@@ -211,7 +248,7 @@ fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
     }
 }
 
-fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View) {
+fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere: Option<Frame>) {
     let track = record.main_track();
     let Some(start) = track.points().first() else { return };
     let ink = if record.flown.points().is_empty() { PLANNED } else { FLOWN };
@@ -222,6 +259,9 @@ fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View) {
         let (Some(before), Some(here)) = (track.at(time_s - 2.0), track.at(time_s)) else { continue };
         let ((ax, ay), (x, y)) = (view.place(before.position), view.place(here.position));
         // a pattern flown again and again would be covered with them
+        if elsewhere.is_some_and(|frame| frame.contains((x, y))) {
+            continue;
+        }
         if taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 60.0) {
             continue;
         }
@@ -247,12 +287,12 @@ fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32), ink: Ink
 }
 
 /// Numbered discs where important things happened; the panel says what they are.
-fn draw_happenings(canvas: &mut Canvas, record: &Record, view: &View) {
+fn draw_happenings(canvas: &mut Canvas, record: &Record, view: &View, elsewhere: Option<Frame>) {
     let mut taken: Vec<(f32, f32)> = Vec::new();
     for (i, happening) in record.happenings.iter().filter(|h| h.important).enumerate() {
         let Some(point) = record.main_track().at(happening.time_s) else { continue };
         let (x, mut y) = view.place(point.position);
-        if !view.shows((x, y)) {
+        if !view.shows((x, y)) || elsewhere.is_some_and(|frame| frame.contains((x, y))) {
             continue;
         }
         while taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 24.0) {
@@ -314,6 +354,18 @@ mod tests {
         {
             assert_eq!(round_length_m(most), length, "{most}");
         }
+    }
+
+    #[test]
+    fn enlarged_areas_lie_in_their_frame() {
+        let record = crate::report::record::tests::record();
+        let points = record.planned.points().iter().map(|p| p.position);
+        let map = View::around(points, (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT)).unwrap();
+        let corners: Vec<LatLon> = record.areas.iter().flat_map(|a| a.outline.iter().copied()).collect();
+        let inset = View::around(corners.iter().copied(), (0.0, 0.0, INSET, INSET)).unwrap();
+        let frame = Frame::of(&inset, &map);
+        assert!(corners.iter().all(|p| frame.contains(map.place(*p))), "{frame:?}");
+        assert!(!frame.contains((frame.right + 1.0, frame.top)));
     }
 
     #[test]

@@ -17,6 +17,8 @@ mod tables;
 
 pub use coverage::Coverage;
 pub use deviation::{PassageReport, Statistics};
+#[cfg(test)]
+pub(crate) use record::tests::record as made_up_record;
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
 pub use tables::clock;
 

@@ -1,0 +1,64 @@
+//! The demo from end to end, as its user starts it: exit status and report.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs `legwork demo --headless` on a plan of the assets.
+fn demo(plan: &str, report: &Path) -> Output {
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/plans").join(plan);
+    Command::new(env!("CARGO_BIN_EXE_legwork"))
+        .args(["demo", "--headless", "--plan"])
+        .arg(plan)
+        .arg("--report")
+        .arg(report)
+        .env_remove("RUST_LOG")
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_flight_as_planned_succeeds_and_leaves_its_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = demo("square.xml", folder.path());
+    let (out, err) = (text(&run.stdout), text(&run.stderr));
+    assert_eq!(run.status.code(), Some(0), "{out}\n{err}");
+    assert!(out.contains("The mission was flown as planned."), "{out}");
+    assert!(!err.contains("zenoh"), "log noise before the user: {err}");
+    for file in ["report.html", "report.md", "legs.csv", "events.jsonl", "log.jsonl"] {
+        assert!(std::fs::metadata(folder.path().join(file)).unwrap().len() > 100, "{file}");
+    }
+    for picture in ["map.png", "profile.png"] {
+        let bytes = std::fs::read(folder.path().join(picture)).unwrap();
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 10_000, "{picture}: {} bytes", bytes.len());
+    }
+    let legs = std::fs::read_to_string(folder.path().join("legs.csv")).unwrap();
+    for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
+        assert!(legs.lines().any(|line| line.starts_with(leg)), "{leg} is missing:\n{legs}");
+    }
+}
+
+#[test]
+fn report_folder_that_cannot_be_made_fails_and_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("taken");
+    std::fs::write(&file, "").unwrap();
+    let run = demo("square.xml", &file);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("choose another with --report"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn plan_with_errors_is_not_flown() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report");
+    let run = demo("bad/too-steep.xml", &report);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("can't be flown"), "{}", text(&run.stderr));
+    assert!(!report.exists(), "a report of a flight that never was");
+}
