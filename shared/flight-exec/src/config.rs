@@ -24,7 +24,7 @@ pub struct Config {
     pub review_s: f64,
     /// A decision is asked for when it is due within this, seconds.
     pub ask_ahead_s: f64,
-    /// An altitude counts as reached this close to it, metres.
+    /// An altitude counts as reached this close to it, metres: fifty feet, a few seconds of climb, less than a lap is worth.
     pub altitude_tolerance_m: f64,
     /// Slope of the final approach, degrees.
     pub glide_slope_deg: f64,
@@ -44,7 +44,7 @@ impl Default for Config {
             debounce_s: 1.0,
             review_s: 1.0,
             ask_ahead_s: 120.0,
-            altitude_tolerance_m: 5.0,
+            altitude_tolerance_m: 15.0,
             glide_slope_deg: 4.5,
             final_approach_m: 700.0,
         }

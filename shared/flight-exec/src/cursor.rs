@@ -17,7 +17,8 @@ use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A climb is commanded so far ahead of what the aircraft can have reached, metres, that it never waits for its target.
+/// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
+/// target, however wide it turns. The gateway grants ten.
 const CLIMB_LEAD_M: f64 = 8.0;
 
 /// So many steps without a single waypoint: a loop that flies nothing.
@@ -210,9 +211,21 @@ impl Cursor {
         let from = self.path.last.position;
         let (length_m, course_deg) = distance_and_course(from, point.position);
         let time_s = length_m / self.airspeed_mps.max(1.0);
-        let gap_m = altitude_amsl_m - self.path.predicted_amsl_m;
-        let climbed_m =
-            gap_m.clamp(-world.profile.max_descent_mps * time_s, world.profile.max_climb_mps * time_s);
+        // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
+        // such a gradient
+        let profile = world.profile;
+        let (descent_m, climb_m) = (profile.max_descent_mps * time_s, profile.max_climb_mps * time_s);
+        let towards = |from_m: f64, lead_m: f64| {
+            from_m + (altitude_amsl_m - from_m).clamp(-descent_m - lead_m, climb_m + lead_m)
+        };
+        let (commanded_amsl_m, predicted_amsl_m) = match point.action {
+            Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),
+            Action::Land { .. } => (altitude_amsl_m, towards(self.path.predicted_amsl_m, 0.0)),
+            Action::Fly | Action::Loiter { .. } => {
+                let commanded_m = towards(self.path.commanded_amsl_m, CLIMB_LEAD_M);
+                (commanded_m, towards(self.path.predicted_amsl_m, 0.0))
+            }
+        };
         self.path = PathState {
             last: Passing {
                 position: point.position,
@@ -221,10 +234,8 @@ impl Cursor {
                 fly_over: point.fly_over,
             },
             course_deg: if length_m > 0.5 { course_deg } else { self.path.course_deg },
-            predicted_amsl_m: match point.action {
-                Action::TakeOff { .. } => altitude_amsl_m,
-                _ => self.path.predicted_amsl_m + climbed_m,
-            },
+            predicted_amsl_m,
+            commanded_amsl_m,
             distance_m: self.path.distance_m + length_m,
             time_s: self.path.time_s + time_s,
         };
@@ -234,15 +245,7 @@ impl Cursor {
         }
         Emission {
             position: point.position,
-            altitude_amsl_m: match point.action {
-                // a climb is spread over the waypoints of its leg as fast as the aircraft climbs, a little ahead of
-                // it: nobody could fly it between two of them, and the gateway refuses such a gradient
-                Action::Fly | Action::Loiter { .. } => {
-                    let predicted_m = self.path.predicted_amsl_m;
-                    predicted_m + (altitude_amsl_m - predicted_m).clamp(-CLIMB_LEAD_M, CLIMB_LEAD_M)
-                }
-                Action::TakeOff { .. } | Action::Land { .. } => altitude_amsl_m,
-            },
+            altitude_amsl_m: commanded_amsl_m,
             airspeed_mps: self.airspeed_mps,
             action: point.action,
             fly_over: point.fly_over,

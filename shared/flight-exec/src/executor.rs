@@ -279,6 +279,7 @@ impl Executor {
             },
             course_deg,
             predicted_amsl_m: altitude_m,
+            commanded_amsl_m: altitude_m,
             distance_m: self.state.tail.as_ref().map_or(0.0, |t| t.path.distance_m),
             time_s: self.state.tail.as_ref().map_or(0.0, |t| t.path.time_s),
         }

@@ -35,6 +35,8 @@ pub struct PathState {
     pub course_deg: f64,
     /// Altitude the aircraft can have there, given its climb, metres AMSL.
     pub predicted_amsl_m: f64,
+    /// Altitude of the last waypoint as it is commanded, ahead of the predicted one in a climb, metres AMSL.
+    pub commanded_amsl_m: f64,
     /// Path length since the start of the flight, metres.
     pub distance_m: f64,
     /// Flying time for it without wind, seconds.

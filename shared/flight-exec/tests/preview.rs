@@ -59,6 +59,23 @@ fn the_shipped_mission_is_flown_and_landed() {
     assert!(!flown.events.iter().any(|(_, e)| matches!(e, Event::PatternRefused { .. })));
 }
 
+/// The aircraft leaves the hold at the first crossing at which it is high enough, and no two waypoints ask for more than the
+/// gateway lets through (half as steep again as the aircraft, and ten metres).
+#[test]
+fn a_climb_in_the_hold_takes_no_lap_too_many() {
+    let profile = Profile::default();
+    let flown = fly(&mission(|t| t), &Scenario::default()).unwrap();
+    let hold = flown.legs.iter().find(|l| l.place.leg.as_str() == "d4").unwrap();
+    assert!((100.0..130.0).contains(&(hold.end_s - hold.start_s)), "450 m at 4 m/s: {hold:?}");
+    let waypoints: Vec<_> = flown.waypoints.iter().map(|w| &w.waypoint).collect();
+    for pair in waypoints.windows(2).filter(|p| !matches!(p[0].action, Action::TakeOff { .. })) {
+        let rise_m = pair[1].altitude_amsl_m - pair[0].altitude_amsl_m;
+        let rate_mps = if rise_m > 0.0 { profile.max_climb_mps } else { profile.max_descent_mps };
+        let time_s = pair[0].position.distance_m(pair[1].position) / (pair[1].airspeed_mps + 5.0);
+        assert!(rise_m.abs() <= 1.5 * rate_mps * time_s + 10.0, "{rise_m} m in {time_s} s: {pair:?}");
+    }
+}
+
 /// What the demonstration does: the fire grows and moves, dies down, a plan update adds a leg on the way back.
 #[test]
 fn a_scripted_mission() {

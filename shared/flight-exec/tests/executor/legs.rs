@@ -92,7 +92,7 @@ fn a_holding_to_altitude_goes_on_until_it_is_really_reached() {
         crossings
     };
     assert_eq!(laps(700.0, 50), 1, "there already: over the fix and on");
-    assert_eq!(laps(690.0, 20), 20, "never reached: lap after lap");
+    assert_eq!(laps(680.0, 20), 20, "never reached: lap after lap");
 }
 
 #[test]
