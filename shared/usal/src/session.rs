@@ -15,6 +15,10 @@ pub const DEFAULT_ENDPOINT: &str = "tcp/127.0.0.1:7447";
 /// A hub that is there answers within this time.
 const PRESENT_HUB: Duration = Duration::from_secs(1);
 
+/// Whatever the network does, a session is closed within this time. (Zenoh itself gives up after
+/// ten seconds.)
+const CLOSE_WITHIN: Duration = Duration::from_secs(2);
+
 /// Called, from a network thread, whenever something has been received; must return at once.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
@@ -138,10 +142,12 @@ impl Session {
         info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
     }
 
-    /// Ends the session for all its clones and parts.
+    /// Ends the session for all its clones and parts; returns within two seconds.
     pub async fn close(&self) {
-        if let Err(e) = self.inner.zenoh.close().await {
-            tracing::debug!("closing the session: {e}");
+        match tokio::time::timeout(CLOSE_WITHIN, self.inner.zenoh.close()).await {
+            Ok(Ok(())) => {}
+            Ok(Err(e)) => tracing::debug!("closing the session: {e}"),
+            Err(_) => tracing::warn!("the session does not close in time and is left alone"),
         }
     }
 

@@ -143,10 +143,6 @@ async fn participant_that_stalls_is_dropped_with_its_name_and_may_come_back() {
         let tick = participant.next().await.unwrap();
         participant.acknowledge(tick);
     });
-    until(async || {
-        let awaited = conductor.tick(3.0).await.is_empty() && follower.is_finished();
-        awaited
-    })
-    .await;
+    until(async || conductor.tick(3.0).await.is_empty() && follower.is_finished()).await;
     within(follower).await.unwrap();
 }

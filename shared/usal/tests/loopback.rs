@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use usal::contract::*;
 use usal::topics::{self, fp_manager, gateway};
-use usal::{CallError, Occurrence, Session, SessionError, Start};
+use usal::{CallError, Config, Occurrence, Session, SessionError, Start};
 use zenoh::bytes::Encoding;
 
 fn air(airspeed_mps: f64) -> Air {
@@ -359,4 +359,47 @@ fn single_threaded_runtime_is_refused_instead_of_panicking() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     let result = runtime.block_on(Session::open(usal::Config::client("uav1", "tcp/127.0.0.1:1")));
     assert!(matches!(result, Err(SessionError::Runtime)));
+}
+
+/// A client that makes use of everything, busy until its session closes.
+async fn busy(endpoint: &str) -> Session {
+    let session = Session::open(Config::client("uav1", endpoint)).await.unwrap();
+    let publisher = session.publish(fp_manager::HEARTBEAT).unwrap();
+    let emitter = session.emitter(gateway::EVENTS).unwrap();
+    let variable = session.follow(fp_manager::HEARTBEAT).unwrap();
+    let mut events = session.listen(gateway::EVENTS, Start::Remembered).unwrap();
+    let (announced, presence) = (session.announce("busy").unwrap(), session.presence().unwrap());
+    tokio::spawn(async move {
+        let _held = (variable, announced, presence);
+        for count in 0.. {
+            publisher.set(0.0, 1.0, &Heartbeat { count, plan: None });
+            emitter.emit(&low(1));
+            let next = tokio::time::timeout(Duration::from_millis(1), events.recv()).await;
+            if next.is_ok_and(|event| event.is_none()) {
+                return;
+            }
+        }
+    });
+    session
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn closing_is_quick_whoever_comes_late_and_whoever_goes_first() {
+    for (hub_late, hub_first) in [(false, false), (false, true), (true, false), (true, true)] {
+        let endpoint = free_endpoint();
+        let early = if hub_late { Some(busy(&endpoint).await) } else { None };
+        let hub = Session::open(Config::hub("uav1", &endpoint)).await.unwrap();
+        let mut sessions = vec![busy(&endpoint).await];
+        sessions.extend(early);
+        for session in &sessions {
+            until(async || session.is_connected().await).await;
+        }
+        sessions.insert(if hub_first { 0 } else { sessions.len() }, hub);
+        let started = Instant::now();
+        for session in sessions {
+            session.close().await;
+        }
+        // a single one that hung would take two seconds
+        assert!(started.elapsed() < Duration::from_millis(1900), "late {hub_late}, first {hub_first}");
+    }
 }
