@@ -457,12 +457,60 @@ fn gateway_killed_the_autopilot_flies_on_and_the_next_gateway_adopts_the_flight(
 }
 
 #[test]
+fn a_flight_ended_by_force_stays_ended_when_the_gateway_starts_anew() {
+    let mut flight = Flight::new(15, &[]);
+    let mut plan = vec![take_off()];
+    plan.extend(zigzag(0, 30, 300.0));
+    flight.launch(plan);
+    flight.ask(GatewayRequest::Terminate { confirm: "test".into() }).unwrap();
+    let json = serde_json::to_string(&flight.station.gateway().snapshot()).unwrap();
+    // killed before anything was sent
+    flight.station = Station::new(settings(), Some(serde_json::from_str(&json).unwrap()), true);
+    flight.run_until(5.0, "disarmed", |f| !f.sim.autopilot.is_armed());
+    assert_eq!(flight.state(), GatewayState::Terminate);
+    flight.run_until(300.0, "down", |f| f.sim.autopilot.aircraft.state().on_ground);
+    let snapshot = flight.station.gateway().snapshot();
+    flight.station = Station::new(settings(), Some(snapshot), true);
+    flight.run(10.0);
+    assert_eq!(flight.state(), GatewayState::Stop, "the next flight is free");
+    assert!(!flight.station.gateway().snapshot().terminated);
+}
+
+#[test]
+fn fp_manager_killed_during_the_take_off_holds_once_clear_of_the_ground() {
+    let mut flight = Flight::new(16, &[]);
+    flight.run_until(20.0, "heard", |f| {
+        f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
+    });
+    assert!(flight.join("plan").accepted);
+    assert_eq!(flight.feed(None, vec![take_off()]), FeedAnswer::Accepted);
+    flight.ask(GatewayRequest::Launch).unwrap();
+    flight.run_until(20.0, "TakeOff", |f| f.state() == GatewayState::TakeOff);
+    flight.alive = false;
+    flight.run_until(60.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+    let height_m = flight.station.gateway().telemetry().position().unwrap().1.altitude_home_m;
+    assert!((40.0..50.0).contains(&height_m), "{height_m}");
+}
+
+#[test]
+fn a_landing_cancelled_on_the_approach_does_not_circle_for_ever() {
+    let mut flight = Flight::new(17, &[]);
+    let mut plan = vec![take_off()];
+    plan.extend(zigzag(0, 2, 300.0));
+    plan.extend(landing());
+    flight.launch(plan);
+    flight.run_until(900.0, "Approach", |f| f.state() == GatewayState::Approach);
+    assert_eq!(flight.feed(Some(5), vec![]), FeedAnswer::Accepted);
+    flight.run_until(200.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+}
+
+#[test]
 fn alarms_of_the_simulators_faults_reach_the_events() {
-    for (fault, id) in [
-        ("gps-loss@90", "gps-lost"),
-        ("engine-out@90", "engine-out"),
-        ("low-battery@90", "energy-low"),
-        ("silence@90+8", "autopilot-silent"),
+    for (fault, id, within_s) in [
+        ("gps-loss@90", "gps-lost", 2.0),
+        ("engine-out@90", "engine-out", 4.0),
+        ("low-battery@90", "energy-low", 3.0),
+        ("silence@90+8", "autopilot-silent", 4.0),
     ] {
         let mut flight = Flight::new(10, &[fault]);
         let mut plan = vec![take_off()];
@@ -472,5 +520,7 @@ fn alarms_of_the_simulators_faults_reach_the_events() {
             f.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
         };
         flight.run_until(100.0, id, raised);
+        let after_s = flight.now.as_secs_f64() - 90.0;
+        assert!((0.0..within_s).contains(&after_s), "{id} after {after_s} s");
     }
 }

@@ -109,6 +109,7 @@ mod tests {
             intent: Intent::Fly,
             waypoints: vec![],
             plan: Some("abc".into()),
+            terminated: false,
         };
         let mut store = Store::new(Some(path.clone()));
         assert_eq!(store.load(), None);

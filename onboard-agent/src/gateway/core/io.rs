@@ -97,4 +97,7 @@ pub struct Snapshot {
     pub waypoints: Vec<Waypoint>,
     /// Hash of the plan that was flown.
     pub plan: Option<String>,
+    /// The flight was ended by force; a restart does not bring it back.
+    #[serde(default)]
+    pub terminated: bool,
 }

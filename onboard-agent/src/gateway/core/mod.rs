@@ -56,6 +56,8 @@ pub struct Gateway {
     told: Option<Option<Token>>,
     low_told: bool,
     astray_since: Option<Time>,
+    /// The flight was ended by force, perhaps before a restart; until it is on the ground.
+    terminated: bool,
     /// A flight was met in the air: what was known of it.
     adopting: Option<Snapshot>,
 }
@@ -80,6 +82,7 @@ impl Gateway {
             told: None,
             low_told: false,
             astray_since: None,
+            terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
         }
     }
@@ -108,6 +111,7 @@ impl Gateway {
 
     fn round(&mut self, now: Time, out: &mut Vec<Output>) {
         self.watch(now, out);
+        self.keep_terminated(out);
         self.observe(now, out);
         self.supervise(now, out);
         self.steer(now, out);
@@ -134,6 +138,7 @@ impl Gateway {
             intent: self.control.intent,
             waypoints: self.window.chain().waypoints().cloned().collect(),
             plan: self.fp_manager.plan.clone(),
+            terminated: self.terminated,
         }
     }
 
@@ -309,8 +314,7 @@ impl Gateway {
 
     fn tell_level(&mut self, out: &mut Vec<Output>) {
         let (waypoints, seconds) = self.level();
-        let ends = self.window.chain().last().is_some_and(|w| w.end_of_plan) || self.ended;
-        let low = !ends && (waypoints < views::LOW_WAYPOINTS || seconds < views::LOW_S);
+        let low = !self.is_complete() && (waypoints < views::LOW_WAYPOINTS || seconds < views::LOW_S);
         if low && !self.low_told {
             out.push(Output::Event(GatewayEvent::BufferLow { waypoints, seconds }));
         }

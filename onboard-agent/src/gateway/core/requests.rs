@@ -175,9 +175,29 @@ impl Gateway {
             return Err("There is no flight to end.".into());
         }
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.order(Order::Terminate, out);
-        self.change(Trigger::Terminated, "by command", out);
-        out.push(Output::Save);
+        self.end_by_force("by command", out);
         Ok(())
+    }
+
+    fn end_by_force(&mut self, cause: &str, out: &mut Vec<Output>) {
+        self.terminated = true;
+        self.order(Order::Terminate, out);
+        self.change(Trigger::Terminated, cause, out);
+        out.push(Output::Save);
+    }
+
+    /// What was ended by force before a restart of the gateway stays ended, until it is on the ground.
+    pub(super) fn keep_terminated(&mut self, out: &mut Vec<Output>) {
+        let heard = self.telemetry.mode.is_some();
+        if !self.terminated || self.state == GatewayState::Terminate || !heard {
+            return;
+        }
+        if self.telemetry.is_landed() {
+            self.terminated = false;
+            self.adopting = None;
+            out.push(Output::Save);
+        } else {
+            self.end_by_force("by command, before the gateway started anew", out);
+        }
     }
 }

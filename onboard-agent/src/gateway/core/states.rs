@@ -110,8 +110,8 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (TakeOff | Nav | Directed | Approach | Land, HoldConfirmed) => Hold,
         (TakeOff | Nav | Hold | Approach | Land, DirectConfirmed) => Directed,
 
-        // Safe mode; a take-off and a landing are finished first
-        (Nav | Hold | Directed | Approach, SafeNeeded) => SafeHold,
+        // Safe mode; a landing is finished first, and a take-off until clear of the ground
+        (TakeOff | Nav | Hold | Directed | Approach, SafeNeeded) => SafeHold,
         (SafeHold, ReturnDue) => SafeReturn,
         (SafeReturn, Approaching) => SafeApproach,
         (SafeReturn | SafeApproach, Landing) => SafeLand,
@@ -143,7 +143,7 @@ mod tests {
     const TABLE: &str = "
     Off          Stop . . . . . . . . . . . . . Terminate
     Stop         . Off TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
-    TakeOff      . . . Nav Approach Land Stop Hold Directed Manual . . . . Terminate
+    TakeOff      . . . Nav Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . Terminate
     Directed     . . TakeOff Nav Approach Land Stop Hold . Manual SafeHold . . . Terminate

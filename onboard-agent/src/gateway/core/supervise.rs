@@ -7,6 +7,9 @@ use super::{Gateway, seconds};
 use crate::gateway::order::{Mode, Time};
 use usal::contract::{GatewayState, SafeParameters, Token};
 
+/// Height above the take-off place from which a climbing aircraft may circle, metres.
+const CLEAR_M: f64 = 40.0;
+
 /// What is known of the FP Manager.
 #[derive(Debug, Clone, Default)]
 pub struct FpManager {
@@ -63,6 +66,7 @@ impl Gateway {
                     self.enter_safe(now, false, "the waypoints ran dry before the end of the plan", out);
                 }
             }
+            GatewayState::TakeOff | GatewayState::Approach => self.supervise_low(now, out),
             GatewayState::SafeHold => {
                 let due = self.control.safe_since.is_some_and(|s| now >= s + seconds(self.safe.t2_s));
                 if due {
@@ -74,6 +78,32 @@ impl Gateway {
         }
     }
 
+    /// Near the ground: what is aboard is flown to its end if it has one.
+    fn supervise_low(&mut self, now: Time, out: &mut Vec<Output>) {
+        self.fp_manager.expected_since.get_or_insert(now);
+        if self.is_dry() {
+            self.enter_safe(now, false, "the waypoints ran dry before the end of the plan", out);
+        } else if !self.is_complete() && self.fp_manager.is_silent(now, &self.safe) {
+            self.enter_safe(
+                now,
+                false,
+                "the FP Manager is silent, and the way to a landing is not aboard",
+                out,
+            );
+        }
+    }
+
+    /// The end of the plan is in the buffer, or was flown.
+    pub(super) fn is_complete(&self) -> bool {
+        self.ended || self.window.chain().last().is_some_and(|w| w.end_of_plan)
+    }
+
+    /// High enough to turn: a take-off is not interrupted before, unless it is over.
+    fn is_clear_of_ground(&self) -> bool {
+        let high = self.telemetry.fix.is_some_and(|(_, f)| f.altitude_home_m >= CLEAR_M);
+        self.state != GatewayState::TakeOff || high || self.is_dry()
+    }
+
     /// The guard is circled although the plan did not end.
     fn is_dry(&self) -> bool {
         self.window.at_guard() && !self.ended && self.control.intent == Intent::Fly && self.is_in_auto()
@@ -82,6 +112,9 @@ impl Gateway {
     /// Safe.Hold, if the state allows it.
     pub(super) fn enter_safe(&mut self, now: Time, commanded: bool, cause: &str, out: &mut Vec<Output>) {
         let before = self.state;
+        if !self.is_clear_of_ground() {
+            return;
+        }
         self.change(Trigger::SafeNeeded, cause, out);
         if self.state == before {
             return;

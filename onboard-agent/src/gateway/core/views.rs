@@ -64,7 +64,7 @@ impl Gateway {
             buffer_waypoints,
             buffer_s,
             room: CAPACITY.saturating_sub(buffer_waypoints),
-            end_of_plan: self.ended || chain.last().is_some_and(|w| w.end_of_plan),
+            end_of_plan: self.is_complete(),
         }
     }
 

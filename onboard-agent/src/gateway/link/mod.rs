@@ -113,3 +113,73 @@ impl Link {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot};
+    use std::net::UdpSocket;
+    use tokio::io::AsyncWriteExt;
+    use tokio::net::TcpListener;
+
+    const WITHIN: Duration = Duration::from_secs(20);
+
+    fn heartbeat(system: u32, autopilot: MavAutopilot) -> Vec<u8> {
+        let header = MavHeader { system_id: system, component_id: 1, sequence: 0 };
+        encode(header, &MavMessage::HEARTBEAT(HEARTBEAT_DATA { autopilot, ..HEARTBEAT_DATA::DEFAULT }))
+    }
+
+    fn autopilot(system: u32) -> Vec<u8> {
+        heartbeat(system, MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA)
+    }
+
+    async fn next_system(link: &mut Link) -> u32 {
+        let messages = tokio::time::timeout(WITHIN, link.receive()).await.expect("a message");
+        messages[0].0.system_id
+    }
+
+    #[tokio::test]
+    async fn the_return_path_of_datagrams_belongs_to_the_autopilot_and_strangers_are_counted() {
+        let mut link = Link::open(&"udp:127.0.0.1:0".parse().unwrap()).await.unwrap();
+        let at = link.local_address().unwrap();
+        let [stranger, own] = [(); 2].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+        stranger.send_to(&heartbeat(9, MavAutopilot::MAV_AUTOPILOT_INVALID), at).unwrap();
+        stranger.send_to(b"garbage", at).unwrap();
+        own.send_to(&autopilot(1), at).unwrap();
+        assert_eq!(next_system(&mut link).await, 1);
+        stranger.send_to(&autopilot(9), at).unwrap();
+        own.send_to(&autopilot(1), at).unwrap();
+        assert_eq!(next_system(&mut link).await, 1, "there is only one autopilot");
+        let stats = link.stats();
+        assert_eq!((stats.messages, stats.garbage, stats.strangers), (2, 7, 2));
+
+        let header = MavHeader { system_id: 1, component_id: 191, sequence: 0 };
+        link.send(header, &[MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT)]);
+        own.set_read_timeout(Some(WITHIN)).unwrap();
+        let mut buffer = [0; 300];
+        let (length, _) = own.recv_from(&mut buffer).unwrap();
+        assert!(length > 10);
+        stranger.set_nonblocking(true).unwrap();
+        assert!(stranger.recv_from(&mut buffer).is_err(), "a stranger hears nothing");
+    }
+
+    #[tokio::test]
+    async fn a_tcp_connection_that_breaks_is_made_again_and_half_a_frame_is_forgotten() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = format!("tcp:{}", listener.local_addr().unwrap()).parse().unwrap();
+        let mut link = Link::open(&address).await.unwrap();
+        for system in 1..=3 {
+            // the link only moves while somebody waits for its messages
+            let serve = async {
+                let (mut stream, _) = listener.accept().await.unwrap();
+                let frame = autopilot(system);
+                stream.write_all(&frame).await.unwrap();
+                stream.write_all(&frame[..5]).await.unwrap();
+            };
+            let (heard, ()) = tokio::join!(next_system(&mut link), serve);
+            assert_eq!(heard, system);
+        }
+        assert_eq!(link.stats().messages, 3);
+    }
+}

@@ -8,7 +8,7 @@ use super::mode::Mode;
 use super::params::Params;
 use super::run::{Phase, Run};
 use super::transfer::Mission;
-use aircraft::power::demanded_power_w;
+use aircraft::power::{demanded_power_w, glide_sink_mps};
 use aircraft::{Action, Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
 use geometry::LatLon;
 
@@ -266,14 +266,24 @@ impl Autopilot {
 
     /// Flies for `dt_s` seconds.
     pub fn step(&mut self, dt_s: f64) {
-        let mut demand = if self.armed { self.demand() } else { Demand::default() };
+        let mut demand = if self.armed { self.demand() } else { self.unarmed_demand() };
         // without power it comes down, and the only ground known is home's
-        if self.powerless() {
+        if self.powerless() || !self.armed {
             demand.ground_amsl_m.get_or_insert(self.home.altitude_amsl_m);
         }
         self.aircraft.step(dt_s, &demand, &self.wind);
         self.disarm_when_landed(dt_s, &demand);
         self.demanded = demand;
+    }
+
+    /// Disarmed in the air it glides to the ground.
+    fn unarmed_demand(&self) -> Demand {
+        let (s, p) = (self.aircraft.state(), self.aircraft.profile());
+        if s.on_ground {
+            return Demand::default();
+        }
+        let climb_mps = -glide_sink_mps(p, s.airspeed_mps, 1.0);
+        Demand { airspeed_mps: p.cruise_airspeed_mps, climb_mps, ..Demand::default() }
     }
 
     fn demand(&mut self) -> Demand {
