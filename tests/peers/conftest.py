@@ -12,6 +12,8 @@ import pytest
 
 BIN = Path(os.environ["LEGWORK_BIN"])
 TOP = Path(os.environ["LEGWORK_TOP"])
+# where the missions of pymavlink and MAVSDK begin
+HOME = "36.4905,-84.2710,322,52"
 
 
 class Process:
@@ -67,7 +69,7 @@ def start(tmp_path):
 @pytest.fixture
 def simulator(start):
     """A simulator on a free TCP port, five times as fast as life; gives the port."""
-    process = start("legwork-sim", "--tcp", "127.0.0.1:0", "--speed", "5")
+    process = start("legwork-sim", "--tcp", "127.0.0.1:0", "--speed", "5", "--home", HOME)
     return int(process.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1])
 
 
