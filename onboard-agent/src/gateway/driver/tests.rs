@@ -153,6 +153,46 @@ fn each_single_loss_is_made_good() {
 }
 
 #[test]
+fn each_single_loss_of_a_short_write_is_made_good_within_a_second() {
+    type Lost = fn(To, &MavMessage) -> bool;
+    let cases: [(&str, u32, Lost); 6] = [
+        ("nothing lost", 0, |_, _| true),
+        ("opening lost", 1, |_, m| matches!(m, MavMessage::MISSION_WRITE_PARTIAL_LIST(_))),
+        ("item lost", 1, |t, m| t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_))),
+        ("every ack and request lost", 1000, |_, m| {
+            matches!(m, MavMessage::MISSION_ACK(_) | MavMessage::MISSION_REQUEST(_))
+        }),
+        ("read request lost", 2, |_, m| matches!(m, MavMessage::MISSION_REQUEST_INT(_))),
+        ("read item lost", 2, |t, m| t == To::Driver && matches!(m, MavMessage::MISSION_ITEM_INT(_))),
+    ];
+    for (name, times, lost) in cases {
+        let mut rig = Rig::new();
+        rig.carry_out(Order::Upload { items: items(44) }, |_, _| true);
+        let part = items(60)[40..44].to_vec();
+        let (report, seconds) =
+            rig.carry_out(Order::Write { start: 7, items: part.clone() }, losing(lost, times));
+        assert_eq!(report, Report::Done(OrderId(77)), "{name}");
+        assert!(is_on_board(&rig, &part, 7), "{name}");
+        assert!(seconds < 1.0, "{name}: {seconds} s");
+    }
+}
+
+#[test]
+fn an_entry_that_is_never_kept_is_never_claimed() {
+    let mut rig = Rig::new();
+    rig.carry_out(Order::Upload { items: items(44) }, |_, _| true);
+    let part = items(60)[40..44].to_vec();
+    let never = |t: To, m: &MavMessage| {
+        !(t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq == 9))
+    };
+    let (report, _) = rig.carry_out(Order::Write { start: 7, items: part }, never);
+    assert!(
+        matches!(&report, Report::Failed(_, why) if why.contains("reads back differently")),
+        "{report:?}"
+    );
+}
+
+#[test]
 fn packets_lost_0_to_30_percent_every_write_completes_and_is_true() {
     for (percent, within_s) in [(0_u64, 0.3), (10, 2.0), (20, 5.0), (30, 10.0)] {
         let (mut slowest, mut seed) = (0.0_f64, 1 + percent);
