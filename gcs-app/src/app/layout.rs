@@ -143,7 +143,9 @@ fn over_map(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         });
     }
     if scene.vehicle.status.is_some() && flight::has_commands(scene) {
-        floating(ui, "commands", map, Align2::CENTER_BOTTOM, |ui| {
+        // clear of legend, scale and sources
+        let clear = Rect::from_min_max(map.min + egui::vec2(96.0, 0.0), map.max - egui::vec2(0.0, 8.0));
+        floating(ui, "commands", clear, Align2::CENTER_BOTTOM, |ui| {
             flight::last_command(ui, scene);
             ui.horizontal(|ui| flight::commands(ui, scene, queue));
         });

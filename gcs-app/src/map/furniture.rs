@@ -18,10 +18,10 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     text::haloed(painter, corner, Align2::RIGHT_BOTTOM, assets::ATTRIBUTION, 10.0, p.weak, p);
 }
 
-/// A bar of a round length, up to 120 points long.
+/// A bar of a round length, up to 90 points long.
 fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
     let unit = units.distance();
-    let most = unit.from_si(120.0 / view.points_per_metre());
+    let most = unit.from_si(90.0 / view.points_per_metre());
     let decade = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].map(|k| k * decade).into_iter().find(|l| *l <= most).unwrap_or(decade);
     let points = (unit.to_si(length) * view.points_per_metre()) as f32;

@@ -63,10 +63,13 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
     record.places.iter().for_each(|place| draw_place(canvas, view, place));
 }
 
-/// The enlarged view of the scanned areas, where the map shows them too small.
+/// The enlarged view of the scanned areas with the turns around them, where the map shows them too small.
 fn inset_view(record: &Record, map: &View) -> Option<View> {
+    let track = record.main_track();
+    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.kind == "scan");
+    let flown = scans.flat_map(|(i, _)| track.points().get(track.range(i)).unwrap_or_default());
     let corners = record.areas.iter().flat_map(|a| a.outline.iter().copied());
-    let view = View::around(corners, (0.0, 0.0, INSET, INSET))?;
+    let view = View::around(corners.chain(flown.map(|p| p.position)), (0.0, 0.0, INSET, INSET))?;
     let is_small =
         f64::from(INSET) * view.metres_per_pixel <= f64::from(MAP_WIDTH) * map.metres_per_pixel * INSET_BELOW;
     is_small.then_some(view)
@@ -291,12 +294,12 @@ fn draw_happenings(canvas: &mut Canvas, record: &Record, view: &View, elsewhere:
     let mut taken: Vec<(f32, f32)> = Vec::new();
     for (i, happening) in record.happenings.iter().filter(|h| h.important).enumerate() {
         let Some(point) = record.main_track().at(happening.time_s) else { continue };
-        let (x, mut y) = view.place(point.position);
+        let (mut x, y) = view.place(point.position);
         if !view.shows((x, y)) || elsewhere.is_some_and(|frame| frame.contains((x, y))) {
             continue;
         }
         while taken.iter().any(|(tx, ty)| (tx - x).hypot(ty - y) < 24.0) {
-            y -= 24.0;
+            x += 24.0;
         }
         taken.push((x, y));
         numbered(canvas, (x, y), i + 1);
