@@ -4,6 +4,9 @@ use flight_plan::AltitudeReference;
 use geometry::{LatLon, LocalFrame};
 use serde::{Deserialize, Serialize};
 
+/// Farther than this distances are those of geodesics, metres.
+const FRAME_M: f64 = 10_000.0;
+
 /// A wanted altitude with its datum, numbers only.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Level {
@@ -45,15 +48,18 @@ pub struct PathState {
 
 /// Distance (metres) and direction of travel at the far end (degrees true) from `a` to `b`.
 ///
-/// Below 5 km by a local frame around the middle (error below 1 mm and 0.001°), beyond by the geodesic.
+/// Below 10 km by a local frame around the middle (error below 5 mm and 0.01°), beyond by the geodesic.
 pub fn distance_and_course(a: LatLon, b: LatLon) -> (f64, f64) {
     let dlon = geometry::geodesy::normalise_180(b.lon_deg - a.lon_deg);
     let middle = LatLon::new(0.5 * (a.lat_deg + b.lat_deg), a.lon_deg + 0.5 * dlon);
     let frame = LocalFrame::new(middle);
     let way = frame.to_local(b) - frame.to_local(a);
     let length = way.length();
-    if length < 5000.0 && middle.lat_deg.abs() < 85.0 {
-        return (length, geometry::geodesy::normalise_360(way.bearing_rad().to_degrees()));
+    if length < FRAME_M && middle.lat_deg.abs() < 80.0 {
+        // the meridians converge between the middle, where the frame's north is true, and the end
+        let convergence_deg = 0.5 * dlon * middle.lat_deg.to_radians().sin();
+        let course_deg = way.bearing_rad().to_degrees() + convergence_deg;
+        return (length, geometry::geodesy::normalise_360(course_deg));
     }
     let geodesic = a.inverse(b);
     (geodesic.distance_m, geodesic.bearing_end_deg)
@@ -62,4 +68,27 @@ pub fn distance_and_course(a: LatLon, b: LatLon) -> (f64, f64) {
 /// Distance between two near or far positions, metres (see [`distance_and_course`]).
 pub fn distance_m(a: LatLon, b: LatLon) -> f64 {
     distance_and_course(a, b).0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_by_the_frame_agrees_with_the_geodesic() {
+        for lat_deg in [-79.0, -36.5, 0.0, 47.0, 70.0] {
+            for (bearing_deg, metres) in [(3.0, 40.0), (90.0, 9_900.0), (233.0, 5_100.0), (359.0, 9_900.0)] {
+                let from = LatLon::new(lat_deg, 179.99);
+                let to = from.destination(bearing_deg, metres);
+                let exact = from.inverse(to);
+                let (distance_m, course_deg) = distance_and_course(from, to);
+                let off_deg = geometry::geodesy::normalise_180(course_deg - exact.bearing_end_deg);
+                assert!(
+                    (distance_m - exact.distance_m).abs() < 5e-3,
+                    "{lat_deg} {bearing_deg} {metres}: {distance_m}"
+                );
+                assert!(off_deg.abs() < 0.01, "{lat_deg} {bearing_deg} {metres}: {off_deg}");
+            }
+        }
+    }
 }

@@ -1,8 +1,9 @@
 //! Arcs as waypoints, and whether a coded arc (RF) is one.
 
+use crate::local::{EXACT_LATITUDE_DEG, EXACT_RADIUS_M};
 use crate::path::course_change_deg;
 use crate::turn::Turn;
-use crate::{LatLon, PathElement};
+use crate::{LatLon, LocalFrame, PathElement, Vec2};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -65,14 +66,36 @@ pub fn flatten(element: &PathElement, how: Flattening, tolerance_m: f64) -> Vec<
         Flattening::Balanced => balanced(radius_m, sweep_rad, tolerance_m),
         Flattening::Circumscribed => circumscribed(radius_m, sweep_rad, tolerance_m),
     };
+    let around = Around::new(centre, radius_m);
     let mut points: Vec<LatLon> = vertices
         .map(|v| {
             let swept_deg = v.swept_rad.to_degrees().copysign(sweep_deg);
-            centre.destination(start_bearing_deg + swept_deg, v.radius_m)
+            around.place(start_bearing_deg + swept_deg, v.radius_m)
         })
         .collect();
     points.push(element.end());
     points
+}
+
+/// Places around a centre: from a frame where it is exact, which is many times cheaper, else by geodesics.
+struct Around {
+    centre: LatLon,
+    frame: Option<LocalFrame>,
+}
+
+impl Around {
+    fn new(centre: LatLon, radius_m: f64) -> Self {
+        // vertices lie outside by up to a share of √2
+        let exact = radius_m < 0.7 * EXACT_RADIUS_M && centre.lat_deg.abs() < EXACT_LATITUDE_DEG;
+        Self { centre, frame: exact.then(|| LocalFrame::new(centre)) }
+    }
+
+    fn place(&self, bearing_deg: f64, distance_m: f64) -> LatLon {
+        match &self.frame {
+            Some(frame) => frame.to_geo(Vec2::from_bearing_rad(bearing_deg.to_radians()) * distance_m),
+            None => self.centre.destination(bearing_deg, distance_m),
+        }
+    }
 }
 
 /// A vertex between an arc's start and end.

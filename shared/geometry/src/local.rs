@@ -23,7 +23,8 @@ impl Vec2 {
     }
     /// Length, metres.
     pub fn length(self) -> f64 {
-        self.e.hypot(self.n)
+        // metres never overflow a square: the guard of `hypot` would only cost
+        self.dot(self).sqrt()
     }
     /// Unit vector that points along a bearing (radians, clockwise from north).
     pub fn from_bearing_rad(bearing_rad: f64) -> Self {
