@@ -26,16 +26,9 @@ pub fn ground_along(terrain: &dyn Terrain, from: LatLon, to: LatLon, spacing_m: 
     let way = from.inverse(to);
     let steps = (way.distance_m / spacing_m).ceil();
     // a spacing of 0 gives infinity or NaN steps
-    let steps = if steps.is_finite() && steps >= 1.0 {
-        steps.min(MOST_SAMPLES)
-    } else {
-        fallback(way.distance_m)
-    };
-    let mut ground = Ground {
-        highest_m: None,
-        at: from,
-        unknown: 0.0,
-    };
+    let steps =
+        if steps.is_finite() && steps >= 1.0 { steps.min(MOST_SAMPLES) } else { fallback(way.distance_m) };
+    let mut ground = Ground { highest_m: None, at: from, unknown: 0.0 };
     let mut unknown = 0.0;
     for i in 0..=steps as u32 {
         let p = from.destination(way.bearing_start_deg, way.distance_m * f64::from(i) / steps);
@@ -71,35 +64,17 @@ mod tests {
 
     #[test]
     fn the_ridge_between_two_valleys_is_found() {
-        let ground = ground_along(
-            &Ridge,
-            LatLon::new(36.45, -84.2),
-            LatLon::new(36.55, -84.2),
-            50.0,
-        );
-        assert!(
-            (ground.highest_m.unwrap() - 1000.0).abs() < 0.5,
-            "{ground:?}"
-        );
+        let ground = ground_along(&Ridge, LatLon::new(36.45, -84.2), LatLon::new(36.55, -84.2), 50.0);
+        assert!((ground.highest_m.unwrap() - 1000.0).abs() < 0.5, "{ground:?}");
         assert!((ground.at.lat_deg - 36.5).abs() < 0.001);
         assert_eq!(ground.unknown, 0.0);
     }
 
     #[test]
     fn what_is_unknown_is_said() {
-        let half = ground_along(
-            &Ridge,
-            LatLon::new(36.5, -84.2),
-            LatLon::new(36.7, -84.2),
-            50.0,
-        );
+        let half = ground_along(&Ridge, LatLon::new(36.5, -84.2), LatLon::new(36.7, -84.2), 50.0);
         assert!((half.unknown - 0.5).abs() < 0.01, "{half:?}");
-        let none = ground_along(
-            &Ridge,
-            LatLon::new(36.65, -84.2),
-            LatLon::new(36.7, -84.2),
-            50.0,
-        );
+        let none = ground_along(&Ridge, LatLon::new(36.65, -84.2), LatLon::new(36.7, -84.2), 50.0);
         assert_eq!((none.highest_m, none.unknown), (None, 1.0));
     }
 
@@ -107,10 +82,7 @@ mod tests {
     fn odd_paths_and_spacings_are_bounded() {
         let (a, b) = (LatLon::new(36.5, -84.2), LatLon::new(36.51, -84.2));
         for spacing in [0.0, -5.0, f64::NAN, f64::INFINITY, 1e-12] {
-            assert!(
-                ground_along(&Ridge, a, b, spacing).highest_m.is_some(),
-                "{spacing}"
-            );
+            assert!(ground_along(&Ridge, a, b, spacing).highest_m.is_some(), "{spacing}");
         }
         assert_eq!(ground_along(&Ridge, a, a, 50.0).highest_m, Some(1000.0));
     }

@@ -44,11 +44,7 @@ pub struct Tile {
 
 impl std::fmt::Debug for Tile {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "Tile({}°, {}°, {} samples a side)",
-            self.south_deg, self.west_deg, self.side
-        )
+        write!(f, "Tile({}°, {}°, {} samples a side)", self.south_deg, self.west_deg, self.side)
     }
 }
 
@@ -68,12 +64,7 @@ impl Tile {
         if samples_m.iter().all(|s| *s == VOID) {
             return Err(TileError::Empty);
         }
-        Ok(Self {
-            south_deg,
-            west_deg,
-            side,
-            samples_m,
-        })
+        Ok(Self { south_deg, west_deg, side, samples_m })
     }
 
     /// South-west corner, whole degrees: `(latitude, longitude)`.
@@ -89,12 +80,7 @@ impl Tile {
     /// The box around everything that is known: `(south-west, north-east)`.
     pub fn known_box(&self) -> (LatLon, LatLon) {
         let (mut top, mut bottom, mut left, mut right) = (self.side, 0, self.side, 0);
-        for (i, _) in self
-            .samples_m
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| **s != VOID)
-        {
+        for (i, _) in self.samples_m.iter().enumerate().filter(|(_, s)| **s != VOID) {
             let (row, column) = (i / self.side, i % self.side);
             (top, bottom) = (top.min(row), bottom.max(row));
             (left, right) = (left.min(column), right.max(column));
@@ -150,11 +136,7 @@ fn mix(a: Option<f64>, b: Option<f64>, share_of_b: f64) -> Option<f64> {
 
 fn sample(pair: &[u8]) -> i16 {
     let value = i16::from_be_bytes([pair[0], pair[1]]);
-    if PLAUSIBLE_M.contains(&value) {
-        value
-    } else {
-        VOID
-    }
+    if PLAUSIBLE_M.contains(&value) { value } else { VOID }
 }
 
 /// `N36W085` (any case, any extension) as degrees of the south-west corner.
@@ -190,9 +172,7 @@ pub(crate) mod tests {
 
     /// HGT bytes of a 3″ tile whose samples are `f(row, column)`.
     pub(crate) fn hgt(f: impl Fn(usize, usize) -> i16) -> Vec<u8> {
-        (0..1201 * 1201)
-            .flat_map(|i| f(i / 1201, i % 1201).to_be_bytes())
-            .collect()
+        (0..1201 * 1201).flat_map(|i| f(i / 1201, i % 1201).to_be_bytes()).collect()
     }
 
     #[test]
@@ -219,69 +199,36 @@ pub(crate) mod tests {
     #[test]
     fn bad_bytes_are_errors() {
         let good = hgt(|_, _| 7);
-        assert!(matches!(
-            Tile::from_hgt("tile.hgt", &good),
-            Err(TileError::Name(_))
-        ));
-        assert_eq!(
-            Tile::from_hgt("N36W085.hgt", &good[1..]),
-            Err(TileError::Length(good.len() - 1))
-        );
-        assert_eq!(
-            Tile::from_hgt("N36W085.hgt", &[]),
-            Err(TileError::Length(0))
-        );
-        assert_eq!(
-            Tile::from_hgt("N36W085.hgt", &hgt(|_, _| VOID)),
-            Err(TileError::Empty)
-        );
+        assert!(matches!(Tile::from_hgt("tile.hgt", &good), Err(TileError::Name(_))));
+        assert_eq!(Tile::from_hgt("N36W085.hgt", &good[1..]), Err(TileError::Length(good.len() - 1)));
+        assert_eq!(Tile::from_hgt("N36W085.hgt", &[]), Err(TileError::Length(0)));
+        assert_eq!(Tile::from_hgt("N36W085.hgt", &hgt(|_, _| VOID)), Err(TileError::Empty));
         // 32767 is what some tools write for "nothing"
-        assert_eq!(
-            Tile::from_hgt("N36W085.hgt", &hgt(|_, _| i16::MAX)),
-            Err(TileError::Empty)
-        );
+        assert_eq!(Tile::from_hgt("N36W085.hgt", &hgt(|_, _| i16::MAX)), Err(TileError::Empty));
     }
 
     #[test]
     fn voids_and_outside_are_unknown() {
-        let bytes = hgt(|row, column| {
-            if (row, column) == (600, 600) {
-                VOID
-            } else {
-                100
-            }
-        });
+        let bytes = hgt(|row, column| if (row, column) == (600, 600) { VOID } else { 100 });
         let tile = Tile::from_hgt("N36W085.hgt", &bytes).unwrap();
         let step = tile.spacing_deg();
-        for (north, east, known) in [
-            (0.0, 0.0, false),
-            (0.5, 0.5, false),
-            (1.5, 0.0, true),
-            (0.0, -1.5, true),
-        ] {
+        for (north, east, known) in
+            [(0.0, 0.0, false), (0.5, 0.5, false), (1.5, 0.0, true), (0.0, -1.5, true)]
+        {
             let p = LatLon::new(36.5 + north * step, -84.5 + east * step);
             assert_eq!(tile.elevation_m(p).is_some(), known, "{north} {east}");
         }
-        for (lat, lon) in [
-            (35.999, -84.5),
-            (37.001, -84.5),
-            (36.5, -85.001),
-            (36.5, -83.999),
-            (f64::NAN, -84.5),
-        ] {
+        for (lat, lon) in
+            [(35.999, -84.5), (37.001, -84.5), (36.5, -85.001), (36.5, -83.999), (f64::NAN, -84.5)]
+        {
             assert_eq!(tile.elevation_m(LatLon::new(lat, lon)), None);
         }
     }
 
     #[test]
     fn known_box_is_the_box_of_the_data() {
-        let bytes = hgt(|r, c| {
-            if (321..=664).contains(&r) && (704..=1106).contains(&c) {
-                300
-            } else {
-                VOID
-            }
-        });
+        let bytes =
+            hgt(|r, c| if (321..=664).contains(&r) && (704..=1106).contains(&c) { 300 } else { VOID });
         let (sw, ne) = Tile::from_hgt("N36W085.hgt", &bytes).unwrap().known_box();
         assert!(
             (sw.lat_deg - (37.0 - 664.0 / 1200.0)).abs() < 1e-9

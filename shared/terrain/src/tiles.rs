@@ -49,14 +49,8 @@ impl Terrain for Tiles {
         }
         let (south, west) = (p.lat_deg.floor() as i32, p.lon_deg.floor() as i32);
         // a point on a whole degree is also the edge of the tile to the south or west
-        let souths = [
-            Some(south),
-            (p.lat_deg == f64::from(south)).then_some(south - 1),
-        ];
-        let wests = [
-            Some(west),
-            (p.lon_deg == f64::from(west)).then_some(west - 1),
-        ];
+        let souths = [Some(south), (p.lat_deg == f64::from(south)).then_some(south - 1)];
+        let wests = [Some(west), (p.lon_deg == f64::from(west)).then_some(west - 1)];
         souths
             .into_iter()
             .flatten()
@@ -74,8 +68,7 @@ mod tests {
     #[test]
     fn neighbours_answer_for_their_own_square_and_their_edges() {
         let (a, b) = (hgt(|_, _| 100), hgt(|_, _| 200));
-        let tiles =
-            Tiles::from_hgt_files([("N36W085.hgt", &a[..]), ("N37W085.hgt", &b[..])]).unwrap();
+        let tiles = Tiles::from_hgt_files([("N36W085.hgt", &a[..]), ("N37W085.hgt", &b[..])]).unwrap();
         assert_eq!(tiles.iter().count(), 2);
         for (lat, lon, expected) in [
             (36.5, -84.5, Some(100.0)),
@@ -89,20 +82,13 @@ mod tests {
             (91.0, -84.5, None),
             (f64::NAN, f64::INFINITY, None),
         ] {
-            assert_eq!(
-                tiles.elevation_m(LatLon::new(lat, lon)),
-                expected,
-                "{lat} {lon}"
-            );
+            assert_eq!(tiles.elevation_m(LatLon::new(lat, lon)), expected, "{lat} {lon}");
         }
     }
 
     #[test]
     fn a_bad_file_is_named() {
         let (name, error) = Tiles::from_hgt_files([("N36W085.hgt", &[1, 2, 3][..])]).unwrap_err();
-        assert_eq!(
-            (name.as_str(), error),
-            ("N36W085.hgt", TileError::Length(3))
-        );
+        assert_eq!((name.as_str(), error), ("N36W085.hgt", TileError::Length(3)));
     }
 }
