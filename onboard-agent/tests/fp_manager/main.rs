@@ -226,6 +226,12 @@ async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
         let runways = flight.gateway.runways.len();
         flight.step_until(|g| g.runways.len() > runways).await;
         flight.step(1).await;
+        // killed before its disk knows of the emergency, it would rightly begin it anew
+        until(async || {
+            let kept = std::fs::read(directory.path().join("fp-manager.cbor")).unwrap_or_default();
+            kept.windows(10).any(|bytes| bytes == b"energy-low")
+        })
+        .await;
         flight.kill_manager().await;
     }
     flight.gateway.safe_until_joined();
