@@ -3,6 +3,9 @@
 //! `app` is the window: its `logic` drains what the workers found out, its `ui` draws. Panels and
 //! map borrow the state and ask for changes through `command`. Nothing on the UI thread waits.
 
+#[macro_use]
+mod say;
+
 pub mod app;
 pub mod assets;
 pub mod command;

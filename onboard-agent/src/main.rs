@@ -53,7 +53,9 @@ fn describe() -> ExitCode {
     let descriptions = [usal::gateway_description(), usal::fp_manager_description()];
     match serde_json::to_string_pretty(&descriptions) {
         Ok(text) => {
-            println!("{text}");
+            use std::io::Write;
+            // a reader that has gone away is no failure
+            let _ = writeln!(std::io::stdout().lock(), "{text}");
             ExitCode::SUCCESS
         }
         Err(error) => failed(FAILED, &error.into()),

@@ -1,4 +1,5 @@
 //! The dependency directions of ARCHITECTURE.md, enforced.
+#![allow(clippy::expect_used)]
 
 use std::{collections::BTreeMap, process::Command};
 

@@ -5,23 +5,22 @@ use std::path::Path;
 
 /// The leg table, the verdict and where the report is, on standard output.
 pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) {
-    print!("{}", table(findings));
-    println!();
+    say!("{}", table(findings));
     for coverage in &findings.coverages {
-        println!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0);
+        say!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0);
     }
     for (holds, sentence) in &record.verdict {
-        println!("{} {sentence}", if *holds { "ok  " } else { "FAIL" });
+        say!("{} {sentence}", if *holds { "ok  " } else { "FAIL" });
     }
     let flown_s = record.flown.duration_s();
-    println!(
+    say!(
         "{} flown in {wall_s:.1} s ({:.0} × real time); report: {}",
         clock(flown_s),
         flown_s / wall_s.max(0.1),
         folder.join("report.html").display()
     );
     let good = record.verdict.iter().all(|(holds, _)| *holds);
-    println!(
+    say!(
         "{}",
         if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." }
     );

@@ -14,7 +14,7 @@ pub fn run(source: &Source, json: bool) -> anyhow::Result<ExitCode> {
     let loaded = source.load()?;
     let problems = loaded.problems();
     if json {
-        println!("{:#}", document(&source.file, &problems));
+        say!("{:#}", document(&source.file, &problems));
     } else {
         print(&source.file, &problems);
     }
@@ -24,14 +24,14 @@ pub fn run(source: &Source, json: bool) -> anyhow::Result<ExitCode> {
 /// Prints problems for people, and how many there are.
 pub fn print(file: &Path, problems: &[Problem]) {
     for problem in problems {
-        println!("{}:{}{problem}", file.display(), if problem.location.is_some() { "" } else { " " });
+        say!("{}:{}{problem}", file.display(), if problem.location.is_some() { "" } else { " " });
     }
     let errors = problems.iter().filter(|p| p.is_error()).count();
     match (errors, problems.len() - errors) {
-        (0, 0) => println!("{}: good, no problems", file.display()),
-        (0, warnings) => println!("{}: may be flown; {warnings} warnings", file.display()),
+        (0, 0) => say!("{}: good, no problems", file.display()),
+        (0, warnings) => say!("{}: may be flown; {warnings} warnings", file.display()),
         (errors, warnings) => {
-            println!("{}: must not be flown; {errors} errors, {warnings} warnings", file.display())
+            say!("{}: must not be flown; {errors} errors, {warnings} warnings", file.display())
         }
     }
 }

@@ -25,8 +25,8 @@ pub fn run(source: &Source, wind: Wind, json: bool) -> anyhow::Result<ExitCode> 
         }
     };
     match forecast::fly(&Arc::new(program), &profile, &loaded.terrain, wind, &Scenario::default()) {
-        Ok(preview) if json => println!("{:#}", document(&preview.waypoints)),
-        Ok(preview) => print!("{}", csv(&preview.waypoints)),
+        Ok(preview) if json => say!("{:#}", document(&preview.waypoints)),
+        Ok(preview) => say!("{}", csv(&preview.waypoints).trim_end()),
         Err(error) => {
             eprintln!("{}: {error}", source.file.display());
             return Ok(ExitCode::from(1));

@@ -25,12 +25,12 @@ pub fn run(source: &Source, wind: Wind, out: &Path) -> anyhow::Result<ExitCode> 
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &Scenario::default()) {
         Ok(preview) => preview,
         Err(error) => {
-            println!("{}: {error}", source.file.display());
+            say!("{}: {error}", source.file.display());
             return Ok(ExitCode::from(1));
         }
     };
     report::write(&forecast::record(&loaded, &program, &preview, &wind), out)?;
-    println!(
+    say!(
         "{}: {:.0} min, {:.1} km, {} waypoints, {:.0} % of the energy left; pictures in {}",
         source.file.display(),
         preview.time_s / 60.0,
