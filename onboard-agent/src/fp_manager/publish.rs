@@ -4,8 +4,9 @@ use crate::clock::Time;
 use flight_exec::Executor;
 use std::time::Duration;
 use usal::contract::*;
+use usal::topics::FP_MANAGER;
 use usal::topics::fp_manager as topic;
-use usal::{EventPublisher, Session, SessionError, VariablePublisher};
+use usal::{EventPublisher, FileOffer, Session, SessionError, VariablePublisher};
 
 /// Pace of the status and of the sign of life.
 const OFTEN: Duration = Duration::from_millis(200);
@@ -22,6 +23,9 @@ pub struct Publishers {
     plan: VariablePublisher<PlanInfo>,
     heartbeat: VariablePublisher<Heartbeat>,
     events: EventPublisher<FpManagerEvent>,
+    plan_file: FileOffer,
+    /// Hash of the plan in the file.
+    plan_filed: Option<String>,
     beats: u64,
     often_due: Time,
     seldom_due: Time,
@@ -44,6 +48,8 @@ impl Publishers {
             plan: session.publish(topic::PLAN)?,
             heartbeat: session.publish(topic::HEARTBEAT)?,
             events: session.emitter(topic::EVENTS)?,
+            plan_file: session.offer(FP_MANAGER, topic::PLAN_FILE)?,
+            plan_filed: None,
             beats: 0,
             often_due: Time::ZERO,
             seldom_due: Time::ZERO,
@@ -69,6 +75,8 @@ impl Publishers {
         if all {
             self.seldom_due = now + SELDOM;
         }
+        // before the status: who learns of a plan from it can fetch it
+        self.file(now, executor);
         self.signs_of_life(now, executor);
         self.way_ahead(now, executor, all);
         self.plan_and_variables(now, executor, all);
@@ -77,6 +85,19 @@ impl Publishers {
     /// The next call of [`Self::due`] publishes at once.
     pub fn hurry(&mut self) {
         self.often_due = Time::ZERO;
+    }
+
+    /// Offers the active plan as a file, whenever it is another one.
+    fn file(&mut self, now: Time, executor: &Executor) {
+        let Some(program) = executor.program() else { return };
+        if self.plan_filed.as_deref() == Some(&*program.hash) {
+            return;
+        }
+        self.plan_filed = Some(program.hash.to_string());
+        let xml = flight_plan::write(&program.plan);
+        if let Err(error) = self.plan_file.set(now.as_secs_f64(), xml.into()) {
+            tracing::warn!("the plan cannot be fetched as a file: {error}");
+        }
     }
 
     fn signs_of_life(&mut self, now: Time, executor: &Executor) {

@@ -5,11 +5,12 @@ mod fake_gateway;
 
 use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
 use onboard_agent::{Trigger, fp_manager, shutdown};
+use sha2::{Digest, Sha256};
 use std::path::Path;
 use tokio::process::Child;
 use tokio::task::JoinHandle;
 use usal::contract::*;
-use usal::topics::fp_manager as topic;
+use usal::topics::{FP_MANAGER, fp_manager as topic};
 use usal::{CallError, Occurrence, Session, Start};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
@@ -178,6 +179,25 @@ async fn active_plan_and_its_variables_can_be_read() {
     let document = flight.gateway.step_until_done(call).await.unwrap();
     assert_eq!(document.info.name, "Square circuit");
     assert_eq!(flight_plan::hash(&flight_plan::read(&document.xml).plan), document.info.hash.unwrap());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn active_plan_is_a_file_with_the_hash_of_the_status_also_after_a_restart() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    flight.load(SQUARE).await;
+    for _ in 0..2 {
+        flight.step(1).await;
+        let status = flight.client.follow(topic::STATUS).unwrap();
+        until(async || status.latest().is_some_and(|s| s.stamped.value.plan.is_some())).await;
+        let plan = status.latest().unwrap().stamped.value.plan.clone().unwrap();
+        let file = flight.client.fetch(FP_MANAGER, topic::PLAN_FILE, DEADLINE).await.unwrap();
+        let digest = Sha256::digest(&file);
+        assert_eq!(digest.iter().map(|b| format!("{b:02x}")).collect::<String>(), *plan);
+        assert_eq!(*flight_plan::hash(&flight_plan::read(std::str::from_utf8(&file).unwrap()).plan), *plan);
+        flight.kill_manager().await;
+        flight.start_manager().await;
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]

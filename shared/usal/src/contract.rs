@@ -468,6 +468,19 @@ pub struct PlanDocument {
     pub xml: String,
 }
 
+/// What a file consists of: answer at its key, and variable `file.<name>` of its service.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FileManifest {
+    /// Bytes of the whole file, at most 64 MiB.
+    pub size_bytes: u64,
+    /// Bytes of each chunk; the last one may be shorter.
+    pub chunk_bytes: u32,
+    /// Number of chunks; an empty file has none.
+    pub chunks: u32,
+    /// Hex SHA-256 of the whole file.
+    pub sha256: String,
+}
+
 /// Clock of a simulated flight: nobody goes on before every participant has acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClockTick {

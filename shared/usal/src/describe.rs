@@ -1,7 +1,7 @@
 //! Self-description: what a service is called, which version it speaks and what it says, with
 //! JSON Schemas made from the types. A golden file shows every change of the contract.
 
-use crate::contract::{ClockAck, ClockTick, Empty, Stamped};
+use crate::contract::{ClockAck, ClockTick, Empty, FileManifest, Stamped};
 use crate::keys::Kind;
 use crate::session::Session;
 use crate::topics::{self, Events, FP_MANAGER, GATEWAY, Invocation, Variable};
@@ -20,7 +20,7 @@ pub struct Description {
     pub primitives: Vec<Primitive>,
 }
 
-/// A variable, a stream of events or an invocation. Angles in degrees and SI units; units are
+/// A variable, a stream of events, an invocation or a file. Angles in degrees and SI units; units are
 /// part of the field names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Primitive {
@@ -28,7 +28,8 @@ pub struct Primitive {
     pub kind: Kind,
     /// Its name.
     pub name: String,
-    /// JSON Schema of a variable's or event's payload, or of an invocation's answer.
+    /// JSON Schema of a variable's or event's payload, of an invocation's answer, or
+    /// of a file's manifest.
     pub schema: serde_json::Value,
     /// JSON Schema of an invocation's request.
     pub request: Option<serde_json::Value>,
@@ -45,6 +46,10 @@ impl Primitive {
 
     fn invocation<Q: JsonSchema, A: JsonSchema>(invocation: Invocation<Q, A>) -> Self {
         Self { request: Some(schema::<Q>()), ..Self::plain(Kind::Invocation, invocation.name, schema::<A>()) }
+    }
+
+    fn file(name: &str) -> Self {
+        Self::plain(Kind::File, name, schema::<FileManifest>())
     }
 
     fn plain(kind: Kind, name: &str, schema: serde_json::Value) -> Self {
@@ -97,6 +102,7 @@ pub fn fp_manager_description() -> Description {
         Primitive::invocation(PROPOSE),
         Primitive::invocation(COMMAND),
         Primitive::invocation(PLAN_DOCUMENT),
+        Primitive::file(PLAN_FILE),
         Primitive::invocation(topics::describe(FP_MANAGER)),
     ];
     description(FP_MANAGER, primitives)

@@ -18,18 +18,21 @@ pub enum Kind {
     Event,
     /// One request, one answer.
     Invocation,
+    /// Complete or absent, checked by hash, in chunks.
+    File,
     /// Who is there.
     Liveliness,
 }
 
 impl Kind {
-    const ALL: [Self; 4] = [Self::Variable, Self::Event, Self::Invocation, Self::Liveliness];
+    const ALL: [Self; 5] = [Self::Variable, Self::Event, Self::Invocation, Self::File, Self::Liveliness];
 
     fn as_str(self) -> &'static str {
         match self {
             Self::Variable => "variable",
             Self::Event => "event",
             Self::Invocation => "invocation",
+            Self::File => "file",
             Self::Liveliness => "liveliness",
         }
     }
@@ -115,7 +118,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_key_survives_writing_and_reading(
-            vehicle in "[A-Za-z0-9_.-]{1,64}", service in "[a-z-]{1,20}", kind in 0usize..4, name in "[a-z0-9.-]{1,30}",
+            vehicle in "[A-Za-z0-9_.-]{1,64}", service in "[a-z-]{1,20}", kind in 0usize..5, name in "[a-z0-9.-]{1,30}",
         ) {
             let key = Key::new(&vehicle, &service, Kind::ALL[kind], &name).unwrap();
             prop_assert_eq!(key.to_string().parse::<Key>().unwrap(), key);
@@ -145,9 +148,12 @@ mod tests {
 
     #[test]
     fn other_peoples_keys_are_refused() {
-        for bad in
-            ["legwork/a/b/variable", "legwork/a/b/variable/c/d", "other/a/b/variable/c", "legwork/a/b/file/c"]
-        {
+        for bad in [
+            "legwork/a/b/variable",
+            "legwork/a/b/variable/c/d",
+            "other/a/b/variable/c",
+            "legwork/a/b/photo/c",
+        ] {
             assert!(matches!(bad.parse::<Key>(), Err(KeyError::Shape(_))), "{bad}");
         }
     }

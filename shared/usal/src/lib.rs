@@ -1,7 +1,7 @@
 //! Shell: the service contract (keys, types, sessions) over Zenoh; the only crate that knows Zenoh.
 //!
 //! A [`Session`] speaks for one vehicle. What may be said is listed, typed, in [`topics`]:
-//! variables, events and invocations of each service. Everything that is received is put into
+//! variables, events, invocations and files of each service. Everything that is received is put into
 //! channels and cells that can be polled without blocking, so that a window can use them from
 //! its drawing thread; [`Config::wake`] tells it when to look.
 //!
@@ -17,6 +17,7 @@ mod codec;
 mod describe;
 mod error;
 mod event;
+mod file;
 mod health;
 mod invocation;
 mod keys;
@@ -30,6 +31,7 @@ pub use codec::Format;
 pub use describe::{Description, Primitive, fp_manager_description, gateway_description};
 pub use error::{CallError, SessionError};
 pub use event::{EventPublisher, EventSubscriber, Occurrence, Start};
+pub use file::{Download, FILE_BYTES_MAX, FileError, FileOffer};
 pub use health::{Health, HealthCount};
 pub use invocation::{Incoming, Server};
 pub use keys::{Key, KeyError, Kind};

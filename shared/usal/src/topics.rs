@@ -118,4 +118,6 @@ pub mod fp_manager {
     pub const COMMAND: Invocation<Command, Empty> = Invocation::new(FP_MANAGER, "command");
     /// The active plan's document.
     pub const PLAN_DOCUMENT: Invocation<Empty, PlanDocument> = Invocation::new(FP_MANAGER, "plan");
+    /// File: the active plan's canonical XML; its hash is the plan's.
+    pub const PLAN_FILE: &str = "plan";
 }

@@ -116,8 +116,16 @@ impl Session {
     /// # Errors
     /// [`SessionError::Network`] on a closed session.
     pub fn publish<T: Serialize>(&self, variable: Variable<T>) -> Result<VariablePublisher<T>, SessionError> {
-        let key = self.key(variable.service, Kind::Variable, variable.name)?.to_string();
-        let token = self.key(variable.service, Kind::Liveliness, &token_name(variable.name))?.to_string();
+        self.publish_named(variable.service, variable.name)
+    }
+
+    pub(crate) fn publish_named<T: Serialize>(
+        &self,
+        service: &str,
+        name: &str,
+    ) -> Result<VariablePublisher<T>, SessionError> {
+        let key = self.key(service, Kind::Variable, name)?.to_string();
+        let token = self.key(service, Kind::Liveliness, &token_name(name))?.to_string();
         let publisher = self
             .inner
             .zenoh
@@ -157,8 +165,19 @@ impl Session {
     where
         T: DeserializeOwned + Send + Sync + 'static,
     {
-        let key = self.key(variable.service, Kind::Variable, variable.name)?.to_string();
-        let token = self.key(variable.service, Kind::Liveliness, &token_name(variable.name))?.to_string();
+        self.follow_named(variable.service, variable.name)
+    }
+
+    pub(crate) fn follow_named<T>(
+        &self,
+        service: &str,
+        name: &str,
+    ) -> Result<VariableSubscriber<T>, SessionError>
+    where
+        T: DeserializeOwned + Send + Sync + 'static,
+    {
+        let key = self.key(service, Kind::Variable, name)?.to_string();
+        let token = self.key(service, Kind::Liveliness, &token_name(name))?.to_string();
         let (sender, receiver) = watch::channel(None);
         let sender = Arc::new(sender);
         let inner = Arc::downgrade(&self.inner);
