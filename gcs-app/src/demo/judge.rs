@@ -5,7 +5,7 @@ use flight_exec::Phase;
 use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::GatewayState;
 
-/// Greatest cross-track error on TF legs against the previewed path, metres.
+/// Greatest cross-track error on TF legs, against the previewed path and against the authored one, metres.
 const TF_LIMIT_M: f64 = 15.0;
 /// The same on RF legs.
 const RF_LIMIT_M: f64 = 25.0;
@@ -50,6 +50,7 @@ pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(
     for (kind, limit_m) in [("TF", TF_LIMIT_M), ("RF", RF_LIMIT_M)] {
         if is_planned(record, kind) {
             verdict.push(deviation(findings, kind, limit_m));
+            verdict.extend(from_authored(findings, kind, limit_m));
         }
     }
     if is_planned(record, "scan") {
@@ -134,6 +135,15 @@ fn deviation(findings: &Findings, kind: &str, limit_m: f64) -> (bool, String) {
         ),
         None => (false, format!("no {kind} leg was flown")),
     }
+}
+
+/// Against the path as authored, if a leg of this type has one that can be measured.
+fn from_authored(findings: &Findings, kind: &str, limit_m: f64) -> Option<(bool, String)> {
+    let (farthest, max_m) = findings.farthest_from_authored(kind)?;
+    let key = &farthest.passage.key;
+    let text =
+        format!("{kind} legs {max_m:.1} m at most from their authored path, on {key} (limit {limit_m} m)");
+    Some((max_m < limit_m, text))
 }
 
 fn covered(findings: &Findings) -> (bool, String) {
@@ -229,6 +239,19 @@ mod tests {
             !never_safe(&Outcome { states: vec![GatewayState::Nav, GatewayState::SafeHold], ..outcome() }).0
         );
         assert!(!nothing_refused(&Outcome { refusals: vec!["too steep".into()], ..outcome() }).0);
+    }
+
+    #[test]
+    fn legs_far_from_their_authored_path_are_missed_however_well_previewed() {
+        let mut findings = Findings::of(&crate::report::made_up_record());
+        assert_eq!(from_authored(&findings, "TF", TF_LIMIT_M), None, "no authored paths are known");
+        let row = findings.passages.iter_mut().find(|p| p.passage.kind == "TF").unwrap();
+        for (max_m, holds) in [(14.9, true), (15.0, false)] {
+            row.from_authored = Some(crate::report::Statistics { rms_m: 1.0, p95_m: 2.0, max_m });
+            let one = Findings { passages: vec![row.clone()], ..Findings::default() };
+            let (held, text) = from_authored(&one, "TF", TF_LIMIT_M).unwrap();
+            assert!(held == holds && text.contains(&row.passage.key.leg), "{text}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::flight::Ending;
 use super::mission::{self, Step, When};
 use crate::assets;
 use crate::headless::{Loaded, Source, forecast, wind};
-use crate::report::{Record, Track, assemble};
+use crate::report::{Record, Track, assemble, authored};
 use aircraft::{Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
@@ -125,7 +125,9 @@ fn preview(
 impl Prepared {
     /// The record of a flight, without a verdict yet. Times count from the start of the plan.
     pub fn record(&self, ending: &Ending, wind: &Wind) -> Record {
-        let flown = assemble::track(&ending.points, &ending.events, &[&self.program.plan, &ending.plan]);
+        let plans = [&self.program.plan, &ending.plan];
+        let flown = assemble::track(&ending.points, &ending.events, &plans);
+        let turn_radius_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps + wind.speed_mps());
         Record {
             title: self.program.plan.name.clone(),
             notes: vec![
@@ -134,6 +136,7 @@ impl Prepared {
                 format!("plan {}", self.program.hash.get(..12).unwrap_or(&self.program.hash)),
             ],
             planned: self.planned.clone(),
+            authored: authored::paths(&self.program, &plans, &flown, &ending.events, turn_radius_m),
             places: assemble::places(&self.program.plan),
             areas: assemble::areas(&self.program, &flown, &ending.events),
             flown,

@@ -62,6 +62,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         areas: assemble::areas(program, &planned, &preview.events),
         planned,
         flown: Track::default(),
+        authored: Default::default(),
         happenings,
         verdict: Vec::new(),
         terrain: loaded.terrain.clone(),

@@ -100,7 +100,8 @@ pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<A
         .collect()
 }
 
-fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> Variables {
+/// The variables' values just before a time, seconds.
+pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> Variables {
     let mut variables = Variables::initial(&program.plan);
     for (_, event) in events.iter().filter(|(t, _)| *t < time_s) {
         if let Event::VariableChanged { name, value } = event {

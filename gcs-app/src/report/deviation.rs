@@ -1,5 +1,6 @@
 //! How far from the previewed path it was flown.
 
+use super::authored;
 use super::record::{Passage, PassageKey, Record, Track, TrackPoint};
 use geometry::{LocalFrame, Vec2};
 use std::collections::HashMap;
@@ -49,6 +50,8 @@ pub struct PassageReport {
     pub planned_time_s: Option<f64>,
     /// Against the previewed path of the same passage; `None` if that was not planned.
     pub cross_track: Option<Statistics>,
+    /// Against the path as authored (see [`authored`]); `None` if the leg has none.
+    pub from_authored: Option<Statistics>,
 }
 
 impl PassageReport {
@@ -132,6 +135,10 @@ pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageRep
                 distance_m: track.distance_m(range.start..(range.end + 1).min(track.points().len())),
                 planned_time_s: planned.get(&passage.key).copied(),
                 cross_track: Statistics::of(metres.iter().flatten().map(|m| m.abs()).collect()),
+                from_authored: record
+                    .authored
+                    .get(&passage.key)
+                    .and_then(|path| authored::deviation(path, track.points().get(range)?)),
                 passage: passage.clone(),
             }
         })

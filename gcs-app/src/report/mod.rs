@@ -1,9 +1,10 @@
 //! The report of a flight: what was flown beside what was planned, as pictures and tables.
 //!
 //! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
-//! `deviation` and `coverage` measure, `tables` writes. Nothing here needs a display.
+//! `deviation`, `authored` and `coverage` measure, `tables` writes. Nothing here needs a display.
 
 pub mod assemble;
+pub mod authored;
 mod canvas;
 mod coverage;
 mod deviation;
@@ -20,7 +21,7 @@ pub use deviation::{PassageReport, Statistics};
 #[cfg(test)]
 pub(crate) use record::tests::record as made_up_record;
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
-pub use tables::clock;
+pub use tables::{clock, from_authored};
 
 use std::path::Path;
 
@@ -41,6 +42,15 @@ impl Findings {
             passages: deviation::by_passage(record, &deviations),
             coverages: record.areas.iter().filter_map(|a| coverage::of(a, record.main_track())).collect(),
         }
+    }
+
+    /// The passage of a leg type that was farthest from its authored path, and how far, metres.
+    pub fn farthest_from_authored(&self, kind: &str) -> Option<(&PassageReport, f64)> {
+        self.passages
+            .iter()
+            .filter(|p| p.passage.kind == kind)
+            .filter_map(|p| Some((p, p.from_authored?.max_m)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The passage with the greatest deviation among those whose leg type is `kind`.

@@ -1,6 +1,8 @@
 //! What a report is made from.
 
+use super::authored::AuthoredPath;
 use geometry::LatLon;
+use std::collections::HashMap;
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -177,6 +179,8 @@ pub struct Record {
     pub planned: Track,
     /// What was flown; empty for a preview's own pictures.
     pub flown: Track,
+    /// The paths of flown passages as their author wrote them.
+    pub authored: HashMap<PassageKey, AuthoredPath>,
     /// Fixes and runways.
     pub places: Vec<Place>,
     /// Scanned areas.
@@ -211,6 +215,7 @@ pub(crate) mod tests {
             notes: vec!["trainer · wind 5 m/s from 270°".into()],
             flown: made_up(home, 6.0),
             planned,
+            authored: HashMap::new(),
             places: vec![
                 Place {
                     label: "R05".into(),

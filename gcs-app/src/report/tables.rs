@@ -4,7 +4,7 @@ use super::record::Record;
 use super::{Findings, PassageReport};
 use std::fmt::Write;
 
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 11] = [
     "leg",
     "type",
     "stage",
@@ -14,6 +14,7 @@ const COLUMNS: [&str; 10] = [
     "planned",
     "distance",
     "deviation RMS / 95 % / max",
+    "from the authored path: RMS / max",
     "passage",
 ];
 
@@ -27,17 +28,18 @@ pub fn clock(seconds: f64) -> String {
 /// One row per passage, plain numbers in seconds and metres.
 pub fn csv(findings: &Findings) -> String {
     let mut text = String::from(
-        "leg,type,stage,iterations,reverse,occurrence,start_s,time_s,planned_time_s,distance_m,cross_track_rms_m,cross_track_p95_m,cross_track_max_m\n",
+        "leg,type,stage,iterations,reverse,occurrence,start_s,time_s,planned_time_s,distance_m,cross_track_rms_m,cross_track_p95_m,cross_track_max_m,authored_rms_m,authored_max_m\n",
     );
     for row in &findings.passages {
         let key = &row.passage.key;
         let cross = row
             .cross_track
             .map_or(",,".to_owned(), |s| format!("{:.2},{:.2},{:.2}", s.rms_m, s.p95_m, s.max_m));
+        let authored = row.from_authored.map_or(",".to_owned(), |s| format!("{:.2},{:.2}", s.rms_m, s.max_m));
         let planned = row.planned_time_s.map_or(String::new(), |s| format!("{s:.1}"));
         let (leg, stage, loops) = (quoted(&key.leg), quoted(&row.passage.stage), quoted(&key.iterations));
         text += &format!(
-            "{leg},{},{stage},{loops},{},{},{:.1},{:.1},{planned},{:.1},{cross}\n",
+            "{leg},{},{stage},{loops},{},{},{:.1},{:.1},{planned},{:.1},{cross},{authored}\n",
             row.passage.kind,
             key.reverse,
             key.occurrence + 1,
@@ -56,7 +58,7 @@ fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field }
 }
 
-fn cells(row: &PassageReport) -> [String; 10] {
+fn cells(row: &PassageReport) -> [String; 11] {
     let key = &row.passage.key;
     let cross = row
         .cross_track
@@ -71,8 +73,14 @@ fn cells(row: &PassageReport) -> [String; 10] {
         row.planned_time_s.map_or("–".to_owned(), clock),
         format!("{:.2} km", row.distance_m / 1000.0),
         cross,
+        from_authored(row),
         (key.occurrence + 1).to_string(),
     ]
+}
+
+/// Deviations from the authored path, for people.
+pub fn from_authored(row: &PassageReport) -> String {
+    row.from_authored.map_or("–".to_owned(), |s| format!("{:.1} / {:.1} m", s.rms_m, s.max_m))
 }
 
 /// For people, and for diffs.
