@@ -165,6 +165,8 @@ fn sentence(event: &Event) -> (String, bool) {
         Event::NotGranted { request, reason } => {
             (format!("`{request}` not granted by the gateway: {reason}"), true)
         }
+        Event::NotJournalled { reason } => (format!("not recorded: {reason}"), true),
+        Event::Journalled => ("recorded again".to_owned(), true),
     }
 }
 

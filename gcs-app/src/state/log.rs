@@ -115,6 +115,8 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
         PlanEvent::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
         }
+        PlanEvent::NotJournalled { reason } => (Level::Caution, format!("The flight is not recorded: {reason}")),
+        PlanEvent::Journalled => info("The flight is recorded again".to_owned()),
     }
 }
 

@@ -287,12 +287,14 @@ pub struct ProposalReport {
 #[serde(transparent)]
 pub struct RequestId(pub u64);
 
-/// Everything that can happen to the executor.
-#[derive(Debug, Clone, PartialEq)]
+/// Everything that can happen to the executor. Serialisable for the journal, but for proposals: of them
+/// the document is kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Input {
     /// Time passed (drives deadlines; also sent when nothing else happens).
     Tick,
     /// A new plan is put forward (checked and compiled by the shell's call to `flight_plan`).
+    #[serde(skip)]
     Propose {
         /// For the answer.
         request: RequestId,
@@ -444,4 +446,12 @@ pub enum Event {
         /// Why.
         reason: String,
     },
+    /// What happens is not recorded (disk full, not writable), or a restart could not use what was: the flight
+    /// goes on, its place would not survive another restart. Told once, by the FP Manager.
+    NotJournalled {
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// What happens is recorded again.
+    Journalled,
 }

@@ -24,7 +24,7 @@ pub struct Executor {
     pub(crate) program: Option<Arc<Program>>,
     pub(crate) proposed: Option<Arc<Program>>,
     pub(crate) state: State,
-    last_step: Option<Time>,
+    pub(crate) last_step: Option<Time>,
 }
 
 /// Everything that a snapshot keeps.
@@ -166,6 +166,11 @@ impl Executor {
     /// Highest token used so far.
     pub fn last_token(&self) -> Token {
         Token(self.state.last_token)
+    }
+
+    /// When it was last stepped, if ever.
+    pub fn last_step(&self) -> Option<Time> {
+        self.last_step
     }
 
     /// Goes on numbering after a token that the gateway has seen (its memory may be longer than a snapshot's).

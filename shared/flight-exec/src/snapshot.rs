@@ -1,5 +1,6 @@
 //! What survives the process: everything the executor knows, without the plan itself.
 
+use crate::api::Time;
 use crate::config::Config;
 use crate::cursor::Cursor;
 use crate::executor::{Executor, State};
@@ -68,6 +69,13 @@ impl Executor {
         executor.program = program;
         executor.state = revived(snapshot)?;
         Ok(executor)
+    }
+
+    /// What a snapshot leaves to its keeper: the proposal that may still be committed, and when the executor was
+    /// last stepped. With them a restored executor answers the inputs that followed as the original did.
+    pub fn resume(&mut self, proposed: Option<Arc<Program>>, last_step: Option<Time>) {
+        self.proposed = proposed;
+        self.last_step = last_step;
     }
 }
 
