@@ -73,7 +73,7 @@ impl Executor {
 
     /// What a snapshot leaves to its keeper: the proposal that may still be committed, and when the executor was
     /// last stepped. With them a restored executor answers the inputs that followed as the original did.
-    pub fn resume(&mut self, proposed: Option<Arc<Program>>, last_step: Option<Time>) {
+    pub fn go_on(&mut self, proposed: Option<Arc<Program>>, last_step: Option<Time>) {
         self.proposed = proposed;
         self.last_step = last_step;
     }
