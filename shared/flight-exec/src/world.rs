@@ -6,7 +6,7 @@ use crate::decision::Decision;
 use crate::path::Level;
 use aircraft::Profile;
 use flight_plan::{
-    Altitude, AltitudeReference, Env, EvalError, FlightState, Id, Leg, Place, Program, Stage, Value,
+    Altitude, AltitudeReference, Env, EvalError, FlightState, Id, Leg, Place, Program, Spacing, Stage, Value,
     Variables,
 };
 use geometry::LatLon;
@@ -59,6 +59,23 @@ impl World<'_> {
     /// It has none.
     pub fn number(&self, value: &Value<f64>) -> Result<f64, EvalError> {
         self.program.eval_number(value, &self.env())
+    }
+
+    /// The corners of a polygon now.
+    ///
+    /// # Errors
+    /// It has no value.
+    pub fn polygon(&self, source: &str) -> Result<Vec<LatLon>, EvalError> {
+        self.program.expression(source)?.polygon(&self.env())
+    }
+
+    /// Distance between tracks now, metres.
+    ///
+    /// # Errors
+    /// It has no value.
+    pub fn spacing_m(&self, spacing: &Spacing) -> Result<f64, EvalError> {
+        let Spacing::Metres(metres) = spacing else { return Err(EvalError::NotFinite) };
+        self.number(metres)
     }
 
     /// Where a place is now.

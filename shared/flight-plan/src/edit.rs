@@ -1,8 +1,8 @@
 //! Edits as values: what a person did to a plan, to be applied, undone, or offered as a remedy.
 
 use crate::{
-    Altitude, Area, Cause, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Value,
-    VariableError, VariableValue,
+    Altitude, Area, Cause, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Place, PlanWaypoint,
+    Value, VariableError, VariableValue,
 };
 use geometry::LatLon;
 use std::sync::Arc;
@@ -283,7 +283,8 @@ fn name_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut String, Edi
 fn waypoint_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut PlanWaypoint, EditError> {
     match &mut leg_mut(plan, id)?.kind {
         LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => Ok(to),
-        LegKind::Hf(h) | LegKind::Ha(h) => Ok(&mut h.fix),
+        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Ok(to),
+        LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Ok(&mut h.fix),
         _ => Err(not_applicable(id, "has no waypoint: choose a leg that goes to one")),
     }
 }
@@ -347,13 +348,27 @@ fn place_mut(leg: &mut Leg) -> Option<&mut Place> {
         LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
             Some(&mut to.place)
         }
-        LegKind::Hf(h) | LegKind::Ha(h) => Some(&mut h.fix.place),
+        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Some(&mut to.place),
+        LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&mut h.fix.place),
         LegKind::Orbit { centre, .. } => Some(centre),
-        LegKind::Scan(scan) => match &mut scan.area {
-            Area::Circle { centre, .. } => Some(centre),
-            Area::Polygon { .. } => None,
+        LegKind::Scan(scan) => centre_mut(&mut scan.area),
+        LegKind::Pattern(pattern) => match pattern {
+            Pattern::Spiral { centre, .. }
+            | Pattern::ExpandingSquare { centre, .. }
+            | Pattern::Sector { centre, .. }
+            | Pattern::FigureEight { centre, .. } => Some(centre),
+            Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => route.first_mut(),
+            Pattern::Contour { area, .. } => centre_mut(area),
         },
+        LegKind::Call(call) => call.anchor.as_mut(),
         LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
+    }
+}
+
+fn centre_mut(area: &mut Area) -> Option<&mut Place> {
+    match area {
+        Area::Circle { centre, .. } => Some(centre),
+        Area::Polygon { .. } | Area::Expression(_) => None,
     }
 }
 

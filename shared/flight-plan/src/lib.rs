@@ -21,7 +21,7 @@ pub use history::History;
 pub use model::*;
 pub use problem::{Location, Problem, Severity};
 pub use program::{LegPath, Program, compile, compile_document};
-pub use uses::Use;
+pub use uses::{Part, Use};
 pub use variables::{VariableError, Variables};
 pub use walk::{LegContext, Section};
 pub use xml::{Places, Reading, hash, read, write};

@@ -3,6 +3,16 @@
 //! Everything that can be an expression over the plan's variables is a [`Value`]. Broken
 //! drafts are representable on purpose; the checks say what is wrong with them.
 
+mod action;
+mod pattern;
+mod procedure;
+mod zone;
+
+pub use action::{Act, LegAction, Trigger};
+pub use pattern::{Area, Pattern, Scan, ScanEntry, ScanStyle, Spacing};
+pub use procedure::{Call, Parameter, Procedure};
+pub use zone::{Zone, ZoneKind, ZoneShape, ZoneTime};
+
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -50,6 +60,10 @@ pub struct FlightPlan {
     pub runways: Vec<Runway>,
     /// Typed values that services write in flight.
     pub variables: Vec<Variable>,
+    /// Where the flight must and must not be.
+    pub zones: Vec<Zone>,
+    /// Fragments that legs call.
+    pub procedures: Vec<Procedure>,
     /// Emergency plan of everything that names none of its own.
     pub emergency: EmergencyChoice,
     /// The main plan's stages, in order.
@@ -102,6 +116,8 @@ pub enum VariableValue {
     Text(String),
     /// A position.
     Position(LatLon),
+    /// A simple polygon: its corners, not closed.
+    Polygon(Vec<LatLon>),
 }
 
 /// A typed, bounded variable of the plan.
@@ -117,8 +133,10 @@ pub struct Variable {
     pub min: Option<f64>,
     /// Greatest value of a number.
     pub max: Option<f64>,
-    /// Longest text, characters.
+    /// Longest text, characters; most corners of a polygon.
     pub max_length: Option<usize>,
+    /// Who may write it in flight: names of services, or `operator`. Empty: anybody.
+    pub writers: Vec<Id>,
 }
 
 /// Which emergency plan applies, possibly by cause; the entry without a cause is the fallback.
@@ -216,6 +234,24 @@ pub enum AltitudeReference {
     Home,
 }
 
+impl AltitudeReference {
+    /// What they are called in the document.
+    pub const NAMES: [(&str, AltitudeReference); 3] = [
+        ("amsl", AltitudeReference::Amsl),
+        ("agl", AltitudeReference::Agl),
+        ("home", AltitudeReference::Home),
+    ];
+
+    /// What it is called in the document.
+    pub fn name(self) -> &'static str {
+        match self {
+            AltitudeReference::Amsl => "amsl",
+            AltitudeReference::Agl => "agl",
+            AltitudeReference::Home => "home",
+        }
+    }
+}
+
 /// An altitude with its datum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Altitude {
@@ -277,6 +313,8 @@ pub struct Leg {
     pub speed_mps: Option<Value<f64>>,
     /// The leg that follows, when it is not the next in the document (same list only).
     pub next: Option<Id>,
+    /// What is done on the way.
+    pub actions: Vec<LegAction>,
     /// What it is.
     pub kind: LegKind,
 }
@@ -335,38 +373,6 @@ pub enum DecideBefore {
     Distance(f64),
 }
 
-/// The area of a scan.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Area {
-    /// A circle.
-    Circle {
-        /// Its centre.
-        centre: Place,
-        /// Its radius, metres.
-        radius_m: Value<f64>,
-    },
-    /// A simple polygon: at least three corners, holes are simple and inside.
-    Polygon {
-        /// Outer ring, not closed.
-        corners: Vec<LatLon>,
-        /// Inner rings, not closed.
-        holes: Vec<Vec<LatLon>>,
-    },
-}
-
-/// A parallel scan over an area.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Scan {
-    /// What is scanned.
-    pub area: Area,
-    /// Distance between neighbouring tracks, metres.
-    pub spacing_m: Value<f64>,
-    /// Direction of the tracks, degrees true; `None`: the one with the fewest turns.
-    pub heading_deg: Option<Value<f64>>,
-    /// How far each track goes on beyond the area's edge before its turn, metres.
-    pub overshoot_m: Value<f64>,
-}
-
 /// What a leg is.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LegKind {
@@ -390,10 +396,33 @@ pub enum LegKind {
         /// Its direction.
         turn: TurnDirection,
     },
+    /// A course into a fix, intercepted and tracked.
+    Cf {
+        /// The fix.
+        to: PlanWaypoint,
+        /// The course at the fix, degrees true.
+        course_deg: Value<f64>,
+    },
+    /// A track from a fix until the leg's altitude is reached.
+    Fa {
+        /// The fix.
+        from: PlanWaypoint,
+        /// The track's direction at the fix, degrees true.
+        course_deg: Value<f64>,
+    },
     /// Racetrack, left at the first crossing of its fix.
     Hf(Holding),
     /// Racetrack, left at the first crossing at or beyond the leg's altitude.
     Ha(Holding),
+    /// Racetrack, left at the first crossing after its condition holds, an operator released it (skip), or its laps are flown.
+    Hm {
+        /// The racetrack.
+        holding: Holding,
+        /// CEL condition read at each crossing; `None`: left by a command or by its laps.
+        until: Option<Arc<str>>,
+        /// Most laps; `None`: any number.
+        max_laps: Option<Value<f64>>,
+    },
     /// A loop over a body.
     Iterative {
         /// Forth and back, or round and round.
@@ -416,8 +445,12 @@ pub enum LegKind {
         /// When the decision is due.
         decide_before: DecideBefore,
     },
-    /// A parallel scan bound to variables.
+    /// Straight tracks over an area, bound to variables.
     Scan(Scan),
+    /// Another pattern, bound to variables.
+    Pattern(Pattern),
+    /// A procedure, called.
+    Call(Call),
     /// A circle flown a number of times, then left at its nearest point to what follows.
     Orbit {
         /// Its centre.

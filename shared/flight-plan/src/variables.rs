@@ -1,6 +1,7 @@
 //! The plan's variables in flight: typed, bounded, written by services and people.
 
 use crate::{FlightPlan, Id, Variable, VariableValue};
+use geometry::{LatLon, LocalFrame, Polygon};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -41,6 +42,7 @@ impl VariableValue {
             VariableValue::Number(_) => "number",
             VariableValue::Text(_) => "text",
             VariableValue::Position(_) => "position",
+            VariableValue::Polygon(_) => "polygon",
         }
     }
 }
@@ -57,6 +59,7 @@ impl Variable {
             (V::Position(_), V::Position(_)) => {
                 Err(self.out_of_bounds("a valid latitude and longitude".into()))
             }
+            (V::Polygon(_), V::Polygon(corners)) => self.accepts_polygon(corners),
             _ => Err(VariableError::WrongType { name: self.name.clone(), wanted: self.initial.type_name() }),
         }
     }
@@ -78,6 +81,25 @@ impl Variable {
         } else {
             Err(self.out_of_bounds(format!("at most {longest} characters long")))
         }
+    }
+
+    fn accepts_polygon(&self, corners: &[LatLon]) -> Result<(), VariableError> {
+        const MOST: usize = 1000;
+        let most = self.max_length.map_or(MOST, |n| n.min(MOST));
+        if corners.len() > most || !corners.iter().all(|corner| corner.is_valid()) {
+            return Err(self.out_of_bounds(format!("a polygon of at most {most} valid positions")));
+        }
+        let frame = LocalFrame::around(corners).map(|frame| Polygon::from_geo(&frame, corners, &[]));
+        match frame {
+            Some(Ok(_)) => Ok(()),
+            Some(Err(error)) => Err(self.out_of_bounds(format!("a simple polygon: {error}"))),
+            None => Err(self.out_of_bounds("a polygon of at least three corners".into())),
+        }
+    }
+
+    /// Whether somebody may write it in flight.
+    pub fn may_be_written_by(&self, who: &str) -> bool {
+        self.writers.is_empty() || self.writers.iter().any(|writer| writer.as_str() == who)
     }
 
     /// Longest text it takes, characters: its own limit, and never more than 1000.
@@ -137,6 +159,7 @@ mod tests {
             min: Some(min),
             max: Some(max),
             max_length: Some(3),
+            writers: Vec::new(),
         };
         FlightPlan {
             variables: vec![variable("n", Number(min)), variable("t", Text(String::new()))],

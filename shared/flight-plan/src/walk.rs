@@ -1,6 +1,6 @@
 //! Walking a plan: every leg with what is around it.
 
-use crate::{EmergencyPlan, FlightPlan, Id, Leg, LegKind, Stage};
+use crate::{EmergencyPlan, FlightPlan, Id, Leg, LegKind, Pattern, ScanStyle, Stage};
 
 /// Which part of the document a stage is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,10 +56,34 @@ impl Leg {
             LegKind::Rf { .. } => "RF",
             LegKind::Hf(_) => "HF",
             LegKind::Ha(_) => "HA",
+            LegKind::Cf { .. } => "CF",
+            LegKind::Fa { .. } => "FA",
+            LegKind::Hm { .. } => "HM",
             LegKind::Iterative { .. } => "iterative",
             LegKind::Intersection { .. } => "intersection",
-            LegKind::Scan(_) => "scan",
+            LegKind::Scan(scan) => match scan.style {
+                ScanStyle::Parallel => "scan",
+                ScanStyle::Creeping => "creepingLine",
+                ScanStyle::CrissCross => "crissCross",
+            },
+            LegKind::Pattern(pattern) => pattern.name(),
+            LegKind::Call(_) => "call",
             LegKind::Orbit { .. } => "orbit",
+        }
+    }
+}
+
+impl Pattern {
+    /// What it is called in the document.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Pattern::Spiral { .. } => "spiral",
+            Pattern::ExpandingSquare { .. } => "expandingSquare",
+            Pattern::Sector { .. } => "sector",
+            Pattern::TrackLine { .. } => "trackLine",
+            Pattern::Corridor { .. } => "corridor",
+            Pattern::Contour { .. } => "contour",
+            Pattern::FigureEight { .. } => "figureEight",
         }
     }
 }
@@ -107,6 +131,11 @@ impl FlightPlan {
     /// A variable by its name.
     pub fn variable(&self, name: &Id) -> Option<&crate::Variable> {
         self.variables.iter().find(|v| v.name == *name)
+    }
+
+    /// A procedure by its identifier.
+    pub fn procedure(&self, id: &Id) -> Option<&crate::Procedure> {
+        self.procedures.iter().find(|p| p.id == *id)
     }
 
     /// An emergency plan by its identifier.

@@ -116,8 +116,16 @@ fn simple_kind() -> BoxedStrategy<LegKind> {
         holding().prop_map(LegKind::Hf),
         holding().prop_map(LegKind::Ha),
         intersection(),
-        (area(), value(), of(value()), value()).prop_map(|(area, spacing_m, heading_deg, overshoot_m)| {
-            LegKind::Scan(Scan { area, spacing_m, heading_deg, overshoot_m })
+        (area(), value(), of(value()), value()).prop_map(|(area, spacing, heading_deg, overshoot_m)| {
+            let (style, entry) = (ScanStyle::Parallel, ScanEntry::Nearest);
+            LegKind::Scan(Scan {
+                area,
+                style,
+                spacing: Spacing::Metres(spacing),
+                heading_deg,
+                overshoot_m,
+                entry,
+            })
         }),
         (place(), value(), value(), turn()).prop_map(|(centre, radius_m, turns, turn)| LegKind::Orbit {
             centre,
@@ -138,6 +146,7 @@ fn leg_of(kind: impl Strategy<Value = LegKind> + 'static) -> BoxedStrategy<Leg> 
             altitude,
             speed_mps,
             next,
+            actions: Vec::new(),
             kind,
         })
         .boxed()
@@ -188,6 +197,7 @@ fn variable() -> BoxedStrategy<Variable> {
             min,
             max,
             max_length,
+            writers: Vec::new(),
         })
         .boxed()
 }
@@ -212,7 +222,19 @@ fn plan() -> BoxedStrategy<FlightPlan> {
     let lists = (vec(fix(), 0..3), vec(runway(), 0..3), vec(variable(), 0..3));
     (text(), text(), lists, emergency(), vec(stage(), 0..4), vec(emergency_plan, 0..3))
         .prop_map(|(name, aircraft, (fixes, runways, variables), emergency, stages, emergency_plans)| {
-            FlightPlan { name, aircraft, fixes, runways, variables, emergency, stages, emergency_plans }
+            let (zones, procedures) = (Vec::new(), Vec::new());
+            FlightPlan {
+                name,
+                aircraft,
+                fixes,
+                runways,
+                variables,
+                zones,
+                procedures,
+                emergency,
+                stages,
+                emergency_plans,
+            }
         })
         .boxed()
 }

@@ -105,10 +105,13 @@ impl Recipe {
             Area::Polygon { corners, holes } => {
                 Outline::Polygon { corners: corners.clone(), holes: holes.clone() }
             }
+            Area::Expression(source) => {
+                Outline::Polygon { corners: world.polygon(source)?, holes: Vec::new() }
+            }
         };
         Ok(Self {
             area,
-            spacing_m: world.number(&scan.spacing_m)?,
+            spacing_m: world.spacing_m(&scan.spacing)?,
             heading_deg: scan.heading_deg.as_ref().map(|h| world.number(h)).transpose()?,
             overshoot_m: world.number(&scan.overshoot_m)?,
             turn_radius_m: world.turn_radius_m(airspeed_mps),

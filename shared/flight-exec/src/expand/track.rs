@@ -60,6 +60,7 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
         LegKind::Scan(scan) => Expansion::Scan(Box::new(scan::Sweep::new(scan, from, approach, world)?)),
         LegKind::Orbit { .. } => circle(leg, approach, world)?,
         LegKind::Iterative { .. } | LegKind::Intersection { .. } => Expansion::Points(Vec::new()),
+        _ => return Err(ExpandError::Geometry("this kind of leg can't be flown".into())),
     })
 }
 
@@ -88,6 +89,7 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
             Some(flown) => flown.reversed(back, connection.is_some()),
             None => Expansion::Points(vec![back]),
         },
+        _ => return Err(ExpandError::Geometry("this kind of leg can't be flown".into())),
     })
 }
 

@@ -3,6 +3,8 @@
 
 mod changes;
 mod commands;
+#[path = "../common/grid.rs"]
+mod grid;
 mod invariants;
 mod legs;
 mod loops;

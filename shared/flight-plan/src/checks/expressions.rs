@@ -17,9 +17,11 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 
 fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, problems: &mut Vec<Problem>) {
     let wanted = match used {
-        Use::Number => Type::Number,
-        Use::Condition => Type::Bool,
-        Use::Position => Type::Position,
+        Use::Number => Some(Type::Number),
+        Use::Condition => Some(Type::Bool),
+        Use::Position => Some(Type::Position),
+        Use::Polygon => Some(Type::Polygon),
+        Use::Any => None,
     };
     let Some(compiled) = view.compiled(source) else {
         let message = "use fewer different expressions: a plan may have 10,000";
@@ -27,7 +29,8 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
     };
     match compiled {
         Err(error) => problems.push(Problem::error(error.code, error.to_string()).of(of)),
-        Ok(compiled) if !compiled.gives(wanted) => {
+        Ok(compiled) if wanted.is_some_and(|wanted| !compiled.gives(wanted)) => {
+            let wanted = wanted.map_or_else(String::new, |wanted| wanted.to_string());
             let message = format!(
                 "`{source}` is {}, but {wanted} is needed here: change the expression",
                 compiled.kind

@@ -164,6 +164,8 @@ impl<'a> Inspection<'a> {
             Use::Number => e.number(&self.env()).is_ok(),
             Use::Condition => e.bool(&self.env()).is_ok(),
             Use::Position => e.position(&self.env()).is_ok(),
+            Use::Polygon => e.polygon(&self.env()).is_ok(),
+            Use::Any => e.value(&self.env()).is_ok(),
         })
     }
 
@@ -290,7 +292,8 @@ impl<'a> Inspection<'a> {
             LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
                 self.place(&to.place)
             }
-            LegKind::Hf(h) | LegKind::Ha(h) => self.place(&h.fix.place),
+            LegKind::Cf { to, .. } => self.place(&to.place),
+            LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => self.place(&h.fix.place),
             _ => None,
         }?;
         let own = altitude_of(&step.context).and_then(|a| self.altitude_amsl_m(a, position));

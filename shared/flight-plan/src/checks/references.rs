@@ -1,7 +1,7 @@
 //! `unknown-fix`, `unknown-runway`, `unknown-emergency-plan`, `unknown-leg`: something is named that is not there.
 
 use super::Inspection;
-use crate::{Area, EmergencyChoice, Id, Leg, LegContext, LegKind, Place, Problem};
+use crate::{Area, EmergencyChoice, Id, Leg, LegContext, LegKind, Pattern, Place, Problem};
 use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -33,13 +33,37 @@ impl Leg {
             LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
                 Some(&to.place)
             }
-            LegKind::Hf(h) | LegKind::Ha(h) => Some(&h.fix.place),
+            LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Some(&to.place),
+            LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&h.fix.place),
             LegKind::Orbit { centre, .. } => Some(centre),
-            LegKind::Scan(scan) => match &scan.area {
-                Area::Circle { centre, .. } => Some(centre),
-                Area::Polygon { .. } => None,
-            },
+            LegKind::Scan(scan) => scan.area.centre(),
+            LegKind::Pattern(pattern) => pattern.centre(),
+            LegKind::Call(call) => call.anchor.as_ref(),
             LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
+        }
+    }
+}
+
+impl Area {
+    /// The centre of a circle.
+    pub fn centre(&self) -> Option<&Place> {
+        match self {
+            Area::Circle { centre, .. } => Some(centre),
+            Area::Polygon { .. } | Area::Expression(_) => None,
+        }
+    }
+}
+
+impl Pattern {
+    /// What it is about, or where its route begins.
+    pub fn centre(&self) -> Option<&Place> {
+        match self {
+            Pattern::Spiral { centre, .. }
+            | Pattern::ExpandingSquare { centre, .. }
+            | Pattern::Sector { centre, .. }
+            | Pattern::FigureEight { centre, .. } => Some(centre),
+            Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => route.first(),
+            Pattern::Contour { area, .. } => area.centre(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `bad-scan`: spacing, radius or overshoot that give no pattern; `bad-polygon`: an area that is no simple polygon.
 
 use super::Inspection;
-use crate::{Area, Id, LegKind, Problem, Scan};
+use crate::{Area, Id, LegKind, Problem, Scan, Spacing};
 use geometry::{LatLon, LocalFrame, Polygon};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -17,7 +17,9 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 
 fn sizes(view: &Inspection, scan: &Scan, of: &Id, problems: &mut Vec<Problem>) {
     let mut report = |message: &str| problems.push(Problem::error("bad-scan", message).of(of));
-    if view.number(&scan.spacing_m).is_some_and(|s| s <= 0.0) {
+    if let Spacing::Metres(spacing_m) = &scan.spacing
+        && view.number(spacing_m).is_some_and(|s| s <= 0.0)
+    {
         report("make the spacing of the tracks more than 0 m");
     }
     if view.number(&scan.overshoot_m).is_some_and(|o| o < 0.0) {

@@ -1,7 +1,8 @@
 //! `bad-value`: a number that is not finite or a position that is not on Earth.
 
 use super::Inspection;
-use crate::{Altitude, Area, DecideBefore, HoldingLength, Id, Leg, LegKind, Place, Problem, Value};
+use crate::uses::Part;
+use crate::{Altitude, DecideBefore, Id, Leg, LegKind, Place, Problem, Value};
 use geometry::LatLon;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -23,41 +24,17 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 }
 
 fn leg(leg: &Leg, problems: &mut Vec<Problem>) {
-    altitude(leg.altitude.as_ref(), &leg.id, problems);
-    value(leg.speed_mps.as_ref(), &leg.id, problems);
-    if let Some(Place::Position(Value::Constant(p))) = leg.place() {
-        position(*p, &leg.id, problems);
-    }
-    match &leg.kind {
-        LegKind::If(_) | LegKind::Tf(_) | LegKind::Df { .. } => {}
-        LegKind::Rf { centre, .. } => position(*centre, &leg.id, problems),
-        LegKind::Hf(h) | LegKind::Ha(h) => {
-            value(h.inbound_course_deg.as_ref(), &leg.id, problems);
-            let (HoldingLength::Distance(length) | HoldingLength::Time(length)) = &h.leg;
-            value(Some(length), &leg.id, problems);
-        }
-        LegKind::Iterative { count, .. } => value(count.as_ref(), &leg.id, problems),
-        LegKind::Intersection {
-            decide_before: DecideBefore::Time(x) | DecideBefore::Distance(x), ..
-        } => number(*x, &leg.id, problems),
-        LegKind::Scan(scan) => {
-            value(Some(&scan.spacing_m), &leg.id, problems);
-            value(scan.heading_deg.as_ref(), &leg.id, problems);
-            value(Some(&scan.overshoot_m), &leg.id, problems);
-            match &scan.area {
-                Area::Circle { radius_m, .. } => value(Some(radius_m), &leg.id, problems),
-                Area::Polygon { corners, holes } => {
-                    corners
-                        .iter()
-                        .chain(holes.iter().flatten())
-                        .for_each(|p| position(*p, &leg.id, problems));
-                }
-            }
-        }
-        LegKind::Orbit { radius_m, turns, .. } => {
-            value(Some(radius_m), &leg.id, problems);
-            value(Some(turns), &leg.id, problems);
-        }
+    leg.for_each_part(&mut |part| match part {
+        Part::Number(x) => value(Some(x), &leg.id, problems),
+        Part::Place(Place::Position(Value::Constant(p))) => position(*p, &leg.id, problems),
+        Part::Corner(p) => position(p, &leg.id, problems),
+        Part::Place(_) | Part::Source(..) => {}
+    });
+    if let LegKind::Intersection {
+        decide_before: DecideBefore::Time(x) | DecideBefore::Distance(x), ..
+    } = &leg.kind
+    {
+        number(*x, &leg.id, problems);
     }
 }
 

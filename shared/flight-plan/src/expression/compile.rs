@@ -178,6 +178,7 @@ impl Checker<'_> {
             VariableValue::Number(_) => Type::Number,
             VariableValue::Text(_) => Type::Text,
             VariableValue::Position(_) => Type::Position,
+            VariableValue::Polygon(_) => Type::Polygon,
         };
         if !self.variables.contains(&variable.name) {
             self.variables.push(variable.name.clone());

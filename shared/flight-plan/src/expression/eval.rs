@@ -82,6 +82,7 @@ enum Scalar<'a> {
     Number(f64),
     Text(std::borrow::Cow<'a, str>),
     Position(LatLon),
+    Polygon(&'a [LatLon]),
 }
 
 impl Expression {
@@ -103,6 +104,25 @@ impl Expression {
     pub fn position(&self, env: &Env) -> Result<LatLon, EvalError> {
         let value = position(eval(&self.node, env)?)?;
         if value.is_valid() { Ok(value) } else { Err(EvalError::NotAPosition) }
+    }
+
+    /// The corners of a polygon.
+    pub fn polygon(&self, env: &Env) -> Result<Vec<LatLon>, EvalError> {
+        match eval(&self.node, env)? {
+            Scalar::Polygon(corners) => Ok(corners.to_vec()),
+            _ => Err(mismatch("polygon")),
+        }
+    }
+
+    /// Its value, whatever the type; an int as a number.
+    pub fn value(&self, env: &Env) -> Result<VariableValue, EvalError> {
+        Ok(match eval(&self.node, env)? {
+            Scalar::Bool(b) => VariableValue::Bool(b),
+            Scalar::Text(text) => VariableValue::Text(text.into_owned()),
+            Scalar::Polygon(corners) => VariableValue::Polygon(corners.to_vec()),
+            Scalar::Position(_) => VariableValue::Position(self.position(env)?),
+            Scalar::Int(_) | Scalar::Number(_) => VariableValue::Number(self.number(env)?),
+        })
     }
 
     /// It can be used where `wanted` is asked for (an int where a number is).
@@ -152,6 +172,7 @@ fn variable<'a>(name: &Id, env: &Env<'a>) -> Result<Scalar<'a>, EvalError> {
         VariableValue::Number(x) => Scalar::Number(*x),
         VariableValue::Text(t) => Scalar::Text(t.as_str().into()),
         VariableValue::Position(p) => Scalar::Position(*p),
+        VariableValue::Polygon(corners) => Scalar::Polygon(corners),
     })
 }
 

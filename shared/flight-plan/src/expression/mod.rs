@@ -30,6 +30,8 @@ pub enum Type {
     Text,
     /// A position.
     Position,
+    /// A polygon.
+    Polygon,
 }
 
 impl std::fmt::Display for Type {
@@ -40,6 +42,7 @@ impl std::fmt::Display for Type {
             Type::Number => "a number (double)",
             Type::Text => "text",
             Type::Position => "a position",
+            Type::Polygon => "a polygon",
         })
     }
 }

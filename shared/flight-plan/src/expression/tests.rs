@@ -6,7 +6,15 @@ use crate::{FlightPlan, Variable, VariableValue, Variables};
 use proptest::prelude::*;
 
 fn variable(name: &str, initial: VariableValue) -> Variable {
-    Variable { name: name.into(), initial, unit: String::new(), min: None, max: None, max_length: None }
+    Variable {
+        name: name.into(),
+        initial,
+        unit: String::new(),
+        min: None,
+        max: None,
+        max_length: None,
+        writers: Vec::new(),
+    }
 }
 
 fn plan() -> FlightPlan {

@@ -4,26 +4,32 @@ use super::cursor::Element;
 use super::read::Document;
 use super::values::number;
 use crate::{
-    Area, Branch, DecideBefore, EmergencyChoice, Holding, HoldingLength, Id, IterativeForm, Leg, LegKind,
-    Place, PlanWaypoint, Problem, Scan, TurnDirection, Value,
+    Branch, Call, DecideBefore, EmergencyChoice, Holding, HoldingLength, Id, IterativeForm, Leg, LegAction,
+    LegKind, Place, PlanWaypoint, Problem, TurnDirection, Value,
 };
 use geometry::LatLon;
 
-const LEGS: &str = "IF, TF, DF, RF, HF, HA, iterative, intersection, scan, orbit, emergency";
+const LEGS: &str = "IF, TF, DF, RF, CF, FA, HF, HA, HM, iterative, intersection, call, scan, creepingLine, crissCross, \
+                    spiral, expandingSquare, sector, trackLine, corridor, contour, orbit, figureEight, action, emergency";
 const TURNS: [(&str, TurnDirection); 2] = [("left", TurnDirection::Left), ("right", TurnDirection::Right)];
 
 impl<'a> Document<'a> {
-    /// The legs of a stage or loop, and its emergencies by cause.
+    /// The legs of a stage, and its emergencies by cause.
     pub fn legs(&mut self, parent: &Element<'a>, into: &mut Vec<Leg>, emergency: &mut EmergencyChoice) {
         while let Some(child) = self.cursor.child(parent) {
             match child.name {
                 "emergency" => self.emergency_child(child, emergency),
-                "IF" | "TF" | "DF" | "RF" | "HF" | "HA" | "iterative" | "intersection" | "scan" | "orbit" => {
-                    let leg = self.leg(child);
-                    into.push(leg);
-                }
-                _ => self.cursor.unknown(child, parent.name, LEGS),
+                _ => self.leg_of(parent, child, into),
             }
+        }
+    }
+
+    /// A leg, if it is one.
+    pub fn leg_of(&mut self, parent: &Element<'a>, child: Element<'a>, into: &mut Vec<Leg>) {
+        if is_leg(child.name) {
+            into.push(self.leg(child));
+        } else {
+            self.cursor.unknown(child, parent.name, LEGS);
         }
     }
 
@@ -34,22 +40,28 @@ impl<'a> Document<'a> {
         let altitude = self.altitude(&element);
         let speed_mps = self.value(&element, "speed");
         let next = self.reference(&element, "next");
-        let kind = self.leg_kind(&element, &mut emergency);
+        let mut actions = Vec::new();
+        let kind = self.leg_kind(&element, &mut emergency, &mut actions);
         self.cursor.finish(&element);
-        Leg { id, name, emergency, altitude, speed_mps, next, kind }
+        Leg { id, name, emergency, altitude, speed_mps, next, actions, kind }
     }
 
-    fn leg_kind(&mut self, element: &Element<'a>, emergency: &mut EmergencyChoice) -> LegKind {
+    fn leg_kind(
+        &mut self,
+        element: &Element<'a>,
+        emergency: &mut EmergencyChoice,
+        actions: &mut Vec<LegAction>,
+    ) -> LegKind {
         match element.name {
-            "iterative" => self.iterative(element, emergency),
-            "intersection" => self.intersection(element, emergency),
-            "scan" => self.scan(element, emergency),
-            "orbit" => self.orbit(element, emergency),
-            _ => {
+            "iterative" => self.iterative(element, emergency, actions),
+            "intersection" => self.intersection(element, emergency, actions),
+            "call" => self.call(element, emergency, actions),
+            "IF" | "TF" | "DF" | "RF" | "CF" | "FA" | "HF" | "HA" | "HM" => {
                 let kind = self.basic(element);
-                self.children(element, emergency, &[], |_, child| Some(child));
+                self.children(element, emergency, actions, &[], |_, child| Some(child));
                 kind
             }
+            _ => self.pattern(element, emergency, actions),
         }
     }
 
@@ -65,24 +77,39 @@ impl<'a> Document<'a> {
                     .unwrap_or(LatLon::new(f64::NAN, f64::NAN)),
                 turn: self.turn(element, None),
             },
+            "CF" => {
+                LegKind::Cf { to: self.waypoint(element), course_deg: self.required_value(element, "course") }
+            }
+            "FA" => LegKind::Fa {
+                from: self.waypoint(element),
+                course_deg: self.required_value(element, "course"),
+            },
+            "HM" => LegKind::Hm {
+                holding: self.holding(element),
+                until: self.condition(element, "until"),
+                max_laps: self.value(element, "maxLaps"),
+            },
             "HF" => LegKind::Hf(self.holding(element)),
             _ => LegKind::Ha(self.holding(element)),
         }
     }
 
-    /// The children of a leg: emergencies by cause, and what `take` takes; it gives back what it does not know.
-    fn children(
+    /// The children of a leg: emergencies by cause, actions, and what `take` takes; it gives back what it does not know.
+    pub(super) fn children(
         &mut self,
         parent: &Element<'a>,
         emergency: &mut EmergencyChoice,
+        actions: &mut Vec<LegAction>,
         allowed: &[&str],
         mut take: impl FnMut(&mut Self, Element<'a>) -> Option<Element<'a>>,
     ) {
         while let Some(child) = self.cursor.child(parent) {
             if child.name == "emergency" {
                 self.emergency_child(child, emergency);
+            } else if child.name == "action" {
+                actions.extend(self.action(child));
             } else if let Some(stranger) = take(self, child) {
-                let allowed: Vec<&str> = allowed.iter().copied().chain(["emergency"]).collect();
+                let allowed: Vec<&str> = allowed.iter().copied().chain(["action", "emergency"]).collect();
                 self.cursor.unknown(stranger, parent.name, &allowed.join(", "));
             }
         }
@@ -93,7 +120,7 @@ impl<'a> Document<'a> {
     }
 
     /// `fix="…"`, `lat="…" lon="…"`, or a position or expression in `other`: exactly one of them.
-    fn place(&mut self, element: &Element<'a>, other: &str) -> Place {
+    pub(super) fn place(&mut self, element: &Element<'a>, other: &str) -> Place {
         let fix = self.reference(element, "fix").map(Place::Fix);
         let has_lat_lon = ["lat", "lon"].iter().any(|name| element.attributes.take(name).is_some());
         let lat_lon = has_lat_lon.then(|| self.lat_lon(element, "lat", "lon"));
@@ -111,7 +138,7 @@ impl<'a> Document<'a> {
         fix.or(position).unwrap_or_else(|| Place::Fix(Id::new("")))
     }
 
-    fn turn(&mut self, element: &Element<'a>, default: Option<TurnDirection>) -> TurnDirection {
+    pub(super) fn turn(&mut self, element: &Element<'a>, default: Option<TurnDirection>) -> TurnDirection {
         if default.is_none() {
             self.require(element, "turn");
         }
@@ -136,26 +163,42 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn iterative(&mut self, element: &Element<'a>, emergency: &mut EmergencyChoice) -> LegKind {
+    fn iterative(
+        &mut self,
+        element: &Element<'a>,
+        emergency: &mut EmergencyChoice,
+        actions: &mut Vec<LegAction>,
+    ) -> LegKind {
         const FORMS: [(&str, IterativeForm); 2] =
             [("forward", IterativeForm::Forward), ("reverse", IterativeForm::Reverse)];
         self.require(element, "form");
         let form = self.choice(element, "form", &FORMS).unwrap_or(IterativeForm::Forward);
         let count = self.value(element, "count");
-        let until = element.attributes.take("until").map(|source| source.trim().into());
+        let until = self.condition(element, "until");
         let turn = self.turn(element, Some(TurnDirection::Right));
         let mut body = Vec::new();
-        self.legs(element, &mut body, emergency);
+        self.children(element, emergency, actions, &[LEGS], |document, child| {
+            if !is_leg(child.name) {
+                return Some(child);
+            }
+            body.push(document.leg(child));
+            None
+        });
         LegKind::Iterative { form, count, until, turn, body }
     }
 
-    fn intersection(&mut self, element: &Element<'a>, emergency: &mut EmergencyChoice) -> LegKind {
+    fn intersection(
+        &mut self,
+        element: &Element<'a>,
+        emergency: &mut EmergencyChoice,
+        actions: &mut Vec<LegAction>,
+    ) -> LegKind {
         let default = self.reference(element, "default");
         let wanted = "a time or distance as in 30s or 800m";
         let decide_before =
             self.parsed(element, "decideBefore", wanted, decide_before).unwrap_or(DecideBefore::Time(30.0));
         let mut branches = Vec::new();
-        self.children(element, emergency, &["branch"], |document, child| {
+        self.children(element, emergency, actions, &["branch"], |document, child| {
             if child.name != "branch" {
                 return Some(child);
             }
@@ -170,88 +213,45 @@ impl<'a> Document<'a> {
             id: self.reference(&element, "id").unwrap_or_else(|| self.missing(&element, "id")),
             label: self.text(&element, "label"),
             next: self.reference(&element, "next"),
-            when: element.attributes.take("when").map(|source| source.trim().into()),
+            when: self.condition(&element, "when"),
         };
         self.cursor.close(element);
         branch
     }
 
-    fn scan(&mut self, element: &Element<'a>, emergency: &mut EmergencyChoice) -> LegKind {
-        let spacing_m = self.required_value(element, "spacing");
-        let heading_deg = self.value(element, "heading");
-        let overshoot_m = self.value(element, "overshoot").unwrap_or(Value::Constant(0.0));
-        let mut area = None;
-        self.children(element, emergency, &["area"], |document, child| {
-            if child.name != "area" || area.is_some() {
+    fn call(
+        &mut self,
+        element: &Element<'a>,
+        emergency: &mut EmergencyChoice,
+        actions: &mut Vec<LegAction>,
+    ) -> LegKind {
+        let procedure =
+            self.reference(element, "procedure").unwrap_or_else(|| self.missing(element, "procedure"));
+        let anchored = ["fix", "lat", "lon", "at"].iter().any(|n| element.attributes.location(n).is_some());
+        let anchor = anchored.then(|| self.place(element, "at"));
+        let bearing_deg = self.value(element, "bearing");
+        let mut arguments = Vec::new();
+        self.children(element, emergency, actions, &["argument"], |document, child| {
+            if child.name != "argument" {
                 return Some(child);
             }
-            area = Some(document.area(child));
-            None
-        });
-        if area.is_none() {
-            self.missing_child(element, "area");
-        }
-        let area = area.unwrap_or(Area::Polygon { corners: Vec::new(), holes: Vec::new() });
-        LegKind::Scan(Scan { area, spacing_m, heading_deg, overshoot_m })
-    }
-
-    /// A circle when it has a radius, else a polygon.
-    fn area(&mut self, element: Element<'a>) -> Area {
-        if element.attributes.location("radius").is_some() {
-            let area = Area::Circle {
-                centre: self.place(&element, "centre"),
-                radius_m: self.required_value(&element, "radius"),
-            };
-            self.cursor.close(element);
-            return area;
-        }
-        let mut holes = Vec::new();
-        let corners = self.ring(&element, Some(&mut holes));
-        self.cursor.finish(&element);
-        Area::Polygon { corners, holes }
-    }
-
-    fn ring(&mut self, parent: &Element<'a>, mut holes: Option<&mut Vec<Vec<LatLon>>>) -> Vec<LatLon> {
-        let mut corners = Vec::new();
-        while let Some(child) = self.cursor.child(parent) {
-            match (child.name, &mut holes) {
-                ("corner", _) => {
-                    corners.extend(self.lat_lon(&child, "lat", "lon"));
-                    self.cursor.close(child);
-                }
-                ("hole", Some(holes)) => {
-                    holes.push(self.ring(&child, None));
-                    self.cursor.finish(&child);
-                }
-                _ => self.cursor.unknown(child, parent.name, "corner"),
-            }
-        }
-        corners
-    }
-
-    fn orbit(&mut self, element: &Element<'a>, emergency: &mut EmergencyChoice) -> LegKind {
-        let radius_m = self.required_value(element, "radius");
-        let turns = self.value(element, "turns").unwrap_or(Value::Constant(1.0));
-        let turn = self.turn(element, None);
-        let mut centre = None;
-        self.children(element, emergency, &["centre"], |document, child| {
-            if child.name != "centre" || centre.is_some() {
-                return Some(child);
-            }
-            centre = Some(document.place(&child, "at"));
+            let name = document.reference(&child, "name").unwrap_or_else(|| document.missing(&child, "name"));
+            arguments.push((name, document.required_source(&child, "value")));
             document.cursor.close(child);
             None
         });
-        if centre.is_none() {
-            self.missing_child(element, "centre");
-        }
-        LegKind::Orbit { centre: centre.unwrap_or_else(|| Place::Fix(Id::new(""))), radius_m, turns, turn }
+        LegKind::Call(Call { procedure, arguments, anchor, bearing_deg })
     }
 
-    fn missing_child(&mut self, element: &Element<'a>, name: &str) {
+    pub(super) fn missing_child(&mut self, element: &Element<'a>, name: &str) {
         let message = format!("give <{}> a <{name}>", element.name);
         self.cursor.report(Problem::error("missing-element", message).at(element.location));
     }
+}
+
+/// A leg's element.
+fn is_leg(name: &str) -> bool {
+    LEGS.split(", ").any(|leg| leg == name) && !matches!(name, "action" | "emergency")
 }
 
 /// `30s` or `800m`.

@@ -3,12 +3,16 @@
 //! Reading never fails as a whole: it gives a plan, as far as one can be made out, and the problems it met.
 //! Writing is canonical: the same plan gives the same bytes, and their SHA-256 is the plan's identity.
 
+mod actions;
 mod attributes;
 mod cursor;
 mod legs;
+mod patterns;
 mod read;
 mod values;
 mod write;
+mod write_legs;
+mod zone;
 
 pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEMS};
 pub use read::{Places, Reading, read};

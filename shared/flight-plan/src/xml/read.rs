@@ -1,11 +1,11 @@
 //! From bytes to a plan and problems.
 
 use super::cursor::{Cursor, Element, MAX_BYTES, shown};
-use super::values::position;
+use super::values::{position, positions};
 use super::{NAMESPACE, attributes};
 use crate::{
     Altitude, AltitudeReference, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Location,
-    Problem, Runway, Stage, StageKind, Variable, VariableValue,
+    Parameter, Problem, Procedure, Runway, Stage, StageKind, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -138,6 +138,8 @@ impl<'a> Document<'a> {
             "fixes" => self.list(&part, "fix", &mut plan.fixes, Self::fix),
             "runways" => self.list(&part, "runway", &mut plan.runways, Self::runway),
             "variables" => self.list(&part, "variable", &mut plan.variables, Self::variable),
+            "zones" => self.zones(&part, &mut plan.zones),
+            "procedures" => self.list(&part, "procedure", &mut plan.procedures, Self::procedure),
             "emergencyPlans" => {
                 self.list(&part, "emergencyPlan", &mut plan.emergency_plans, Self::emergency_plan)
             }
@@ -149,7 +151,7 @@ impl<'a> Document<'a> {
                 return self.cursor.unknown(
                     part,
                     "flightPlan",
-                    "fixes, runways, variables, mainPlan, emergencyPlans",
+                    "fixes, runways, variables, zones, procedures, mainPlan, emergencyPlans",
                 );
             }
         }
@@ -171,6 +173,46 @@ impl<'a> Document<'a> {
                 self.cursor.unknown(child, parent.name, name);
             }
         }
+    }
+
+    fn zones(&mut self, parent: &Element<'a>, into: &mut Vec<Zone>) {
+        while let Some(child) = self.cursor.child(parent) {
+            if matches!(child.name, "keepIn" | "keepOut") {
+                let zone = self.zone(child);
+                into.push(zone);
+            } else {
+                self.cursor.unknown(child, parent.name, "keepIn, keepOut");
+            }
+        }
+    }
+
+    fn procedure(&mut self, element: Element<'a>) -> Procedure {
+        let wanted = "a position: latitude and longitude in degrees";
+        let (mut parameters, mut legs) = (Vec::new(), Vec::new());
+        let procedure = Procedure {
+            id: self.id(&element, "id"),
+            name: self.text(&element, "name"),
+            parameters: Vec::new(),
+            reference: self.parsed(&element, "reference", wanted, position),
+            bearing_deg: self.number(&element, "bearing").unwrap_or(0.0),
+            legs: Vec::new(),
+        };
+        while let Some(child) = self.cursor.child(&element) {
+            if child.name == "parameter" {
+                parameters.push(self.parameter(child));
+            } else {
+                self.leg_of(&element, child, &mut legs);
+            }
+        }
+        self.cursor.finish(&element);
+        Procedure { parameters, legs, ..procedure }
+    }
+
+    fn parameter(&mut self, element: Element<'a>) -> Parameter {
+        let name = self.reference(&element, "name").unwrap_or_else(|| self.missing(&element, "name"));
+        let parameter = Parameter { name, default: self.source(&element, "default") };
+        self.cursor.close(element);
+        parameter
     }
 
     fn fix(&mut self, element: Element<'a>) -> Fix {
@@ -211,13 +253,15 @@ impl<'a> Document<'a> {
             min: self.number(&element, "min"),
             max: self.number(&element, "max"),
             max_length: self.whole(&element, "maxLength"),
+            writers: self.references(&element, "writers"),
         };
         self.cursor.close(element);
         variable
     }
 
     fn initial(&mut self, element: &Element<'a>) -> VariableValue {
-        const TYPES: [(&str, u8); 4] = [("bool", 0), ("number", 1), ("text", 2), ("position", 3)];
+        const TYPES: [(&str, u8); 5] =
+            [("bool", 0), ("number", 1), ("text", 2), ("position", 3), ("polygon", 4)];
         let kind = self.choice(element, "type", &TYPES);
         self.require(element, "type");
         self.require(element, "initial");
@@ -227,6 +271,11 @@ impl<'a> Document<'a> {
             Some(3) => {
                 let wanted = "a position: latitude and longitude in degrees";
                 VariableValue::Position(self.parsed(element, "initial", wanted, position).unwrap_or(NOWHERE))
+            }
+            Some(4) => {
+                let wanted = "positions with commas between them: latitude and longitude in degrees";
+                let corners = self.parsed(element, "initial", wanted, positions);
+                VariableValue::Polygon(corners.unwrap_or_default())
             }
             _ => VariableValue::Text(self.text(element, "initial")),
         }
@@ -315,7 +364,7 @@ impl<'a> Document<'a> {
     }
 
     pub fn altitude(&mut self, element: &Element<'a>) -> Option<Altitude> {
-        let reference = self.choice(element, "altitudeReference", &REFERENCES);
+        let reference = self.choice(element, "altitudeReference", &AltitudeReference::NAMES);
         let metres = self.value(element, "altitude");
         if metres.is_some() != element.attributes.take("altitudeReference").is_some() {
             let message = format!(
@@ -327,9 +376,6 @@ impl<'a> Document<'a> {
         Some(Altitude { metres: metres?, reference: reference.unwrap_or(AltitudeReference::Amsl) })
     }
 }
-
-const REFERENCES: [(&str, AltitudeReference); 3] =
-    [("amsl", AltitudeReference::Amsl), ("agl", AltitudeReference::Agl), ("home", AltitudeReference::Home)];
 
 /// Stands for a position that could not be read: never valid.
 const NOWHERE: LatLon = LatLon::new(f64::NAN, f64::NAN);

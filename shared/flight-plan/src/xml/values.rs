@@ -4,6 +4,7 @@ use super::cursor::{Element, shown};
 use super::read::Document;
 use crate::{Id, Problem, Value};
 use geometry::LatLon;
+use std::sync::Arc;
 
 /// Attributes, each with its problems.
 impl<'a> Document<'a> {
@@ -99,6 +100,36 @@ impl<'a> Document<'a> {
         self.value(element, name).unwrap_or(Value::Constant(f64::NAN))
     }
 
+    /// A condition: CEL source.
+    pub fn condition(&mut self, element: &Element<'a>, name: &str) -> Option<Arc<str>> {
+        element.attributes.take(name).map(|source| source.trim().into())
+    }
+
+    /// A text that must be there.
+    pub fn required_text(&mut self, element: &Element<'a>, name: &str) -> String {
+        self.require(element, name);
+        self.text(element, name)
+    }
+
+    /// `= expression`.
+    pub fn source(&mut self, element: &Element<'a>, name: &str) -> Option<Arc<str>> {
+        self.parsed(element, name, "= and an expression", |text| {
+            text.strip_prefix('=').map(|s| s.trim().into())
+        })
+    }
+
+    /// `= expression`; nothing becomes one that the checks refuse.
+    pub fn required_source(&mut self, element: &Element<'a>, name: &str) -> Arc<str> {
+        self.require(element, name);
+        self.source(element, name).unwrap_or_else(|| "".into())
+    }
+
+    /// Identifiers with spaces between them.
+    pub fn references(&mut self, element: &Element<'a>, name: &str) -> Vec<Id> {
+        let list = element.attributes.take(name);
+        list.map_or_else(Vec::new, |list| list.split_whitespace().map(Id::new).collect())
+    }
+
     /// A position as `lat lon`, or `= expression`.
     pub fn position_value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<LatLon>> {
         let wanted = "latitude and longitude in degrees, or = and an expression";
@@ -128,6 +159,11 @@ pub(super) fn number(text: &str) -> Option<f64> {
 pub(super) fn position(text: &str) -> Option<LatLon> {
     let (lat, lon) = text.split_once([' ', ','])?;
     Some(LatLon::new(number(lat.trim())?, number(lon.trim())?)).filter(|p| p.is_valid())
+}
+
+/// `lat lon, lat lon, …`, degrees.
+pub(super) fn positions(text: &str) -> Option<Vec<LatLon>> {
+    text.split(',').map(|p| position(p.trim())).collect()
 }
 
 /// `= expression` or a constant.

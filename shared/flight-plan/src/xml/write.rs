@@ -1,11 +1,11 @@
 //! From a plan to its canonical document: fixed order, two spaces, shortest numbers.
 
-use super::NAMESPACE;
 use super::attributes::allowed;
+use super::write_legs::leg;
+use super::{NAMESPACE, zone};
 use crate::{
-    Altitude, AltitudeReference, Area, Branch, Cause, DecideBefore, EmergencyChoice, EmergencyPlan, Fix,
-    FlightPlan, Holding, HoldingLength, IterativeForm, Leg, LegKind, Place, PlanWaypoint, Runway, Stage,
-    StageKind, TurnDirection, Value, Variable, VariableValue,
+    Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Place, PlanWaypoint, Procedure, Runway,
+    Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};
@@ -21,6 +21,8 @@ pub fn write(plan: &FlightPlan) -> String {
         out.list("fixes", &plan.fixes, fix);
         out.list("runways", &plan.runways, runway);
         out.list("variables", &plan.variables, variable);
+        out.list("zones", &plan.zones, zone::write);
+        out.list("procedures", &plan.procedures, procedure);
         out.element(fallback(Tag::new("mainPlan"), &plan.emergency), |out| {
             out.emergencies(&plan.emergency);
             plan.stages.iter().for_each(|s| stage(out, s));
@@ -31,24 +33,24 @@ pub fn write(plan: &FlightPlan) -> String {
 }
 
 /// A start tag being put together.
-struct Tag {
+pub(super) struct Tag {
     name: &'static str,
     text: String,
 }
 
 impl Tag {
-    fn new(name: &'static str) -> Self {
+    pub(super) fn new(name: &'static str) -> Self {
         Self { name, text: format!("<{name}") }
     }
 
-    fn with(mut self, name: &str, value: impl Display) -> Self {
+    pub(super) fn with(mut self, name: &str, value: impl Display) -> Self {
         let _ = write!(self.text, " {name}=\"");
         escape_into(&value.to_string(), &mut self.text);
         self.text.push('"');
         self
     }
 
-    fn maybe(self, name: &str, value: Option<impl Display>) -> Self {
+    pub(super) fn maybe(self, name: &str, value: Option<impl Display>) -> Self {
         match value {
             Some(value) => self.with(name, value),
             None => self,
@@ -56,36 +58,41 @@ impl Tag {
     }
 
     /// Left out when empty.
-    fn text(self, name: &str, value: &str) -> Self {
+    pub(super) fn text(self, name: &str, value: &str) -> Self {
         self.maybe(name, Some(value).filter(|v| !v.is_empty()))
     }
 
-    fn value(self, name: &str, value: &Value<f64>) -> Self {
+    /// Identifiers with spaces between them; left out when there are none.
+    pub(super) fn ids(self, name: &str, ids: &[crate::Id]) -> Self {
+        self.text(name, &ids.iter().map(|id| id.as_str()).collect::<Vec<_>>().join(" "))
+    }
+
+    /// An expression, or nothing.
+    pub(super) fn source(self, name: &str, source: &str) -> Self {
+        self.with(name, format_args!("= {source}"))
+    }
+
+    pub(super) fn value(self, name: &str, value: &Value<f64>) -> Self {
         match value {
             Value::Constant(x) => self.with(name, x),
             Value::Expression(source) => self.with(name, format_args!("= {source}")),
         }
     }
 
-    fn maybe_value(self, name: &str, value: Option<&Value<f64>>) -> Self {
+    pub(super) fn maybe_value(self, name: &str, value: Option<&Value<f64>>) -> Self {
         match value {
             Some(value) => self.value(name, value),
             None => self,
         }
     }
 
-    fn altitude(self, altitude: Option<&Altitude>) -> Self {
+    pub(super) fn altitude(self, altitude: Option<&Altitude>) -> Self {
         let Some(altitude) = altitude else { return self };
-        let reference = match altitude.reference {
-            AltitudeReference::Amsl => "amsl",
-            AltitudeReference::Agl => "agl",
-            AltitudeReference::Home => "home",
-        };
-        self.value("altitude", &altitude.metres).with("altitudeReference", reference)
+        self.value("altitude", &altitude.metres).with("altitudeReference", altitude.reference.name())
     }
 
     /// A place; a constant as `lat` and `lon`.
-    fn place(self, place: &Place, expression: &str) -> Self {
+    pub(super) fn place(self, place: &Place, expression: &str) -> Self {
         match place {
             Place::Fix(id) => self.with("fix", id),
             Place::Position(Value::Constant(p)) => self.with("lat", p.lat_deg).with("lon", p.lon_deg),
@@ -93,11 +100,11 @@ impl Tag {
         }
     }
 
-    fn waypoint(self, waypoint: &PlanWaypoint) -> Self {
+    pub(super) fn waypoint(self, waypoint: &PlanWaypoint) -> Self {
         self.place(&waypoint.place, "at").maybe("flyOver", waypoint.fly_over.then_some(true))
     }
 
-    fn turn(self, turn: TurnDirection) -> Self {
+    pub(super) fn turn(self, turn: TurnDirection) -> Self {
         self.with("turn", if turn == TurnDirection::Left { "left" } else { "right" })
     }
 }
@@ -120,7 +127,7 @@ fn escape_into(value: &str, text: &mut String) {
 }
 
 /// The document being written.
-struct Writer {
+pub(super) struct Writer {
     text: String,
     depth: usize,
 }
@@ -132,12 +139,12 @@ impl Writer {
         self.text.push('\n');
     }
 
-    fn leaf(&mut self, tag: Tag) {
+    pub(super) fn leaf(&mut self, tag: Tag) {
         self.line(&(tag.text + "/>"));
     }
 
     /// An element with its children; without children it is a leaf.
-    fn element(&mut self, tag: Tag, children: impl FnOnce(&mut Self)) {
+    pub(super) fn element(&mut self, tag: Tag, children: impl FnOnce(&mut Self)) {
         let before = self.text.len();
         self.line(&format!("{}>", tag.text));
         let opened = self.text.len();
@@ -152,21 +159,21 @@ impl Writer {
         }
     }
 
-    fn list<T>(&mut self, name: &'static str, items: &[T], write: fn(&mut Self, &T)) {
+    pub(super) fn list<T>(&mut self, name: &'static str, items: &[T], write: fn(&mut Self, &T)) {
         if !items.is_empty() {
             self.element(Tag::new(name), |out| items.iter().for_each(|item| write(out, item)));
         }
     }
 
     /// Everything but the fallback, which is the `emergency` attribute.
-    fn emergencies(&mut self, choice: &EmergencyChoice) {
+    pub(super) fn emergencies(&mut self, choice: &EmergencyChoice) {
         for (cause, plan) in choice.by_cause.iter().filter(|(cause, _)| cause.is_some()) {
             self.leaf(Tag::new("emergency").maybe("cause", cause.map(cause_name)).with("plan", plan));
         }
     }
 }
 
-fn fallback(tag: Tag, choice: &EmergencyChoice) -> Tag {
+pub(super) fn fallback(tag: Tag, choice: &EmergencyChoice) -> Tag {
     tag.maybe("emergency", choice.by_cause.iter().find(|(cause, _)| cause.is_none()).map(|(_, plan)| plan))
 }
 
@@ -182,8 +189,13 @@ fn cause_name(cause: Cause) -> &'static str {
     }
 }
 
-fn lat_lon(p: LatLon) -> String {
+pub(super) fn lat_lon(p: LatLon) -> String {
     format!("{} {}", p.lat_deg, p.lon_deg)
+}
+
+/// `lat lon, lat lon, …`.
+pub(super) fn lat_lons(positions: &[LatLon]) -> String {
+    positions.iter().map(|p| lat_lon(*p)).collect::<Vec<_>>().join(", ")
 }
 
 fn fix(out: &mut Writer, fix: &Fix) {
@@ -213,6 +225,7 @@ fn variable(out: &mut Writer, variable: &Variable) {
         VariableValue::Number(x) => x.to_string(),
         VariableValue::Text(text) => text.clone(),
         VariableValue::Position(p) => lat_lon(*p),
+        VariableValue::Polygon(corners) => lat_lons(corners),
     };
     let tag = Tag::new("variable")
         .with("name", &variable.name)
@@ -221,7 +234,8 @@ fn variable(out: &mut Writer, variable: &Variable) {
         .text("unit", &variable.unit)
         .maybe("min", variable.min)
         .maybe("max", variable.max)
-        .maybe("maxLength", variable.max_length);
+        .maybe("maxLength", variable.max_length)
+        .ids("writers", &variable.writers);
     out.leaf(tag);
 }
 
@@ -250,98 +264,18 @@ fn stage(out: &mut Writer, stage: &Stage) {
     });
 }
 
-fn leg(out: &mut Writer, leg: &Leg) {
-    let tag = Tag::new(leg.kind_name()).with("id", &leg.id).text("name", &leg.name);
-    let tag = fallback(kind_attributes(tag, &leg.kind), &leg.emergency)
-        .altitude(leg.altitude.as_ref())
-        .maybe_value("speed", leg.speed_mps.as_ref())
-        .maybe("next", leg.next.as_ref());
+fn procedure(out: &mut Writer, procedure: &Procedure) {
+    let bearing = Some(procedure.bearing_deg).filter(|bearing| *bearing != 0.0);
+    let tag = Tag::new("procedure").with("id", &procedure.id).text("name", &procedure.name);
+    let tag = tag.maybe("reference", procedure.reference.map(lat_lon)).maybe("bearing", bearing);
     out.element(tag, |out| {
-        out.emergencies(&leg.emergency);
-        kind_children(out, &leg.kind);
+        for parameter in &procedure.parameters {
+            let tag = Tag::new("parameter").with("name", &parameter.name);
+            out.leaf(match &parameter.default {
+                Some(source) => tag.source("default", source),
+                None => tag,
+            });
+        }
+        procedure.legs.iter().for_each(|l| leg(out, l));
     });
-}
-
-fn kind_attributes(tag: Tag, kind: &LegKind) -> Tag {
-    match kind {
-        LegKind::If(to) | LegKind::Tf(to) => tag.waypoint(to),
-        LegKind::Df { to, turn } => match turn {
-            Some(turn) => tag.waypoint(to).turn(*turn),
-            None => tag.waypoint(to),
-        },
-        LegKind::Rf { to, centre, turn } => {
-            tag.waypoint(to).with("centreLat", centre.lat_deg).with("centreLon", centre.lon_deg).turn(*turn)
-        }
-        LegKind::Hf(h) | LegKind::Ha(h) => holding(tag, h),
-        LegKind::Iterative { form, count, until, turn, .. } => {
-            let form = if *form == IterativeForm::Forward { "forward" } else { "reverse" };
-            tag.with("form", form)
-                .maybe_value("count", count.as_ref())
-                .maybe("until", until.as_ref())
-                .turn(*turn)
-        }
-        LegKind::Intersection { default, decide_before, .. } => {
-            let tag = tag.maybe("default", default.as_ref());
-            match decide_before {
-                DecideBefore::Time(s) => tag.with("decideBefore", format_args!("{s}s")),
-                DecideBefore::Distance(m) => tag.with("decideBefore", format_args!("{m}m")),
-            }
-        }
-        LegKind::Scan(scan) => tag
-            .value("spacing", &scan.spacing_m)
-            .maybe_value("heading", scan.heading_deg.as_ref())
-            .value("overshoot", &scan.overshoot_m),
-        LegKind::Orbit { radius_m, turns, turn, .. } => {
-            tag.value("radius", radius_m).value("turns", turns).turn(*turn)
-        }
-    }
-}
-
-fn holding(tag: Tag, holding: &Holding) -> Tag {
-    let tag = tag
-        .waypoint(&holding.fix)
-        .maybe_value("course", holding.inbound_course_deg.as_ref())
-        .turn(holding.turn);
-    match &holding.leg {
-        HoldingLength::Distance(metres) => tag.value("length", metres),
-        HoldingLength::Time(seconds) => tag.value("time", seconds),
-    }
-}
-
-fn kind_children(out: &mut Writer, kind: &LegKind) {
-    match kind {
-        LegKind::Iterative { body, .. } => body.iter().for_each(|l| leg(out, l)),
-        LegKind::Intersection { branches, .. } => branches.iter().for_each(|b| branch(out, b)),
-        LegKind::Scan(scan) => area(out, &scan.area),
-        LegKind::Orbit { centre, .. } => out.leaf(Tag::new("centre").place(centre, "at")),
-        LegKind::If(_)
-        | LegKind::Tf(_)
-        | LegKind::Df { .. }
-        | LegKind::Rf { .. }
-        | LegKind::Hf(_)
-        | LegKind::Ha(_) => {}
-    }
-}
-
-fn branch(out: &mut Writer, branch: &Branch) {
-    let tag = Tag::new("branch").with("id", &branch.id).text("label", &branch.label);
-    out.leaf(tag.maybe("next", branch.next.as_ref()).maybe("when", branch.when.as_ref()));
-}
-
-fn area(out: &mut Writer, area: &Area) {
-    match area {
-        Area::Circle { centre, radius_m } => {
-            out.leaf(Tag::new("area").place(centre, "centre").value("radius", radius_m))
-        }
-        Area::Polygon { corners, holes } => out.element(Tag::new("area"), |out| {
-            corners.iter().for_each(|c| corner(out, *c));
-            for hole in holes {
-                out.element(Tag::new("hole"), |out| hole.iter().for_each(|c| corner(out, *c)));
-            }
-        }),
-    }
-}
-
-fn corner(out: &mut Writer, corner: LatLon) {
-    out.leaf(Tag::new("corner").with("lat", corner.lat_deg).with("lon", corner.lon_deg));
 }

@@ -1,0 +1,196 @@
+//! Random plans: every kind of control leg, nested; small enough that a flight meets all of it.
+
+use crate::grid::document_with;
+use crate::random::Random;
+
+/// `r` shapes the scans, `stop` ends loops, `n` counts passes.
+const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="1500"/>
+    <variable name="stop" type="bool" initial="false"/>
+    <variable name="n" type="number" initial="2" min="1" max="4"/>
+    <variable name="note" type="text" initial="" maxLength="8"/>"#;
+
+const FIXES: [&str; 7] = ["A2", "B3", "C2", "D4", "B5", "A3", "C4"];
+
+/// A leg without a name; lists give them theirs.
+#[derive(Debug, Clone)]
+pub enum Kind {
+    Track(&'static str),
+    Direct(&'static str),
+    Start(&'static str),
+    Lap,
+    Climb,
+    Scan,
+    Orbit,
+    /// Over one leg to the one after it.
+    Jump,
+    Loop {
+        reverse: bool,
+        count: Option<u64>,
+        until: Option<&'static str>,
+        body: Vec<Leg>,
+    },
+    Fork {
+        default: bool,
+        due: &'static str,
+    },
+}
+
+#[derive(Debug, Clone)]
+pub struct Leg {
+    pub id: String,
+    pub kind: Kind,
+    pub emergency: &'static str,
+}
+
+/// What a document is made of.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    pub legs: Vec<Leg>,
+    pub emergencies: bool,
+    pub by_cause: bool,
+    pub landing: bool,
+    pub names: usize,
+}
+
+impl Draft {
+    pub fn new(random: &mut Random) -> Self {
+        let mut draft = Self {
+            legs: Vec::new(),
+            emergencies: random.percent(92),
+            by_cause: random.percent(40),
+            landing: random.percent(85),
+            names: 0,
+        };
+        draft.legs = draft.list(2, random);
+        draft
+    }
+
+    fn list(&mut self, depth: usize, random: &mut Random) -> Vec<Leg> {
+        (0..1 + random.below(4)).map(|_| self.leg(depth, random)).collect()
+    }
+
+    fn leg(&mut self, depth: usize, random: &mut Random) -> Leg {
+        self.names += 1;
+        let id = format!("k{}", self.names);
+        let kind = self.kind(depth, random);
+        let emergency = if self.emergencies && random.percent(15) { r#" emergency="other""# } else { "" };
+        Leg { id, kind, emergency }
+    }
+
+    fn kind(&mut self, depth: usize, random: &mut Random) -> Kind {
+        match random.below(if depth > 0 { 16 } else { 11 }) {
+            0..3 => Kind::Track(random.pick(&FIXES)),
+            3 => Kind::Direct(random.pick(&FIXES)),
+            4 => Kind::Start("B1"),
+            5 => Kind::Lap,
+            6 => Kind::Climb,
+            7 => Kind::Scan,
+            8 => Kind::Orbit,
+            9 => Kind::Jump,
+            10 | 11 => Kind::Fork { default: random.percent(75), due: random.pick(&["200m", "600m", "15s"]) },
+            _ => Kind::Loop {
+                reverse: random.percent(50),
+                count: random.percent(80).then(|| 1 + random.below(3) as u64),
+                until: random.pick(&[None, None, Some("stop"), Some("iteration &gt; 1")]),
+                body: self.list(depth - 1, random),
+            },
+        }
+    }
+
+    /// Another draft that is mostly this one: what an operator would propose.
+    pub fn edited(&self, random: &mut Random) -> Self {
+        let mut draft = self.clone();
+        for _ in 0..1 + random.below(3) {
+            let mut list = &mut draft.legs;
+            let mut spot = random.below(list.len());
+            // into a loop, now and then
+            while let Some(Kind::Loop { .. }) = list.get(spot).map(|l| &l.kind)
+                && random.percent(60)
+            {
+                let Kind::Loop { body, .. } = &mut list[spot].kind else { break };
+                list = body;
+                spot = random.below(list.len().max(1));
+            }
+            let removes = random.percent(35) && list.len() > 1;
+            if removes && spot < list.len() {
+                list.remove(spot);
+                continue;
+            }
+            draft.names += 1;
+            let leg = Leg {
+                id: format!("k{}", draft.names + 50),
+                kind: Kind::Track(random.pick(&FIXES)),
+                emergency: "",
+            };
+            if random.percent(50) || spot >= list.len() {
+                list.insert(spot, leg);
+            } else {
+                list[spot].kind = leg.kind;
+            }
+        }
+        draft
+    }
+
+    pub fn document(&self) -> String {
+        let by_cause = r#"<emergency cause="energy" plan="other"/>"#;
+        let legs = format!(
+            "{}{}",
+            if self.by_cause && self.emergencies { by_cause } else { "" },
+            write(&self.legs, "")
+        );
+        let stage = if self.by_cause && self.emergencies { r#"emergency="back""# } else { "" };
+        let mut document = document_with(&legs, VARIABLES, stage);
+        if !self.emergencies {
+            document = document.replace(r#"<mainPlan emergency="back">"#, "<mainPlan>");
+        }
+        if !self.landing {
+            document = document.replace(r#"<stage id="land" type="land" runway="R"/>"#, "");
+        }
+        document
+    }
+}
+
+/// A track at each end: every body flies something.
+fn write(legs: &[Leg], prefix: &str) -> String {
+    let body: String = legs.iter().map(one).collect();
+    format!(r#"<TF id="{prefix}s" fix="B1"/>{body}<TF id="{prefix}z" fix="D3"/>"#)
+}
+
+fn one(leg: &Leg) -> String {
+    let Leg { id, emergency, .. } = leg;
+    match &leg.kind {
+        Kind::Track(fix) => format!(r#"<TF id="{id}" fix="{fix}"{emergency}/>"#),
+        Kind::Direct(fix) => format!(r#"<DF id="{id}" fix="{fix}"{emergency}/>"#),
+        Kind::Start(fix) => format!(r#"<IF id="{id}" fix="{fix}"/>"#),
+        Kind::Lap => format!(r#"<HF id="{id}" fix="B2" course="0" turn="left" length="600"{emergency}/>"#),
+        Kind::Climb => format!(
+            r#"<HA id="{id}" fix="C3" course="90" turn="right" length="600" altitude="600" altitudeReference="amsl"/>"#
+        ),
+        Kind::Scan => format!(
+            r#"<scan id="{id}" spacing="= r * 0.5" heading="0" overshoot="50"{emergency}><area fix="C3" radius="= r"/></scan>"#
+        ),
+        Kind::Orbit => format!(
+            r#"<orbit id="{id}" radius="= 200.0 + r * 0.2" turns="1" turn="left"><centre fix="D2"/></orbit>"#
+        ),
+        Kind::Jump => format!(
+            r#"<TF id="{id}" fix="A4" next="{id}-y"/><TF id="{id}-x" fix="E3"/><TF id="{id}-y" fix="E4"/>"#
+        ),
+        Kind::Loop { reverse, count, until, body } => {
+            let form = if *reverse { "reverse" } else { "forward" };
+            let until = until.map_or(String::new(), |u| format!(r#" until="{u}""#));
+            let count = count.map_or("= n".into(), |c| c.to_string());
+            let body = write(body, &format!("{id}-"));
+            format!(
+                r#"<iterative id="{id}" form="{form}" count="{count}"{until}{emergency}>{body}</iterative>"#
+            )
+        }
+        Kind::Fork { default, due } => {
+            let default = if *default { format!(r#" default="{id}-s""#) } else { String::new() };
+            format!(
+                r#"<intersection id="{id}"{default} decideBefore="{due}">
+                   <branch id="{id}-s" label="s" next="{id}-e"/><branch id="{id}-l" label="l" next="{id}-d" when="r &gt; 900.0"/></intersection>
+                   <TF id="{id}-d" fix="E2"/><TF id="{id}-e" fix="A4"/>"#
+            )
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Named, parameterised fragments of legs.
+
+use super::{Id, Leg, Place, Value};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// A fragment that can be called at any place, in any direction, with arguments.
+///
+/// Its positions are written where they are for its own reference point and bearing; a call moves and turns them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Procedure {
+    /// Its identifier.
+    pub id: Id,
+    /// What people call it.
+    pub name: String,
+    /// Names that its expressions may read beside the plan's variables.
+    pub parameters: Vec<Parameter>,
+    /// The point that a call's anchor stands for; `None`: it can't be moved.
+    pub reference: Option<LatLon>,
+    /// The direction that a call's bearing stands for, degrees true.
+    pub bearing_deg: f64,
+    /// Its legs, in order.
+    pub legs: Vec<Leg>,
+}
+
+/// A parameter of a procedure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Its name, an identifier of the expression language.
+    pub name: Id,
+    /// CEL source of its value when a call gives none; `None`: a call must give one. Its type is the parameter's.
+    pub default: Option<Arc<str>>,
+}
+
+/// A call of a procedure. Flown, it is its legs, whose identifiers are `call.leg`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Call {
+    /// The procedure.
+    pub procedure: Id,
+    /// Parameter names and the CEL sources of their values.
+    pub arguments: Vec<(Id, Arc<str>)>,
+    /// Where the procedure's reference point comes to be; `None`: where it is.
+    pub anchor: Option<Place>,
+    /// Where its bearing comes to point, degrees true; `None`: where it does.
+    pub bearing_deg: Option<Value<f64>>,
+}
