@@ -104,6 +104,7 @@ fn way_home() -> Edit {
         altitude: None::<Altitude>,
         speed_mps: None,
         next: None,
+        actions: Vec::new(),
         kind: LegKind::Tf(PlanWaypoint {
             place: Place::Position(Value::Constant(LatLon::new(36.2880, -84.2190))),
             fly_over: false,

@@ -167,12 +167,10 @@ fn live_variables<'a>(scene: &Scene<'a>) -> Option<&'a PlanVariables> {
 }
 
 fn place_of_leg(plan: &flight_plan::FlightPlan, leg: &flight_plan::Leg) -> Option<LatLon> {
-    use flight_plan::{LegKind, Place};
-    let place = match &leg.kind {
-        LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => &to.place,
-        LegKind::Hf(h) | LegKind::Ha(h) => &h.fix.place,
-        LegKind::Iterative { body, .. } => return body.iter().find_map(|inner| place_of_leg(plan, inner)),
-        LegKind::Intersection { .. } | LegKind::Scan(_) | LegKind::Orbit { .. } => return None,
-    };
-    if let Place::Fix(id) = place { plan.fix(id).map(|f| f.position) } else { None }
+    use flight_plan::Place;
+    match leg.place() {
+        Some(Place::Fix(id)) => plan.fix(id).map(|f| f.position),
+        Some(Place::Position(_)) => None,
+        None => leg.body().iter().find_map(|inner| place_of_leg(plan, inner)),
+    }
 }

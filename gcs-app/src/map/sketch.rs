@@ -2,8 +2,8 @@
 //! plans. Broken drafts give what can be made of them.
 
 use flight_plan::{
-    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Place, PlanWaypoint, Section, Value, VariableValue,
-    Variables, expression,
+    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
+    VariableValue, Variables, expression,
 };
 use geometry::LatLon;
 
@@ -109,24 +109,36 @@ impl Sketch {
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
         match &leg.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
-                self.add_waypoint(leg, to, reader)
-            }
-            LegKind::Hf(h) | LegKind::Ha(h) => self.add_waypoint(leg, &h.fix, reader),
             LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
-            LegKind::Scan(scan) => match &scan.area {
-                Area::Circle { centre, radius_m } => self.add_circle(leg, centre, radius_m, true, reader),
-                Area::Polygon { corners, holes } => self.add_polygon(leg, corners, holes),
-            },
-            LegKind::Iterative { .. } | LegKind::Intersection { .. } => {}
+            LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {
+                self.add_area(leg, area, reader)
+            }
+            LegKind::Pattern(
+                Pattern::Spiral { centre, outer_radius_m: radius_m, .. }
+                | Pattern::ExpandingSquare { centre, radius_m, .. }
+                | Pattern::Sector { centre, radius_m, .. }
+                | Pattern::FigureEight { centre, radius_m, .. },
+            ) => self.add_circle(leg, centre, radius_m, false, reader),
+            _ => leg.place().into_iter().for_each(|place| self.add_waypoint(leg, place, reader)),
         }
     }
 
-    fn add_waypoint(&mut self, leg: &Leg, to: &PlanWaypoint, reader: &Reader<'_>) {
-        if matches!(to.place, Place::Fix(_)) {
+    fn add_area(&mut self, leg: &Leg, area: &Area, reader: &Reader<'_>) {
+        match area {
+            Area::Circle { centre, radius_m } => self.add_circle(leg, centre, radius_m, true, reader),
+            Area::Polygon { corners, holes } => self.add_polygon(leg, corners, holes),
+            // its corners are a variable's
+            Area::Expression(source) => {
+                self.polygons.extend(reader.polygon(source).map(|ring| (leg.id.clone(), vec![ring])))
+            }
+        }
+    }
+
+    fn add_waypoint(&mut self, leg: &Leg, place: &Place, reader: &Reader<'_>) {
+        if matches!(place, Place::Fix(_)) {
             return;
         }
-        if let Some(at) = reader.place(&to.place) {
+        if let Some(at) = reader.place(place) {
             self.handles.push(Handle { what: Handled::Waypoint(leg.id.clone()), at });
         }
     }
@@ -212,6 +224,10 @@ impl Reader<'_> {
         at.is_valid().then_some(at)
     }
 
+    fn polygon(&self, source: &str) -> Option<Vec<LatLon>> {
+        expression::compile(source, self.plan).ok()?.polygon(&self.env).ok()
+    }
+
     fn number(&self, value: &Value<f64>) -> Option<f64> {
         match value {
             Value::Constant(number) => Some(*number),
@@ -220,22 +236,10 @@ impl Reader<'_> {
     }
 
     fn line_of(&self, leg: &Leg, line: &mut Vec<LatLon>) {
-        let place = match &leg.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
-                Some(&to.place)
-            }
-            LegKind::Hf(h) | LegKind::Ha(h) => Some(&h.fix.place),
-            LegKind::Orbit { centre, .. } => Some(centre),
-            LegKind::Scan(scan) => match &scan.area {
-                Area::Circle { centre, .. } => Some(centre),
-                Area::Polygon { corners, .. } => {
-                    line.extend(corners.first().filter(|c| c.is_valid()));
-                    None
-                }
-            },
-            LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
-        };
-        line.extend(place.and_then(|p| self.place(p)));
+        if let LegKind::Scan(Scan { area: Area::Polygon { corners, .. }, .. }) = &leg.kind {
+            line.extend(corners.first().filter(|c| c.is_valid()));
+        }
+        line.extend(leg.place().and_then(|p| self.place(p)));
         leg.body().iter().for_each(|inner| self.line_of(inner, line));
     }
 }

@@ -312,6 +312,10 @@ fn variable_field(
                 None => Change::None,
             }
         }
+        VariableValue::Polygon(corners) => {
+            ui.label(format!("{} corners", corners.len()));
+            Change::None
+        }
     })
 }
 

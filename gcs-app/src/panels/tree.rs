@@ -4,7 +4,7 @@ use super::Scene;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
-use flight_plan::{FlightPlan, Leg, LegKind, Problem, Stage, StageKind};
+use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One line of the tree.
@@ -243,10 +243,23 @@ pub fn leg_tag(kind: &LegKind) -> &'static str {
         LegKind::Rf { .. } => "RF",
         LegKind::Hf(_) => "HF",
         LegKind::Ha(_) => "HA",
+        LegKind::Cf { .. } => "CF",
+        LegKind::Fa { .. } => "FA",
+        LegKind::Hm { .. } => "HM",
         LegKind::Iterative { .. } => "LOOP",
         LegKind::Intersection { .. } => "FORK",
         LegKind::Scan(_) => "SCAN",
         LegKind::Orbit { .. } => "ORB",
+        LegKind::Call(_) => "CALL",
+        LegKind::Pattern(pattern) => match pattern {
+            Pattern::Spiral { .. } => "SPIRAL",
+            Pattern::ExpandingSquare { .. } => "SQUARE",
+            Pattern::Sector { .. } => "SECTOR",
+            Pattern::TrackLine { .. } => "TRACK",
+            Pattern::Corridor { .. } => "CORR",
+            Pattern::Contour { .. } => "CONT",
+            Pattern::FigureEight { .. } => "FIG8",
+        },
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
 use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
-use flight_plan::{Env, FlightPlan, FlightState, Id, LegKind, Program, StageKind, VariableValue, Variables};
+use flight_plan::{
+    Env, FlightPlan, FlightState, Id, LegKind, Program, Spacing, StageKind, VariableValue, Variables,
+};
 use geometry::LatLon;
 
 /// Corners of the polygon that stands for a circle.
@@ -115,9 +117,11 @@ pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> 
 fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<LatLon>, f64)> {
     let LegKind::Scan(scan) = &program.leg(leg)?.kind else { return None };
     let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
-    let spacing_m = program.eval_number(&scan.spacing_m, &env).ok()?;
+    let Spacing::Metres(spacing) = &scan.spacing else { return None };
+    let spacing_m = program.eval_number(spacing, &env).ok()?;
     let corners = match &scan.area {
         flight_plan::Area::Polygon { corners, .. } => corners.clone(),
+        flight_plan::Area::Expression(source) => program.expression(source).ok()?.polygon(&env).ok()?,
         flight_plan::Area::Circle { centre, radius_m } => {
             let centre = program.eval_place(centre, &env).ok()?;
             let radius_m = program.eval_number(radius_m, &env).ok()?;
@@ -186,6 +190,7 @@ fn shown(value: &VariableValue) -> String {
         VariableValue::Number(n) => format!("{n}"),
         VariableValue::Text(t) => format!("{t:?}"),
         VariableValue::Position(p) => format!("{:.4} {:.4}", p.lat_deg, p.lon_deg),
+        VariableValue::Polygon(corners) => format!("a polygon of {} corners", corners.len()),
     }
 }
 

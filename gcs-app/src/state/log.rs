@@ -115,7 +115,9 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
         PlanEvent::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
         }
-        PlanEvent::NotJournalled { reason } => (Level::Caution, format!("The flight is not recorded: {reason}")),
+        PlanEvent::NotJournalled { reason } => {
+            (Level::Caution, format!("The flight is not recorded: {reason}"))
+        }
         PlanEvent::Journalled => info("The flight is recorded again".to_owned()),
     }
 }
@@ -144,6 +146,7 @@ pub fn variable(value: &VariableValue) -> String {
         VariableValue::Number(n) => n.to_string(),
         VariableValue::Text(t) => t.clone(),
         VariableValue::Position(p) => crate::units::position(*p),
+        VariableValue::Polygon(corners) => format!("a polygon of {} corners", corners.len()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{SQUARE, Window};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use flight_plan::{Id, LegKind, Value};
+use flight_plan::{Id, LegKind, Spacing, Value};
 use gcs_app::command::Selection;
 
 fn fix(window: &Window, id: &str) -> geometry::LatLon {
@@ -130,11 +130,11 @@ fn the_inspector_edits_what_is_selected() {
     window.steps(3);
     let plan = window.app().document().plan().clone();
     let LegKind::Scan(scan) = &plan.leg(&"sweep".into()).unwrap().leg.kind else { panic!() };
-    assert_eq!(scan.spacing_m, Value::Constant(200.0));
+    assert_eq!(scan.spacing, Spacing::Metres(Value::Constant(200.0)));
     window.click("Undo");
     let plan = window.app().document().plan().clone();
     let LegKind::Scan(scan) = &plan.leg(&"sweep".into()).unwrap().leg.kind else { panic!() };
-    assert_eq!(scan.spacing_m, Value::Constant(150.0));
+    assert_eq!(scan.spacing, Spacing::Metres(Value::Constant(150.0)));
 }
 
 #[test]

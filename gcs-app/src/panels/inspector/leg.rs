@@ -10,7 +10,7 @@ use egui::{RichText, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{
     Area, DecideBefore, Edit, Holding, HoldingLength, Id, Leg, LegContext, LegKind, Place, PlanWaypoint,
-    Scan, TurnDirection, Value,
+    Scan, Spacing, TurnDirection, Value,
 };
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
@@ -81,6 +81,12 @@ fn kind_rows(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
         }
         LegKind::Hf(h) => holding_rows(ui, u, leg, h, LegKind::Hf, queue),
         LegKind::Ha(h) => holding_rows(ui, u, leg, h, LegKind::Ha, queue),
+        LegKind::Hm { holding, until, max_laps } => {
+            let kind = |holding| LegKind::Hm { holding, until: until.clone(), max_laps: max_laps.clone() };
+            holding_rows(ui, u, leg, holding, kind, queue);
+        }
+        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => waypoint_rows(ui, leg, to, queue),
+        LegKind::Pattern(_) | LegKind::Call(_) => {}
         LegKind::Iterative { count, until, .. } => {
             loop_rows(ui, leg, count.as_ref(), until.as_deref(), queue)
         }
@@ -152,7 +158,7 @@ fn holding_rows(
     u: Units,
     leg: &Leg,
     h: &Holding,
-    kind: fn(Holding) -> LegKind,
+    kind: impl Fn(Holding) -> LegKind,
     queue: &mut Queue,
 ) {
     waypoint_rows(ui, leg, &h.fix, queue);
@@ -245,16 +251,14 @@ fn scan_rows(ui: &mut Ui, u: Units, leg: &Leg, scan: &Scan, queue: &mut Queue) {
                 ui.label(format!("{} corners, {} holes", corners.len(), holes.len()))
             });
         }
+        Area::Expression(source) => {
+            field::row(ui, "Area", |ui| ui.label(format!("= {source}")));
+        }
     }
-    value_row(
-        ui,
-        "Spacing",
-        &scan.spacing_m,
-        u.length(),
-        1.0,
-        |v| with(Scan { spacing_m: v, ..scan.clone() }),
-        queue,
-    );
+    if let Spacing::Metres(spacing_m) = &scan.spacing {
+        let edit = |v| with(Scan { spacing: Spacing::Metres(v), ..scan.clone() });
+        value_row(ui, "Spacing", spacing_m, u.length(), 1.0, edit, queue);
+    }
     value_row(
         ui,
         "Overshoot",
