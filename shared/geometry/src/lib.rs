@@ -1,4 +1,4 @@
-//! Pure: geodesy on WGS84, local frames, turns, arcs, holdings, polygons and scan patterns.
+//! Pure: geodesy on WGS84, local frames, turns, arcs, holdings, polygons, scans and the other patterns.
 //!
 //! Knows nothing of plans or autopilots. Angles are radians inside formulas and degrees at the
 //! edges; the unit is always in the name.
@@ -8,6 +8,7 @@ pub mod geodesy;
 pub mod holding;
 pub mod local;
 pub mod path;
+pub mod pattern;
 mod plane;
 pub mod polygon;
 pub mod scan;
@@ -19,5 +20,6 @@ pub use arc::Flattening;
 pub use geodesy::LatLon;
 pub use local::{LocalFrame, Vec2};
 pub use path::PathElement;
+pub use pattern::Pattern;
 pub use polygon::Polygon;
 pub use turn::Turn;

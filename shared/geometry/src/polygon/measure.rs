@@ -86,7 +86,7 @@ pub(crate) fn extent(corners: &[Vec2], direction: Vec2) -> (f64, f64) {
 }
 
 /// Shoelace formula, relative to the first corner for accuracy; positive anticlockwise.
-fn signed_area_m2(ring: &[Vec2]) -> f64 {
+pub(crate) fn signed_area_m2(ring: &[Vec2]) -> f64 {
     let origin = ring.first().copied().unwrap_or_default();
     ring_edges(ring).map(|(a, b)| (a - origin).cross(b - origin)).sum::<f64>() / 2.0
 }

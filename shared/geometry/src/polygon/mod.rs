@@ -3,6 +3,7 @@
 mod measure;
 mod validity;
 
+pub(crate) use measure::signed_area_m2;
 pub use validity::PolygonError;
 
 use crate::{Flattening, LatLon, LocalFrame, Vec2};
@@ -86,6 +87,11 @@ impl Polygon {
         self.rings.get(1..).unwrap_or_default()
     }
 
+    /// The outer ring alone.
+    pub fn without_holes(&self) -> Self {
+        Self { rings: self.rings.iter().take(1).cloned().collect() }
+    }
+
     /// Every edge of every ring.
     pub fn edges(&self) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
         self.rings.iter().flat_map(|ring| ring_edges(ring))
@@ -96,6 +102,11 @@ impl Polygon {
 fn ring_edges(ring: &[Vec2]) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
     let next = ring.iter().cycle().skip(1);
     ring.iter().copied().zip(next.copied())
+}
+
+/// Whether a point is in an area that is given by its rings.
+pub(crate) fn contains(rings: &[Vec<Vec2>], p: Vec2) -> bool {
+    crosses_odd(rings.iter().flat_map(|ring| ring_edges(ring)), p)
 }
 
 /// Even-odd rule: a ray to the east crosses the edges an odd number of times.

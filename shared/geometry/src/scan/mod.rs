@@ -11,11 +11,11 @@ mod outline;
 mod segments;
 
 pub use coverage::coverage;
+pub(crate) use order::Order;
 pub use segments::{ScanWaypoint, Segment, Segments, Waypoints};
 
 use crate::polygon::Polygon;
 use crate::{LocalFrame, Vec2};
-use order::Order;
 use outline::{Outline, Sweep};
 use std::ops::Range;
 
@@ -126,7 +126,7 @@ impl Axes {
 
 /// Where the lines are, across the heading.
 #[derive(Debug, Clone, Copy)]
-struct Lines {
+pub(crate) struct Lines {
     first_m: f64,
     last_m: f64,
     spacing_m: f64,
@@ -134,7 +134,8 @@ struct Lines {
 }
 
 impl Lines {
-    fn new((left_m, right_m): (f64, f64), spacing_m: f64) -> Result<Self, ScanError> {
+    /// Lines between two edges, the outer ones half a spacing inside.
+    pub fn new((left_m, right_m): (f64, f64), spacing_m: f64) -> Result<Self, ScanError> {
         let width_m = right_m - left_m;
         // forgives rounding: a width of 10 spacings has 10 lines
         let count = (width_m / spacing_m * (1.0 - 1e-12) - 1e-9).ceil().max(1.0);
@@ -144,7 +145,10 @@ impl Lines {
         let inside_m = (spacing_m / 2.0).min(width_m / 2.0);
         Ok(Self { first_m: left_m + inside_m, last_m: right_m - inside_m, spacing_m, count: count as u64 })
     }
-    fn across_m(&self, line: u64) -> f64 {
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+    pub fn across_m(&self, line: u64) -> f64 {
         (self.first_m + line as f64 * self.spacing_m).min(self.last_m)
     }
     fn nearest(&self, across_m: f64) -> u64 {
@@ -165,17 +169,17 @@ impl Scan {
         let axes = Axes::new(heading_deg);
         let outline = Outline::new(polygon, axes);
         let lines = Lines::new(outline.extent(), p.spacing_m)?;
-        let step = (2.0 * p.turn_radius_m / p.spacing_m - 1e-9).ceil().max(1.0);
+        let order = |corner| Order::interleaved(lines.count, p.turn_radius_m, p.spacing_m, corner);
         let mut scan = Self {
             outline,
             axes,
             lines,
-            order: Order::new(lines.count, step as u64, Corner::StartLeft),
+            order: order(Corner::StartLeft),
             heading_deg,
             overshoot_m: p.overshoot_m,
             strip_m: p.overshoot_m.min(p.spacing_m / 2.0),
         };
-        scan.order = Order::new(lines.count, step as u64, scan.corner(p.entry));
+        scan.order = order(scan.corner(p.entry));
         Ok(scan)
     }
 
@@ -241,6 +245,13 @@ impl Scan {
             tracks.filter(|&track| wanted(track)).min()
         };
         (0..=middle.max(last - middle)).find_map(pair)
+    }
+
+    /// Where a track begins and where it ends, with the gaps between its segments; `None` if there is no such track.
+    pub fn ends_of_track(&self, track: u64) -> Option<(Vec2, Vec2)> {
+        let mut segments = self.segments(track..track.saturating_add(1));
+        let first = segments.next()?;
+        Some((first.from, segments.last().unwrap_or(first).to))
     }
 
     /// The segments of a range of tracks in flight order.

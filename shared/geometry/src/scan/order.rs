@@ -4,7 +4,7 @@ use super::Corner;
 
 /// A numbering of lines in flight order: passes of every `step`-th line, there and back.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Order {
+pub(crate) struct Order {
     lines: u64,
     step: u64,
     corner: Corner,
@@ -14,6 +14,12 @@ impl Order {
     /// Every `step`-th line of `lines`, beginning at a corner.
     pub fn new(lines: u64, step: u64, corner: Corner) -> Self {
         Self { lines, step: step.clamp(1, lines.max(1)), corner }
+    }
+
+    /// Every k-th line, k · spacing ≥ 2 · turn radius: turns between tracks need no loops. Both in metres.
+    pub fn interleaved(lines: u64, turn_radius_m: f64, spacing_m: f64, corner: Corner) -> Self {
+        let step = (2.0 * turn_radius_m / spacing_m - 1e-9).ceil().max(1.0);
+        Self::new(lines, step as u64, corner)
     }
 
     pub fn step(&self) -> u64 {
