@@ -6,6 +6,7 @@
 pub mod arc;
 pub mod geodesy;
 pub mod holding;
+pub mod intercept;
 pub mod local;
 pub mod path;
 pub mod pattern;

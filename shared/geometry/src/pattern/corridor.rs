@@ -3,9 +3,10 @@
 use super::{MOST_STORED, PatternError, Route, Stored, Vertex, not_negative, positive};
 use crate::Vec2;
 use crate::scan::{Corner, Entry, Lines, Order};
+use serde::{Deserialize, Serialize};
 
 /// What makes a corridor, besides its route.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CorridorParameters {
     /// Its width, metres: half of it on each side of the route.
     pub width_m: f64,

@@ -5,11 +5,13 @@
 //! outline) has several scanning segments; the gap between them is flown over, marked as transit.
 //! Nothing is stored per line: a million tracks take the memory of the polygon.
 
+mod camera;
 mod coverage;
 mod order;
 mod outline;
 mod segments;
 
+pub use camera::camera_spacing_m;
 pub use coverage::coverage;
 pub(crate) use order::Order;
 pub use segments::{ScanWaypoint, Segment, Segments, Waypoints};
@@ -17,13 +19,14 @@ pub use segments::{ScanWaypoint, Segment, Segments, Waypoints};
 use crate::polygon::Polygon;
 use crate::{LocalFrame, Vec2};
 use outline::{Outline, Sweep};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// More lines than this can't be numbered exactly in an `f64`.
 const MAX_LINES: f64 = 9e15;
 
 /// How a polygon is to be scanned.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScanParameters {
     /// Distance between neighbouring lines, metres. The first and the last line are half of it
     /// inside the polygon's extent; the last gap may be smaller.
@@ -43,7 +46,7 @@ pub struct ScanParameters {
 }
 
 /// Where a scan begins.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Entry {
     /// At the corner whose first waypoint is nearest to a point.
     Nearest(Vec2),
@@ -52,7 +55,8 @@ pub enum Entry {
 }
 
 /// A corner of the pattern, seen along its heading: at the lines' start or end, left or right.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Corner {
     /// Leftmost line, flown along the heading.
     StartLeft,
@@ -95,6 +99,15 @@ pub enum ScanError {
     /// More lines than can be counted.
     #[error("a spacing of {0} m gives more lines than can be counted: widen it")]
     TooManyLines(f64),
+    /// The camera is not above the ground.
+    #[error("the camera is {0} m above the ground: it must be a positive number")]
+    CameraHeight(f64),
+    /// A camera sees less than a half space.
+    #[error("the camera's field of view is {0}°: it must be between 0 and 180")]
+    FieldOfView(f64),
+    /// Strips that overlap wholly never get on.
+    #[error("the side overlap is {0}: it must be 0 or more and below 1")]
+    SideOverlap(f64),
 }
 
 /// A scan, ready to be flown.
