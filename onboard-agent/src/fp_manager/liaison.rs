@@ -60,6 +60,11 @@ impl Wish {
 }
 
 impl Liaison {
+    /// As an earlier process knew it: what it wanted, and whether it had control.
+    pub fn restored(wanted: Option<GatewayRequest>, controlled: bool) -> Self {
+        Self { wanted: wanted.map(Wish::new), controlled, ..Self::default() }
+    }
+
     /// The gateway takes our waypoints.
     pub fn is_joined(&self) -> bool {
         self.joined

@@ -1,15 +1,18 @@
 //! Pure: what the FP Manager does, between the executor and the gateway. Time is an argument;
-//! what has to be said to the outside comes out as [`Effect`]s.
+//! what has to be said to the outside comes out as [`Effect`]s. Those of one call are a turn: its
+//! records are written first, as one, and synced if asked for; only then the rest is carried out.
 
 use super::aircraft::Aircraft;
 use super::alarms::Alarms;
 use super::feeder::{Fate, Feeder};
+use super::journal::{Entry, Notes, Record, Reply};
 use super::liaison::Liaison;
 use super::runways::safe_runways;
+use super::timeline::Timeline;
 use crate::clock::Time;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
 use flight_plan::Program;
-use std::collections::BTreeSet;
+use std::collections::VecDeque;
 use std::sync::Arc;
 use usal::contract::*;
 
@@ -24,58 +27,62 @@ pub enum Effect {
     Request(GatewayRequest),
     /// Publish an event.
     Event(PlanEvent),
-    /// Something changed that must survive this process.
-    Save,
+    /// Record this, with all of the turn's records, before anything else of the turn takes effect.
+    Record(Entry),
+    /// Keep this plan's document before the turn is recorded.
+    Keep(Arc<Program>),
+    /// The turn's records have to be on the disk before anything else of the turn takes effect.
+    Sync,
 }
+
+/// Answers remembered, should a request be repeated after a restart.
+const REPLIES: usize = 64;
+/// Longer names of requests are not remembered, bytes.
+const REPLY_ID_MAX: usize = 128;
 
 /// The FP Manager without its shell.
 pub struct Manager {
-    executor: Executor,
+    pub(super) executor: Executor,
     feeder: Feeder,
-    liaison: Liaison,
+    pub(super) liaison: Liaison,
     aircraft: Aircraft,
-    alarms: Alarms,
+    pub(super) alarms: Alarms,
+    pub(super) timeline: Timeline,
     /// Highest token that the autopilot was seen steering to.
-    steered: Token,
-    last_request: u64,
+    pub(super) steered: Token,
+    pub(super) last_request: u64,
+    /// As recorded last.
+    pub(super) noted: Notes,
+    pub(super) replies: VecDeque<Reply>,
+    /// It goes on with a flight of an earlier process and has not joined since.
+    pub(super) returning: bool,
+    /// Why the flight of an earlier process could not be gone on with.
+    pub(super) without_past: Option<String>,
 }
 
 impl Manager {
-    /// Around an executor, fresh or restored; `launch_wanted`: a take-off was ordered and not confirmed.
-    pub fn new(executor: Executor, launch_wanted: bool) -> Self {
-        let mut liaison = Liaison::default();
-        if launch_wanted {
-            liaison.want(GatewayRequest::Launch);
-        }
+    /// Around an executor that has done nothing yet. Its time begins at `base`, which in simulation is zero, in
+    /// flight the time since the machine was started.
+    pub fn new(executor: Executor, base: Time) -> Self {
         Self {
             executor,
             feeder: Feeder::default(),
-            liaison,
+            liaison: Liaison::default(),
             aircraft: Aircraft::default(),
             alarms: Alarms::default(),
+            timeline: Timeline::new(base),
             steered: Token(0),
             last_request: 0,
+            noted: Notes::default(),
+            replies: VecDeque::new(),
+            returning: false,
+            without_past: None,
         }
-    }
-
-    /// With the alarms that were answered before a restart.
-    pub fn having_answered(self, alarms: BTreeSet<String>) -> Self {
-        Self { alarms: Alarms::restored(alarms), ..self }
-    }
-
-    /// Identifiers of the alarms that were answered.
-    pub fn answered_alarms(&self) -> &BTreeSet<String> {
-        self.alarms.answered()
     }
 
     /// The executor, to be looked at.
     pub fn executor(&self) -> &Executor {
         &self.executor
-    }
-
-    /// A take-off was ordered and is not confirmed yet.
-    pub fn is_launch_wanted(&self) -> bool {
-        self.liaison.wanted() == Some(&GatewayRequest::Launch)
     }
 
     /// The gateway takes our waypoints.
@@ -90,26 +97,66 @@ impl Manager {
 
     /// Time has passed.
     pub fn tick(&mut self, now: Time, out: &mut Vec<Effect>) {
+        self.timeline.begin(now, self.executor.last_step());
         let input = self.aircraft.state().map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
         self.send(now, out);
     }
 
-    /// A command of a person or a service.
+    /// A command of a person or a service; `id` is the request's own name. One that was answered
+    /// already is answered again, and not executed.
     ///
     /// # Errors
     /// The executor's refusal.
-    pub fn command(&mut self, now: Time, command: Command, out: &mut Vec<Effect>) -> Result<(), Refusal> {
+    pub fn command(
+        &mut self,
+        now: Time,
+        command: Command,
+        id: Option<&str>,
+        out: &mut Vec<Effect>,
+    ) -> Result<(), Refusal> {
+        let id = id.filter(|id| id.len() <= REPLY_ID_MAX);
+        if let Some(reply) = id.and_then(|id| self.replies.iter().find(|reply| reply.id == id)) {
+            return reply.result.clone();
+        }
+        let result = self.order(now, command, out);
+        if let Some(id) = id {
+            let reply = Reply { id: id.to_owned(), result: result.clone() };
+            self.record(now, Record::Answered(reply.clone()), out);
+            self.remember(reply);
+        }
+        result
+    }
+
+    pub(super) fn remember(&mut self, reply: Reply) {
+        self.replies.push_back(reply);
+        if self.replies.len() > REPLIES {
+            self.replies.pop_front();
+        }
+    }
+
+    fn order(&mut self, now: Time, command: Command, out: &mut Vec<Effect>) -> Result<(), Refusal> {
         let starts = command == Command::Start;
         let request = self.next_request();
         let answer = self.step(now, Input::Command { request, command }, out);
-        answer.unwrap_or_else(|| Err(unanswered())).map(drop)?;
+        answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.liaison.want(GatewayRequest::Launch);
         }
-        out.push(Effect::Save);
         self.send(now, out);
         Ok(())
+    }
+
+    /// Without a plan because the earlier one could not be restored, that is said with every refusal.
+    fn explained(&self, refusal: Refusal) -> Refusal {
+        let reason = self.without_past.as_ref().filter(|_| self.executor.program().is_none());
+        match reason {
+            Some(why) => Refusal {
+                reason: format!("{}. The flight before the restart is lost: {why}", refusal.reason),
+                ..refusal
+            },
+            None => refusal,
+        }
     }
 
     /// A plan is put forward.
@@ -164,7 +211,6 @@ impl Manager {
             // while waypoints are on their way it is not the end
             GatewayEvent::Progress { current: None } if self.feeder.is_idle() => {
                 self.step(now, Input::Progress { current: None }, out);
-                out.push(Effect::Save);
             }
             GatewayEvent::AlarmRaised(alarm) => {
                 if let Some(cause) = self.alarms.raised(&alarm) {
@@ -181,10 +227,9 @@ impl Manager {
     /// An alarm of the gateway asks for an emergency plan.
     fn emergency(&mut self, now: Time, cause: Cause, out: &mut Vec<Effect>) {
         tracing::warn!(?cause, "alarm of the gateway: emergency");
-        if let Err(refusal) = self.command(now, Command::Emergency { cause, plan: None }, out) {
+        if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, out) {
             tracing::warn!(?cause, "no emergency plan flown: {refusal}");
         }
-        out.push(Effect::Save);
     }
 
     /// The gateway appeared: it has to be joined (again).
@@ -218,7 +263,6 @@ impl Manager {
         if let Some(reason) = self.liaison.requested(now, request, answer) {
             out.push(Effect::Event(PlanEvent::NotGranted { request: request.name().into(), reason }));
         }
-        out.push(Effect::Save);
         self.send(now, out);
     }
 
@@ -228,13 +272,19 @@ impl Manager {
         self.want_runways();
         self.alarms.joined();
         self.feeder.settle(answer.highest);
-        self.executor.number_after(answer.highest);
+        let lost = std::mem::take(&mut self.returning) && answer.highest > self.executor.last_token();
+        if answer.highest > self.executor.last_token() {
+            self.record(now, Record::NumberAfter(answer.highest), out);
+            self.executor.number_after(answer.highest);
+        }
         if let Some(current) = answer.current {
             self.progress(now, current, out);
         }
         let flying =
             matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
-        if flying {
+        if flying && lost {
+            self.hold_for_want_of_a_place(now, out);
+        } else if flying {
             self.agree(now, &answer, out);
         } else {
             self.step(now, Input::GatewayControls(false), out);
@@ -258,11 +308,27 @@ impl Manager {
         }
     }
 
+    /// The gateway was given waypoints by an earlier process that no record knows of (its disk had failed, or was too
+    /// slow): the place we know is an old one. To fly on from there is for people to say.
+    fn hold_for_want_of_a_place(&mut self, now: Time, out: &mut Vec<Effect>) {
+        let reason = "the gateway has waypoints that are not in the journal, so the place in the plan is not known: \
+                      it holds; go to a leg, or resume from the last place recorded";
+        tracing::error!("{reason}");
+        out.push(Effect::Event(PlanEvent::NotJournalled { reason: reason.into() }));
+        self.feeder.clear();
+        let held = self.order(now, Command::Hold, out);
+        if held.is_err() {
+            // it held before
+            self.liaison.want(GatewayRequest::Hold);
+        }
+        if self.liaison.take_controlled() {
+            self.step(now, Input::GatewayControls(false), out);
+        }
+    }
+
     fn progress(&mut self, now: Time, current: Token, out: &mut Vec<Effect>) {
         if current > self.steered && current <= self.executor.last_token() {
-            self.steered = current;
             self.step(now, Input::Progress { current: Some(current) }, out);
-            out.push(Effect::Save);
         }
     }
 
@@ -271,16 +337,25 @@ impl Manager {
         RequestId(self.last_request)
     }
 
-    /// Steps the executor and passes on what it wants; its answer, if there is one.
+    /// Records an input, steps the executor with it and passes on what it wants; its answer, if there is one.
+    /// What makes it want something is synced first.
     fn step(&mut self, now: Time, input: Input, out: &mut Vec<Effect>) -> Option<Result<Answer, Refusal>> {
+        let at = self.timeline.at(now, self.executor.last_step());
+        self.count(&input);
+        if let Input::Propose { program, .. } = &input {
+            out.push(Effect::Keep(program.clone()));
+        }
+        out.push(Effect::Record(Entry { at, what: recorded(&input) }));
         let mut outputs = Vec::new();
-        self.executor.step(now, input, &mut outputs);
+        self.executor.step(at, input, &mut outputs);
+        if !outputs.is_empty() {
+            out.push(Effect::Sync);
+        }
         let mut answer = None;
         for output in outputs {
             match output {
                 Output::Feed { cancel_after, waypoints } => {
-                    self.feeder.push(Feed { cancel_after, waypoints });
-                    out.push(Effect::Save);
+                    self.feeder.push(Feed { cancel_after, waypoints })
                 }
                 Output::Hold => self.liaison.want(GatewayRequest::Hold),
                 Output::Event(event) => self.happened(event, out),
@@ -288,6 +363,11 @@ impl Manager {
             }
         }
         answer
+    }
+
+    fn record(&mut self, now: Time, what: Record, out: &mut Vec<Effect>) {
+        let at = self.timeline.at(now, self.executor.last_step());
+        out.extend([Effect::Record(Entry { at, what }), Effect::Sync]);
     }
 
     fn happened(&mut self, event: PlanEvent, out: &mut Vec<Effect>) {
@@ -298,7 +378,6 @@ impl Manager {
             self.want_runways();
         }
         out.push(Effect::Event(event));
-        out.push(Effect::Save);
     }
 
     /// The gateway should know the plan's runways. A plan without any leaves it those it has.
@@ -309,8 +388,22 @@ impl Manager {
         }
     }
 
+    /// Records what is remembered beside the executor, if it has changed.
+    fn note(&mut self, now: Time, out: &mut Vec<Effect>) {
+        let notes = Notes {
+            wanted: self.liaison.wanted().cloned(),
+            controlled: self.liaison.is_controlled(),
+            answered_alarms: self.alarms.answered().clone(),
+        };
+        if notes != self.noted {
+            self.noted = notes.clone();
+            self.record(now, Record::Notes(notes), out);
+        }
+    }
+
     /// Sends what is due: first the join, then waypoints, then what wants them to be there.
     fn send(&mut self, now: Time, out: &mut Vec<Effect>) {
+        self.note(now, out);
         if self.liaison.should_join(now) {
             out.push(Effect::Join(Join {
                 plan: self.executor.program().map(|p| p.hash.to_string()),
@@ -326,6 +419,16 @@ impl Manager {
         if let Some(request) = self.liaison.request(now, self.feeder.is_idle()) {
             out.push(Effect::Request(request));
         }
+    }
+}
+
+/// An input as it is recorded.
+fn recorded(input: &Input) -> Record {
+    match input {
+        Input::Propose { request, program } => {
+            Record::Propose { request: *request, plan: program.hash.clone() }
+        }
+        other => Record::Input(other.clone()),
     }
 }
 

@@ -1,23 +1,29 @@
 //! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`, `alarms`,
-//! `runways`) around
-//! the executor, and the shell that owns session, clock and disk.
+//! `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a crash, and the shell
+//! that owns session, clock and disk.
 
 mod aircraft;
 mod alarms;
 mod feeder;
+pub mod journal;
+#[cfg(test)]
+mod kills;
 mod liaison;
 mod manager;
 mod publish;
+mod restart;
 mod runways;
 mod shell;
-mod store;
+mod timeline;
 
 pub use aircraft::Aircraft;
 pub use feeder::{Fate, Feeder};
 pub use manager::{Effect, Manager};
+pub use restart::{Restart, restart};
 pub use shell::run;
 
 use ::aircraft::Profile;
+use flight_plan::{Problem, Program};
 use std::path::PathBuf;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -57,4 +63,21 @@ impl Config {
             executor: flight_exec::Config::default(),
         }
     }
+}
+
+/// Problems listed in a sentence.
+const PROBLEMS_MAX: usize = 20;
+
+fn compile(xml: &[u8], config: &Config) -> Result<Program, Vec<Problem>> {
+    flight_plan::compile_document(xml, &config.profile, config.terrain.as_ref())
+}
+
+fn listed(problems: &[Problem]) -> String {
+    let errors = problems.iter().filter(|p| p.is_error());
+    let mut told: Vec<String> = errors.clone().take(PROBLEMS_MAX).map(ToString::to_string).collect();
+    let more = errors.count().saturating_sub(PROBLEMS_MAX);
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    told.join("; ")
 }

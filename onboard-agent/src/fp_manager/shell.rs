@@ -1,15 +1,14 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
-use super::Config;
+use super::journal::{Clerk, Folder, Job, Keeper, Limits, Log, encode};
 use super::manager::{Effect, Manager};
 use super::publish::{self, Publishers};
-use super::store::{self, Saved, Store};
+use super::restart::{Restart, restart};
+use super::{Config, compile, listed};
 use crate::Shutdown;
-use crate::clock::Clock;
+use crate::clock::{Clock, Time};
 use anyhow::Context;
 use flight_exec::Executor;
-use flight_plan::{Problem, Program};
-use std::sync::Arc;
 use std::time::Duration;
 use usal::contract::*;
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
@@ -20,14 +19,10 @@ use usal::{
 
 /// The gateway answers at once or not at all, wall-clock.
 const CALL_TIMEOUT: Duration = Duration::from_millis(1500);
-/// An accepted plan is on disk before its acceptance is told, unless that takes longer.
-const DISK_PATIENCE: Duration = Duration::from_millis(500);
 /// In lockstep, answers on their way are waited for so long (wall-clock) before time goes on.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(2);
 /// Exchanges with the gateway within one step of time.
 const EXCHANGES_MAX: usize = 16;
-/// Problems listed in a refusal.
-const PROBLEMS_MAX: usize = 20;
 
 /// What is asked of us.
 struct Services {
@@ -144,7 +139,7 @@ struct Shell {
     session: Session,
     clock: Clock,
     manager: Manager,
-    store: Option<Store>,
+    journal: Option<Keeper>,
     publishers: Publishers,
     pending: Pending,
 }
@@ -162,7 +157,7 @@ pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
 }
 
 async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> anyhow::Result<()> {
-    let (store, manager) = open(&config)?;
+    let (journal, past) = open(&config)?;
     let mut ears = Ears::new(session)?;
     let mut services = Services::new(session)?;
     let clock = match config.simulated {
@@ -171,8 +166,13 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     };
     let publishers = Publishers::new(session)?;
     let session = session.clone();
-    let mut shell = Shell { config, session, clock, manager, store, publishers, pending: Pending::default() };
-    shell.load_plan()?;
+    let pending = Pending::default();
+    let manager = past.manager;
+    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending };
+    let troubles = past.troubles.into_iter();
+    let told = troubles.map(|reason| Effect::Event(PlanEvent::NotJournalled { reason })).collect();
+    shell.perform(told).await;
+    shell.load_plan().await?;
     loop {
         tokio::select! {
             () = shutdown.requested() => break,
@@ -180,57 +180,41 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
                 anyhow::ensure!(beat.is_some(), "the network session was closed");
                 shell.beat(&mut ears).await;
             }
-            answered = shell.pending.next() => shell.answered(answered),
+            answered = shell.pending.next() => shell.answered(answered).await,
             occurrence = ears.events.recv() => {
-                shell.occurred(occurrence.context("the network session was closed")?);
+                shell.occurred(occurrence.context("the network session was closed")?).await;
             }
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
-    shell.save();
-    shell.flush_disk().await;
+    shell.save_state();
+    if let Some(journal) = &mut shell.journal {
+        journal.done().await;
+    }
     Ok(())
 }
 
-/// The store and what it remembers.
-fn open(config: &Config) -> anyhow::Result<(Option<Store>, Manager)> {
-    let fresh = || Executor::new(config.executor.clone(), config.terrain.clone(), config.profile.clone());
-    let Some(directory) = &config.state_dir else { return Ok((None, Manager::new(fresh(), false))) };
-    let (store, saved) = Store::open(directory)?;
-    let Some(saved) = saved else { return Ok((Some(store), Manager::new(fresh(), false))) };
-    let (launch_wanted, answered_alarms) = (saved.launch_wanted, saved.answered_alarms.clone());
-    let manager = match restore(config, saved) {
-        Ok(executor) => {
-            tracing::info!(phase = ?executor.status_phase(), "going on where the last FP Manager was");
-            Manager::new(executor, launch_wanted).having_answered(answered_alarms)
-        }
-        Err(error) => {
-            store::set_aside(&store::file(directory), &format!("{error:#}"));
-            Manager::new(fresh(), false)
-        }
+/// The journal, and the flight it leads up to.
+fn open(config: &Config) -> anyhow::Result<(Option<Keeper>, Restart)> {
+    let base = if config.simulated { Time::ZERO } else { time_since_boot() };
+    let Some(folder) = config.state_dir.clone() else {
+        let executor = Executor::new(config.executor.clone(), config.terrain.clone(), config.profile.clone());
+        let past = Restart { manager: Manager::new(executor, base), troubles: Vec::new() };
+        return Ok((None, past));
     };
-    Ok((Some(store), manager))
+    let (mut log, found) = Log::open(Folder::new(folder), Limits::default());
+    let past = restart(&mut log, found.as_deref().unwrap_or_default(), config, base);
+    let mut journal = Keeper::start(Clerk::new(log, found.as_ref().err()))?;
+    let (saved, plans) = past.manager.saved();
+    journal.give(Job::State(Box::new(saved), plans));
+    Ok((Some(journal), past))
 }
 
-fn restore(config: &Config, saved: Saved) -> anyhow::Result<Executor> {
-    let compiled = saved.plan.map(|xml| compile(&xml, config)).transpose();
-    let program = compiled.map_err(|problems| anyhow::anyhow!("its plan: {}", listed(&problems)))?;
-    let (settings, terrain) = (config.executor.clone(), config.terrain.clone());
-    Ok(Executor::restore(settings, terrain, config.profile.clone(), program.map(Arc::new), saved.snapshot)?)
-}
-
-fn compile(xml: &str, config: &Config) -> Result<Program, Vec<Problem>> {
-    flight_plan::compile_document(xml.as_bytes(), &config.profile, config.terrain.as_ref())
-}
-
-fn listed(problems: &[Problem]) -> String {
-    let errors = problems.iter().filter(|p| p.is_error());
-    let mut told: Vec<String> = errors.clone().take(PROBLEMS_MAX).map(ToString::to_string).collect();
-    let more = errors.count().saturating_sub(PROBLEMS_MAX);
-    if more > 0 {
-        told.push(format!("and {more} more"));
-    }
-    told.join("; ")
+/// Time since the machine was started, as far as the system tells; else zero.
+fn time_since_boot() -> Time {
+    let uptime = std::fs::read_to_string("/proc/uptime").unwrap_or_default();
+    let seconds = uptime.split(' ').next().and_then(|text| text.parse().ok());
+    seconds.and_then(|s| Time::try_from_secs_f64(s).ok()).unwrap_or_default()
 }
 
 fn refusal(code: &str, reason: String) -> Refusal {
@@ -239,28 +223,30 @@ fn refusal(code: &str, reason: String) -> Refusal {
 
 impl Shell {
     /// The plan it was started with becomes the active one, unless one was restored.
-    fn load_plan(&mut self) -> anyhow::Result<()> {
+    async fn load_plan(&mut self) -> anyhow::Result<()> {
         let Some(xml) = self.config.plan.take().filter(|_| self.manager.executor().program().is_none())
         else {
             return Ok(());
         };
         let report = self
             .propose(&Propose { xml, seen_revision: None })
+            .await
             .map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
-        self.command(commit).map_err(|r| anyhow::anyhow!("the plan: {r}"))
+        self.command(commit, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
     }
 
     /// Everything due at a beat of the clock.
     async fn beat(&mut self, ears: &mut Ears) {
         while let Some(occurrence) = ears.events.try_recv() {
-            self.occurred(occurrence);
+            self.occurred(occurrence).await;
         }
-        self.listen(ears);
+        self.listen(ears).await;
         let now = self.clock.now();
         let mut effects = Vec::new();
         self.manager.tick(now, &mut effects);
-        self.perform(effects);
+        self.perform(effects).await;
+        self.look_after_journal();
         if self.clock.is_simulated() {
             self.await_answers().await;
         }
@@ -275,14 +261,14 @@ impl Shell {
                 return;
             }
             match tokio::time::timeout(ANSWER_PATIENCE, self.pending.next()).await {
-                Ok(answered) => self.answered(answered),
+                Ok(answered) => self.answered(answered).await,
                 Err(_) => return,
             }
         }
     }
 
     /// Fresh variables of the gateway.
-    fn listen(&mut self, ears: &mut Ears) {
+    async fn listen(&mut self, ears: &mut Ears) {
         let now = self.clock.now();
         let mut effects = Vec::new();
         let aircraft = self.manager.aircraft();
@@ -300,10 +286,10 @@ impl Shell {
         if let Some(received) = ears.navigation.take_new() {
             self.manager.navigation(now, &received.stamped.value, &mut effects);
         }
-        self.perform(effects);
+        self.perform(effects).await;
     }
 
-    fn occurred(&mut self, occurrence: Occurrence<TimedGatewayEvent>) {
+    async fn occurred(&mut self, occurrence: Occurrence<TimedGatewayEvent>) {
         let mut effects = Vec::new();
         match occurrence {
             Occurrence::Event { event, .. } => {
@@ -311,10 +297,10 @@ impl Shell {
             }
             Occurrence::Gap { missed } => tracing::warn!(missed, "events of the gateway were lost"),
         }
-        self.perform(effects);
+        self.perform(effects).await;
     }
 
-    fn answered(&mut self, answered: Answered) {
+    async fn answered(&mut self, answered: Answered) {
         let now = self.clock.now();
         let mut effects = Vec::new();
         match answered {
@@ -325,7 +311,7 @@ impl Shell {
                 self.manager.requested(now, &request, answer, &mut effects);
             }
         }
-        self.perform(effects);
+        self.perform(effects).await;
     }
 
     async fn call(&mut self, call: Call) {
@@ -333,16 +319,13 @@ impl Shell {
             Call::Describe(incoming) => incoming.answer(Ok(usal::fp_manager_description())),
             Call::Plan(incoming) => incoming.answer(Ok(self.document())),
             Call::Propose(incoming) => {
-                let answer = self.propose(&incoming.request);
+                let answer = self.propose(&incoming.request).await;
                 incoming.answer(answer);
             }
             Call::Command(incoming) => {
+                let id = incoming.id().map(str::to_owned);
                 let (command, reply) = incoming.split();
-                let lasting = matches!(command, Command::Commit { .. } | Command::Start);
-                let answer = self.command(command);
-                if lasting && answer.is_ok() {
-                    self.flush_disk().await;
-                }
+                let answer = self.command(command, id.as_deref()).await;
                 reply(answer.map(|()| Empty {}));
             }
         }
@@ -352,23 +335,24 @@ impl Shell {
         }
     }
 
-    fn propose(&mut self, propose: &Propose) -> Result<ProposalReport, Refusal> {
+    async fn propose(&mut self, propose: &Propose) -> Result<ProposalReport, Refusal> {
         let revision = self.manager.executor().status().revision;
         if propose.seen_revision.is_some_and(|seen| seen != revision) {
             let reason = format!("the plan is at revision {revision} by now: look at it, then propose again");
             return Err(refusal("stale-revision", reason));
         }
-        let program = compile(&propose.xml, &self.config).map_err(|p| refusal("plan-errors", listed(&p)))?;
+        let program =
+            compile(propose.xml.as_bytes(), &self.config).map_err(|p| refusal("plan-errors", listed(&p)))?;
         let mut effects = Vec::new();
         let report = self.manager.propose(self.clock.now(), program, &mut effects);
-        self.perform(effects);
+        self.perform(effects).await;
         report
     }
 
-    fn command(&mut self, command: Command) -> Result<(), Refusal> {
+    async fn command(&mut self, command: Command, id: Option<&str>) -> Result<(), Refusal> {
         let mut effects = Vec::new();
-        let answer = self.manager.command(self.clock.now(), command, &mut effects);
-        self.perform(effects);
+        let answer = self.manager.command(self.clock.now(), command, id, &mut effects);
+        self.perform(effects).await;
         answer
     }
 
@@ -378,14 +362,11 @@ impl Shell {
         PlanDocument { info: publish::plan_info(executor), xml }
     }
 
-    fn perform(&mut self, effects: Vec<Effect>) {
-        if effects.contains(&Effect::Save) {
-            self.save();
-        }
+    async fn perform(&mut self, effects: Vec<Effect>) {
+        let effects = self.record(effects).await;
         let now = self.clock.now();
         for effect in effects {
             match effect {
-                Effect::Save => {}
                 Effect::Event(event) => {
                     self.publishers.event(now, event);
                     self.publishers.hurry();
@@ -400,24 +381,52 @@ impl Shell {
                     let call = self.session.call(gateway::REQUEST, &request, CALL_TIMEOUT);
                     self.pending.request = Some((request, call));
                 }
+                Effect::Record(_) | Effect::Keep(_) | Effect::Sync => {}
             }
         }
     }
 
-    fn save(&mut self) {
-        let Some(store) = &mut self.store else { return };
-        let executor = self.manager.executor();
-        store.save(Saved {
-            plan: executor.program().map(|p| flight_plan::write(&p.plan).into()),
-            snapshot: executor.snapshot(),
-            launch_wanted: self.manager.is_launch_wanted(),
-            answered_alarms: self.manager.answered_alarms().clone(),
-        });
+    /// Records a turn, before the rest of its effects is carried out; gives that.
+    async fn record(&mut self, effects: Vec<Effect>) -> Vec<Effect> {
+        let Some(journal) = &mut self.journal else { return effects };
+        let (mut entries, mut others, mut sync) = (Vec::new(), Vec::new(), false);
+        for effect in effects {
+            match effect {
+                Effect::Record(entry) => entries.push(entry),
+                Effect::Keep(program) => journal.give(Job::Plan(program)),
+                Effect::Sync => sync = true,
+                other => others.push(other),
+            }
+        }
+        if entries.is_empty() {
+            return others;
+        }
+        match encode(&entries) {
+            Ok(payload) => journal.give(Job::Turn { payload, sync }),
+            Err(error) => tracing::error!("a turn cannot be recorded: {error}"),
+        }
+        if sync || !others.is_empty() {
+            journal.done().await;
+        }
+        others
     }
 
-    async fn flush_disk(&mut self) {
-        if let Some(store) = &mut self.store {
-            store.flushed(DISK_PATIENCE).await;
+    /// Hands in a state when one is wanted, and tells people what they have to know of the disk.
+    fn look_after_journal(&mut self) {
+        let Some(journal) = &mut self.journal else { return };
+        let wants_state = journal.wants_state();
+        if let Some(event) = journal.news() {
+            self.publishers.event(self.clock.now(), event);
+        }
+        if wants_state {
+            self.save_state();
+        }
+    }
+
+    fn save_state(&mut self) {
+        let (saved, plans) = self.manager.saved();
+        if let Some(journal) = &mut self.journal {
+            journal.give(Job::State(Box::new(saved), plans));
         }
     }
 }

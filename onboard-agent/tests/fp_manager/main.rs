@@ -246,12 +246,6 @@ async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
         let runways = flight.gateway.runways.len();
         flight.step_until(|g| g.runways.len() > runways).await;
         flight.step(1).await;
-        // killed before its disk knows of the emergency, it would rightly begin it anew
-        until(async || {
-            let kept = std::fs::read(directory.path().join("fp-manager.cbor")).unwrap_or_default();
-            kept.windows(10).any(|bytes| bytes == b"energy-low")
-        })
-        .await;
         flight.kill_manager().await;
     }
     flight.gateway.safe_until_joined();
@@ -368,12 +362,67 @@ async fn waypoints_refused_by_the_gateway_hold_the_flight_and_are_told() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn damaged_state_is_set_aside_and_the_manager_runs() {
+async fn damaged_journal_is_set_aside_and_told_and_the_manager_runs() {
     let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("fp-manager.cbor"), b"\xffgarbage").unwrap();
+    std::fs::write(directory.path().join("segment-00000007.journal"), b"\xffgarbage").unwrap();
     let mut flight = Flight::new(Some(directory.path())).await;
-    assert!(directory.path().join("fp-manager.unusable-1").exists());
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    assert!(directory.path().join("segment-00000007.unusable").exists());
+    match flight.command(Command::Start).await.unwrap_err() {
+        CallError::Refused(refusal) => assert!(refusal.reason.contains("lost"), "{refusal}"),
+        other => panic!("{other:?}"),
+    }
     flight.load(SQUARE).await;
+    until(async || {
+        matches!(events.try_recv(), Some(Occurrence::Event { event, .. })
+            if matches!(&event.value, PlanEvent::NotJournalled { reason } if reason.contains("unusable")))
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn proposal_not_committed_survives_a_kill() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    let report = flight.propose(SQUARE).await.unwrap();
+    flight.kill_manager().await;
+    flight.start_manager().await;
+    flight.command(Command::Commit { hash: report.hash, entry: None }).await.unwrap();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn state_directory_that_cannot_be_written_is_told_and_flown_without_until_it_can() {
+    let directory = tempfile::tempdir().unwrap();
+    // a file where the folder should be: nobody can write there, not even root
+    let folder = directory.path().join("state");
+    std::fs::write(&folder, b"").unwrap();
+    let mut flight = Flight::new(Some(&folder)).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    flight.load(SQUARE).await;
+    flight.start().await;
+    let mut heard = Vec::new();
+    let mut tell = |flight: &Flight| {
+        let _ = flight;
+        while let Some(Occurrence::Event { event, .. }) = events.try_recv() {
+            match event.value {
+                PlanEvent::NotJournalled { .. } => heard.push("not journalled"),
+                PlanEvent::Journalled => heard.push("journalled"),
+                _ => {}
+            }
+        }
+        heard.clone()
+    };
+    flight.step_until(|g| g.flown.len() >= 2).await;
+    until(async || tell(&flight) == ["not journalled"]).await;
+    std::fs::remove_file(&folder).unwrap();
+    within(async {
+        while tell(&flight).len() < 2 {
+            flight.gateway.state = GatewayState::Hold;
+            flight.step(1).await;
+        }
+    })
+    .await;
+    assert_eq!(tell(&flight), ["not journalled", "journalled"]);
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -76,6 +76,11 @@ pub struct Incoming<Q, A> {
 }
 
 impl<Q, A: Serialize> Incoming<Q, A> {
+    /// The request's own name: the same for each repetition of it.
+    pub fn id(&self) -> Option<&str> {
+        self.reply.id.as_deref()
+    }
+
     /// Answers it.
     pub fn answer(mut self, answer: Result<A, Refusal>) {
         self.reply.answer(&answer);

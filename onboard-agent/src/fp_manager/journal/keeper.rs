@@ -1,0 +1,172 @@
+//! Shell: the thread that owns the disk, and the handle to it. The flight waits for the disk where it must, and
+//! never long: a slow disk is a trouble that is told, not one that is flown into.
+
+use super::clerk::{Clerk, Job, Report};
+use super::storage::Storage;
+use anyhow::Context;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+use usal::contract::PlanEvent;
+
+/// The flight waits for the disk so long at most.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// More than this does not wait for a disk, bytes.
+const WAITING_MAX: usize = 8 << 20;
+
+/// The journal, as the flight sees it.
+pub struct Keeper {
+    desk: Arc<Desk>,
+    progress: watch::Receiver<Progress>,
+    /// Number of the last job given.
+    given: u64,
+    /// Number of the last state given.
+    state: u64,
+    /// The disk was too slow, and has not caught up.
+    behind: bool,
+    /// What people were told last.
+    told: bool,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Progress {
+    /// Number of the last job done.
+    done: u64,
+    report: Report,
+}
+
+/// Where the thread finds its jobs.
+#[derive(Default)]
+struct Desk {
+    slot: Mutex<Slot>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Slot {
+    jobs: Vec<Job>,
+    bytes: usize,
+    last: u64,
+    overrun: bool,
+    closed: bool,
+}
+
+impl Keeper {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn start<S: Storage + Send + 'static>(clerk: Clerk<S>) -> anyhow::Result<Self> {
+        let desk = Arc::<Desk>::default();
+        let report = clerk.report(Duration::ZERO);
+        let (sender, progress) = watch::channel(Progress { done: 0, report });
+        let theirs = desk.clone();
+        std::thread::Builder::new()
+            .name("fp-manager-disk".into())
+            .spawn(move || work(clerk, &theirs, &sender))
+            .context("the thread that writes the journal")?;
+        Ok(Self { desk, progress, given: 0, state: 0, behind: false, told: false })
+    }
+
+    /// Has a job done, after those given before.
+    pub fn give(&mut self, job: Job) {
+        self.given += 1;
+        if matches!(job, Job::State(..)) {
+            self.state = self.given;
+        }
+        let mut slot = self.desk.lock();
+        slot.last = self.given;
+        slot.bytes += job.bytes();
+        if slot.bytes > WAITING_MAX {
+            slot.jobs.clear();
+            slot.overrun = true;
+        } else {
+            slot.jobs.push(job);
+        }
+        drop(slot);
+        self.desk.changed.notify_one();
+    }
+
+    /// Waits until everything given is done, but not for long.
+    pub async fn done(&mut self) {
+        let given = self.given;
+        if self.progress.borrow().done >= given {
+            self.behind = false;
+        } else if !self.behind {
+            let done = self.progress.wait_for(|progress| progress.done >= given);
+            let late = tokio::time::timeout(PATIENCE, done).await.is_err();
+            self.behind = late;
+            if late {
+                tracing::warn!("the disk is slow: what happens takes effect before it is recorded");
+            }
+        }
+    }
+
+    /// A state should be handed in, and none is on its way.
+    pub fn wants_state(&self) -> bool {
+        let progress = self.progress.borrow();
+        progress.report.wants_state && progress.done >= self.state
+    }
+
+    /// What people have to be told: that recording stopped, or that it is back.
+    pub fn news(&mut self) -> Option<PlanEvent> {
+        let progress = self.progress.borrow();
+        let slow =
+            || self.behind.then(|| "the disk is slow: check the disk of the state directory".to_owned());
+        let trouble = progress.report.trouble.clone().or_else(slow);
+        drop(progress);
+        match (trouble, std::mem::take(&mut self.told)) {
+            (Some(reason), told) => {
+                self.told = true;
+                (!told).then_some(PlanEvent::NotJournalled { reason })
+            }
+            (None, told) => told.then_some(PlanEvent::Journalled),
+        }
+    }
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        self.desk.lock().closed = true;
+        self.desk.changed.notify_one();
+    }
+}
+
+impl Desk {
+    fn lock(&self) -> MutexGuard<'_, Slot> {
+        self.slot.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for jobs, or until `wait` is over; `None` when there will be no more.
+    fn take(&self, wait: Option<Duration>) -> Option<(Vec<Job>, u64, bool)> {
+        let idle = |slot: &mut Slot| slot.jobs.is_empty() && !slot.overrun && !slot.closed;
+        let mut slot = match wait {
+            None => self.changed.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner),
+            Some(wait) => {
+                let waited = self.changed.wait_timeout_while(self.lock(), wait, idle);
+                waited.unwrap_or_else(PoisonError::into_inner).0
+            }
+        };
+        if slot.closed && slot.jobs.is_empty() {
+            return None;
+        }
+        slot.bytes = 0;
+        Some((std::mem::take(&mut slot.jobs), slot.last, std::mem::take(&mut slot.overrun)))
+    }
+}
+
+fn work<S: Storage>(mut clerk: Clerk<S>, desk: &Desk, progress: &watch::Sender<Progress>) {
+    let start = Instant::now();
+    loop {
+        let wait = clerk.due().map(|due| due.saturating_sub(start.elapsed()));
+        let Some((jobs, last, overrun)) = desk.take(wait) else { break };
+        let now = start.elapsed();
+        if overrun {
+            clerk.overrun(now);
+        }
+        clerk.perform(now, jobs);
+        let report = clerk.report(now);
+        progress.send_replace(Progress { done: last, report });
+    }
+    clerk.finish(start.elapsed());
+}

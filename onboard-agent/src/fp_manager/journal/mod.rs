@@ -1,0 +1,76 @@
+//! The journal: every input of the executor, recorded before it takes effect, so that after a crash at any instant
+//! a new process stands where the old one stood.
+//!
+//! # What is recorded
+//!
+//! A **turn** is one call of the [`Manager`](super::Manager): the inputs of the executor it leads to, with the executor's time,
+//! what the FP Manager remembers beside it ([`Notes`]: what is wanted of the gateway, alarms answered), and answers
+//! to commands ([`Reply`]). A turn is written as one frame: after a restart all of it happened or none. A proposal's document
+//! is kept in a file of its own, under its hash, before the turn that names it.
+//!
+//! # When
+//!
+//! A turn is written before anything that it leads to leaves the process. Whatever makes the executor put something
+//! out (waypoints, an answer, an event, a hold) and every change of the notes is also **synced** before; positions and
+//! ticks that lead to nothing are synced within a second. So no waypoint reaches the gateway, no command is answered and no
+//! action is triggered that a restart would not know of, not even after a loss of power. What a replayed input puts out is
+//! dropped: it was done once, or its process died before and the join with the gateway puts it right. An action is
+//! therefore triggered at most once.
+//!
+//! The flight waits for the disk for half a second at most. A disk that is full, fails or is slow is told as
+//! [`NotJournalled`](usal::contract::PlanEvent::NotJournalled) and flown on without; a new state is tried every second, and when it is written
+//! recording goes on ([`Journalled`](usal::contract::PlanEvent::Journalled)).
+//!
+//! # Files
+//!
+//! | name | content |
+//! |---|---|
+//! | `segment-00000042.journal` | a state ([`Saved`]) and the turns since |
+//! | `segment-00000041.journal` | the segment before, in case the state of the newest cannot be read |
+//! | `segment-00000042.stopped` | a segment that failed while the flight went on: something is missing behind it |
+//! | `segment-00000042.unusable` | set aside by a restart; the last three are kept |
+//! | `plan-HASH.xml` | documents that these segments name |
+//! | `segment.tmp`, `plan.tmp` | not finished, of no meaning |
+//!
+//! A new segment is begun after 2000 turns or 2 MiB: written to a temporary file, synced, renamed, the
+//! folder synced; then what is older than the segment before is removed. Two states, two tails and at most 22 plans is all
+//! the space it takes.
+//!
+//! # A segment
+//!
+//! All numbers little-endian.
+//!
+//! ```text
+//! header  "LEGWORKJ" | version u32 = 1 | CRC-32 of magic, version and number | number u64
+//! frame   length u32 | !length u32 | CRC-32 of number, index u64 and payload | payload (CBOR)
+//! ```
+//!
+//! The complement makes every damaged length evident, the index every frame that is missing or in a wrong place. The
+//! first payload is a [`Saved`], each further one a turn, a list of [`Entry`].
+//!
+//! # Recovery
+//!
+//! The newest segment is read up to the first frame that is not whole and undamaged. Is that the last, the tail was **torn** by the
+//! crash and is dropped: nothing of it had taken effect. Are there others behind it, the segment is **corrupt**: replay stops before it, and
+//! that is told as an event, as something that took effect may be missing. The executor is restored from the state, and the
+//! turns are replayed through `Executor::step` at their recorded times. Then a new segment is begun. A segment whose state cannot be
+//! used is set aside, and the one before it, which leads up to the same state, is taken.
+//!
+//! Whatever is missing, the gateway knows the highest token it was given: if that is beyond the journal's, the place is an old
+//! one, and the FP Manager holds and says so instead of flying a part of the plan twice.
+
+mod clerk;
+mod frame;
+mod keeper;
+mod log;
+mod record;
+mod storage;
+#[cfg(test)]
+mod tests;
+
+pub use clerk::{Clerk, Job, Report};
+pub use frame::{End, NoSegment, Scan, scan};
+pub use keeper::Keeper;
+pub use log::{Found, Limits, Log};
+pub use record::{Chapter, Entry, Notes, Record, Reply, Saved, Unusable, encode, read};
+pub use storage::{Folder, Storage};
