@@ -35,6 +35,12 @@ impl Id {
     }
 }
 
+impl std::borrow::Borrow<str> for Id {
+    fn borrow(&self) -> &str {
+        &self.0
+    }
+}
+
 impl From<&str> for Id {
     fn from(text: &str) -> Self {
         Self::new(text)

@@ -1,11 +1,14 @@
 //! A checked plan, ready for the executor.
 
+use crate::checks::check_flown;
 use crate::expression::{self, Env, EvalError, Expression, Names};
 use crate::{
-    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, check, xml,
+    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, instantiate,
+    xml,
 };
 use aircraft::Profile;
 use geometry::LatLon;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -13,8 +16,10 @@ use terrain::Terrain;
 /// A plan without errors, its expressions compiled and its lookups resolved; immutable.
 #[derive(Debug)]
 pub struct Program {
-    /// The plan it was made from.
+    /// The plan it was made from, as it was written: with its calls.
     pub plan: FlightPlan,
+    /// The same with its calls instantiated; `None`: it has no calls.
+    flown: Option<FlightPlan>,
     /// Hex SHA-256 of the plan's canonical XML.
     pub hash: Arc<str>,
     /// What the checks said that does not forbid flying.
@@ -45,15 +50,20 @@ pub struct LegPath {
 /// # Errors
 /// Every problem of the plan, if one of them forbids flying.
 pub fn compile(plan: FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Result<Program, Vec<Problem>> {
-    let problems = check(&plan, profile, terrain);
+    let (flown, mut problems) = instantiate(&plan);
+    problems.extend(check_flown(&flown, profile, terrain));
     if problems.iter().any(Problem::is_error) {
         return Err(problems);
     }
     Ok(Program {
         hash: xml::hash(&plan).into(),
         warnings: problems,
-        paths: paths(&plan),
-        expressions: compiled(&plan),
+        paths: paths(&flown),
+        expressions: compiled(&flown),
+        flown: match flown {
+            Cow::Owned(flown) => Some(flown),
+            Cow::Borrowed(_) => None,
+        },
         plan,
     })
 }
@@ -82,6 +92,11 @@ pub fn compile_document(
 }
 
 impl Program {
+    /// The plan that is flown: its calls are the legs they stand for (see [`crate::procedure`]).
+    pub fn flown(&self) -> &FlightPlan {
+        self.flown.as_ref().unwrap_or(&self.plan)
+    }
+
     /// Where a leg (or a stage) is.
     pub fn path(&self, id: &Id) -> Option<&LegPath> {
         self.paths.get(id)
@@ -90,8 +105,8 @@ impl Program {
     /// The stages of the main plan (`None`) or of an emergency plan (its index).
     pub fn stages(&self, emergency_plan: Option<usize>) -> &[Stage] {
         match emergency_plan {
-            None => &self.plan.stages,
-            Some(index) => self.plan.emergency_plans.get(index).map_or(&[], |e| &e.stages),
+            None => &self.flown().stages,
+            Some(index) => self.flown().emergency_plans.get(index).map_or(&[], |e| &e.stages),
         }
     }
 
@@ -140,7 +155,7 @@ impl Program {
         let levels = chain.iter().rev().map(|leg| &leg.emergency);
         let levels = levels.chain(self.stage(path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
         let chosen = levels.filter_map(|level| level.plan_for(cause)).next()?;
-        self.plan.emergency_plan(chosen)
+        self.flown().emergency_plan(chosen)
     }
 
     /// A number: a constant as it is, an expression evaluated.

@@ -64,8 +64,15 @@ const RULES: [Rule; 23] = [
 
 /// Every problem of a plan for an aircraft over a terrain; empty: nothing to complain about.
 ///
-/// Geometry that depends on variables is checked at their initial values.
+/// Calls are checked as the legs they stand for. Geometry that depends on variables is checked at their initial values.
 pub fn check(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Vec<Problem> {
+    let (flown, mut problems) = crate::procedure::instantiate(plan);
+    problems.extend(check_flown(&flown, profile, terrain));
+    problems
+}
+
+/// As [`check`], of a plan whose calls have been instantiated.
+pub(crate) fn check_flown(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Vec<Problem> {
     let inspection = Inspection::new(plan, profile, terrain);
     let mut problems = Vec::new();
     RULES.iter().for_each(|rule| rule(&inspection, &mut problems));

@@ -313,6 +313,7 @@ impl Checker<'_> {
             "max" => (Function::Max, &[Number, Number], Number),
             "distance" => (Function::Distance, &[Position, Position], Number),
             "offset" => (Function::Offset, &[Position, Number, Number], Position),
+            "lat_lon" => (Function::LatLon, &[Number, Number], Position),
             "contains" => (Function::Contains, &[Text, Text], Bool),
             "startsWith" => (Function::StartsWith, &[Text, Text], Bool),
             "endsWith" => (Function::EndsWith, &[Text, Text], Bool),

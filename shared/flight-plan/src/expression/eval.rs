@@ -285,6 +285,7 @@ fn call<'a>(function: Function, arguments: &'a [Node], env: &Env<'a>) -> Result<
         Function::Max => Scalar::Number(real(0)?.max(real(1)?)),
         Function::Distance => Scalar::Number(distance_m(place(0)?, place(1)?)?),
         Function::Offset => Scalar::Position(offset(place(0)?, real(1)?, real(2)?)?),
+        Function::LatLon => Scalar::Position(LatLon::new(real(0)?, real(1)?)),
         Function::Contains | Function::StartsWith | Function::EndsWith => {
             match (argument(0)?, argument(1)?) {
                 (Scalar::Text(a), Scalar::Text(b)) => Scalar::Bool(match function {

@@ -4,14 +4,16 @@
 //! small tree that is evaluated without allocation surprises: bounded in size and depth, no loops, no side effects.
 //! The subset: literals (bool, int, double, string), the plan's variables, the in-flight names, `! - + * / % == != < <= > >= && || ?:`,
 //! `double(int)`, `abs(number)`, `min(a, b)`, `max(a, b)`, `distance_to(fix or position)`, `distance(p, q)`,
-//! `offset(position, bearing_deg, distance_m)` and the text tests `contains`, `startsWith`, `endsWith`.
+//! `offset(position, bearing_deg, distance_m)`, `lat_lon(latitude_deg, longitude_deg)` and the text tests `contains`, `startsWith`, `endsWith`.
 //! As in CEL, int and double compare with each other but do not mix in arithmetic.
 
 mod compile;
 mod eval;
+mod tokens;
 
 pub use compile::{MAX_DEPTH, MAX_LENGTH, Names, compile, compile_with};
 pub use eval::{Env, EvalError, FlightState};
+pub(crate) use tokens::substitute;
 
 use crate::Id;
 use geometry::LatLon;
@@ -98,10 +100,16 @@ impl FlightName {
     ];
 }
 
+/// True for names that a variable or parameter can have.
+pub fn is_variable_name(name: &str) -> bool {
+    let word = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    word && !name.is_empty() && !name.starts_with(|c: char| c.is_ascii_digit()) && !is_reserved(name)
+}
+
 /// True for names that a variable can't have because the language has them.
 pub fn is_reserved(name: &str) -> bool {
     /// CEL's keywords and reserved words, and our functions.
-    const WORDS: [&str; 32] = [
+    const WORDS: [&str; 33] = [
         "true",
         "false",
         "null",
@@ -131,6 +139,7 @@ pub fn is_reserved(name: &str) -> bool {
         "distance",
         "distance_to",
         "offset",
+        "lat_lon",
         "contains",
         "startsWith",
         "endsWith",
@@ -163,6 +172,7 @@ enum Function {
     Max,
     Distance,
     Offset,
+    LatLon,
     Contains,
     StartsWith,
     EndsWith,

@@ -18,11 +18,16 @@ pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEM
 pub use read::{Places, Reading, read};
 pub use write::write;
 
-use crate::FlightPlan;
+use crate::{FlightPlan, Leg};
 use sha2::{Digest, Sha256};
 
 /// The document's namespace.
 pub const NAMESPACE: &str = "urn:legwork:flight-plan:1";
+
+/// How long legs are when they are written, bytes.
+pub(crate) fn size(legs: &[Leg]) -> usize {
+    write::legs(legs).len()
+}
 
 /// Hex SHA-256 of the plan's canonical document: its identity aboard and on the ground.
 pub fn hash(plan: &FlightPlan) -> String {

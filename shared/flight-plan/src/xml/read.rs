@@ -27,9 +27,11 @@ pub struct Reading {
 pub struct Places(HashMap<Id, Location>);
 
 impl Places {
-    /// Where a leg, stage, fix, runway, variable or emergency plan stands (the last one, if the identifier is there twice).
+    /// Where a leg, stage, fix, runway, variable, zone, procedure or emergency plan stands (the last one, if the identifier
+    /// is there twice); of a leg that a call makes (`call.leg`): where the call stands.
     pub fn get(&self, id: &Id) -> Option<Location> {
-        self.0.get(id).copied()
+        let calls = std::iter::successors(Some(id.as_str()), |id| id.rsplit_once('.').map(|(call, _)| call));
+        calls.into_iter().find_map(|id| self.0.get(id)).copied()
     }
 
     pub(super) fn insert(&mut self, id: &Id, location: Location) {

@@ -4,7 +4,7 @@ use super::attributes::allowed;
 use super::write_legs::leg;
 use super::{NAMESPACE, zone};
 use crate::{
-    Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Place, PlanWaypoint, Procedure, Runway,
+    Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure, Runway,
     Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
 };
 use geometry::LatLon;
@@ -29,6 +29,13 @@ pub fn write(plan: &FlightPlan) -> String {
         });
         out.list("emergencyPlans", &plan.emergency_plans, emergency_plan);
     });
+    out.text
+}
+
+/// Legs by themselves.
+pub(super) fn legs(legs: &[Leg]) -> String {
+    let mut out = Writer { text: String::new(), depth: 0 };
+    legs.iter().for_each(|l| leg(&mut out, l));
     out.text
 }
 
