@@ -16,6 +16,7 @@ pub mod scan;
 #[cfg(test)]
 mod testing;
 pub mod turn;
+pub mod zone;
 
 pub use arc::Flattening;
 pub use geodesy::LatLon;

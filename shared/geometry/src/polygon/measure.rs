@@ -103,7 +103,8 @@ fn first_moment(ring: &[Vec2]) -> (Vec2, f64) {
     (moment + origin * area_m2, area_m2)
 }
 
-fn distance_to_segment_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
+/// Distance from a point to a straight piece, metres.
+pub(crate) fn distance_to_segment_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
     let way = b - a;
     let share = ((p - a).dot(way) / way.dot(way)).clamp(0.0, 1.0);
     (p - a - way * share).length()

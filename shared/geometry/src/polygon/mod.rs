@@ -3,7 +3,7 @@
 mod measure;
 mod validity;
 
-pub(crate) use measure::signed_area_m2;
+pub(crate) use measure::{distance_to_segment_m, signed_area_m2};
 pub use validity::PolygonError;
 
 use crate::{Flattening, LatLon, LocalFrame, Vec2};
