@@ -1,224 +1,4 @@
-//! Whole flights: core, window and driver against the simulator's pure core, without sockets.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-use super::Station;
-use super::core::{Answer, Input, Settings, Snapshot};
-use super::driver::{Decoder, encode};
-use super::order::Time;
-use geometry::LatLon;
-use sim::core::{Peer, Simulator};
-use std::time::Duration;
-use usal::contract::*;
-
-const PEER: Peer = Peer(1);
-const HOME: LatLon = LatLon::new(36.3190, -84.1730);
-const HEADING_DEG: f64 = 52.0;
-const GROUND_M: f64 = 349.0;
-
-/// A flight, and the FP Manager's side of it.
-pub struct Flight {
-    pub sim: Simulator,
-    pub station: Station,
-    pub now: Time,
-    pub events: Vec<(f64, GatewayEvent)>,
-    /// The FP Manager sends heartbeats.
-    pub alive: bool,
-    /// Entries of the autopilot's list that it steered to, with the place at that time.
-    pub steered: Vec<LatLon>,
-    decoder: Decoder,
-    sim_decoder: sim::frame::Decoder,
-    next: u64,
-}
-
-pub fn settings() -> Settings {
-    Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None }
-}
-
-impl Flight {
-    pub fn new(seed: u64, faults: &[&str]) -> Self {
-        let config = sim::Config::default();
-        let mut sim =
-            Simulator::new(config.profile, config.home, aircraft::Wind::from_direction(270.0, 5.0), seed);
-        sim.connect(PEER);
-        for fault in faults {
-            assert!(sim.inject(fault.parse().unwrap()));
-        }
-        Self {
-            sim,
-            station: Station::new(settings(), None, true),
-            now: Time::ZERO,
-            events: vec![],
-            alive: true,
-            steered: vec![],
-            decoder: Decoder::default(),
-            sim_decoder: sim::frame::Decoder::default(),
-            next: 1,
-        }
-    }
-
-    /// 100 ms. What the simulator answers comes with the next step.
-    pub fn step(&mut self) {
-        self.sim.step();
-        self.sim.ask_time();
-        self.now = Duration::from_nanos(self.sim.now_ns());
-        let mut decoded = vec![];
-        for outgoing in self.sim.take_outgoing() {
-            self.decoder.feed(&outgoing.bytes, &mut decoded);
-        }
-        for (header, message) in decoded {
-            self.station.receive(self.now, header, &message);
-        }
-        if self.alive && self.now.as_millis().is_multiple_of(500) {
-            self.station.input(self.now, Input::Heartbeat { plan: Some("plan".into()) });
-        }
-        self.station.tick(self.now);
-        let step = self.station.take_step().expect("every step asks for the time");
-        self.station.answer_step(step);
-        for message in self.station.take_messages() {
-            let bytes = encode(self.station.header(0), &message);
-            let mut frames = vec![];
-            self.sim_decoder.push(&bytes, |f| frames.push(f));
-            frames.into_iter().for_each(|f| self.sim.receive(PEER, f));
-        }
-        let now_s = self.now.as_secs_f64();
-        self.events.extend(self.station.take_events().into_iter().map(|e| (now_s, e)));
-        self.watch_target();
-    }
-
-    /// Where the autopilot really steers to, whatever anybody says.
-    fn watch_target(&mut self) {
-        let autopilot = &self.sim.autopilot;
-        if autopilot.mode() != sim::Mode::Auto || !autopilot.is_armed() {
-            return;
-        }
-        let current = usize::from(autopilot.run.current);
-        if let Some(item) = autopilot.mission.items().get(current)
-            && self.steered.last() != Some(&item.position)
-        {
-            self.steered.push(item.position);
-        }
-    }
-
-    pub fn run_until(&mut self, seconds: f64, what: &str, mut done: impl FnMut(&Self) -> bool) {
-        let end = self.now + Duration::from_secs_f64(seconds);
-        while !done(self) {
-            assert!(self.now < end, "{what}: not within {seconds} s; {}", self.report());
-            self.step();
-        }
-    }
-
-    pub fn run(&mut self, seconds: f64) {
-        let end = self.now + Duration::from_secs_f64(seconds);
-        while self.now < end {
-            self.step();
-        }
-    }
-
-    pub fn report(&self) -> String {
-        let status = self.station.gateway().status(self.now);
-        let navigation = self.station.gateway().navigation();
-        format!("{status:?}\n{navigation:?}\n{:?}", self.events)
-    }
-
-    pub fn state(&self) -> GatewayState {
-        self.station.gateway().state()
-    }
-
-    pub fn ask(&mut self, request: GatewayRequest) -> Result<(), String> {
-        match self.station.ask(self.now, |id| Input::Request(id, request)) {
-            Some(Answer::Request(result)) => result,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    pub fn join(&mut self, plan: &str) -> JoinAnswer {
-        let join = Join { plan: Some(plan.into()), last_token: Token(self.next - 1) };
-        match self.station.ask(self.now, |id| Input::Join(id, join)) {
-            Some(Answer::Join(answer)) => answer,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    pub fn feed(&mut self, cancel_after: Option<u64>, mut waypoints: Vec<Waypoint>) -> FeedAnswer {
-        for w in &mut waypoints {
-            w.token = Token(self.next);
-            self.next += 1;
-        }
-        let feed = Feed { cancel_after: cancel_after.map(Token), waypoints };
-        match self.station.ask(self.now, |id| Input::Feed(id, feed)) {
-            Some(Answer::Feed(answer)) => answer,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    pub fn progress(&self) -> Vec<Option<u64>> {
-        let token = |e: &(f64, GatewayEvent)| match e.1 {
-            GatewayEvent::Progress { current } => Some(current.map(|t| t.0)),
-            _ => None,
-        };
-        self.events.iter().filter_map(token).collect()
-    }
-
-    pub fn changes(&self) -> Vec<(f64, GatewayState)> {
-        let to = |e: &(f64, GatewayEvent)| match e.1 {
-            GatewayEvent::StateChanged { to, .. } => Some((e.0, to)),
-            _ => None,
-        };
-        self.events.iter().filter_map(to).collect()
-    }
-
-    /// On the ground with a plan aboard, then in the air on its way to waypoint 2.
-    pub fn launch(&mut self, waypoints: Vec<Waypoint>) {
-        self.run_until(20.0, "heard", |f| {
-            f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
-        });
-        assert!(self.join("plan").accepted);
-        assert_eq!(self.feed(None, waypoints), FeedAnswer::Accepted);
-        self.ask(GatewayRequest::Launch).unwrap();
-        self.run_until(120.0, "launch", |f| f.state() == GatewayState::Nav);
-    }
-}
-
-pub fn waypoint(position: LatLon, altitude_m: f64, action: Action) -> Waypoint {
-    Waypoint {
-        token: Token(0),
-        position,
-        altitude_amsl_m: altitude_m,
-        airspeed_mps: 25.0,
-        action,
-        fly_over: false,
-        leg: Id::from("leg"),
-        end_of_plan: matches!(action, Action::Land { .. }),
-    }
-}
-
-pub fn take_off() -> Waypoint {
-    waypoint(
-        HOME.destination(HEADING_DEG, 900.0),
-        GROUND_M + 80.0,
-        Action::TakeOff { heading_deg: HEADING_DEG },
-    )
-}
-
-/// A zigzag to the north-east, `metres` between waypoints.
-pub fn zigzag(from: usize, count: usize, metres: f64) -> Vec<Waypoint> {
-    let place = |i: usize| {
-        let side = if i.is_multiple_of(2) { 0.3 } else { -0.3 };
-        HOME.destination(HEADING_DEG, 1500.0 + metres * i as f64)
-            .destination(HEADING_DEG + 90.0, metres * side)
-    };
-    (from..from + count).map(|i| waypoint(place(i), GROUND_M + 120.0, Action::Fly)).collect()
-}
-
-pub fn landing() -> Vec<Waypoint> {
-    let touchdown = HOME.destination(HEADING_DEG, 60.0);
-    let out = |m: f64| HOME.destination(HEADING_DEG + 180.0, m);
-    vec![
-        waypoint(out(2500.0), GROUND_M + 100.0, Action::Fly),
-        waypoint(out(1300.0), GROUND_M + 100.0, Action::Fly),
-        waypoint(touchdown, GROUND_M, Action::Land { heading_deg: HEADING_DEG }),
-    ]
-}
+use super::*;
 
 fn assert_in_order(progress: &[Option<u64>], last: u64) {
     let tokens: Vec<u64> = progress.iter().flatten().copied().collect();
@@ -254,7 +34,7 @@ fn packets_lost_0_to_30_percent_the_same_waypoints_are_flown() {
         let mut plan = vec![take_off()];
         plan.extend(zigzag(0, 50, 250.0));
         flight.launch(plan.clone());
-        flight.run_until(1500.0, "the 45th waypoint", |f| f.progress().iter().flatten().any(|t| *t >= 45));
+        flight.run_until(1500.0, "the 45th waypoint", |f| f.has_reached(45));
         assert_in_order(&flight.progress(), *flight.progress().iter().flatten().last().unwrap());
         let wanted: Vec<LatLon> = plan.iter().map(|w| w.position).collect();
         let known = |p: &LatLon| wanted.iter().any(|w| w.distance_m(*p) < 1.0);
@@ -264,20 +44,8 @@ fn packets_lost_0_to_30_percent_the_same_waypoints_are_flown() {
 
 #[test]
 fn fp_manager_killed_holds_at_t1_returns_at_t2_and_lands() {
-    let mut flight = Flight::new(2, &[]);
-    let (threshold, id) = (HOME, "R05".to_owned());
-    let runway = SafeRunway {
-        id,
-        threshold,
-        elevation_amsl_m: GROUND_M,
-        heading_deg: HEADING_DEG,
-        length_m: 600.0,
-        priority: 1,
-    };
-    flight.ask(GatewayRequest::SetRunways { runways: vec![runway] }).unwrap();
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 30, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(2, &[], 30, 300.0);
+    flight.store_runway();
     flight.run(30.0);
     flight.alive = false;
     let killed = flight.now.as_secs_f64();
@@ -297,10 +65,7 @@ fn fp_manager_killed_holds_at_t1_returns_at_t2_and_lands() {
 
 #[test]
 fn fp_manager_back_in_time_gets_the_aircraft_back() {
-    let mut flight = Flight::new(3, &[]);
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 30, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(3, &[], 30, 300.0);
     flight.run(20.0);
     flight.alive = false;
     flight.run_until(5.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
@@ -314,25 +79,13 @@ fn fp_manager_back_in_time_gets_the_aircraft_back() {
     flight.run_until(20.0, "Nav", |f| {
         f.state() == GatewayState::Nav && f.station.gateway().status(f.now).autopilot_mode == "AUTO"
     });
-    flight.run_until(120.0, "further", |f| f.progress().iter().flatten().any(|t| *t > current + 2));
+    flight.run_until(120.0, "further", |f| f.has_reached(current + 3));
 }
 
 #[test]
 fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
-    let mut flight = Flight::new(4, &[]);
-    let (threshold, id) = (HOME, "R05".to_owned());
-    let runway = SafeRunway {
-        id,
-        threshold,
-        elevation_amsl_m: GROUND_M,
-        heading_deg: HEADING_DEG,
-        length_m: 600.0,
-        priority: 1,
-    };
-    flight.ask(GatewayRequest::SetRunways { runways: vec![runway] }).unwrap();
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 30, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(4, &[], 30, 300.0);
+    flight.store_runway();
     flight.run(60.0);
     flight.alive = false;
     flight.run_until(40.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
@@ -343,7 +96,7 @@ fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
     flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
     let first = answer.highest.0 + 1;
     assert_eq!(flight.feed(None, zigzag(10, 12, 300.0)), FeedAnswer::Accepted);
-    flight.run_until(200.0, "Nav", |f| f.progress().iter().flatten().any(|t| *t > first + 3));
+    flight.run_until(200.0, "Nav", |f| f.has_reached(first + 4));
     assert_eq!(flight.state(), GatewayState::Nav);
     assert!(flight.progress().iter().flatten().all(|t| *t < 32 || *t >= first));
 }
@@ -352,10 +105,7 @@ fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
 fn an_emergency_replaces_everything_at_once_and_no_stale_waypoint_is_steered_to() {
     for (loss, within_s) in [("packet-loss=0", 0.6), ("packet-loss=0.2", 3.0)] {
         for (seed, more) in (5..).zip([45.0, 46.0, 47.0, 48.0, 49.0, 50.0, 51.0, 52.0]) {
-            let mut flight = Flight::new(seed, &[loss]);
-            let mut plan = vec![take_off()];
-            plan.extend(zigzag(0, 60, 250.0));
-            flight.launch(plan);
+            let mut flight = Flight::on_zigzag(seed, &[loss], 60, 250.0);
             flight.run(more);
             let place = flight.station.gateway().telemetry().position().unwrap().1.position;
             let away = |m: f64| waypoint(place.destination(320.0, m), GROUND_M + 150.0, Action::Fly);
@@ -375,10 +125,7 @@ fn an_emergency_replaces_everything_at_once_and_no_stale_waypoint_is_steered_to(
 
 #[test]
 fn dry_buffer_without_an_end_holds_and_new_waypoints_heal_it() {
-    let mut flight = Flight::new(6, &[]);
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 4, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(6, &[], 4, 300.0);
     flight.run_until(200.0, "dry", |f| f.state() == GatewayState::SafeHold);
     assert!(flight.events.iter().any(|(_, e)| matches!(e, GatewayEvent::BufferLow { .. })));
     assert_eq!(flight.feed(None, zigzag(4, 6, 300.0)), FeedAnswer::Accepted);
@@ -388,10 +135,7 @@ fn dry_buffer_without_an_end_holds_and_new_waypoints_heal_it() {
 
 #[test]
 fn the_pilot_has_priority_and_gives_back() {
-    let mut flight = Flight::new(7, &[]);
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 30, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(7, &[], 30, 300.0);
     flight.run(10.0);
     assert!(flight.sim.autopilot.set_mode(sim::Mode::FlyByWireA));
     flight.run_until(3.0, "Manual", |f| f.state() == GatewayState::Manual);
@@ -404,10 +148,7 @@ fn the_pilot_has_priority_and_gives_back() {
 
 #[test]
 fn hold_resume_direct_and_terminate_are_confirmed_by_the_autopilot() {
-    let mut flight = Flight::new(8, &[]);
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 40, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(8, &[], 40, 300.0);
     flight.ask(GatewayRequest::Hold).unwrap();
     assert_eq!(flight.state(), GatewayState::Nav, "nothing is claimed yet");
     flight.run_until(4.0, "Hold", |f| f.state() == GatewayState::Hold);
@@ -431,10 +172,7 @@ fn hold_resume_direct_and_terminate_are_confirmed_by_the_autopilot() {
 #[test]
 fn gateway_killed_the_autopilot_flies_on_and_the_next_gateway_adopts_the_flight() {
     for with_memory in [true, false] {
-        let mut flight = Flight::new(9, &[]);
-        let mut plan = vec![take_off()];
-        plan.extend(zigzag(0, 30, 300.0));
-        flight.launch(plan);
+        let mut flight = Flight::on_zigzag(9, &[], 30, 300.0);
         flight.run(25.0);
         let snapshot: Snapshot = flight.station.gateway().snapshot();
         let json = serde_json::to_string(&snapshot).unwrap();
@@ -448,20 +186,17 @@ fn gateway_killed_the_autopilot_flies_on_and_the_next_gateway_adopts_the_flight(
         assert!(answer.accepted, "{answer:?}");
         if with_memory {
             assert!(answer.current.unwrap().0 >= before && answer.highest == Token(31));
-            flight.run_until(100.0, "further", |f| f.progress().iter().flatten().any(|t| *t > before + 3));
+            flight.run_until(100.0, "further", |f| f.has_reached(before + 4));
         } else {
             assert_eq!(flight.feed(Some(0), zigzag(12, 10, 300.0)), FeedAnswer::Accepted);
-            flight.run_until(300.0, "further", |f| f.progress().iter().flatten().any(|t| *t >= 34));
+            flight.run_until(300.0, "further", |f| f.has_reached(34));
         }
     }
 }
 
 #[test]
 fn a_flight_ended_by_force_stays_ended_when_the_gateway_starts_anew() {
-    let mut flight = Flight::new(15, &[]);
-    let mut plan = vec![take_off()];
-    plan.extend(zigzag(0, 30, 300.0));
-    flight.launch(plan);
+    let mut flight = Flight::on_zigzag(15, &[], 30, 300.0);
     flight.ask(GatewayRequest::Terminate { confirm: "test".into() }).unwrap();
     let json = serde_json::to_string(&flight.station.gateway().snapshot()).unwrap();
     // killed before anything was sent
@@ -512,10 +247,7 @@ fn alarms_of_the_simulators_faults_reach_the_events() {
         ("low-battery@90", "energy-low", 3.0),
         ("silence@90+8", "autopilot-silent", 4.0),
     ] {
-        let mut flight = Flight::new(10, &[fault]);
-        let mut plan = vec![take_off()];
-        plan.extend(zigzag(0, 40, 300.0));
-        flight.launch(plan);
+        let mut flight = Flight::on_zigzag(10, &[fault], 40, 300.0);
         let raised = |f: &Flight| {
             f.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
         };

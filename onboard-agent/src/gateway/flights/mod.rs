@@ -1,0 +1,249 @@
+//! Whole flights: core, window and driver against the simulator's pure core, without sockets.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use super::Station;
+use super::core::{Answer, Input, Settings, Snapshot};
+use super::driver::{Decoder, encode};
+use super::order::Time;
+use geometry::LatLon;
+use sim::core::{Peer, Simulator};
+use std::time::Duration;
+use usal::contract::*;
+
+const PEER: Peer = Peer(1);
+const HOME: LatLon = LatLon::new(36.3190, -84.1730);
+const HEADING_DEG: f64 = 52.0;
+const GROUND_M: f64 = 349.0;
+
+/// A flight, and the FP Manager's side of it.
+pub struct Flight {
+    pub sim: Simulator,
+    pub station: Station,
+    pub now: Time,
+    pub events: Vec<(f64, GatewayEvent)>,
+    /// The FP Manager sends heartbeats.
+    pub alive: bool,
+    /// Entries of the autopilot's list that it steered to, with the place at that time.
+    pub steered: Vec<LatLon>,
+    decoder: Decoder,
+    sim_decoder: sim::frame::Decoder,
+    /// Number of the next waypoint.
+    pub next: u64,
+}
+
+pub fn settings() -> Settings {
+    Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None }
+}
+
+impl Flight {
+    pub fn new(seed: u64, faults: &[&str]) -> Self {
+        let config = sim::Config::default();
+        let mut sim =
+            Simulator::new(config.profile, config.home, aircraft::Wind::from_direction(270.0, 5.0), seed);
+        sim.connect(PEER);
+        for fault in faults {
+            assert!(sim.inject(fault.parse().unwrap()));
+        }
+        Self {
+            sim,
+            station: Station::new(settings(), None, true),
+            now: Time::ZERO,
+            events: vec![],
+            alive: true,
+            steered: vec![],
+            decoder: Decoder::default(),
+            sim_decoder: sim::frame::Decoder::default(),
+            next: 1,
+        }
+    }
+
+    /// 100 ms. What the simulator answers comes with the next step.
+    pub fn step(&mut self) {
+        self.sim.step();
+        self.sim.ask_time();
+        self.now = Duration::from_nanos(self.sim.now_ns());
+        let mut decoded = vec![];
+        for outgoing in self.sim.take_outgoing() {
+            self.decoder.feed(&outgoing.bytes, &mut decoded);
+        }
+        for (header, message) in decoded {
+            self.station.receive(self.now, header, &message);
+        }
+        if self.alive && self.now.as_millis().is_multiple_of(500) {
+            self.station.input(self.now, Input::Heartbeat { plan: Some("plan".into()) });
+        }
+        self.station.tick(self.now);
+        let step = self.station.take_step().expect("every step asks for the time");
+        self.station.answer_step(step);
+        for message in self.station.take_messages() {
+            let bytes = encode(self.station.header(0), &message);
+            let mut frames = vec![];
+            self.sim_decoder.push(&bytes, |f| frames.push(f));
+            frames.into_iter().for_each(|f| self.sim.receive(PEER, f));
+        }
+        let now_s = self.now.as_secs_f64();
+        self.events.extend(self.station.take_events().into_iter().map(|e| (now_s, e)));
+        self.watch_target();
+    }
+
+    /// Where the autopilot really steers to, whatever anybody says.
+    fn watch_target(&mut self) {
+        let autopilot = &self.sim.autopilot;
+        if autopilot.mode() != sim::Mode::Auto || !autopilot.is_armed() {
+            return;
+        }
+        let current = usize::from(autopilot.run.current);
+        if let Some(item) = autopilot.mission.items().get(current)
+            && self.steered.last() != Some(&item.position)
+        {
+            self.steered.push(item.position);
+        }
+    }
+
+    pub fn run_until(&mut self, seconds: f64, what: &str, mut done: impl FnMut(&Self) -> bool) {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while !done(self) {
+            assert!(self.now < end, "{what}: not within {seconds} s; {}", self.report());
+            self.step();
+        }
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while self.now < end {
+            self.step();
+        }
+    }
+
+    pub fn report(&self) -> String {
+        let status = self.station.gateway().status(self.now);
+        let navigation = self.station.gateway().navigation();
+        format!("{status:?}\n{navigation:?}\n{:?}", self.events)
+    }
+
+    pub fn state(&self) -> GatewayState {
+        self.station.gateway().state()
+    }
+
+    pub fn ask(&mut self, request: GatewayRequest) -> Result<(), String> {
+        match self.station.ask(self.now, |id| Input::Request(id, request)) {
+            Some(Answer::Request(result)) => result,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn join(&mut self, plan: &str) -> JoinAnswer {
+        let join = Join { plan: Some(plan.into()), last_token: Token(self.next - 1) };
+        match self.station.ask(self.now, |id| Input::Join(id, join)) {
+            Some(Answer::Join(answer)) => answer,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn feed(&mut self, cancel_after: Option<u64>, mut waypoints: Vec<Waypoint>) -> FeedAnswer {
+        for w in &mut waypoints {
+            w.token = Token(self.next);
+            self.next += 1;
+        }
+        let feed = Feed { cancel_after: cancel_after.map(Token), waypoints };
+        match self.station.ask(self.now, |id| Input::Feed(id, feed)) {
+            Some(Answer::Feed(answer)) => answer,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn progress(&self) -> Vec<Option<u64>> {
+        let token = |e: &(f64, GatewayEvent)| match e.1 {
+            GatewayEvent::Progress { current } => Some(current.map(|t| t.0)),
+            _ => None,
+        };
+        self.events.iter().filter_map(token).collect()
+    }
+
+    pub fn changes(&self) -> Vec<(f64, GatewayState)> {
+        let to = |e: &(f64, GatewayEvent)| match e.1 {
+            GatewayEvent::StateChanged { to, .. } => Some((e.0, to)),
+            _ => None,
+        };
+        self.events.iter().filter_map(to).collect()
+    }
+
+    /// In the air on its way along a zigzag of `count` waypoints, `metres` apart.
+    pub fn on_zigzag(seed: u64, faults: &[&str], count: usize, metres: f64) -> Self {
+        let mut flight = Self::new(seed, faults);
+        flight.launch(std::iter::once(take_off()).chain(zigzag(0, count, metres)).collect());
+        flight
+    }
+
+    /// Tells the gateway of the runway at home.
+    pub fn store_runway(&mut self) {
+        let runway = SafeRunway {
+            id: "R05".into(),
+            threshold: HOME,
+            elevation_amsl_m: GROUND_M,
+            heading_deg: HEADING_DEG,
+            length_m: 600.0,
+            priority: 1,
+        };
+        self.ask(GatewayRequest::SetRunways { runways: vec![runway] }).unwrap();
+    }
+
+    /// It has been steered to this waypoint or to one after it.
+    pub fn has_reached(&self, token: u64) -> bool {
+        self.progress().iter().flatten().any(|t| *t >= token)
+    }
+
+    /// On the ground with a plan aboard, then in the air on its way to waypoint 2.
+    pub fn launch(&mut self, waypoints: Vec<Waypoint>) {
+        self.run_until(20.0, "heard", |f| {
+            f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
+        });
+        assert!(self.join("plan").accepted);
+        assert_eq!(self.feed(None, waypoints), FeedAnswer::Accepted);
+        self.ask(GatewayRequest::Launch).unwrap();
+        self.run_until(120.0, "launch", |f| f.state() == GatewayState::Nav);
+    }
+}
+
+pub fn waypoint(position: LatLon, altitude_m: f64, action: Action) -> Waypoint {
+    Waypoint {
+        token: Token(0),
+        position,
+        altitude_amsl_m: altitude_m,
+        airspeed_mps: 25.0,
+        action,
+        fly_over: false,
+        leg: Id::from("leg"),
+        end_of_plan: matches!(action, Action::Land { .. }),
+    }
+}
+
+pub fn take_off() -> Waypoint {
+    waypoint(
+        HOME.destination(HEADING_DEG, 900.0),
+        GROUND_M + 80.0,
+        Action::TakeOff { heading_deg: HEADING_DEG },
+    )
+}
+
+/// A zigzag to the north-east, `metres` between waypoints.
+pub fn zigzag(from: usize, count: usize, metres: f64) -> Vec<Waypoint> {
+    let place = |i: usize| {
+        let side = if i.is_multiple_of(2) { 0.3 } else { -0.3 };
+        HOME.destination(HEADING_DEG, 1500.0 + metres * i as f64)
+            .destination(HEADING_DEG + 90.0, metres * side)
+    };
+    (from..from + count).map(|i| waypoint(place(i), GROUND_M + 120.0, Action::Fly)).collect()
+}
+
+pub fn landing() -> Vec<Waypoint> {
+    let touchdown = HOME.destination(HEADING_DEG, 60.0);
+    let out = |m: f64| HOME.destination(HEADING_DEG + 180.0, m);
+    vec![
+        waypoint(out(2500.0), GROUND_M + 100.0, Action::Fly),
+        waypoint(out(1300.0), GROUND_M + 100.0, Action::Fly),
+        waypoint(touchdown, GROUND_M, Action::Land { heading_deg: HEADING_DEG }),
+    ]
+}
+
+mod tests;
