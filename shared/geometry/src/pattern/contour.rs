@@ -189,6 +189,8 @@ fn nearest(rings: &[Vec<Vec2>], point: Vec2) -> Option<(usize, usize)> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::polygon::tests::any_area;
+    use proptest::prelude::*;
 
     fn parameters() -> ContourParameters {
         ContourParameters {
@@ -300,5 +302,31 @@ mod tests {
         ));
         let huge = ContourParameters { side: Side::Outward, first_m: 1e300, ..p };
         assert_eq!(refused(huge), PatternError::Offset);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+
+        /// At the spacing's distance nothing is missed. At half of it, every sharp corner of a loop leaves something outside it:
+        /// who wants all, flies loops at half the distance.
+        #[test]
+        fn no_point_of_the_area_is_farther_than_the_spacing_from_a_loop(
+            area in any_area(), spacing_m in 30.0..300.0, left in any::<bool>(),
+        ) {
+            let turn = if left { Turn::Left } else { Turn::Right };
+            let p = ContourParameters { spacing_m, first_m: 0.0, levels: 1000, turn, ..parameters() };
+            let loops = loops(&area, &p);
+            for ring in &loops {
+                prop_assert_eq!(ring.first(), ring.last());
+                for pair in ring.windows(2) {
+                    let outside_m = area.distance_outside_m((pair[0] + pair[1]) * 0.5);
+                    prop_assert!(outside_m < 1e-3, "{}", outside_m);
+                }
+            }
+            let ways = loops.iter().flat_map(|ring| ring.windows(2).map(|w| (w[0], w[1])));
+            // loops may cut a corner by the tolerance
+            let share = crate::scan::coverage(&area, ways, spacing_m + p.tolerance_m);
+            prop_assert!(share > 0.999_999, "{}", share);
+        }
     }
 }

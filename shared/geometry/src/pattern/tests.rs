@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
 use crate::Polygon;
+use crate::polygon::tests::any_area;
 use crate::scan::{Corner, Entry, ScanParameters, coverage};
 use crate::turn::Turn;
 use proptest::prelude::*;
@@ -63,6 +64,70 @@ proptest! {
         let share = coverage(&searched, on_tracks(&square), spacing_m / 2.0);
         let in_corners_m2 = legs as f64 * (1.0 - std::f64::consts::FRAC_PI_4) * spacing_m * spacing_m / 4.0;
         prop_assert!((1.0 - share) * searched.area_m2() < in_corners_m2, "{share}");
+    }
+
+    #[test]
+    fn creeping_and_criss_cross_cover_their_area_and_nothing_beyond_the_overshoot(
+        area in any_area(), spacing_m in 40.0..400.0, turn_radius_m in 0.0..300.0, criss_cross in any::<bool>(),
+    ) {
+        let p = ScanParameters {
+            spacing_m,
+            heading_deg: Some(creeping_heading_deg(&area, None)),
+            overshoot_m: spacing_m / 2.0,
+            entry: Entry::Nearest(Vec2::new(5000.0, -5000.0)),
+            turn_radius_m,
+        };
+        let scans = if criss_cross {
+            let both = CrissCross::new(&area, &p).unwrap();
+            let (first, second) = (both.first(), both.second());
+            prop_assert_eq!(both.count(), 2 * (first.tracks() + second.tracks()));
+            for (index, scan, track) in [(0, first, 0), (2 * first.tracks(), second, 0)] {
+                prop_assert_eq!(both.vertex(index).unwrap().at, scan.ends_of_track(track).unwrap().0);
+            }
+            vec![first.clone(), second.clone()]
+        } else {
+            vec![Scan::new(&area, &p).unwrap()]
+        };
+        for scan in scans {
+            let scanning: Vec<_> = scan.segments(0..scan.tracks()).filter(|s| s.scanning).map(|s| (s.from, s.to)).collect();
+            for &(a, b) in &scanning {
+                for i in 0..=8 {
+                    let outside_m = area.distance_outside_m(a + (b - a) * (f64::from(i) / 8.0));
+                    prop_assert!(outside_m <= p.overshoot_m + 1e-6, "{outside_m}");
+                }
+            }
+            let share = coverage(&area, scanning, spacing_m / 2.0);
+            prop_assert!(share > ALL, "{share}");
+        }
+    }
+
+    #[test]
+    fn a_corridor_covers_what_is_near_its_route(
+        legs in prop::collection::vec((-80.0..80.0_f64, 500.0..2500.0_f64), 1..6), width_m in 50.0..800.0,
+        spacing_m in 40.0..200.0, turn_radius_m in 0.0..200.0,
+    ) {
+        let (mut points, mut course_deg) = (vec![Vec2::default()], 0.0_f64);
+        for (change_deg, length_m) in legs {
+            course_deg += change_deg;
+            points.push(points[points.len() - 1] + Vec2::from_bearing_rad(course_deg.to_radians()) * length_m);
+        }
+        let route = Route::new(&points).unwrap();
+        let entry = Entry::Corner(Corner::EndLeft);
+        let p = CorridorParameters { width_m, spacing_m, overshoot_m: 0.0, entry, turn_radius_m };
+        let ways = on_tracks(&Pattern::Corridor(Corridor::new(&route, &p).unwrap()));
+        let reach_m = spacing_m.min(width_m) / 2.0 + 1e-6;
+        let near_way = |q: Vec2| ways.iter().any(|&(a, b)| crate::polygon::distance_to_segment_m(a, b, q) <= reach_m);
+        // points abreast of the legs
+        for pair in points.windows(2) {
+            let way = pair[1] - pair[0];
+            let right = Vec2::new(way.n, -way.e) * way.length().recip();
+            for i in 0..=20 {
+                for side in -4..=4 {
+                    let q = pair[0] + way * (f64::from(i) / 20.0) + right * (width_m / 2.0 * f64::from(side) / 4.0);
+                    prop_assert!(near_way(q), "{q:?}");
+                }
+            }
+        }
     }
 
     #[test]

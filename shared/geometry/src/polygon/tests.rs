@@ -145,6 +145,65 @@ pub(crate) fn star() -> impl Strategy<Value = Vec<Vec2>> {
     })
 }
 
+/// Corners on an ellipse, two triangles for holes.
+fn convex() -> impl Strategy<Value = Polygon> {
+    let angles = prop::collection::btree_set(0_u16..36, 4..12);
+    (angles, 800.0..3000.0, 800.0..3000.0, any::<bool>()).prop_filter_map(
+        "a sliver",
+        |(angles, a, b, holed)| {
+            let corner = |deg: f64| Vec2::new(a * deg.to_radians().cos(), b * deg.to_radians().sin());
+            let outer: Vec<Vec2> = angles.into_iter().map(|i| corner(f64::from(i) * 10.0)).collect();
+            let whole = Polygon::new(outer.clone(), vec![]).unwrap();
+            let (middle, room_m) = (whole.centroid(), whole.distance_to_edge_m(whole.centroid()));
+            let triangle = |at: Vec2| {
+                [10.0, 130.0, 250.0]
+                    .map(|b: f64| at + Vec2::from_bearing_rad(b.to_radians()) * (0.3 * room_m))
+            };
+            let aside = Vec2::new(0.5 * room_m, 0.0);
+            let holes = if holed {
+                vec![triangle(middle + aside).to_vec(), triangle(middle - aside).to_vec()]
+            } else {
+                vec![]
+            };
+            (room_m > 100.0).then(|| Polygon::new(outer, holes).unwrap())
+        },
+    )
+}
+
+/// Teeth on a bar, with a hole in the bar.
+fn comb() -> impl Strategy<Value = Polygon> {
+    let teeth = prop::collection::vec((150.0..800.0_f64, 150.0..800.0_f64, 100.0..2500.0_f64), 1..6);
+    (teeth, 300.0..900.0, 0.0..360.0_f64, any::<bool>()).prop_map(|(teeth, bar_m, heading_deg, holed)| {
+        let mut outer = vec![(0.0, 0.0), (0.0, bar_m)];
+        let mut east = 0.0;
+        for (width_m, gap_m, height_m) in teeth {
+            outer.extend([(east + gap_m, bar_m), (east + gap_m, bar_m + height_m)]);
+            east += gap_m + width_m;
+            outer.extend([(east, bar_m + height_m), (east, bar_m)]);
+        }
+        outer.extend([(east + 50.0, bar_m), (east + 50.0, 0.0)]);
+        let hole = vec![(80.0, 80.0), (80.0, bar_m - 80.0), (250.0, bar_m - 100.0), (250.0, 90.0)];
+        let along = Vec2::from_bearing_rad(heading_deg.to_radians());
+        let turned = |ring: Vec<(f64, f64)>| -> Vec<Vec2> {
+            ring.into_iter().map(|(e, n)| along * n + Vec2::new(along.n, -along.e) * e).collect()
+        };
+        Polygon::new(turned(outer), if holed { vec![turned(hole)] } else { vec![] }).unwrap()
+    })
+}
+
+/// A star with a smaller one for a hole.
+fn holed_star() -> impl Strategy<Value = Polygon> {
+    (star(), any::<bool>()).prop_map(|(outer, holed)| {
+        let hole = outer.iter().map(|&c| c * 0.4).collect();
+        Polygon::new(outer, if holed { vec![hole] } else { vec![] }).unwrap()
+    })
+}
+
+/// Convex and concave, with and without holes.
+pub(crate) fn any_area() -> impl Strategy<Value = Polygon> {
+    prop_oneof![convex(), comb(), holed_star()]
+}
+
 proptest! {
     #[test]
     fn no_heading_is_narrower(outer in star(), heading in 0.0..180.0) {

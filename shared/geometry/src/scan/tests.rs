@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
-use crate::polygon::tests::star;
+use crate::polygon::tests::any_area;
 use crate::testing::HERE;
 use proptest::prelude::*;
 
@@ -197,6 +197,16 @@ fn interleaving_leaves_room_for_the_turns() {
 }
 
 #[test]
+fn the_ends_of_a_track_span_its_gaps() {
+    let p = ScanParameters { heading_deg: Some(90.0), ..parameters(100.0) };
+    let scan = Scan::new(&u_shape(), &p).unwrap();
+    let (from, to) = scan.ends_of_track(1).unwrap();
+    assert_eq!([from.e, from.n, to.e, to.n].map(f64::round), [900.0, 450.0, 0.0, 450.0]);
+    assert_eq!(scan.ends_of_track(6), None);
+    assert_eq!(scan.ends_of_track(u64::MAX), None);
+}
+
+#[test]
 fn a_million_million_lines_are_no_list() {
     let scan = Scan::new(&rectangle(), &parameters(4e-10)).unwrap();
     assert_eq!(scan.tracks(), 1_000_000_000_000);
@@ -253,15 +263,6 @@ fn coverage_is_a_share() {
     assert_eq!(coverage(&area, nowhere, 50.0), 0.0);
 }
 
-/// A star outline, shrunk to a hole inside itself now and then.
-fn area() -> impl Strategy<Value = Polygon> {
-    (star(), any::<bool>()).prop_map(|(outer, holed)| {
-        let hole = outer.iter().map(|&c| c * 0.4).collect();
-        let holes = if holed { vec![hole] } else { vec![] };
-        Polygon::new(outer, holes).unwrap()
-    })
-}
-
 fn any_parameters() -> impl Strategy<Value = ScanParameters> {
     let heading = prop::option::of(0.0..360.0);
     (40.0..400.0, heading, 0.0..300.0, 0_usize..4, 0.0..400.0).prop_map(
@@ -279,7 +280,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn an_overshoot_of_half_the_spacing_covers_everything(area in area(), p in any_parameters()) {
+    fn an_overshoot_of_half_the_spacing_covers_everything(area in any_area(), p in any_parameters()) {
         let p = ScanParameters { overshoot_m: p.spacing_m / 2.0, ..p };
         let scan = Scan::new(&area, &p).unwrap();
         let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
@@ -289,7 +290,7 @@ proptest! {
     /// What a slanted edge of length l may cost without overshoot is l · spacing / 8, and a
     /// spike between two lines no more than twice that.
     #[test]
-    fn without_overshoot_little_is_lost_along_the_edges(area in area(), p in any_parameters()) {
+    fn without_overshoot_little_is_lost_along_the_edges(area in any_area(), p in any_parameters()) {
         let p = ScanParameters { overshoot_m: 0.0, ..p };
         let scan = Scan::new(&area, &p).unwrap();
         let share = coverage(&area, scanned(&all(&scan)), p.spacing_m / 2.0);
@@ -299,7 +300,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_is_scanned_farther_outside_than_the_overshoot(area in area(), p in any_parameters()) {
+    fn nothing_is_scanned_farther_outside_than_the_overshoot(area in any_area(), p in any_parameters()) {
         let scan = Scan::new(&area, &p).unwrap();
         for s in all(&scan).iter().filter(|s| s.scanning) {
             for i in 0..=20 {
@@ -329,7 +330,7 @@ proptest! {
     }
 
     #[test]
-    fn every_line_is_flown_once_and_found_again(area in area(), p in any_parameters()) {
+    fn every_line_is_flown_once_and_found_again(area in any_area(), p in any_parameters()) {
         let scan = Scan::new(&area, &p).unwrap();
         let mut lines: Vec<u64> = (0..scan.tracks()).map(|t| scan.line_of_track(t)).collect();
         for (track, &line) in lines.iter().enumerate() {
@@ -340,7 +341,7 @@ proptest! {
     }
 
     #[test]
-    fn starting_anywhere_gives_the_same_tracks(area in area(), p in any_parameters(), at in 0.0..1.0) {
+    fn starting_anywhere_gives_the_same_tracks(area in any_area(), p in any_parameters(), at in 0.0..1.0) {
         let scan = Scan::new(&area, &p).unwrap();
         let track = (at * scan.tracks() as f64) as u64;
         let rest: Vec<Segment> = scan.segments(track..scan.tracks()).collect();
@@ -349,7 +350,7 @@ proptest! {
     }
 
     #[test]
-    fn backwards_is_the_same_segments_turned_round(area in area(), p in any_parameters()) {
+    fn backwards_is_the_same_segments_turned_round(area in any_area(), p in any_parameters()) {
         let scan = Scan::new(&area, &p).unwrap();
         let mut back: Vec<Segment> = scan.segments(0..scan.tracks()).backwards().collect();
         back.reverse();
