@@ -53,6 +53,16 @@ fn good_plans_are_written_as_they_were_read() {
     }
 }
 
+/// Every element and attribute of the language, written as it is written down (and valid by the schema: see
+/// tests/peers/test_schema.py).
+#[test]
+fn the_whole_language_is_read_and_written_byte_by_byte() {
+    let document = include_str!("data/language.xml");
+    let reading = read(document);
+    assert_eq!(reading.problems, []);
+    assert_eq!(write(&reading.plan), document);
+}
+
 #[test]
 fn each_bad_plan_has_the_problem_in_its_name() {
     let ground = ground();

@@ -7,6 +7,7 @@ use flight_plan::{Severity, check, compile_document, read, write};
 use proptest::prelude::*;
 use terrain::Flat;
 
+const LANGUAGE: &str = include_str!("data/language.xml");
 const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
 
 fn codes(document: impl AsRef<[u8]>) -> Vec<&'static str> {
@@ -94,6 +95,65 @@ fn places_are_those_of_the_text() {
 fn a_byte_order_mark_is_no_problem() {
     let document = [b"\xef\xbb\xbf", FIRE_WATCH.as_bytes()].concat();
     assert_eq!(read(document).plan, read(FIRE_WATCH).plan);
+}
+
+fn stage_of(legs: &str) -> String {
+    plan_of(&format!(r#"<mainPlan><stage id="s" type="mission">{legs}</stage></mainPlan>"#))
+}
+
+/// Faults of the newer elements: each a problem of its own, at its place.
+#[test]
+fn each_element_says_what_is_wrong_with_it() {
+    let in_leg = |inside: &str| stage_of(&format!(r#"<TF id="t" fix="A">{inside}</TF>"#));
+    let scan =
+        |attributes: &str, area: &str| stage_of(&format!(r#"<scan id="p" {attributes}>{area}</scan>"#));
+    let zone = |attributes: &str, inside: &str| {
+        plan_of(&format!(r#"<zones><keepOut id="z" {attributes}>{inside}</keepOut></zones>"#))
+    };
+    let circle = r#"<area fix="A" radius="100"/>"#;
+    let cases: [(String, &[&str]); 30] = [
+        (in_leg(r#"<action on="start"><photo/></action>"#), &[]),
+        (in_leg(r#"<action on="start"/>"#), &["missing-element"]),
+        (in_leg(r#"<action on="start"><photo/><photo/></action>"#), &["unknown-element"]),
+        (in_leg(r#"<action on="start"><explode/></action>"#), &["unknown-element", "missing-element"]),
+        (in_leg(r#"<action><photo/></action>"#), &["missing-attribute"]),
+        (in_leg(r#"<action on="start" every="5"><photo/></action>"#), &["missing-attribute"]),
+        (in_leg(r#"<action on="never"><photo/></action>"#), &["bad-value"]),
+        (in_leg(r#"<action on="abeam"><photo/></action>"#), &["missing-attribute"]),
+        (in_leg(r#"<action on="start"><set variable="x" to="1"/></action>"#), &["bad-value"]),
+        (in_leg(r#"<action on="start"><wait/></action>"#), &["missing-attribute"]),
+        (in_leg(r#"<action on="start"><invoke service="a"/></action>"#), &["missing-attribute"]),
+        (stage_of(r#"<CF id="t" fix="A"/>"#), &["missing-attribute"]),
+        (stage_of(r#"<HM id="t" fix="A" turn="left"/>"#), &["missing-attribute"]),
+        (stage_of(r#"<call id="t"/>"#), &["missing-attribute"]),
+        (stage_of(r#"<call id="t" procedure="p" fix="A" lat="1" lon="1"/>"#), &["missing-attribute"]),
+        (stage_of(r#"<call id="t" procedure="p"><argument name="x" value="1"/></call>"#), &["bad-value"]),
+        (scan(r#"spacing="10""#, circle), &[]),
+        (scan("", circle), &["missing-attribute"]),
+        (scan(r#"spacing="10" fieldOfView="60""#, circle), &["unknown-attribute"]),
+        (scan(r#"spacing="10""#, ""), &["missing-element"]),
+        (scan(r#"spacing="10""#, &circle.repeat(2)), &["unknown-element"]),
+        (scan(r#"spacing="10" entry="middle""#, circle), &["bad-value"]),
+        (scan(r#"spacing="10""#, r#"<area polygon="field"/>"#), &["bad-value"]),
+        (stage_of(r#"<corridor id="p" width="5" spacing="1"/>"#), &["missing-element"]),
+        (stage_of(r#"<sector id="p" radius="5" turn="up"><centre fix="A"/></sector>"#), &["bad-value"]),
+        (zone(r#"lat="1" lon="1" radius="5""#, r#"<corner lat="1" lon="1"/>"#), &["unknown-element"]),
+        (zone(r#"floor="5""#, ""), &["missing-attribute"]),
+        (zone(r#"ceilingReference="agl""#, ""), &["missing-attribute"]),
+        (zone("", r#"<active from="today" until="2026-06-01T06:00:00Z"/>"#), &["bad-value"]),
+        (
+            plan_of(r#"<procedures><procedure id="p"><parameter/></procedure></procedures>"#),
+            &["missing-attribute"],
+        ),
+    ];
+    for (document, expected) in cases {
+        assert_eq!(codes(&document), expected, "{document}");
+        let reading = read(&document);
+        assert!(reading.problems.iter().all(|p| p.location.is_some()), "{document}");
+        // and what was made out can be checked and written
+        check(&reading.plan, &Profile::default(), &Flat(200.0));
+        write(&reading.plan);
+    }
 }
 
 /// What an attacker or a broken disk puts into a document.
@@ -214,8 +274,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn a_mutated_document_never_panics_and_its_plan_can_be_written(faults in prop::collection::vec(fault(), 1..6)) {
-        let mut document = FIRE_WATCH.as_bytes().to_vec();
+    fn a_mutated_document_never_panics_and_its_plan_can_be_written(
+        original in prop::sample::select(vec![FIRE_WATCH, LANGUAGE]),
+        faults in prop::collection::vec(fault(), 1..6),
+    ) {
+        let mut document = original.as_bytes().to_vec();
         faults.iter().for_each(|fault| apply(&mut document, fault));
         let reading = read(&document);
         prop_assert!(reading.problems.len() <= MAX_PROBLEMS);

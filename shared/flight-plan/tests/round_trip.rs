@@ -55,10 +55,13 @@ fn turn() -> impl Strategy<Value = TurnDirection> {
     prop_oneof![Just(TurnDirection::Left), Just(TurnDirection::Right)]
 }
 
-fn altitude() -> BoxedStrategy<Altitude> {
+fn reference() -> impl Strategy<Value = AltitudeReference> {
     use AltitudeReference::{Agl, Amsl, Home};
-    let reference = prop_oneof![Just(Amsl), Just(Agl), Just(Home)];
-    (value(), reference).prop_map(|(metres, reference)| Altitude { metres, reference }).boxed()
+    prop_oneof![Just(Amsl), Just(Agl), Just(Home)]
+}
+
+fn altitude() -> BoxedStrategy<Altitude> {
+    (value(), reference()).prop_map(|(metres, reference)| Altitude { metres, reference }).boxed()
 }
 
 fn emergency() -> BoxedStrategy<EmergencyChoice> {
@@ -85,8 +88,168 @@ fn area() -> BoxedStrategy<Area> {
         (place(), value()).prop_map(|(centre, radius_m)| Area::Circle { centre, radius_m }),
         (vec(lat_lon(), 0..5), vec(vec(lat_lon(), 0..4), 0..3))
             .prop_map(|(corners, holes)| Area::Polygon { corners, holes }),
+        source().prop_map(Area::Expression),
     ]
     .boxed()
+}
+
+fn spacing() -> BoxedStrategy<Spacing> {
+    let camera = (value(), value(), of(value()));
+    prop_oneof![
+        value().prop_map(Spacing::Metres),
+        camera.prop_map(|(field_of_view_deg, overlap, height_m)| Spacing::Camera {
+            field_of_view_deg,
+            overlap,
+            height_m
+        }),
+    ]
+    .boxed()
+}
+
+fn scan() -> BoxedStrategy<LegKind> {
+    use {ScanEntry as E, ScanStyle as S};
+    let style = proptest::sample::select(vec![S::Parallel, S::Creeping, S::CrissCross]);
+    let entry =
+        proptest::sample::select(vec![E::Nearest, E::StartLeft, E::StartRight, E::EndLeft, E::EndRight]);
+    (area(), style, spacing(), of(value()), value(), entry)
+        .prop_map(|(area, style, spacing, heading_deg, overshoot_m, entry)| {
+            LegKind::Scan(Scan { area, style, spacing, heading_deg, overshoot_m, entry })
+        })
+        .boxed()
+}
+
+fn pattern() -> BoxedStrategy<Pattern> {
+    let (places, yes) = (|| vec(place(), 0..4), any::<bool>);
+    prop_oneof![
+        (place(), value(), value(), spacing(), yes(), turn()).prop_map(
+            |(centre, inner_radius_m, outer_radius_m, spacing, inward, turn)| Pattern::Spiral {
+                centre,
+                inner_radius_m,
+                outer_radius_m,
+                spacing,
+                inward,
+                turn
+            }
+        ),
+        (place(), spacing(), value(), value(), turn()).prop_map(
+            |(centre, spacing, heading_deg, radius_m, turn)| Pattern::ExpandingSquare {
+                centre,
+                spacing,
+                heading_deg,
+                radius_m,
+                turn
+            }
+        ),
+        (place(), value(), value(), value(), value(), turn()).prop_map(
+            |(centre, radius_m, sectors, heading_deg, passes, turn)| Pattern::Sector {
+                centre,
+                radius_m,
+                sectors,
+                heading_deg,
+                passes,
+                turn
+            }
+        ),
+        (places(), spacing(), yes()).prop_map(|(route, spacing, returns)| Pattern::TrackLine {
+            route,
+            spacing,
+            returns
+        }),
+        (places(), value(), spacing()).prop_map(|(route, width_m, spacing)| Pattern::Corridor {
+            route,
+            width_m,
+            spacing
+        }),
+        (area(), spacing(), of(value()), yes(), turn()).prop_map(|(area, spacing, loops, inward, turn)| {
+            Pattern::Contour { area, spacing, loops, inward, turn }
+        }),
+        (place(), value(), value(), value(), turn()).prop_map(
+            |(centre, radius_m, heading_deg, turns, turn)| Pattern::FigureEight {
+                centre,
+                radius_m,
+                heading_deg,
+                turns,
+                turn
+            }
+        ),
+    ]
+    .boxed()
+}
+
+fn call() -> BoxedStrategy<LegKind> {
+    (id(), vec((id(), source()), 0..3), of(place()), of(value()))
+        .prop_map(|(procedure, arguments, anchor, bearing_deg)| {
+            LegKind::Call(Call { procedure, arguments, anchor, bearing_deg })
+        })
+        .boxed()
+}
+
+fn action() -> BoxedStrategy<LegAction> {
+    let trigger = prop_oneof![
+        Just(Trigger::Start),
+        Just(Trigger::End),
+        value().prop_map(Trigger::Distance),
+        value().prop_map(Trigger::Every),
+        value().prop_map(Trigger::Time),
+        place().prop_map(Trigger::Abeam),
+    ];
+    let act = prop_oneof![
+        Just(Act::Photo),
+        Just(Act::PhotoStop),
+        Just(Act::VideoStart),
+        Just(Act::VideoStop),
+        value().prop_map(|every_m| Act::PhotoSeries { every_m }),
+        (id(), source()).prop_map(|(variable, to)| Act::Set { variable, to }),
+        (text(), text(), text()).prop_map(|(service, operation, argument)| Act::Invoke {
+            service,
+            operation,
+            argument
+        }),
+        value().prop_map(|seconds| Act::Wait { seconds }),
+    ];
+    (trigger, act).prop_map(|(trigger, act)| LegAction { trigger, act }).boxed()
+}
+
+fn zone() -> BoxedStrategy<Zone> {
+    let shape = prop_oneof![
+        (lat_lon(), number()).prop_map(|(centre, radius_m)| ZoneShape::Circle { centre, radius_m }),
+        vec(lat_lon(), 0..5).prop_map(ZoneShape::Polygon),
+    ];
+    let limit = || {
+        of((number(), reference())).prop_map(|limit| {
+            limit.map(|(metres, reference)| Altitude { metres: Value::Constant(metres), reference })
+        })
+    };
+    // years 1 to 9999
+    let time = || -62_135_596_800_i64..=253_402_207_200;
+    let active =
+        (time(), time()).prop_map(|(from_unix_s, until_unix_s)| ZoneTime { from_unix_s, until_unix_s });
+    let kind = prop_oneof![Just(ZoneKind::KeepIn), Just(ZoneKind::KeepOut)];
+    (id(), text(), kind, shape, limit(), limit(), vec(active, 0..3))
+        .prop_map(|(id, name, kind, shape, floor, ceiling, active)| Zone {
+            id,
+            name,
+            kind,
+            shape,
+            floor,
+            ceiling,
+            active,
+        })
+        .boxed()
+}
+
+fn procedure() -> BoxedStrategy<Procedure> {
+    let parameter = (id(), of(source())).prop_map(|(name, default)| Parameter { name, default });
+    (id(), text(), vec(parameter, 0..3), of(lat_lon()), number(), vec(leg(), 0..4))
+        .prop_map(|(id, name, parameters, reference, bearing_deg, legs)| Procedure {
+            id,
+            name,
+            parameters,
+            reference,
+            bearing_deg,
+            legs,
+        })
+        .boxed()
 }
 
 fn intersection() -> BoxedStrategy<LegKind> {
@@ -113,20 +276,19 @@ fn simple_kind() -> BoxedStrategy<LegKind> {
         waypoint().prop_map(LegKind::Tf),
         (waypoint(), of(turn())).prop_map(|(to, turn)| LegKind::Df { to, turn }),
         (waypoint(), lat_lon(), turn()).prop_map(|(to, centre, turn)| LegKind::Rf { to, centre, turn }),
+        (waypoint(), value()).prop_map(|(to, course_deg)| LegKind::Cf { to, course_deg }),
+        (waypoint(), value()).prop_map(|(from, course_deg)| LegKind::Fa { from, course_deg }),
+        (holding(), of(source()), of(value())).prop_map(|(holding, until, max_laps)| LegKind::Hm {
+            holding,
+            until,
+            max_laps
+        }),
         holding().prop_map(LegKind::Hf),
         holding().prop_map(LegKind::Ha),
         intersection(),
-        (area(), value(), of(value()), value()).prop_map(|(area, spacing, heading_deg, overshoot_m)| {
-            let (style, entry) = (ScanStyle::Parallel, ScanEntry::Nearest);
-            LegKind::Scan(Scan {
-                area,
-                style,
-                spacing: Spacing::Metres(spacing),
-                heading_deg,
-                overshoot_m,
-                entry,
-            })
-        }),
+        scan(),
+        pattern().prop_map(LegKind::Pattern),
+        call(),
         (place(), value(), value(), turn()).prop_map(|(centre, radius_m, turns, turn)| LegKind::Orbit {
             centre,
             radius_m,
@@ -138,15 +300,15 @@ fn simple_kind() -> BoxedStrategy<LegKind> {
 }
 
 fn leg_of(kind: impl Strategy<Value = LegKind> + 'static) -> BoxedStrategy<Leg> {
-    (id(), text(), emergency(), of(altitude()), of(value()), of(id()), kind)
-        .prop_map(|(id, name, emergency, altitude, speed_mps, next, kind)| Leg {
+    (id(), text(), emergency(), of(altitude()), of(value()), of(id()), vec(action(), 0..3), kind)
+        .prop_map(|(id, name, emergency, altitude, speed_mps, next, actions, kind)| Leg {
             id,
             name,
             emergency,
             altitude,
             speed_mps,
             next,
-            actions: Vec::new(),
+            actions,
             kind,
         })
         .boxed()
@@ -188,16 +350,17 @@ fn variable() -> BoxedStrategy<Variable> {
         number().prop_map(VariableValue::Number),
         text().prop_map(VariableValue::Text),
         lat_lon().prop_map(VariableValue::Position),
+        vec(lat_lon(), 0..5).prop_map(VariableValue::Polygon),
     ];
-    (id(), initial, text(), of(number()), of(number()), of(any::<usize>()))
-        .prop_map(|(name, initial, unit, min, max, max_length)| Variable {
+    (id(), initial, text(), of(number()), of(number()), of(any::<usize>()), vec(id(), 0..3))
+        .prop_map(|(name, initial, unit, min, max, max_length, writers)| Variable {
             name,
             initial,
             unit,
             min,
             max,
             max_length,
-            writers: Vec::new(),
+            writers,
         })
         .boxed()
 }
@@ -220,9 +383,10 @@ fn plan() -> BoxedStrategy<FlightPlan> {
     let emergency_plan = (id(), text(), id(), vec(stage(), 0..3))
         .prop_map(|(id, name, runway, stages)| EmergencyPlan { id, name, runway, stages });
     let lists = (vec(fix(), 0..3), vec(runway(), 0..3), vec(variable(), 0..3));
-    (text(), text(), lists, emergency(), vec(stage(), 0..4), vec(emergency_plan, 0..3))
-        .prop_map(|(name, aircraft, (fixes, runways, variables), emergency, stages, emergency_plans)| {
-            let (zones, procedures) = (Vec::new(), Vec::new());
+    let more = (vec(zone(), 0..3), vec(procedure(), 0..3));
+    (text(), text(), lists, more, emergency(), vec(stage(), 0..4), vec(emergency_plan, 0..3))
+        .prop_map(|(name, aircraft, lists, (zones, procedures), emergency, stages, emergency_plans)| {
+            let (fixes, runways, variables) = lists;
             FlightPlan {
                 name,
                 aircraft,

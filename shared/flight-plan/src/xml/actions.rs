@@ -75,12 +75,12 @@ impl<'a> Document<'a> {
         let distance = self.value(element, "afterDistance").map(Trigger::Distance);
         let every = self.value(element, "every").map(Trigger::Every);
         let time = self.value(element, "afterTime").map(Trigger::Time);
-        let mut given: Vec<Trigger> = [on, distance, every, time].into_iter().flatten().collect();
-        if given.len() != 1 {
+        const WAYS: [&str; 4] = ["on", "afterDistance", "afterTime", "every"];
+        if WAYS.iter().filter(|way| element.attributes.location(way).is_some()).count() != 1 {
             let message = "say when in exactly one way: `on`, `afterDistance`, `afterTime` or `every`";
             self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
         }
-        given.pop()
+        on.or(distance).or(every).or(time)
     }
 
     fn act(&mut self, element: &Element<'a>) -> Option<Act> {

@@ -71,7 +71,9 @@ pub(super) fn children(out: &mut Writer, pattern: &Pattern) {
         | Pattern::Sector { centre, .. }
         | Pattern::FigureEight { centre, .. } => out.leaf(Tag::new("centre").place(centre, "at")),
         Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => {
-            out.list("route", route, |out, place| out.leaf(Tag::new("point").place(place, "at")));
+            out.element(Tag::new("route"), |out| {
+                route.iter().for_each(|place| out.leaf(Tag::new("point").place(place, "at")));
+            });
         }
         Pattern::Contour { area: a, .. } => area(out, a),
     }

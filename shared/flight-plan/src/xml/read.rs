@@ -368,14 +368,19 @@ impl<'a> Document<'a> {
     pub fn altitude(&mut self, element: &Element<'a>) -> Option<Altitude> {
         let reference = self.choice(element, "altitudeReference", &AltitudeReference::NAMES);
         let metres = self.value(element, "altitude");
-        if metres.is_some() != element.attributes.take("altitudeReference").is_some() {
+        self.both_or_neither(element, "altitude", "altitudeReference");
+        Some(Altitude { metres: metres?, reference: reference.unwrap_or(AltitudeReference::Amsl) })
+    }
+
+    /// Metres and what they are measured from.
+    pub fn both_or_neither(&mut self, element: &Element<'a>, metres: &str, reference: &str) {
+        if element.attributes.take(metres).is_some() != element.attributes.take(reference).is_some() {
             let message = format!(
-                "give <{}> both `altitude` and `altitudeReference` (amsl, agl or home), or neither",
+                "give <{}> both `{metres}` and `{reference}` (amsl, agl or home), or neither",
                 element.name
             );
             self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
         }
-        Some(Altitude { metres: metres?, reference: reference.unwrap_or(AltitudeReference::Amsl) })
     }
 }
 

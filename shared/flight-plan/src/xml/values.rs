@@ -163,6 +163,9 @@ pub(super) fn position(text: &str) -> Option<LatLon> {
 
 /// `lat lon, lat lon, …`, degrees.
 pub(super) fn positions(text: &str) -> Option<Vec<LatLon>> {
+    if text.is_empty() {
+        return Some(Vec::new());
+    }
     text.split(',').map(|p| position(p.trim())).collect()
 }
 

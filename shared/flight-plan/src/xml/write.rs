@@ -4,8 +4,8 @@ use super::attributes::allowed;
 use super::write_legs::leg;
 use super::{NAMESPACE, zone};
 use crate::{
-    Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure, Runway,
-    Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
+    Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure,
+    Runway, Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};

@@ -63,10 +63,12 @@ impl<'a> Document<'a> {
         let (mut outline, mut active) = (Vec::new(), Vec::new());
         while let Some(child) = self.cursor.child(&element) {
             match child.name {
-                "corner" => outline.extend(self.lat_lon(&child, "lat", "lon")),
+                "corner" if circle.is_none() => outline.extend(self.lat_lon(&child, "lat", "lon")),
                 "active" => active.extend(self.active(&child)),
                 _ => {
-                    self.cursor.unknown(child, element.name, "corner, active");
+                    let allowed =
+                        if circle.is_none() { "corner, active" } else { "active, as it is a circle" };
+                    self.cursor.unknown(child, element.name, allowed);
                     continue;
                 }
             }
@@ -77,10 +79,12 @@ impl<'a> Document<'a> {
     }
 
     fn limit(&mut self, element: &Element<'a>, name: &str, reference: &str) -> Option<Altitude> {
-        let metres = self.number(element, name);
+        self.both_or_neither(element, name, reference);
         let reference = self.choice(element, reference, &AltitudeReference::NAMES);
+        // what can't be read is a limit that the checks refuse, not none
+        let metres = element.attributes.take(name).is_some().then(|| self.number(element, name));
         Some(Altitude {
-            metres: Value::Constant(metres?),
+            metres: Value::Constant(metres?.unwrap_or(f64::NAN)),
             reference: reference.unwrap_or(AltitudeReference::Amsl),
         })
     }
