@@ -94,6 +94,22 @@ pub struct AircraftState {
     pub on_ground: bool,
 }
 
+impl AircraftState {
+    /// Every number is one, and the position is on Earth.
+    pub fn is_sound(&self) -> bool {
+        let numbers = [
+            self.altitude_amsl_m,
+            self.track_deg,
+            self.ground_speed_mps,
+            self.airspeed_mps,
+            self.wind_east_mps,
+            self.wind_north_mps,
+            self.battery,
+        ];
+        self.position.is_valid() && numbers.iter().all(|n| n.is_finite())
+    }
+}
+
 /// One step of a nest of loops.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct IterationPlace {
@@ -403,6 +419,14 @@ pub enum Event {
         /// The leg.
         leg: Id,
         /// Why.
+        reason: String,
+    },
+    /// A condition or a number of a leg has no value now (a division by zero, for instance): the condition counts as
+    /// false, the number as not given. Told once.
+    ExpressionFailed {
+        /// The leg.
+        leg: Id,
+        /// Why, and what to do.
         reason: String,
     },
     /// A plan became the active one.

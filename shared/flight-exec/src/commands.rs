@@ -1,7 +1,7 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use crate::api::{Command, Event, Output, Phase, Refusal};
-use crate::cursor::{Cursor, Doing};
+use crate::cursor::{Cursor, Doing, Trouble};
 use crate::executor::{Executor, refusal};
 use crate::handed::Handed;
 use flight_plan::{Id, LegKind, VariableValue};
@@ -103,7 +103,10 @@ impl Executor {
 
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
-        let after = self.bookmark(1).or(self.state.tail.as_ref()).cloned();
+        // after a resume the leg's first waypoint is the place where the hold was given
+        let passage = self.state.handed.front().map(|h| h.passage);
+        let of_leg = self.state.handed.iter().take_while(|h| Some(h.passage) == passage).count();
+        let after = self.bookmark(of_leg).cloned();
         let Some(mut cursor) = after.filter(|_| !self.state.handed.is_empty()) else {
             return Err(refusal("nothing-to-skip", "no leg is being flown: wait for the next one"));
         };
@@ -165,6 +168,9 @@ impl Executor {
         }
         self.state.counts.retain(|(id, _)| *id != leg);
         self.state.counts.truncate(MOST_COUNTS - 1);
+        // waypoints too near to be laid out anew tell it as well
+        let near = self.state.handed.iter_mut().flat_map(|h| &mut h.place.iterations);
+        near.filter(|i| i.leg == leg).for_each(|i| i.of = Some(count));
         self.state.counts.push((leg, count));
         self.replan(out);
         Ok(())
@@ -204,7 +210,8 @@ impl Executor {
             }
             Ok(false) => self.replan(out),
             Err(why) => {
-                self.tell_refused(leg.unwrap_or_else(|| Id::new("plan")), why.to_string(), out);
+                let leg = leg.unwrap_or_else(|| Id::new("plan"));
+                self.tell_trouble(Trouble::Leg { leg, reason: why.to_string() }, out);
                 self.replan(out);
             }
         }

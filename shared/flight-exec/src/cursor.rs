@@ -5,14 +5,16 @@
 
 mod control;
 mod enter;
+mod notes;
 mod place;
 
+pub use notes::{Mark, Notes, Trouble};
+
 use crate::api::{Action, Time};
-use crate::choice::Choice;
 use crate::expand::{Expansion, Point};
 use crate::path::{Level, Passing, PathState, distance_and_course};
 use crate::world::World;
-use flight_plan::{Id, Leg, Stage};
+use flight_plan::{Act, Id, Leg, Stage, Trigger};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -65,7 +67,7 @@ pub enum Doing {
     Flying,
     /// On the full turn at the end of a pass of the innermost loop.
     Turning,
-    /// Waiting in a loiter for a decision.
+    /// Circling, for a decision or a time.
     Waiting,
     /// The plan is over.
     Ended,
@@ -88,6 +90,8 @@ pub struct LoopFrame {
     pub back: usize,
     /// Where the path was when the loop was entered.
     pub entered: Passing,
+    /// Number of the last passage before this activation: tells activations of the loop apart.
+    pub activation: u64,
 }
 
 /// A leg passed on a forward pass, remembered for the way back.
@@ -118,12 +122,12 @@ pub struct Emission {
     pub action: Action,
     /// Cross it before turning.
     pub fly_over: bool,
-    /// Choices made since the waypoint before it.
-    pub choices: Vec<Choice>,
-    /// If choices were made: the cursor after them.
+    /// Circled for so many seconds, then left by itself (a loiter without it waits for a decision).
+    pub wait_s: Option<f64>,
+    /// What happened since the waypoint before it.
+    pub notes: Notes,
+    /// If something did: the cursor after it.
     pub sealed: Option<Box<Cursor>>,
-    /// Legs that couldn't be flown, and why.
-    pub refused: Vec<(Id, String)>,
 }
 
 /// What comes next.
@@ -133,12 +137,10 @@ pub enum Step {
     Waypoint(Box<Emission>),
     /// Nothing: the plan is over.
     Ended {
-        /// Choices made since the last waypoint.
-        choices: Vec<Choice>,
-        /// Legs that couldn't be flown, and why.
-        refused: Vec<(Id, String)>,
+        /// What happened since the last waypoint.
+        notes: Notes,
     },
-    /// Nothing: it waits in a loiter for a decision.
+    /// Nothing: it circles, for a decision or a time.
     Waiting,
     /// Nothing: a loop flies no waypoint at all.
     Stalled,
@@ -166,43 +168,68 @@ impl Cursor {
 
     /// The next waypoint.
     pub fn next(&mut self, world: &World) -> Step {
-        let mut choices = Vec::new();
-        let mut refused = Vec::new();
+        let mut notes = Notes::default();
         for _ in 0..MOST_SILENT_STEPS {
-            if let Some(point) = self.peek_point(world, &mut choices) {
-                let sealed = (!choices.is_empty()).then(|| Box::new(self.clone()));
+            if let Some(point) = self.peek_point(world, &mut notes) {
+                let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
                 let emission = self.emit(point, world);
-                return Step::Waypoint(Box::new(Emission { choices, sealed, refused, ..emission }));
+                return Step::Waypoint(Box::new(Emission { notes, sealed, ..emission }));
             }
             match self.doing {
-                Doing::Ended => return Step::Ended { choices, refused },
+                Doing::Ended => return Step::Ended { notes },
                 Doing::Waiting => return Step::Waiting,
-                Doing::Arriving => self.arrive(world, &mut choices, &mut refused),
-                Doing::Flying => self.leave(world),
+                Doing::Arriving => self.arrive(world, &mut notes),
+                Doing::Flying => match self.wait_due(world, &mut notes) {
+                    Some(seconds) => return self.wait(seconds, notes, world),
+                    None => self.leave(world, &mut notes),
+                },
                 Doing::Turning => self.doing = Doing::Arriving,
             }
         }
         Step::Stalled
     }
 
-    /// The expansion's next point, if there is one; a holding is left here when its choice says so.
-    fn peek_point(&mut self, world: &World, choices: &mut Vec<Choice>) -> Option<Point> {
+    /// The expansion's next point, if there is one; an open-ended one is left here when its choice says so.
+    fn peek_point(&mut self, world: &World, notes: &mut Notes) -> Option<Point> {
         if self.doing != Doing::Flying && self.doing != Doing::Turning {
             return None;
         }
-        let expansion = self.expansion.as_ref()?;
-        if let Expansion::Holding(racetrack) = expansion.as_ref()
-            && !racetrack.once
-            && let Some(lap) = racetrack.crossing(self.given)
-        {
-            let choice = self.leave_holding(lap, world);
-            let leaves = matches!(choice, Choice::Hold { leaves: true, .. });
-            choices.push(choice);
+        if let Some(lap) = self.expansion.as_ref()?.crossing(self.given) {
+            let (choice, leaves) = self.leave_open_end(lap, world, notes);
+            notes.choices.push(choice);
             if leaves {
                 return None;
             }
         }
         self.expansion.as_ref()?.point(self.given)
+    }
+
+    /// Seconds to be circled at the end of the leg before it is left.
+    fn wait_due(&self, world: &World, notes: &mut Notes) -> Option<f64> {
+        let leg = self.leg(world).filter(|leg| !leg.actions.is_empty() && self.expansion.is_some())?;
+        if world.waited == Some(self.passage) {
+            return None;
+        }
+        let inside = self.inside(world);
+        let seconds = leg.actions.iter().map(|action| match (&action.trigger, &action.act) {
+            (Trigger::End, Act::Wait { seconds }) => {
+                notes.value(&leg.id, inside.number(seconds)).unwrap_or(0.0)
+            }
+            _ => 0.0,
+        });
+        Some(seconds.map(|s: f64| s.max(0.0)).sum()).filter(|s| *s > 0.0)
+    }
+
+    fn wait(&mut self, seconds: f64, notes: Notes, world: &World) -> Step {
+        let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
+        let emission = self.emit(self.circle_here(world), world);
+        Step::Waypoint(Box::new(Emission { wait_s: Some(seconds), notes, sealed, ..emission }))
+    }
+
+    /// Circling at the end of the path.
+    fn circle_here(&self, world: &World) -> Point {
+        let action = Action::Loiter { radius_m: world.turn_radius_m(self.airspeed_mps) };
+        Point { action, ..Point::fly(self.path.last.position) }
     }
 
     fn emit(&mut self, point: Point, world: &World) -> Emission {
@@ -249,9 +276,9 @@ impl Cursor {
             airspeed_mps: self.airspeed_mps,
             action: point.action,
             fly_over: point.fly_over,
-            choices: Vec::new(),
+            wait_s: None,
+            notes: Notes::default(),
             sealed: None,
-            refused: Vec::new(),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::api::{AircraftState, Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
 use crate::config::Config;
-use crate::cursor::Cursor;
+use crate::cursor::{Cursor, Trouble};
 use crate::decision::Decision;
 use crate::handed::{Handed, Onward};
 use crate::path::{Level, Passing, PathState, distance_m};
@@ -48,6 +48,10 @@ pub(crate) struct State {
     pub decisions: Vec<Decision>,
     pub requested: Vec<(Id, u64)>,
     pub counts: Vec<(Id, u64)>,
+    /// See [`World::released`].
+    pub released: Option<u64>,
+    /// See [`World::waited`].
+    pub waited: Option<u64>,
     pub emergency: Option<Emergency>,
     /// Where the aircraft was when it was told to hold.
     pub held_at: Option<LatLon>,
@@ -60,8 +64,8 @@ pub(crate) struct State {
     pub refresh_due_s: Option<f64>,
     pub last_refresh_s: Option<f64>,
     pub review_due_s: f64,
-    /// Last reason a leg couldn't be flown or regenerated, so that it is told once.
-    pub told: Option<(Id, String)>,
+    /// What didn't work lately, the latest first, so that it is told once.
+    pub told: Vec<Trouble>,
 }
 
 /// The emergency being flown.
@@ -88,6 +92,8 @@ impl Default for State {
             decisions: Vec::new(),
             requested: Vec::new(),
             counts: Vec::new(),
+            released: None,
+            waited: None,
             emergency: None,
             held_at: None,
             gateway_controls: false,
@@ -98,7 +104,7 @@ impl Default for State {
             refresh_due_s: None,
             last_refresh_s: None,
             review_due_s: 0.0,
-            told: None,
+            told: Vec::new(),
         }
     }
 }
@@ -120,7 +126,9 @@ impl Executor {
         self.advance_clock(now);
         match input {
             Input::Tick => {}
-            Input::Aircraft(state) => self.state.aircraft = Some(state),
+            Input::Aircraft(state) if state.is_sound() => self.state.aircraft = Some(state),
+            // numbers that are none: the last sound report counts on
+            Input::Aircraft(_) => {}
             Input::Propose { request, program } => self.propose(request, program, out),
             Input::Command { request, command } => {
                 let result = self.command(command, out);
@@ -240,6 +248,8 @@ impl Executor {
             variables: &self.state.variables,
             flight: self.flight_state(),
             decisions: &self.state.decisions,
+            released: self.state.released,
+            waited: self.state.waited,
             counts: &self.state.counts,
             arriving: false,
             looking_ahead: false,

@@ -2,10 +2,9 @@
 
 use crate::api::{Action, PlacePointer, Token, Waypoint};
 use crate::choice::Choice;
-use crate::cursor::{Cursor, Emission, Step};
+use crate::cursor::{Cursor, Doing, Emission, Mark, Notes, Step, Trouble};
 use crate::path::distance_m;
 use crate::world::World;
-use flight_plan::Id;
 use serde::{Deserialize, Serialize};
 
 /// Two waypoints this close are the same for the autopilot, metres.
@@ -22,11 +21,17 @@ pub struct Handed {
     pub before: Cursor,
     /// Choices between the waypoint before it and this one; emptied when they are final.
     pub choices: Vec<Choice>,
+    /// Legs passed there without a waypoint of their own; emptied with the choices.
+    pub marks: Vec<Mark>,
+    /// Circled here for so many seconds, then left by itself.
+    pub wait_s: Option<f64>,
     /// The cursor after those choices.
     #[serde(skip)]
     pub sealed: Option<Box<Cursor>>,
     /// Passage of its leg.
     pub passage: u64,
+    /// Activations of the loops around it, as its place lists them.
+    pub activations: Vec<u64>,
     /// Path length at the beginning of that passage, metres since the start of the flight.
     pub leg_start_m: f64,
     /// Path length at this waypoint, metres.
@@ -44,7 +49,7 @@ pub enum Onward {
     Open,
     /// The last one ends the plan.
     Ended,
-    /// The last one is a loiter that waits for a decision.
+    /// The last one is circled, for a decision or a time.
     Waiting,
     /// A loop flies nothing.
     Stalled,
@@ -59,10 +64,10 @@ pub struct Stretch {
     pub tail: Cursor,
     /// How it goes on.
     pub onward: Onward,
-    /// Choices after the last waypoint.
-    pub tail_choices: Vec<Choice>,
-    /// Legs that couldn't be flown.
-    pub refused: Vec<(Id, String)>,
+    /// What happens after the last waypoint.
+    pub tail_notes: Notes,
+    /// What went wrong on the way.
+    pub troubles: Vec<Trouble>,
 }
 
 /// Lays out path from a cursor, as long as `more(count, end of path)` asks for it.
@@ -76,8 +81,13 @@ pub fn lay_out(
     marked: bool,
     mut more: impl FnMut(usize, &Cursor) -> bool,
 ) -> Stretch {
-    let (handed, tail_choices, refused) = (Vec::new(), Vec::new(), Vec::new());
-    let mut stretch = Stretch { handed, tail: from.clone(), onward: Onward::Open, tail_choices, refused };
+    let mut stretch = Stretch {
+        handed: Vec::new(),
+        tail: from.clone(),
+        onward: Onward::Open,
+        tail_notes: Notes::default(),
+        troubles: Vec::new(),
+    };
     let mut world = World { arriving, ..*world };
     while stretch.onward == Onward::Open && more(stretch.handed.len(), &stretch.tail) {
         let before = stretch.tail.clone();
@@ -95,12 +105,12 @@ impl Stretch {
     fn take(&mut self, step: Step, before: Cursor, marked: bool, world: &World) {
         match step {
             Step::Waypoint(emission) => {
-                self.handed.push(handed(*emission, before, &self.tail, world, &mut self.refused))
+                self.handed.push(handed(*emission, before, &self.tail, world, &mut self.troubles))
             }
-            Step::Ended { choices, refused } => {
+            Step::Ended { mut notes } => {
                 self.tail = before;
-                self.tail_choices = choices;
-                self.refused.extend(refused);
+                self.troubles.append(&mut notes.troubles);
+                self.tail_notes = notes;
                 self.end(marked, world);
             }
             Step::Waiting => self.onward = Onward::Waiting,
@@ -128,11 +138,11 @@ impl Stretch {
             airspeed_mps: path.last.airspeed_mps,
             action: Action::Fly,
             fly_over: true,
-            choices: std::mem::take(&mut self.tail_choices),
+            wait_s: None,
+            notes: std::mem::take(&mut self.tail_notes),
             sealed: Some(Box::new(self.tail.clone())),
-            refused: Vec::new(),
         };
-        let mut last = handed(emission, self.tail.clone(), &self.tail, world, &mut self.refused);
+        let mut last = handed(emission, self.tail.clone(), &self.tail, world, &mut self.troubles);
         last.waypoint.end_of_plan = true;
         last.pinned = true;
         self.handed.push(last);
@@ -141,9 +151,9 @@ impl Stretch {
     /// The horizon may end just where the plan does; then the mark must not come too late.
     fn look_for_the_end(&mut self, world: &World) {
         let mut ahead = self.tail.clone();
-        if let (Step::Ended { choices, .. }, Some(last)) = (ahead.next(world), self.handed.last_mut()) {
+        if let (Step::Ended { notes }, Some(last)) = (ahead.next(world), self.handed.last_mut()) {
             last.waypoint.end_of_plan = true;
-            self.tail_choices = choices;
+            self.tail_notes = notes;
             self.onward = Onward::Ended;
         }
     }
@@ -154,9 +164,9 @@ fn handed(
     before: Cursor,
     after: &Cursor,
     world: &World,
-    refused: &mut Vec<(Id, String)>,
+    troubles: &mut Vec<Trouble>,
 ) -> Handed {
-    refused.extend(emission.refused);
+    troubles.extend(emission.notes.troubles);
     let place = after.place(world);
     let waypoint = Waypoint {
         token: Token(0),
@@ -172,9 +182,12 @@ fn handed(
         waypoint,
         place,
         before,
-        choices: emission.choices,
+        choices: emission.notes.choices,
+        marks: emission.notes.marks,
+        wait_s: emission.wait_s,
         sealed: emission.sealed,
         passage: after.passage,
+        activations: after.loops.iter().map(|frame| frame.activation).collect(),
         leg_start_m: after.leg_start.distance_m,
         end_m: after.path.distance_m,
         end_s: after.path.time_s,
@@ -192,19 +205,35 @@ impl Handed {
             && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < SAME_M
             && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05
             && self.passage == other.passage
+            && self.wait_s == other.wait_s
             && distance_m(a.position, b.position) < SAME_M
     }
 
-    /// Makes the choices before it final.
-    pub fn seal(&mut self) -> Vec<Choice> {
+    /// Makes what happens before it final.
+    pub fn seal(&mut self) -> (Vec<Choice>, Vec<Mark>) {
         if let Some(sealed) = self.sealed.take() {
             self.before = *sealed;
         }
-        std::mem::take(&mut self.choices)
+        (std::mem::take(&mut self.choices), std::mem::take(&mut self.marks))
+    }
+
+    /// Makes what happens before a wait final, all but the choice that is waited for: that bookmark is at the intersection.
+    pub fn seal_before_wait(&mut self) -> (Vec<Choice>, Vec<Mark>) {
+        let Some(open) = self.choices.pop() else { return Default::default() };
+        if let Some(waiting) = self.sealed.as_deref() {
+            let passage = waiting.passage.saturating_sub(1);
+            self.before = Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting.clone() };
+        }
+        (std::mem::replace(&mut self.choices, vec![open]), std::mem::take(&mut self.marks))
     }
 
     /// The aircraft circles here until something else is fed.
     pub fn is_loiter(&self) -> bool {
         matches!(self.waypoint.action, Action::Loiter { .. })
+    }
+
+    /// The aircraft circles here until somebody decides.
+    pub fn waits_for_decision(&self) -> bool {
+        self.is_loiter() && self.wait_s.is_none()
     }
 }

@@ -58,10 +58,9 @@ impl Executor {
 
     /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
     fn announce(&mut self, handed: &mut Handed, out: &mut Vec<Output>) {
-        if handed.is_loiter() {
-            return self.announce_leg(handed, out);
-        }
-        for choice in handed.seal() {
+        let (choices, _) =
+            if handed.waits_for_decision() { handed.seal_before_wait() } else { handed.seal() };
+        for choice in choices {
             match choice {
                 Choice::Loop { leg, arrival, of, again } => {
                     if !again {
@@ -105,8 +104,8 @@ impl Executor {
     fn announce_end(&mut self, out: &mut Vec<Output>) {
         let (Some(tail), Some(world)) = (self.state.tail.clone(), self.world()) else { return };
         let mut tail = tail;
-        if let Step::Ended { choices, .. } = tail.next(&world) {
-            for choice in choices {
+        if let Step::Ended { notes } = tail.next(&world) {
+            for choice in notes.choices {
                 if let Choice::Loop { leg, arrival, of, .. } = choice {
                     out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
                 }
@@ -170,8 +169,8 @@ impl Executor {
 fn choices_changed(handed: &Handed, world: &World) -> bool {
     let mut cursor = handed.before.clone();
     let now = match cursor.next(world) {
-        Step::Waypoint(emission) => emission.choices,
-        Step::Ended { choices, .. } => choices,
+        Step::Waypoint(emission) => emission.notes.choices,
+        Step::Ended { notes } => notes.choices,
         Step::Waiting | Step::Stalled => return true,
     };
     let alike = |(a, b): (&Choice, &Choice)| a.leads_as(b);

@@ -1,25 +1,32 @@
 //! Handing out: topping the horizon up, and laying the path out anew when something has changed.
 
 use crate::api::{Action, Event, Output, Phase, Token};
-use crate::cursor::Cursor;
+use crate::cursor::{Cursor, Trouble};
 use crate::executor::Executor;
 use crate::handed::{Handed, Onward, Stretch, lay_out};
 use flight_plan::Id;
 
+/// Most troubles remembered so that they are told once.
+const MOST_TOLD: usize = 16;
+
 impl Executor {
     /// Tops the horizon up.
     pub(crate) fn fill(&mut self, out: &mut Vec<Output>) {
+        let first = self.state.handed.len();
+        self.lengthen(out);
+        self.feed(None, first, out);
+    }
+
+    /// Lays out what is missing to the horizon, without feeding it.
+    fn lengthen(&mut self, out: &mut Vec<Output>) {
         if self.is_muted() || self.state.onward != Onward::Open {
             return;
         }
-        let (count, from_s) = (self.state.handed.len(), self.time_at_aircraft_s());
-        let more = self.horizon(count, from_s);
+        let more = self.horizon(self.state.handed.len(), self.time_at_aircraft_s());
         let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
         let Some(world) = self.world() else { return };
         let stretch = lay_out(tail, &world, false, false, more);
-        let first = self.state.handed.len();
         self.append(stretch, out);
-        self.feed(None, first, out);
     }
 
     /// Asks for more until there are enough waypoints and seconds ahead.
@@ -52,21 +59,26 @@ impl Executor {
         }
         self.state.tail = Some(stretch.tail);
         self.state.onward = stretch.onward;
-        self.state.tail_has_choices = !stretch.tail_choices.is_empty();
-        for (leg, reason) in stretch.refused {
-            self.tell_refused(leg, reason, out);
+        self.state.tail_has_choices = !stretch.tail_notes.is_empty();
+        for trouble in stretch.troubles {
+            self.tell_trouble(trouble, out);
         }
         if stretch.onward == Onward::Stalled {
             self.stalled(out);
         }
     }
 
-    pub(crate) fn tell_refused(&mut self, leg: Id, reason: String, out: &mut Vec<Output>) {
-        let told = Some((leg.clone(), reason.clone()));
-        if self.state.told != told {
-            self.state.told = told;
-            out.push(Output::Event(Event::PatternRefused { leg, reason }));
+    /// Tells what doesn't work, once as long as nothing is done about it.
+    pub(crate) fn tell_trouble(&mut self, trouble: Trouble, out: &mut Vec<Output>) {
+        if self.state.told.contains(&trouble) {
+            return;
         }
+        self.state.told.truncate(MOST_TOLD - 1);
+        self.state.told.insert(0, trouble.clone());
+        out.push(Output::Event(match trouble {
+            Trouble::Leg { leg, reason } => Event::PatternRefused { leg, reason },
+            Trouble::Expression { leg, reason } => Event::ExpressionFailed { leg, reason },
+        }));
     }
 
     /// A loop without waypoints: nothing will ever follow, so the aircraft holds where its path ends.
@@ -74,7 +86,7 @@ impl Executor {
         let leg = self.state.tail.as_ref().and_then(|t| Some(t.loop_ids(&self.world()?).last()?.clone()));
         let reason = "this loop flies no waypoint; change its body by a plan update, or go to another leg";
         let leg = leg.unwrap_or_else(|| Id::new("plan"));
-        self.tell_refused(leg, reason.into(), out);
+        self.tell_trouble(Trouble::Leg { leg, reason: reason.into() }, out);
         if self.state.handed.is_empty() {
             self.hold(out);
         }
@@ -146,7 +158,7 @@ impl Executor {
         let appended = stretch.handed.len() - same;
         self.append(stretch, out);
         self.keep_tokens(from, &tokens, before);
-        let cancel = (old.len() > same).then(|| self.last_token_before(from + same, &old));
+        let cancel = (old.len() > same).then(|| self.last_token_before(from + same));
         if cancel.is_some() || appended > 0 {
             self.feed(cancel, from + same, out);
         }
@@ -168,11 +180,9 @@ impl Executor {
     }
 
     /// The token after which everything is cancelled, to replace waypoints from `index` on.
-    fn last_token_before(&self, index: usize, old: &[Handed]) -> Token {
-        match index.checked_sub(1).and_then(|i| self.state.handed.get(i)) {
-            Some(kept) => kept.waypoint.token,
-            None => Token(old.first().map_or(0, |h| h.waypoint.token.0.saturating_sub(1))),
-        }
+    fn last_token_before(&self, index: usize) -> Token {
+        let kept = index.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        kept.map_or(Token(0), |h| h.waypoint.token)
     }
 
     /// Goes from here to wherever `cursor` is: everything not flown is cancelled.
@@ -194,13 +204,15 @@ impl Executor {
             self.state.last_token += 1;
             handed.waypoint.token = Token(self.state.last_token);
         }
+        // nothing is left ahead where all of it was refused: the way on belongs to the same transaction
+        self.lengthen(out);
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);
     }
 
     /// Waiting for a decision or not, whatever it steers to.
     pub(crate) fn settle_phase(&mut self, out: &mut Vec<Output>) {
-        let waits = self.state.handed.front().is_some_and(Handed::is_loiter);
+        let waits = self.state.handed.front().is_some_and(Handed::waits_for_decision);
         match self.state.phase {
             Phase::Flying if waits => self.enter_phase(Phase::AwaitingDecision, out),
             Phase::AwaitingDecision if !waits => self.enter_phase(Phase::Flying, out),

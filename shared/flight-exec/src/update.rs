@@ -1,7 +1,7 @@
 //! A plan update in flight: proposed, reported on, committed by hash, taken over at the place where the aircraft is.
 
 use crate::api::{Answer, Event, Output, Phase, ProposalReport, Refusal, RequestId};
-use crate::cursor::{Cursor, Doing, LoopFrame, Visit};
+use crate::cursor::{Cursor, Doing, LoopFrame, Trouble, Visit};
 use crate::executor::{Executor, refusal};
 use flight_plan::{FlightPlan, Id, Leg, LegKind, Program, Stage, Variables};
 use std::collections::BTreeMap;
@@ -114,7 +114,7 @@ impl Executor {
             let leg = cursor.leg(&world).map(|l| l.id.clone());
             let refreshed = cursor.refresh_pattern(&world);
             if let (Err(why), Some(leg)) = (refreshed, leg) {
-                self.tell_refused(leg, why.to_string(), out);
+                self.tell_trouble(Trouble::Leg { leg, reason: why.to_string() }, out);
             }
         }
         self.replan_with(keep, cursor, false, out);

@@ -6,11 +6,14 @@ use crate::decision::Decision;
 use crate::path::Level;
 use aircraft::Profile;
 use flight_plan::{
-    Altitude, AltitudeReference, Env, EvalError, FlightState, Id, Leg, Place, Program, Spacing, Stage, Value,
-    Variables,
+    Altitude, AltitudeReference, Env, EvalError, FlightState, Id, Leg, Place, Program, Stage, Value,
+    VariableValue, Variables,
 };
 use geometry::LatLon;
 use terrain::Terrain;
+
+/// Steps in which a wind above the design wind widens turns, m/s.
+const WIND_STEP_MPS: f64 = 2.0;
 
 /// Everything that expansion depends on besides the cursor itself: the same world gives the same path.
 #[derive(Clone, Copy)]
@@ -29,6 +32,10 @@ pub struct World<'a> {
     pub flight: FlightState,
     /// Decisions taken for intersections to come.
     pub decisions: &'a [Decision],
+    /// Passage of a holding that is left at the next crossing of its fix, by command.
+    pub released: Option<u64>,
+    /// Passage at whose end the aircraft has circled as long as it should.
+    pub waited: Option<u64>,
     /// Counts set by command, by loop.
     pub counts: &'a [(Id, u64)],
     /// The aircraft is at the cursor's place: measured values count instead of predicted ones.
@@ -69,15 +76,6 @@ impl World<'_> {
         self.program.expression(source)?.polygon(&self.env())
     }
 
-    /// Distance between tracks now, metres.
-    ///
-    /// # Errors
-    /// It has no value.
-    pub fn spacing_m(&self, spacing: &Spacing) -> Result<f64, EvalError> {
-        let Spacing::Metres(metres) = spacing else { return Err(EvalError::NotFinite) };
-        self.number(metres)
-    }
-
     /// Where a place is now.
     ///
     /// # Errors
@@ -86,14 +84,31 @@ impl World<'_> {
         self.program.eval_place(place, &self.env())
     }
 
-    /// Whether a condition holds; one that can't be evaluated doesn't.
-    pub fn holds(&self, condition: &str) -> bool {
-        self.program.eval_bool(condition, &self.env()).unwrap_or(false)
+    /// Whether a condition holds.
+    ///
+    /// # Errors
+    /// It can't be evaluated.
+    pub fn condition(&self, source: &str) -> Result<bool, EvalError> {
+        self.program.eval_bool(source, &self.env())
     }
 
-    /// Radius for turns of holdings and turn-rounds at an airspeed: planning bank, with the design wind behind.
+    /// The value of an expression, whatever its type.
+    ///
+    /// # Errors
+    /// It has none.
+    pub fn value(&self, source: &str) -> Result<VariableValue, EvalError> {
+        self.program.expression(source)?.value(&self.env())
+    }
+
+    /// Radius for turns that have to stay where they are laid out (holdings, turn-rounds, between tracks) at an
+    /// airspeed: planning bank, at the greatest ground speed. That is with the wind behind: the measured one, in steps so
+    /// that paths don't change with every gust, and never less than the design wind.
     pub fn turn_radius_m(&self, airspeed_mps: f64) -> f64 {
-        self.profile.turn_radius_m(airspeed_mps + self.config.design_wind_mps)
+        let measured_mps = (self.flight.wind_mps / WIND_STEP_MPS).ceil() * WIND_STEP_MPS;
+        let design_mps = self.config.design_wind_mps;
+        // in a wind faster than itself an aircraft stays nowhere
+        let wind_mps = measured_mps.max(design_mps).min(airspeed_mps.max(design_mps));
+        self.profile.turn_radius_m(airspeed_mps + wind_mps)
     }
 
     /// Metres AMSL of a level above a position. Where no terrain is known, `agl` is above the home runway.

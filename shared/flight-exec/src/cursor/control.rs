@@ -1,9 +1,9 @@
 //! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
 
-use super::{Cursor, Doing, LoopFrame, Visit};
+use super::{Cursor, Doing, LoopFrame, Mark, Notes, Visit};
 use crate::choice::{By, Choice};
+use crate::expand::Expansion;
 use crate::expand::track::turn_round;
-use crate::expand::{Expansion, Point};
 use crate::path::distance_m;
 use crate::world::World;
 use flight_plan::{Branch, Id, IterativeForm, Leg, LegKind};
@@ -14,16 +14,19 @@ const MOST_CROSSINGS_KEPT: usize = 256;
 
 impl Cursor {
     /// The leg's points are all given out: on to what follows.
-    pub(super) fn leave(&mut self, world: &World) {
+    pub(super) fn leave(&mut self, world: &World, notes: &mut Notes) {
         let flown = self.expansion.take();
         let list = self.list(world);
         let Some(leg) = list.get(self.index).filter(|_| !self.is_performed_stage(world)) else {
             return self.next_stage(world);
         };
+        if flown.is_some() && self.given == 0 && !leg.actions.is_empty() {
+            notes.marks.push(Mark { leg: leg.id.clone(), passage: self.passage });
+        }
         if self.is_reverse() {
             self.step_back();
         } else {
-            let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. });
+            let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));
             self.remember(world, flown.filter(|_| pattern), None);
             self.index = successor(list, leg, self.index);
             self.doing = Doing::Arriving;
@@ -76,7 +79,7 @@ impl Cursor {
     }
 
     /// The innermost list is at its end in the direction of flight.
-    pub(super) fn end_of_list(&mut self, world: &World, choices: &mut Vec<Choice>) {
+    pub(super) fn end_of_list(&mut self, world: &World, notes: &mut Notes) {
         let Some(frame) = self.loops.last() else {
             return self.next_stage(world);
         };
@@ -89,12 +92,12 @@ impl Cursor {
         };
         if frame.reverse == frame.mirrored {
             let inside = world.in_iteration(frame.iteration);
-            let own = count.as_ref().and_then(|c| inside.number(c).ok());
+            let own = count.as_ref().and_then(|c| notes.value(&leg.id, inside.number(c)));
             let of = world.count_of(&leg.id).or(own.map(|n| n.max(1.0) as u64));
-            let done = of.is_some_and(|n| frame.iteration >= n)
-                || until.as_ref().is_some_and(|condition| inside.holds(condition));
+            let until = until.as_ref().and_then(|c| notes.value(&leg.id, inside.condition(c)));
+            let done = of.is_some_and(|n| frame.iteration >= n) || until == Some(true);
             let arrival = frame.iteration;
-            choices.push(Choice::Loop { leg: leg.id.clone(), arrival, of, again: !done });
+            notes.choices.push(Choice::Loop { leg: leg.id.clone(), arrival, of, again: !done });
             if done {
                 return self.leave_loop(world);
             }
@@ -159,7 +162,7 @@ impl Cursor {
     }
 
     /// A fork or merge: which way on.
-    pub(super) fn cross(&mut self, leg: &Leg, world: &World, choices: &mut Vec<Choice>) {
+    pub(super) fn cross(&mut self, leg: &Leg, world: &World, notes: &mut Notes) {
         let LegKind::Intersection { branches, default, .. } = &leg.kind else { return };
         self.leg_start = self.path;
         self.remember(world, None, None);
@@ -170,10 +173,10 @@ impl Cursor {
             return;
         }
         let crossing = self.crossings_of(&leg.id) + 1;
-        let chosen = choose(&leg.id, crossing, branches, default.as_ref(), &self.inside(world));
+        let chosen = choose(&leg.id, crossing, branches, default.as_ref(), &self.inside(world), notes);
         let (branch, by) = chosen.map_or((None, By::Default), |(b, by)| (Some(b), by));
         let name = branch.map(|b| b.id.clone());
-        choices.push(Choice::Branch { leg: leg.id.clone(), crossing, branch: name, by });
+        notes.choices.push(Choice::Branch { leg: leg.id.clone(), crossing, branch: name, by });
         match branch {
             Some(branch) => {
                 self.count_crossing(&leg.id);
@@ -185,10 +188,8 @@ impl Cursor {
     }
 
     fn wait_here(&mut self, world: &World) {
-        let radius_m = world.turn_radius_m(self.airspeed_mps);
-        let action = crate::api::Action::Loiter { radius_m };
-        let point = Point { action, ..Point::fly(self.path.last.position) };
-        self.expansion = Some(Arc::new(Expansion::Points(vec![point])));
+        let circle = self.circle_here(world);
+        self.expansion = Some(Arc::new(Expansion::Points(vec![circle])));
         self.begin_passage(Doing::Flying);
     }
 
@@ -208,11 +209,26 @@ impl Cursor {
         world.in_iteration(self.loops.last().map_or(0, |f| f.iteration))
     }
 
-    /// At a crossing of the fix of a holding to altitude: is it high (or low) enough?
-    ///
+    /// At a crossing of a holding's fix, or a point of a track until an altitude: is it left? Provisional ahead of the
+    /// aircraft, read for the last time when it is there.
+    pub(super) fn leave_open_end(&self, lap: u64, world: &World, notes: &mut Notes) -> (Choice, bool) {
+        let leg = self.leg(world);
+        let leaves = match leg.map(|l| (&l.id, &l.kind)) {
+            Some((id, LegKind::Hm { until, max_laps, .. })) => {
+                let inside = self.inside(world);
+                let most = max_laps.as_ref().and_then(|n| notes.value(id, inside.number(n)));
+                let until = until.as_ref().and_then(|c| notes.value(id, inside.condition(c)));
+                let released = world.released == Some(self.passage);
+                released || until == Some(true) || most.is_some_and(|n| lap as f64 >= n)
+            }
+            _ => self.altitude_is_reached(world),
+        };
+        let leg = leg.map_or_else(|| Id::new(""), |l| l.id.clone());
+        (Choice::Hold { leg, lap, leaves }, leaves)
+    }
+
     /// Ahead of the aircraft the predicted altitude decides; when the aircraft is there, its own.
-    pub(super) fn leave_holding(&self, lap: u64, world: &World) -> Choice {
-        let leg = self.leg(world).map_or_else(|| Id::new(""), |l| l.id.clone());
+    fn altitude_is_reached(&self, world: &World) -> bool {
         let target_m = world.amsl_m(self.level, self.path.last.position);
         let climbing = target_m >= self.leg_start.predicted_amsl_m;
         let ahead = distance_m(world.flight.position, self.path.last.position);
@@ -220,7 +236,7 @@ impl Cursor {
         let really_there = world.arriving && ahead < near_m;
         let altitude_m = if really_there { world.flight.altitude_amsl_m } else { self.path.predicted_amsl_m };
         let left_m = if climbing { target_m - altitude_m } else { altitude_m - target_m };
-        Choice::Hold { leg, lap, leaves: left_m <= world.config.altitude_tolerance_m }
+        left_m <= world.config.altitude_tolerance_m
     }
 }
 
@@ -243,12 +259,14 @@ fn choose<'a>(
     branches: &'a [Branch],
     default: Option<&Id>,
     world: &World,
+    notes: &mut Notes,
 ) -> Option<(&'a Branch, By)> {
     let named = |id: &Id| branches.iter().find(|b| b.id == *id);
     let taken = world.decisions.iter().find(|d| d.leg == *leg && d.crossing == crossing);
     if let Some(found) = taken.and_then(|d| Some((named(&d.branch)?, d.by))) {
         return Some(found);
     }
-    let by_condition = branches.iter().find(|b| b.when.as_ref().is_some_and(|c| world.holds(c)));
+    let mut holds = |condition: &str| notes.value(leg, world.condition(condition)) == Some(true);
+    let by_condition = branches.iter().find(|b| b.when.as_ref().is_some_and(|c| holds(c)));
     by_condition.map(|b| (b, By::Condition)).or_else(|| Some((named(default?)?, By::Default)))
 }

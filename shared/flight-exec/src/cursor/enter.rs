@@ -1,9 +1,9 @@
 //! Beginning a leg.
 
-use super::{Cursor, Doing, LoopFrame, Step, Visit};
-use crate::choice::Choice;
+use super::{Cursor, Doing, LoopFrame, Notes, Step, Trouble, Visit};
 use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion, runway};
+use crate::path::PathState;
 use crate::world::World;
 use flight_plan::{Id, Leg, LegKind, StageKind};
 use geometry::LatLon;
@@ -11,44 +11,39 @@ use std::sync::Arc;
 
 impl Cursor {
     /// At the beginning of a stage or a leg: what is it?
-    pub(super) fn arrive(
-        &mut self,
-        world: &World,
-        choices: &mut Vec<Choice>,
-        refused: &mut Vec<(Id, String)>,
-    ) {
+    pub(super) fn arrive(&mut self, world: &World, notes: &mut Notes) {
         if self.is_performed_stage(world) {
-            return self.perform_stage(world, refused);
+            return self.perform_stage(world, notes);
         }
         if let Some(frame) = self.loops.last().filter(|f| f.reverse) {
             match frame.back.checked_sub(1).and_then(|i| frame.trail.get(i)).cloned() {
-                Some(visit) => self.begin_backward(&visit, world, refused),
-                None => self.end_of_list(world, choices),
+                Some(visit) => self.begin_backward(&visit, world, notes),
+                None => self.end_of_list(world, notes),
             }
             return;
         }
         let Some(leg) = self.leg(world) else {
-            return self.end_of_list(world, choices);
+            return self.end_of_list(world, notes);
         };
         match &leg.kind {
             LegKind::Iterative { .. } => self.enter_loop(false, Arc::default()),
-            LegKind::Intersection { .. } => self.cross(leg, world, choices),
-            _ => self.begin(leg, None, world, refused),
+            LegKind::Intersection { .. } => self.cross(leg, world, notes),
+            _ => self.begin(leg, None, world, notes),
         }
     }
 
-    fn begin_backward(&mut self, visit: &Visit, world: &World, refused: &mut Vec<(Id, String)>) {
+    fn begin_backward(&mut self, visit: &Visit, world: &World, notes: &mut Notes) {
         self.index = visit.index;
         let Some(leg) = self.leg(world) else {
-            return self.leave(world);
+            return self.leave(world, notes);
         };
         match (&leg.kind, &visit.inner) {
             (LegKind::Iterative { .. }, Some(inner)) if !inner.is_empty() => {
                 self.enter_loop(true, inner.clone());
             }
             // nothing in it was flown on the way out
-            (LegKind::Iterative { .. }, _) => self.leave(world),
-            _ => self.begin(leg, Some(visit), world, refused),
+            (LegKind::Iterative { .. }, _) => self.leave(world, notes),
+            _ => self.begin(leg, Some(visit), world, notes),
         }
     }
 
@@ -61,11 +56,12 @@ impl Cursor {
             back: trail.len(),
             trail,
             entered: self.path.last,
+            activation: self.passage,
         });
         self.index = 0;
     }
 
-    fn perform_stage(&mut self, world: &World, refused: &mut Vec<(Id, String)>) {
+    fn perform_stage(&mut self, world: &World, notes: &mut Notes) {
         let Some(stage) = self.current_stage(world) else {
             return self.next_stage(world);
         };
@@ -74,30 +70,30 @@ impl Cursor {
             _ => runway::land(stage, &self.path, world),
         };
         self.airspeed_mps = world.airspeed_mps(&[], stage);
-        self.fly_or_refuse(&stage.id, points.map(Expansion::Points), refused);
+        self.fly_or_refuse(&stage.id, points.map(Expansion::Points), notes);
     }
 
-    fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, refused: &mut Vec<(Id, String)>) {
+    fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, notes: &mut Notes) {
         let inside = self.inside(world);
         self.set_level_and_speed(visit, &inside);
         let onward = self.onward(leg, world);
-        let approach =
-            Approach { path: &self.path, airspeed_mps: self.airspeed_mps, reversed: visit, onward };
+        let approach = Approach { reversed: visit, onward, ..self.approach(&self.path) };
         let expansion = expand(leg, &approach, &inside);
-        self.fly_or_refuse(&leg.id, expansion, refused);
+        self.fly_or_refuse(&leg.id, expansion, notes);
     }
 
-    fn fly_or_refuse(
-        &mut self,
-        id: &Id,
-        expansion: Result<Expansion, ExpandError>,
-        refused: &mut Vec<(Id, String)>,
-    ) {
-        let expansion = expansion.unwrap_or_else(|why| {
-            refused.push((id.clone(), why.to_string()));
-            Expansion::Points(Vec::new())
-        });
-        self.expansion = Some(Arc::new(expansion));
+    /// How it comes to its leg, forwards, the path ending at `path`.
+    fn approach<'a>(&self, path: &'a PathState) -> Approach<'a> {
+        let (level, airspeed_mps) = (self.level, self.airspeed_mps);
+        Approach { path, level, airspeed_mps, reversed: None, onward: None }
+    }
+
+    /// A leg that can't be flown is passed without an expansion.
+    fn fly_or_refuse(&mut self, id: &Id, expansion: Result<Expansion, ExpandError>, notes: &mut Notes) {
+        let refused = |why: ExpandError| {
+            notes.troubles.push(Trouble::Leg { leg: id.clone(), reason: why.to_string() });
+        };
+        self.expansion = expansion.map(Arc::new).map_err(refused).ok();
         self.begin_passage(Doing::Flying);
     }
 
@@ -143,25 +139,29 @@ impl Cursor {
 
     /// Rebuilds the pattern it is in the middle of with the values of now. `Ok(true)`: it is another one.
     ///
+    /// A scan and the patterns like it begin anew where the path is, without what is flown and unmoved; what goes round and
+    /// round (an orbit, a figure-eight) goes on at the same angle. A pattern flown backwards stays as it was flown on the way out.
+    ///
     /// # Errors
     /// The new values make no pattern; the old one stays.
     pub fn refresh_pattern(&mut self, world: &World) -> Result<bool, ExpandError> {
-        let inside = self.inside(world);
         let (Some(leg), Some(old)) = (self.leg(world), self.expansion.clone()) else {
             return Ok(false);
         };
         if self.doing != Doing::Flying {
             return Ok(false);
         }
+        let inside = self.inside(world);
+        let here = self.approach(&self.path);
         let fresh = match old.as_ref() {
-            Expansion::Scan(sweep) => sweep.regenerated(leg, self.given, &self.path, &inside)?,
+            Expansion::Scan(scan) => scan.regenerated(leg, self.given, &here, &inside)?.map(Expansion::Scan),
+            Expansion::Pattern(flight) => {
+                flight.regenerated(leg, self.given, &here, &inside)?.map(Expansion::Pattern)
+            }
             Expansion::Orbit(_) => {
-                let approach = Approach {
-                    path: &self.leg_start,
-                    airspeed_mps: self.airspeed_mps,
-                    reversed: None,
-                    onward: self.onward(leg, world),
-                };
+                // seen from where it was entered, so that the same values give the same circle
+                let start = Cursor { path: self.leg_start, ..self.clone() };
+                let approach = Approach { onward: start.onward(leg, world), ..self.approach(&self.leg_start) };
                 Some(expand(leg, &approach, &inside)?)
             }
             _ => None,
@@ -169,10 +169,7 @@ impl Cursor {
         let Some(fresh) = fresh.filter(|f| f != old.as_ref()) else {
             return Ok(false);
         };
-        // a regenerated scan begins anew at the place where the path is
-        if matches!(fresh, Expansion::Scan(_)) {
-            self.given = 0;
-        }
+        self.given = fresh.goes_on_at(self.given);
         self.expansion = Some(Arc::new(fresh));
         Ok(true)
     }

@@ -77,6 +77,7 @@ impl Cursor {
                 trail: Arc::default(),
                 back: 0,
                 entered: self.path.last,
+                activation: old.map_or(self.passage, |f| f.activation),
             }
         });
         Cursor {

@@ -4,11 +4,16 @@
 //! its points one by one. Long patterns are generated as they are asked for.
 
 pub mod arc;
+mod area;
+mod course;
 pub mod holding;
 pub mod orbit;
+pub mod pattern;
 pub mod runway;
 pub mod scan;
+mod spacing;
 pub mod track;
+pub mod until_altitude;
 
 use crate::api::Action;
 use crate::path::Level;
@@ -60,8 +65,12 @@ pub enum Expansion {
     Holding(holding::Racetrack),
     /// A circle.
     Orbit(orbit::Circle),
-    /// A scan.
-    Scan(Box<scan::Sweep>),
+    /// A track until an altitude is reached.
+    UntilAltitude(until_altitude::Track),
+    /// A scan: one sweep, or two at right angles.
+    Scan(Box<scan::Sweeps>),
+    /// Another pattern.
+    Pattern(Box<pattern::Flight>),
     /// A pattern flown backwards, to where it began.
     Reversed {
         /// The pattern, forwards.
@@ -80,7 +89,9 @@ impl Expansion {
             Expansion::Points(points) => points.get(usize::try_from(index).ok()?).copied(),
             Expansion::Holding(racetrack) => racetrack.point(index),
             Expansion::Orbit(circle) => circle.point(index),
-            Expansion::Scan(sweep) => sweep.point(index),
+            Expansion::UntilAltitude(track) => track.point(index),
+            Expansion::Scan(sweeps) => sweeps.point(index),
+            Expansion::Pattern(flight) => flight.point(index),
             // its last point is where the path is already
             Expansion::Reversed { pattern, points, start } => match points.checked_sub(index + 2) {
                 Some(mirrored) => pattern.point(mirrored),
@@ -89,14 +100,33 @@ impl Expansion {
         }
     }
 
-    /// How many points it has; `None`: no end (a holding that is left by decision).
+    /// How many points it has; `None`: no end of its own (what is left by a choice).
     pub fn count(&self) -> Option<u64> {
         match self {
             Expansion::Points(points) => Some(points.len() as u64),
-            Expansion::Holding(_) => None,
+            Expansion::Holding(_) | Expansion::UntilAltitude(_) => None,
             Expansion::Orbit(circle) => Some(circle.count()),
-            Expansion::Scan(sweep) => Some(sweep.count()),
+            Expansion::Scan(sweeps) => Some(sweeps.count()),
+            Expansion::Pattern(flight) => Some(flight.count()),
             Expansion::Reversed { points, .. } => Some((*points).max(1)),
+        }
+    }
+
+    /// Where something that is left by a choice may be left: the number of that place, if `flown` points lead to one.
+    pub fn crossing(&self, flown: u64) -> Option<u64> {
+        match self {
+            Expansion::Holding(racetrack) => racetrack.crossing(flown).filter(|_| !racetrack.once),
+            Expansion::UntilAltitude(track) => track.passing(flown),
+            _ => None,
+        }
+    }
+
+    /// The point it goes on at, when it takes the place of one of which `given` points are given out.
+    pub fn goes_on_at(&self, given: u64) -> u64 {
+        match self {
+            Expansion::Scan(_) => 0,
+            Expansion::Pattern(flight) => flight.goes_on_at(given),
+            _ => given,
         }
     }
 

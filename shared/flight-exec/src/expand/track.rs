@@ -1,13 +1,16 @@
 //! From a leg of the plan to its points, forwards or in reverse.
 
-use super::{ExpandError, Expansion, Point, arc, holding, orbit, scan};
+use super::pattern::Flight;
+use super::scan::Sweeps;
+use super::until_altitude::Track;
+use super::{ExpandError, Expansion, Point, arc, course, holding, orbit};
 use crate::cursor::Visit;
-use crate::path::PathState;
+use crate::path::{Level, PathState};
 use crate::world::World;
 use flight_plan::{Holding, HoldingLength, Leg, LegKind, PlanWaypoint, TurnDirection};
+use geometry::LatLon;
 use geometry::holding::Racetrack as Shape;
 use geometry::turn::Turn;
-use geometry::{LatLon, PathElement};
 
 /// Nearer than this two positions are the same place, metres.
 pub const SAME_PLACE_M: f64 = 1.0;
@@ -20,6 +23,8 @@ const LONGEST_LEG_M: f64 = 50_000.0;
 pub struct Approach<'a> {
     /// Where the path is.
     pub path: &'a PathState,
+    /// Altitude of the leg.
+    pub level: Level,
     /// Airspeed on the leg, m/s.
     pub airspeed_mps: f64,
     /// Its passage forwards, when it is flown in reverse now.
@@ -49,18 +54,34 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
             Expansion::Points(if there { Vec::new() } else { vec![to] })
         }
         LegKind::Tf(to) => Expansion::Points(vec![waypoint(to, world)?]),
-        LegKind::Df { to, turn } => direct(waypoint(to, world)?, *turn, approach, world),
+        LegKind::Df { to, turn } => {
+            Expansion::Points(course::direct(waypoint(to, world)?, *turn, approach, world))
+        }
         LegKind::Rf { to, centre, turn } => {
             let to = waypoint(to, world)?;
             let tolerance_m = world.config.arc_tolerance_m;
             Expansion::Points(arc::radius_to_fix(from, to, *centre, *turn, tolerance_m))
         }
         LegKind::Hf(holding) => racetrack(holding, 0.0, true, approach, world)?,
-        LegKind::Ha(holding) => racetrack(holding, 0.0, false, approach, world)?,
-        LegKind::Scan(scan) => Expansion::Scan(Box::new(scan::Sweep::new(scan, from, approach, world)?)),
+        LegKind::Ha(holding) | LegKind::Hm { holding, .. } => {
+            racetrack(holding, 0.0, false, approach, world)?
+        }
+        LegKind::Scan(scan) => Expansion::Scan(Box::new(Sweeps::new(scan, approach, world)?)),
         LegKind::Orbit { .. } => circle(leg, approach, world)?,
-        LegKind::Iterative { .. } | LegKind::Intersection { .. } => Expansion::Points(Vec::new()),
-        _ => return Err(ExpandError::Geometry("this kind of leg can't be flown".into())),
+        LegKind::Cf { to, course_deg } => {
+            let (to, inbound_deg) = (waypoint(to, world)?, world.number(course_deg)?);
+            Expansion::Points(course::to_fix(to, inbound_deg, approach, world)?)
+        }
+        LegKind::Fa { from: fix, course_deg } => {
+            let (fix, course_deg) = (waypoint(fix, world)?, world.number(course_deg)?);
+            let to_fix = crate::path::distance_m(from, fix.position) > SAME_PLACE_M;
+            Expansion::UntilAltitude(Track::new(fix, to_fix, course_deg, approach.airspeed_mps))
+        }
+        LegKind::Pattern(pattern) => Expansion::Pattern(Box::new(Flight::new(pattern, approach, world)?)),
+        // control legs fly nothing themselves; a call has become its legs when the plan was compiled
+        LegKind::Iterative { .. } | LegKind::Intersection { .. } | LegKind::Call(_) => {
+            Expansion::Points(Vec::new())
+        }
     })
 }
 
@@ -72,11 +93,18 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
     let elsewhere = crate::path::distance_m(end.position, approach.path.last.position) > SAME_PLACE_M;
     let connection = elsewhere.then_some(end);
     Ok(match &leg.kind {
-        LegKind::If(_) | LegKind::Iterative { .. } | LegKind::Intersection { .. } => {
+        LegKind::If(_) | LegKind::Iterative { .. } | LegKind::Intersection { .. } | LegKind::Call(_) => {
             Expansion::Points(Vec::new())
         }
-        LegKind::Tf(_) | LegKind::Df { .. } => {
+        // how the course was joined belongs to the way out
+        LegKind::Tf(_) | LegKind::Df { .. } | LegKind::Cf { .. } => {
             Expansion::Points(connection.into_iter().chain([back]).collect())
+        }
+        // from where the altitude was reached along the track to its fix, and back to where it was come from
+        LegKind::Fa { from: fix, .. } => {
+            let fix = waypoint(fix, world)?;
+            let apart = crate::path::distance_m(fix.position, back.position) > SAME_PLACE_M;
+            Expansion::Points(connection.into_iter().chain(apart.then_some(fix)).chain([back]).collect())
         }
         LegKind::Rf { centre, turn, .. } => {
             let tolerance_m = world.config.arc_tolerance_m;
@@ -84,39 +112,14 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
             Expansion::Points(connection.into_iter().chain(arc).collect())
         }
         LegKind::Hf(holding) => racetrack(holding, 180.0, true, approach, world)?,
-        LegKind::Ha(holding) => racetrack(holding, 180.0, false, approach, world)?,
-        LegKind::Scan(_) | LegKind::Orbit { .. } => match &visit.flown {
+        LegKind::Ha(holding) | LegKind::Hm { holding, .. } => {
+            racetrack(holding, 180.0, false, approach, world)?
+        }
+        LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_) => match &visit.flown {
             Some(flown) => flown.reversed(back, connection.is_some()),
             None => Expansion::Points(vec![back]),
         },
-        _ => return Err(ExpandError::Geometry("this kind of leg can't be flown".into())),
     })
-}
-
-/// Straight there; a coded first turn goes round that way when the fix lies on the other side.
-fn direct(to: Point, turn: Option<TurnDirection>, approach: &Approach, world: &World) -> Expansion {
-    use geometry::geodesy::normalise_180;
-    let path = approach.path;
-    let off_deg = normalise_180(path.last.position.bearing_deg(to.position) - path.course_deg);
-    let side = match turn {
-        Some(TurnDirection::Right) if off_deg < 0.0 => 1.0,
-        Some(TurnDirection::Left) if off_deg > 0.0 => -1.0,
-        _ => return Expansion::Points(vec![to]),
-    };
-    let radius_m = world.turn_radius_m(approach.airspeed_mps);
-    let turn_deg = 360.0 - off_deg.abs();
-    let centre = path.last.position.destination(path.course_deg + side * 90.0, radius_m);
-    let round = PathElement::Arc {
-        centre,
-        radius_m,
-        start_bearing_deg: path.course_deg - side * 90.0,
-        sweep_deg: side * turn_deg,
-    };
-    let mut points = arc::vertices(&[round], world.config.arc_tolerance_m);
-    // the turn is left where it points to the fix: its computed end lies a little before that
-    points.pop();
-    points.push(to);
-    Expansion::Points(points)
 }
 
 fn racetrack(
@@ -168,7 +171,8 @@ pub fn turn_round(path: &PathState, turn: TurnDirection, airspeed_mps: f64, worl
     Expansion::Points(arc::vertices(&round, world.config.arc_tolerance_m))
 }
 
-fn side(turn: TurnDirection) -> Turn {
+/// The plan's word for a side in geometry's.
+pub fn side(turn: TurnDirection) -> Turn {
     match turn {
         TurnDirection::Left => Turn::Left,
         TurnDirection::Right => Turn::Right,

@@ -1,0 +1,60 @@
+//! What happens between two waypoints without being one.
+
+use crate::choice::Choice;
+use flight_plan::{EvalError, Id};
+use serde::{Deserialize, Serialize};
+
+/// Choices, legs passed, and what went wrong, each in order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Notes {
+    /// Choices made.
+    pub choices: Vec<Choice>,
+    /// Legs with actions that were passed without a waypoint of their own.
+    pub marks: Vec<Mark>,
+    /// Legs that can't be flown, expressions that have no value.
+    pub troubles: Vec<Trouble>,
+}
+
+/// A leg that flew nothing, because the path was there already.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mark {
+    /// The leg.
+    pub leg: Id,
+    /// Its passage.
+    pub passage: u64,
+}
+
+/// Something of a leg that doesn't work with the values of now.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Trouble {
+    /// It can't be flown, and is left out.
+    Leg {
+        /// The leg.
+        leg: Id,
+        /// Why.
+        reason: String,
+    },
+    /// One of its conditions or numbers has no value: a condition counts as false, a number as not given.
+    Expression {
+        /// The leg.
+        leg: Id,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl Notes {
+    /// Nothing that a bookmark would have to come after.
+    pub fn is_empty(&self) -> bool {
+        self.choices.is_empty() && self.marks.is_empty()
+    }
+
+    /// A value, or a note why it has none.
+    pub fn value<T>(&mut self, leg: &Id, value: Result<T, EvalError>) -> Option<T> {
+        value.map_err(|why| self.no_value(leg, &why)).ok()
+    }
+
+    fn no_value(&mut self, leg: &Id, why: &EvalError) {
+        self.troubles.push(Trouble::Expression { leg: leg.clone(), reason: why.to_string() });
+    }
+}

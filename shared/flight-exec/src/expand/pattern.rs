@@ -1,0 +1,141 @@
+//! The patterns besides scans, and their regeneration in flight.
+
+mod recipe;
+
+use super::track::Approach;
+use super::{ExpandError, Point};
+use crate::path::distance_m;
+use crate::world::World;
+use flight_plan::{Leg, LegKind, Pattern as Plan};
+use geometry::{LatLon, LocalFrame, Pattern};
+use recipe::Recipe;
+use serde::{Deserialize, Serialize};
+use std::sync::{Arc, OnceLock};
+
+/// So near to a flown one a waypoint has not moved, metres.
+const UNMOVED_M: f64 = 2.0;
+
+/// A pattern being flown.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Flight {
+    recipe: Recipe,
+    /// The pattern begins near here, where it can.
+    entry: LatLon,
+    /// Waypoints of the pattern that are left out: flown already and not moved.
+    first: u64,
+    #[serde(skip)]
+    laid_out: OnceLock<Option<Arc<LaidOut>>>,
+}
+
+/// The pattern itself: made again from the recipe after a restart.
+#[derive(Debug)]
+struct LaidOut {
+    pattern: Pattern,
+    frame: LocalFrame,
+}
+
+impl LaidOut {
+    fn at(&self, index: u64) -> Option<LatLon> {
+        Some(self.frame.to_geo(self.pattern.vertex(index)?.at))
+    }
+}
+
+impl PartialEq for Flight {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.recipe, self.entry, self.first) == (&other.recipe, other.entry, other.first)
+    }
+}
+
+impl Flight {
+    /// The whole pattern.
+    ///
+    /// # Errors
+    /// Values that can't be computed, or make no pattern.
+    pub fn new(pattern: &Plan, approach: &Approach, world: &World) -> Result<Self, ExpandError> {
+        let recipe = Recipe::of(pattern, approach, world)?;
+        Self::laid_out_from(recipe, approach.path.last.position)
+    }
+
+    fn laid_out_from(recipe: Recipe, entry: LatLon) -> Result<Self, ExpandError> {
+        let laid_out = recipe.lay_out(entry)?;
+        Ok(Self { recipe, entry, first: 0, laid_out: OnceLock::from(Some(Arc::new(laid_out))) })
+    }
+
+    fn laid_out(&self) -> Option<&LaidOut> {
+        let made = self.laid_out.get_or_init(|| self.recipe.lay_out(self.entry).ok().map(Arc::new));
+        made.as_deref()
+    }
+
+    /// How many points it has.
+    pub fn count(&self) -> u64 {
+        self.laid_out().map_or(0, |l| l.pattern.count().saturating_sub(self.first))
+    }
+
+    /// The point number `index`.
+    pub fn point(&self, index: u64) -> Option<Point> {
+        self.laid_out()?.at(self.first.checked_add(index)?).map(Point::fly)
+    }
+
+    /// The point a regenerated one goes on at, when `given` points of the one before are given out: what goes round and
+    /// round goes on at the same angle, anything else has left out what is flown.
+    pub fn goes_on_at(&self, given: u64) -> u64 {
+        if self.recipe.goes_round() { given.min(self.count()) } else { 0 }
+    }
+
+    /// The pattern with the values of now, when `given` of its points are given out. `None`: they are the same.
+    ///
+    /// As long as its tracks are where they were flown they are left out; it goes on with the first one that has moved or
+    /// was not flown. When already the first one has moved, the search begins anew from where the path is.
+    ///
+    /// # Errors
+    /// The new values can't be computed or make no pattern.
+    pub fn regenerated(
+        &self,
+        leg: &Leg,
+        given: u64,
+        approach: &Approach,
+        world: &World,
+    ) -> Result<Option<Box<Self>>, ExpandError> {
+        let LegKind::Pattern(pattern) = &leg.kind else { return Ok(None) };
+        let recipe = Recipe::of(pattern, approach, world)?.with_turns_of(&self.recipe);
+        if recipe == self.recipe {
+            return Ok(None);
+        }
+        let mut fresh = Self::laid_out_from(recipe.clone(), self.entry)?;
+        if recipe.goes_round() {
+            return Ok(Some(Box::new(fresh)));
+        }
+        fresh.first = fresh.unmoved(self, self.first.saturating_add(given));
+        if fresh.first == 0 {
+            fresh = Self::laid_out_from(recipe, approach.path.last.position)?;
+        }
+        Ok(Some(Box::new(fresh)))
+    }
+
+    /// How many waypoints from the beginning can be left out, when `flown` of the old ones are flown.
+    fn unmoved(&self, old: &Self, flown: u64) -> u64 {
+        let (Some(new), Some(old)) = (self.laid_out(), old.laid_out()) else { return 0 };
+        let stayed = |i: &u64| {
+            let both = new.at(*i).zip(old.at(*i));
+            both.is_some_and(|(a, b)| distance_m(a, b) <= UNMOVED_M)
+        };
+        let same = (0..flown).take_while(stayed).count() as u64;
+        if same == flown { same } else { new.beginning_of_track(same) }
+    }
+}
+
+impl LaidOut {
+    /// The first waypoint of the track that a waypoint belongs to.
+    fn beginning_of_track(&self, index: u64) -> u64 {
+        let track = self.pattern.vertex(index).map(|v| v.track);
+        let mut begin = index;
+        while let Some(before) = begin.checked_sub(1).and_then(|i| self.pattern.vertex(i))
+            && Some(before.track) == track
+        {
+            begin -= 1;
+        }
+        // the first waypoint that is flown to on a track has its beginning before it
+        let on_track = self.pattern.vertex(begin).is_some_and(|v| v.on_track);
+        begin - u64::from(on_track && begin > 0)
+    }
+}
