@@ -1,7 +1,7 @@
 //! Commands: each is done or refused with a reason, and answered once.
 
 use crate::rig::{Rig, document, fix, program};
-use flight_exec::{Command, Event, Executor, Input, Output, Phase, Snapshot, Token};
+use flight_exec::{AircraftState, Command, Event, Executor, Input, Output, Phase, Snapshot, Token};
 use flight_plan::Cause;
 
 const LEGS: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
@@ -116,6 +116,24 @@ fn progress_of_unknown_waypoints_is_ignored() {
         rig.step(Input::Progress { current: Some(Token(token)) });
     }
     assert_eq!(rig.executor.status(), before);
+}
+
+/// A direct leg from nowhere would have no altitude to climb from.
+#[test]
+fn a_report_without_sound_numbers_is_ignored() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    let before = rig.executor.status();
+    let (nowhere, high) = (geometry::LatLon::new(f64::NAN, 0.0), f64::INFINITY);
+    let good = rig.state();
+    for state in
+        [AircraftState { position: nowhere, ..good }, AircraftState { altitude_amsl_m: high, ..good }]
+    {
+        rig.step(Input::Aircraft(state));
+        assert_eq!(rig.executor.status(), before);
+    }
+    rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    assert!(rig.buffer.iter().all(|w| w.altitude_amsl_m.is_finite()));
 }
 
 #[test]

@@ -133,10 +133,10 @@ impl Rig {
         assert!(self.buffer.len() <= 64, "the horizon is bounded");
     }
 
-    /// The aircraft where it is, seen by the executor.
-    pub fn report(&mut self) {
+    /// The aircraft where it is.
+    pub fn state(&self) -> AircraftState {
         let altitude_amsl_m = self.altitude_amsl_m.or(self.flown.last().map(|w| w.altitude_amsl_m));
-        let state = AircraftState {
+        AircraftState {
             position: self.position,
             altitude_amsl_m: altitude_amsl_m.unwrap_or(GROUND_M),
             track_deg: 90.0,
@@ -146,7 +146,12 @@ impl Rig {
             wind_north_mps: 0.0,
             battery: self.battery,
             on_ground: self.flown.is_empty(),
-        };
+        }
+    }
+
+    /// The same, seen by the executor.
+    pub fn report(&mut self) {
+        let state = self.state();
         self.step(Input::Aircraft(state));
     }
 

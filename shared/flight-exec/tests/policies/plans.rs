@@ -101,32 +101,8 @@ impl Draft {
     pub fn edited(&self, random: &mut Random) -> Self {
         let mut draft = self.clone();
         for _ in 0..1 + random.below(3) {
-            let mut list = &mut draft.legs;
-            let mut spot = random.below(list.len());
-            // into a loop, now and then
-            while let Some(Kind::Loop { .. }) = list.get(spot).map(|l| &l.kind)
-                && random.percent(60)
-            {
-                let Kind::Loop { body, .. } = &mut list[spot].kind else { break };
-                list = body;
-                spot = random.below(list.len().max(1));
-            }
-            let removes = random.percent(35) && list.len() > 1;
-            if removes && spot < list.len() {
-                list.remove(spot);
-                continue;
-            }
             draft.names += 1;
-            let leg = Leg {
-                id: format!("k{}", draft.names + 50),
-                kind: Kind::Track(random.pick(&FIXES)),
-                emergency: "",
-            };
-            if random.percent(50) || spot >= list.len() {
-                list.insert(spot, leg);
-            } else {
-                list[spot].kind = leg.kind;
-            }
+            edit(&mut draft.legs, &format!("k{}", draft.names + 50), random);
         }
         draft
     }
@@ -147,6 +123,22 @@ impl Draft {
             document = document.replace(r#"<stage id="land" type="land" runway="R"/>"#, "");
         }
         document
+    }
+}
+
+/// One edit, in a loop's body now and then: a leg less, one more, or another track.
+fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
+    let spot = random.below(list.len());
+    if let Kind::Loop { body, .. } = &mut list[spot].kind
+        && random.percent(60)
+    {
+        return edit(body, new_id, random);
+    }
+    let kind = Kind::Track(random.pick(&FIXES));
+    match random.below(3) {
+        0 if list.len() > 1 => drop(list.remove(spot)),
+        1 => list[spot].kind = kind,
+        _ => list.insert(spot, Leg { id: new_id.into(), kind, emergency: "" }),
     }
 }
 

@@ -1,0 +1,232 @@
+//! Requests and what comes back: one answer each, refusals without effect, nothing changed in silence.
+
+use crate::policy::{Findings, Policy, policy};
+use crate::trace::{Step, Trace};
+use flight_exec::{Command, Event, Input, Output, Phase, RequestId};
+use flight_plan::VariableValue;
+
+pub const POLICIES: &[Policy] = &[
+    policy("one-answer-per-request", "A request gets exactly one answer, in its own step.", one_answer),
+    policy("no-answer-without-a-request", "Nothing is answered that nobody asked.", no_answer),
+    policy(
+        "refusals-advise",
+        "A refusal has a code for programs and a sentence for people.",
+        refusals_advise,
+    ),
+    policy("a-refusal-changes-nothing", "A refused command changes nothing.", refusal_changes_nothing),
+    policy(
+        "a-refusal-says-nothing-else",
+        "A refused command feeds nothing, holds nothing and tells of nothing but an unanswered alarm.",
+        refusal_is_quiet,
+    ),
+    policy("phases-are-told", "Every change of phase is told, and none that isn't.", phases_are_told),
+    policy(
+        "start-on-the-ground",
+        "A start is accepted with a plan and without a flight, and never else.",
+        start,
+    ),
+    policy(
+        "hold-once",
+        "A hold is accepted while flying and not holding, and never else; the gateway is told.",
+        hold,
+    ),
+    policy("resume-a-hold", "A resume is accepted while holding, and never else.", resume),
+    policy(
+        "writes-are-told",
+        "An accepted write is told once with its value, and the variable has it.",
+        writes_are_told,
+    ),
+    policy(
+        "bad-values-are-refused",
+        "A value of the wrong type, out of bounds, or for no variable is refused.",
+        bad_values,
+    ),
+    policy(
+        "variables-change-by-command",
+        "A variable changes by a write or a new plan only.",
+        variables_change,
+    ),
+    policy(
+        "a-refused-batch-holds",
+        "A batch that the gateway refuses is told, and the aircraft holds.",
+        refused_batch,
+    ),
+    policy(
+        "garbage-is-ignored",
+        "A report with numbers that are none, or off the Earth, changes nothing.",
+        garbage,
+    ),
+];
+
+fn request(input: &Input) -> Option<RequestId> {
+    match input {
+        Input::Command { request, .. } | Input::Propose { request, .. } => Some(*request),
+        _ => None,
+    }
+}
+
+fn answered<'a>(step: Step<'a>) -> Vec<RequestId> {
+    let of = |o: &Output| match o {
+        Output::Answer { request, .. } => Some(*request),
+        _ => None,
+    };
+    step.moment.outputs.iter().filter_map(of).collect()
+}
+
+fn one_answer(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        if let Some(request) = step.input().and_then(request) {
+            let answers = answered(step);
+            found.expect(step, answers == [request], || format!("{request:?}: {answers:?}"));
+        }
+    }
+}
+
+fn no_answer(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.input().is_some_and(|i| request(i).is_none())) {
+        found.expect(step, answered(step).is_empty(), || format!("{:?}", answered(step)));
+    }
+}
+
+fn refusals_advise(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        let Some((_, why)) = step.refused() else { continue };
+        let code = !why.code.is_empty() && why.code.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+        found.expect(step, code && why.reason.split(' ').count() > 3, || format!("{why:?}"));
+    }
+}
+
+fn refusal_changes_nothing(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.refused().is_some()) {
+        let (b, a) = (step.before, step.after);
+        let same = b.status == a.status && b.ahead == a.ahead && b.variables == a.variables;
+        found.expect(step, same, || format!("{:?} changed something", step.command()));
+    }
+}
+
+fn refusal_is_quiet(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.refused().is_some()) {
+        let quiet = |o: &Output| {
+            matches!(o, Output::Answer { .. } | Output::Event(Event::EmergencyUnanswered { .. }))
+        };
+        found.expect(step, step.moment.outputs.iter().all(quiet), || format!("{:?}", step.moment.outputs));
+    }
+}
+
+fn phases_are_told(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        let told = step.events().filter_map(|e| match e {
+            Event::PhaseChanged { phase } => Some(*phase),
+            _ => None,
+        });
+        let told: Vec<Phase> = told.collect();
+        let (before, after) = (step.before.status.phase, step.after.status.phase);
+        if before != after || !told.is_empty() {
+            let chained = told.iter().try_fold(before, |was, now| (was != *now).then_some(*now));
+            found.expect(step, chained == Some(after), || format!("{before:?}, told {told:?}, {after:?}"));
+        }
+    }
+}
+
+fn start(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.command() == Some(&Command::Start)) {
+        let may = !step.before.is_flying() && step.before.program.is_some();
+        found.expect(step, may == step.accepted().is_some(), || format!("{:?}", step.before.status.phase));
+    }
+}
+
+fn hold(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.command() == Some(&Command::Hold)) {
+        let may = step.before.is_flying() && step.before.status.phase != Phase::Holding;
+        let told = step.moment.outputs.contains(&Output::Hold);
+        let holds = step.after.status.phase == Phase::Holding;
+        let right =
+            if may { told && holds && step.accepted().is_some() } else { !told && step.refused().is_some() };
+        found.expect(step, right, || format!("{:?}", step.moment.outputs));
+    }
+}
+
+fn resume(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.command() == Some(&Command::Resume)) {
+        let may = step.before.status.phase == Phase::Holding;
+        let goes_on = matches!(step.after.status.phase, Phase::Flying | Phase::AwaitingDecision);
+        let right = if may { goes_on && step.accepted().is_some() } else { step.refused().is_some() };
+        found.expect(step, right, || format!("{:?}", step.moment.outputs));
+    }
+}
+
+fn writes_are_told(trace: &Trace, found: &mut Findings) {
+    for (step, command) in trace.accepted() {
+        let Command::SetVariable { name, value } = command else { continue };
+        let told = step.events().filter(|e| matches!(e, Event::VariableChanged { .. }));
+        let right = told.eq([&Event::VariableChanged { name: name.clone(), value: value.clone() }]);
+        let has = step.after.variables.get(name) == Some(value);
+        found.expect(step, right && has, || format!("{name}: {:?}", step.moment.outputs));
+    }
+}
+
+/// The bounds of the test's plans, written down once more.
+fn is_good(name: &str, value: &VariableValue) -> bool {
+    match (name, value) {
+        ("r", VariableValue::Number(r)) => (10.0..=1500.0).contains(r),
+        ("n", VariableValue::Number(n)) => (1.0..=4.0).contains(n),
+        ("stop", VariableValue::Bool(_)) => true,
+        ("note", VariableValue::Text(text)) => text.len() <= 8,
+        _ => false,
+    }
+}
+
+fn bad_values(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.before.program.is_some()) {
+        let Some(Command::SetVariable { name, value }) = step.command() else { continue };
+        let good = is_good(name.as_str(), value);
+        found.expect(step, good == step.accepted().is_some(), || format!("{name} = {value:?}"));
+    }
+}
+
+fn variables_change(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        let may = matches!(step.accepted(), Some(Command::SetVariable { .. } | Command::Commit { .. }));
+        if !may {
+            found.expect(step, step.before.variables == step.after.variables, || {
+                format!("{:?}", step.moment.deed)
+            });
+        }
+    }
+}
+
+fn refused_batch(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps().filter(|s| s.before.is_flying()) {
+        let Some(Input::Rejected { first, reason }) = step.input() else { continue };
+        if !step.before.tokens().contains(first) {
+            continue;
+        }
+        let told =
+            step.events().any(|e| matches!(e, Event::WaypointsRejected { reason: r, .. } if r == reason));
+        let holds = step.after.status.phase == Phase::Holding && step.moment.outputs.contains(&Output::Hold);
+        found.expect(step, told && holds, || format!("{:?}", step.moment.outputs));
+    }
+}
+
+fn is_garbage(state: &flight_exec::AircraftState) -> bool {
+    let numbers = [
+        state.altitude_amsl_m,
+        state.track_deg,
+        state.ground_speed_mps,
+        state.airspeed_mps,
+        state.battery,
+        state.wind_east_mps,
+        state.wind_north_mps,
+    ];
+    !state.position.is_valid() || numbers.iter().any(|n| !n.is_finite())
+}
+
+fn garbage(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        let Some(Input::Aircraft(state)) = step.input() else { continue };
+        if is_garbage(state) {
+            let same = step.before.status == step.after.status && step.moment.outputs.is_empty();
+            found.expect(step, same, || format!("{:?}", step.after.status));
+        }
+    }
+}

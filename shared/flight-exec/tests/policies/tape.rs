@@ -1,0 +1,132 @@
+//! What the reference model reads: what was told of the way, and what people did to it, in order.
+
+use crate::trace::{Step, Trace};
+use flight_exec::{Command, Event, Phase, PlacePointer};
+use flight_plan::{Id, Program, VariableValue};
+
+#[derive(Debug, Clone)]
+pub enum Sight<'a> {
+    Entered(&'a PlacePointer),
+    /// With every value that `stop` and `n` had on the last two legs: choices are made ahead, and read again until the
+    /// stopping distance.
+    Arrived {
+        leg: &'a Id,
+        finished: u64,
+        of: Option<u64>,
+        stop: Vec<bool>,
+        n: Vec<u64>,
+    },
+    Taken(&'a Id, &'a Id),
+    Counted(&'a Id, u64),
+    CannotBeFlown(&'a Id),
+    /// Skipped, maybe before it was entered.
+    Skipped {
+        announced: bool,
+    },
+    Jump(Jump<'a>),
+    Finished,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub enum Jump<'a> {
+    Start(&'a Program),
+    GoTo(&'a Id),
+    Emergency(&'a Id),
+    Return(&'a Id),
+    /// Another plan, entered at a leg.
+    Enter(&'a Program, &'a Id),
+    /// Another plan, gone on with where the aircraft is; `simply`: nothing but the leg being flown was kept.
+    GoOn {
+        program: &'a Program,
+        simply: bool,
+    },
+}
+
+/// Everything there is to read in a trace.
+pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
+    let mut tape = Vec::new();
+    let mut entries: Vec<usize> = Vec::new();
+    let mut last_entered = None;
+    for step in trace.steps() {
+        for event in step.events() {
+            let window = entries.len().checked_sub(2).map_or(0, |i| entries[i]);
+            tape.extend(sight(event, step, window).map(|s| (step, s)));
+            if let Event::LegEntered { place } = event {
+                entries.push(step.at);
+                last_entered = Some(place);
+            }
+        }
+        tape.extend(order(step, last_entered).map(|s| (step, s)));
+    }
+    tape
+}
+
+fn sight<'a>(event: &'a Event, step: Step<'a>, window: usize) -> Option<Sight<'a>> {
+    Some(match event {
+        Event::LegEntered { place } => Sight::Entered(place),
+        Event::IterationFinished { leg, finished, of } => {
+            let (stop, n) = values(step, window);
+            Sight::Arrived { leg, finished: *finished, of: *of, stop, n }
+        }
+        Event::DecisionTaken { leg, branch, .. } => Sight::Taken(leg, branch),
+        Event::PatternRefused { leg, .. } => Sight::CannotBeFlown(leg),
+        Event::PhaseChanged { phase: Phase::Finished } => Sight::Finished,
+        _ => return None,
+    })
+}
+
+fn values(step: Step, window: usize) -> (Vec<bool>, Vec<u64>) {
+    let seen = (window..=step.at).flat_map(|at| {
+        let step = step.trace.step(at);
+        [step.before, step.after]
+    });
+    let (mut stop, mut n) = (Vec::new(), Vec::new());
+    for seen in seen {
+        if let Some(VariableValue::Bool(b)) = seen.variables.get(&"stop".into()) {
+            stop.push(*b);
+        }
+        if let Some(VariableValue::Number(x)) = seen.variables.get(&"n".into()) {
+            n.push(*x as u64);
+        }
+    }
+    stop.dedup();
+    n.dedup();
+    (stop, n)
+}
+
+fn order<'a>(step: Step<'a>, last_entered: Option<&PlacePointer>) -> Option<Sight<'a>> {
+    let program = step.after.program.as_deref()?;
+    let announced = || {
+        let place = step.before.place();
+        place.zip(last_entered).is_some_and(|(a, b)| crate::trace::same_passage(a, b))
+    };
+    Some(match step.accepted()? {
+        Command::Start => Sight::Jump(Jump::Start(program)),
+        Command::GoTo { leg } => Sight::Jump(Jump::GoTo(leg)),
+        Command::ReturnToMain { leg } => Sight::Jump(Jump::Return(leg)),
+        Command::SkipLeg => Sight::Skipped { announced: announced() },
+        Command::SetCount { leg, count } => Sight::Counted(leg, *count),
+        Command::Emergency { .. } => {
+            let plan = crate::place::emergency_flown(step.after)?;
+            let switched = crate::place::emergency_flown(step.before) != Some(plan);
+            return switched.then_some(Sight::Jump(Jump::Emergency(plan)));
+        }
+        Command::Commit { entry, .. } if step.before.is_flying() => {
+            let current = step.before.place().map(|p| &p.leg);
+            match entry.as_ref().filter(|e| Some(*e) != current) {
+                Some(entry) => Sight::Jump(Jump::Enter(program, entry)),
+                None => Sight::Jump(Jump::GoOn { program, simply: announced() && keeps_one_leg(step) }),
+            }
+        }
+        _ => return None,
+    })
+}
+
+/// Nothing but waypoints of the leg being flown were kept, and it is the same kind of leg.
+fn keeps_one_leg(step: Step) -> bool {
+    let (Some((old, new)), Some(place)) = (step.update(), step.before.place()) else { return false };
+    let tokens = step.after.tokens();
+    let kept = step.before.ahead.iter().filter(|w| tokens.contains(&w.token));
+    let kind = |p: &Program| p.leg(&place.leg).map(|l| l.kind_name());
+    kept.into_iter().all(|w| w.leg == place.leg) && kind(old) == kind(new)
+}

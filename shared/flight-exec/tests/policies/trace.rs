@@ -1,0 +1,205 @@
+//! What happened, moment by moment: all that a policy may look at.
+
+use flight_exec::{
+    AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, Refusal, Status, Time, Token,
+    Waypoint,
+};
+use flight_plan::{Id, LegKind, Program, Variables};
+use std::sync::Arc;
+
+/// What was done to the executor.
+#[derive(Debug, Clone)]
+pub enum Deed {
+    Input(Input),
+    /// It was killed and came back from its snapshot, which was the same again when taken anew.
+    Restarted {
+        same_snapshot: bool,
+        foreign_refused: bool,
+    },
+}
+
+/// What could be seen of executor and gateway between two inputs.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    pub status: Status,
+    /// What the executor believes to be ahead.
+    pub ahead: Vec<Waypoint>,
+    /// What the gateway has, the waypoint steered to first.
+    pub buffer: Vec<Waypoint>,
+    pub variables: Variables,
+    /// The last sound report.
+    pub aircraft: Option<AircraftState>,
+    pub program: Option<Arc<Program>>,
+    pub gateway_controls: bool,
+    pub deadline: Option<Time>,
+}
+
+#[derive(Debug, Clone)]
+pub struct Moment {
+    pub now: Time,
+    pub deed: Deed,
+    pub outputs: Vec<Output>,
+    /// What the executor that was not killed says to the same.
+    pub twin: Option<Vec<Output>>,
+    pub after: Seen,
+}
+
+#[derive(Debug, Clone)]
+pub struct Trace {
+    pub start: Seen,
+    pub moments: Vec<Moment>,
+    /// From here on nobody disturbed the flight, and helped it where it asked for help.
+    pub left_alone: usize,
+}
+
+/// One moment with what was before it.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    pub at: usize,
+    pub trace: &'a Trace,
+    pub before: &'a Seen,
+    pub moment: &'a Moment,
+    pub after: &'a Seen,
+}
+
+impl Trace {
+    pub fn steps(&self) -> impl DoubleEndedIterator<Item = Step<'_>> {
+        (0..self.moments.len()).map(|at| self.step(at))
+    }
+
+    pub fn step(&self, at: usize) -> Step<'_> {
+        let before = at.checked_sub(1).map_or(&self.start, |i| &self.moments[i].after);
+        let moment = &self.moments[at];
+        Step { at, trace: self, before, moment, after: &moment.after }
+    }
+
+    /// Where the aircraft was entering legs.
+    pub fn entered(&self) -> impl Iterator<Item = (Step<'_>, &PlacePointer)> {
+        self.steps().flat_map(|s| s.entered().map(move |place| (s, place)))
+    }
+
+    pub fn events(&self) -> impl Iterator<Item = (Step<'_>, &Event)> {
+        self.steps().flat_map(|s| s.events().map(move |event| (s, event)))
+    }
+
+    pub fn feeds(&self) -> impl Iterator<Item = (Step<'_>, Option<Token>, &[Waypoint])> {
+        self.steps().flat_map(|s| s.feeds().map(move |(cancel, waypoints)| (s, cancel, waypoints)))
+    }
+
+    pub fn accepted(&self) -> impl Iterator<Item = (Step<'_>, &Command)> {
+        self.steps().filter_map(|s| Some((s, s.accepted()?)))
+    }
+}
+
+impl<'a> Step<'a> {
+    pub fn input(&self) -> Option<&'a Input> {
+        match &self.moment.deed {
+            Deed::Input(input) => Some(input),
+            Deed::Restarted { .. } => None,
+        }
+    }
+
+    pub fn command(&self) -> Option<&'a Command> {
+        match self.input()? {
+            Input::Command { command, .. } => Some(command),
+            _ => None,
+        }
+    }
+
+    pub fn answers(&self) -> impl Iterator<Item = &'a Result<Answer, Refusal>> + use<'a> {
+        self.moment.outputs.iter().filter_map(|o| match o {
+            Output::Answer { result, .. } => Some(result),
+            _ => None,
+        })
+    }
+
+    /// The command, if it was done.
+    pub fn accepted(&self) -> Option<&'a Command> {
+        self.command().filter(|_| self.answers().all(Result::is_ok))
+    }
+
+    /// The command, if it was refused.
+    pub fn refused(&self) -> Option<(&'a Command, &'a Refusal)> {
+        Some((self.command()?, self.answers().find_map(|r| r.as_ref().err())?))
+    }
+
+    pub fn feeds(&self) -> impl Iterator<Item = (Option<Token>, &'a [Waypoint])> + use<'a> {
+        self.moment.outputs.iter().filter_map(|o| match o {
+            Output::Feed { cancel_after, waypoints } => Some((*cancel_after, waypoints.as_slice())),
+            _ => None,
+        })
+    }
+
+    pub fn events(&self) -> impl Iterator<Item = &'a Event> + use<'a> {
+        self.moment.outputs.iter().filter_map(|o| match o {
+            Output::Event(event) => Some(event),
+            _ => None,
+        })
+    }
+
+    pub fn entered(&self) -> impl Iterator<Item = &'a PlacePointer> + use<'a> {
+        self.events().filter_map(|e| match e {
+            Event::LegEntered { place } => Some(place),
+            _ => None,
+        })
+    }
+
+    /// Everything was cancelled to go somewhere else.
+    pub fn is_jump(&self) -> bool {
+        let goes = |c: &Command| {
+            matches!(
+                c,
+                Command::Start
+                    | Command::SkipLeg
+                    | Command::GoTo { .. }
+                    | Command::Emergency { .. }
+                    | Command::ReturnToMain { .. }
+                    | Command::Commit { .. }
+            )
+        };
+        self.accepted().is_some_and(goes)
+    }
+
+    /// An accepted commit while flying: before and after.
+    pub fn update(&self) -> Option<(&'a Program, &'a Program)> {
+        let Some(Command::Commit { .. }) = self.accepted() else { return None };
+        let plans = (self.before.program.as_deref()?, self.after.program.as_deref()?);
+        self.before.is_flying().then_some(plans)
+    }
+}
+
+impl Seen {
+    pub fn is_flying(&self) -> bool {
+        matches!(self.status.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
+    }
+
+    /// Flying by the executor's waypoints, and nobody else's.
+    pub fn is_fed(&self) -> bool {
+        matches!(self.status.phase, Phase::Flying | Phase::AwaitingDecision) && !self.gateway_controls
+    }
+
+    pub fn place(&self) -> Option<&PlacePointer> {
+        self.status.place.as_ref()
+    }
+
+    pub fn tokens(&self) -> Vec<Token> {
+        self.ahead.iter().map(|w| w.token).collect()
+    }
+}
+
+/// The same passage of a leg, whatever way is made on it.
+pub fn same_passage(a: &PlacePointer, b: &PlacePointer) -> bool {
+    let loops = |p: &PlacePointer| {
+        Vec::from_iter(p.iterations.iter().map(|i| (i.leg.clone(), i.iteration, i.reverse)))
+    };
+    (&a.plan, &a.stage, &a.leg, a.reverse) == (&b.plan, &b.stage, &b.leg, b.reverse) && loops(a) == loops(b)
+}
+
+/// Something of the plan has this name: a leg or a stage.
+pub fn knows(program: &Program, id: &Id) -> bool {
+    program.path(id).is_some()
+}
+
+pub fn kind<'a>(program: &'a Program, id: &Id) -> Option<&'a LegKind> {
+    program.leg(id).map(|leg| &leg.kind)
+}
