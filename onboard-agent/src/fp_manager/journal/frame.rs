@@ -7,10 +7,12 @@ const MAGIC: [u8; 8] = *b"LEGWORKJ";
 const VERSION: u32 = 1;
 /// Bytes of a segment's header: magic, version, checksum, number.
 pub const HEADER_BYTES: usize = 24;
-/// Bytes before a frame's payload: length, its complement, checksum.
-pub const FRAME_BYTES: usize = 12;
+/// Bytes before a frame's payload: length, its complement, index, checksum.
+pub const FRAME_BYTES: usize = 16;
 /// Longest payload, bytes.
 pub const PAYLOAD_MAX: usize = 64 << 20;
+/// Behind a damaged frame, so many places that look like a sound one are looked into.
+const LOOKS_MAX: usize = 64;
 
 /// A payload longer than [`PAYLOAD_MAX`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -33,12 +35,12 @@ pub enum NoSegment {
 pub enum End {
     /// With the last byte.
     Clean,
-    /// The last frame was not written whole: so many bytes are dropped.
+    /// What comes last was not written whole: so many bytes are dropped.
     Torn {
         /// Dropped.
         bytes: usize,
     },
-    /// A frame is damaged and others stand behind it: nothing from there on can be used.
+    /// A frame is damaged and sound ones stand behind it: nothing from there on can be used.
     Corrupt {
         /// Offset of the damaged frame.
         at: usize,
@@ -52,7 +54,7 @@ pub enum End {
 pub struct Scan<'a> {
     /// Its number.
     pub number: u64,
-    /// Payloads of its whole and undamaged frames, in order, up to the first that is neither.
+    /// Payloads of its sound frames, in order, up to the first that is not.
     pub payloads: Vec<&'a [u8]>,
     /// What comes behind them.
     pub end: End,
@@ -73,12 +75,12 @@ pub fn header(number: u64) -> [u8; HEADER_BYTES] {
 ///
 /// # Errors
 /// The payload is too long; nothing is appended.
-pub fn append(number: u64, index: u64, payload: &[u8], out: &mut Vec<u8>) -> Result<(), TooLong> {
+pub fn append(number: u64, index: u32, payload: &[u8], out: &mut Vec<u8>) -> Result<(), TooLong> {
     let length = u32::try_from(payload.len()).ok().filter(|_| payload.len() <= PAYLOAD_MAX);
     let length = length.ok_or(TooLong(payload.len()))?;
-    out.extend(length.to_le_bytes());
-    out.extend((!length).to_le_bytes());
-    out.extend(frame_checksum(number, index, payload).to_le_bytes());
+    for value in [length, !length, index, frame_checksum(number, index, payload)] {
+        out.extend(value.to_le_bytes());
+    }
     out.extend_from_slice(payload);
     Ok(())
 }
@@ -92,14 +94,14 @@ pub fn scan(bytes: &[u8]) -> Result<Scan<'_>, NoSegment> {
     let (mut payloads, mut at) = (Vec::new(), HEADER_BYTES);
     let end = loop {
         let rest = bytes.get(at..).unwrap_or_default();
-        match next(rest, number, payloads.len() as u64) {
-            Next::Frame(payload) => {
+        match sound(rest, number) {
+            Some((index, payload)) if usize::try_from(index) == Ok(payloads.len()) => {
                 payloads.push(payload);
                 at += FRAME_BYTES + payload.len();
             }
-            Next::Nothing => break End::Clean,
-            Next::Torn => break End::Torn { bytes: rest.len() },
-            Next::Corrupt => break End::Corrupt { at, bytes: rest.len() },
+            _ if rest.is_empty() => break End::Clean,
+            _ if has_sound_frame(rest, number) => break End::Corrupt { at, bytes: rest.len() },
+            _ => break End::Torn { bytes: rest.len() },
         }
     };
     Ok(Scan { number, payloads, end })
@@ -119,32 +121,25 @@ fn read_header(bytes: &[u8]) -> Result<u64, NoSegment> {
     Ok(u64::from_le_bytes(*number))
 }
 
-enum Next<'a> {
-    Frame(&'a [u8]),
-    Nothing,
-    Torn,
-    Corrupt,
+/// The frame that `rest` begins with, whole and undamaged: its index and its payload.
+fn sound(rest: &[u8], number: u64) -> Option<(u32, &[u8])> {
+    let (length, rest) = take_u32(rest)?;
+    let (complement, rest) = take_u32(rest)?;
+    let (index, rest) = take_u32(rest)?;
+    let (check, rest) = take_u32(rest)?;
+    let payload = rest.get(..usize::try_from(length).ok().filter(|_| length == !complement)?)?;
+    (payload.len() <= PAYLOAD_MAX && check == frame_checksum(number, index, payload))
+        .then_some((index, payload))
 }
 
-/// The frame that `rest` begins with. A file that was made longer before its content reached the
-/// disk ends in zeros: that is torn as well.
-fn next(rest: &[u8], number: u64, index: u64) -> Next<'_> {
-    if rest.is_empty() {
-        return Next::Nothing;
-    }
-    let prefix = take_u32(rest).and_then(|(length, rest)| Some((length, take_u32(rest)?)));
-    let Some((length, (complement, rest_behind))) = prefix else { return Next::Torn };
-    let length_bytes = length as usize;
-    if length != !complement || length_bytes > PAYLOAD_MAX {
-        return if rest.iter().all(|byte| *byte == 0) { Next::Torn } else { Next::Corrupt };
-    }
-    let Some((check, behind)) = take_u32(rest_behind) else { return Next::Torn };
-    match behind.split_at_checked(length_bytes) {
-        None => Next::Torn,
-        Some((payload, _)) if check == frame_checksum(number, index, payload) => Next::Frame(payload),
-        Some((_, after)) if after.iter().all(|byte| *byte == 0) => Next::Torn,
-        Some(_) => Next::Corrupt,
-    }
+/// Somewhere in `rest` there is a sound frame of this segment.
+fn has_sound_frame(rest: &[u8], number: u64) -> bool {
+    let looks_like_one = |bytes: &&[u8]| {
+        let prefix = take_u32(bytes).and_then(|(length, rest)| Some((length, take_u32(rest)?.0)));
+        prefix.is_some_and(|(length, complement)| length == !complement)
+    };
+    let places = (0..rest.len()).filter_map(|at| rest.get(at..));
+    places.filter(looks_like_one).take(LOOKS_MAX).any(|bytes| sound(bytes, number).is_some())
 }
 
 fn take_u32(bytes: &[u8]) -> Option<(u32, &[u8])> {
@@ -152,7 +147,7 @@ fn take_u32(bytes: &[u8]) -> Option<(u32, &[u8])> {
 }
 
 /// Over number and index too: a frame of another segment, or in another place, is none.
-fn frame_checksum(number: u64, index: u64, payload: &[u8]) -> u32 {
+fn frame_checksum(number: u64, index: u32, payload: &[u8]) -> u32 {
     checksum(&[&number.to_le_bytes(), &index.to_le_bytes(), payload])
 }
 
@@ -172,7 +167,7 @@ mod tests {
     fn segment(payloads: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = header(7).to_vec();
         for (index, payload) in payloads.iter().enumerate() {
-            append(7, index as u64, payload, &mut bytes).unwrap();
+            append(7, index as u32, payload, &mut bytes).unwrap();
         }
         bytes
     }
@@ -222,11 +217,15 @@ mod tests {
         }
 
         #[test]
-        fn zeros_behind_the_end_are_torn(payloads in payloads(), zeros in 1usize..40) {
-            let bytes = [segment(&payloads), vec![0; zeros]].concat();
+        fn last_frame_half_written_and_zeros_behind_it_are_torn(
+            payloads in payloads(), half in 0usize..FRAME_BYTES, zeros in 1usize..40,
+        ) {
+            let mut last = Vec::new();
+            append(7, payloads.len() as u32, b"last", &mut last).unwrap();
+            let bytes = [&segment(&payloads), &last[..half], &vec![0; zeros]].concat();
             let scan = scan(&bytes).unwrap();
             prop_assert_eq!(scan.payloads, payloads);
-            prop_assert_eq!(scan.end, End::Torn { bytes: zeros });
+            prop_assert_eq!(scan.end, End::Torn { bytes: half + zeros });
         }
 
         #[test]

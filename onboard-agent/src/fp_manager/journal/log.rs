@@ -29,7 +29,7 @@ const PLAN_MAX: u64 = 64 << 20;
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// A new state is asked for after so many turns: they take well below a second to replay.
-    pub turns: u64,
+    pub turns: u32,
     /// The same, after so many bytes behind the state.
     pub bytes: u64,
     /// Nothing more is appended after so many bytes behind the state.
@@ -65,7 +65,7 @@ pub struct Log<S> {
 struct Open {
     number: u64,
     name: String,
-    frames: u64,
+    frames: u32,
     /// Behind the state.
     bytes: u64,
     /// Hashes of the plans it needs.

@@ -42,7 +42,7 @@
 //!
 //! ```text
 //! header  "LEGWORKJ" | version u32 = 1 | CRC-32 of magic, version and number | number u64
-//! frame   length u32 | !length u32 | CRC-32 of number, index u64 and payload | payload (CBOR)
+//! frame   length u32 | !length u32 | index u32 | CRC-32 of number, index and payload | payload (CBOR)
 //! ```
 //!
 //! The complement makes every damaged length evident, the index every frame that is missing or in a wrong place. The
@@ -50,8 +50,8 @@
 //!
 //! # Recovery
 //!
-//! The newest segment is read up to the first frame that is not whole and undamaged. Is that the last, the tail was **torn** by the
-//! crash and is dropped: nothing of it had taken effect. Are there others behind it, the segment is **corrupt**: replay stops before it, and
+//! The newest segment is read up to the first frame that is not sound. Are there no sound ones behind it, the tail was **torn** by the
+//! crash and is dropped: nothing of it had taken effect. Are there, the segment is **corrupt**: replay stops before it, and
 //! that is told as an event, as something that took effect may be missing. The executor is restored from the state, and the
 //! turns are replayed through `Executor::step` at their recorded times. Then a new segment is begun. A segment whose state cannot be
 //! used is set aside, and the one before it, which leads up to the same state, is taken.
@@ -60,6 +60,8 @@
 //! one, and the FP Manager holds and says so instead of flying a part of the plan twice.
 
 mod clerk;
+#[cfg(test)]
+pub mod faulty;
 mod frame;
 mod keeper;
 mod log;

@@ -1,1 +1,268 @@
+//! Faults of the disk, one a test, without a disk and without a clock.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use super::faulty::{Death, Faulty, Operation, Random};
+use super::*;
+use crate::clock::Time;
+use crate::fp_manager::{Config, Manager, compile, restart};
+use flight_exec::{Executor, Token};
+use proptest::prelude::*;
+use std::io::ErrorKind;
+use std::sync::Arc;
+use terrain::Flat;
+
+const LIMITS: Limits = Limits { turns: 10, bytes: 4096, bytes_max: 8192, plans: 3 };
+
+fn config() -> Config {
+    Config { terrain: Arc::new(Flat(349.0)), ..Config::new("uav1", "") }
+}
+
+fn saved() -> Saved {
+    let config = config();
+    let executor = Executor::new(config.executor, config.terrain, config.profile);
+    Manager::new(executor, Time::ZERO).saved().0
+}
+
+/// A turn that shows which one it is.
+fn turn(number: u64) -> Vec<Entry> {
+    vec![Entry { at: Time::from_secs(number), what: Record::NumberAfter(Token(number)) }]
+}
+
+fn job(number: u64, sync: bool) -> Job {
+    Job::Turn { payload: encode(&turn(number)).unwrap(), sync }
+}
+
+fn state() -> Job {
+    Job::State(Box::new(saved()), Vec::new())
+}
+
+fn clerk(disk: &Faulty) -> Clerk<Faulty> {
+    Clerk::new(Log::open(disk.clone(), LIMITS).0, None)
+}
+
+/// A clerk with a state and turns 1 to `turns`, all on the disk.
+fn clerk_with(disk: &Faulty, turns: u64) -> Clerk<Faulty> {
+    let mut clerk = clerk(disk);
+    let jobs = std::iter::once(state()).chain((1..=turns).map(|n| job(n, true)));
+    clerk.perform(Time::ZERO, jobs.collect());
+    clerk
+}
+
+/// The turns that a restart finds, and whether it knows that something is missing.
+fn found(disk: &Faulty) -> (Vec<u64>, bool) {
+    let (mut log, found) = Log::open(disk.clone(), LIMITS);
+    let chapter = found.unwrap().iter().find_map(|found| log.chapter(found).ok()).expect("a segment");
+    let numbers = chapter.turns.iter().map(|turn| turn[0].at.as_secs());
+    (numbers.collect(), chapter.incomplete)
+}
+
+#[test]
+fn what_was_synced_survives_a_loss_of_power_the_rest_may() {
+    for seed in 0..50 {
+        let disk = Faulty::default();
+        let mut clerk = clerk_with(&disk, 3);
+        clerk.perform(Time::ZERO, (4..=6).map(|n| job(n, false)).collect());
+        disk.reboot(Death::PowerLoss, &mut Random(seed));
+        let (turns, incomplete) = found(&disk);
+        assert!(turns.len() >= 3 && turns == (1..=turns.len() as u64).collect::<Vec<_>>(), "{turns:?}");
+        assert!(!incomplete, "a torn tail is nothing that took effect");
+    }
+}
+
+#[test]
+fn what_leads_to_nothing_is_synced_within_a_second() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 1);
+    clerk.perform(Time::from_millis(2000), vec![job(2, false)]);
+    let due = clerk.due().expect("a sync");
+    assert!(due <= Time::from_millis(3000), "{due:?}");
+    clerk.perform(due, Vec::new());
+    assert_eq!(clerk.due(), None);
+    disk.reboot(Death::PowerLoss, &mut Random(1));
+    assert_eq!(found(&disk).0, [1, 2]);
+}
+
+/// A fault comes and goes: it is told, the flight goes on, and a new state brings the journal back.
+fn fault_comes_and_goes(strike: impl Fn(&Faulty), advice: &str) {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 2);
+    strike(&disk);
+    clerk.perform(Time::from_secs(1), vec![job(3, true)]);
+    let trouble = clerk.report(Time::from_secs(1)).trouble.expect("it is told");
+    assert!(trouble.contains(advice), "{trouble}");
+    assert!(!clerk.report(Time::from_secs(1)).wants_state, "not again at once");
+    assert!(clerk.report(Time::from_secs(2)).wants_state, "again after a while");
+    clerk.perform(Time::from_secs(2), vec![state(), job(4, true)]);
+    assert!(clerk.report(Time::from_secs(2)).trouble.is_some(), "it lasts");
+    assert_eq!(found(&disk).0[..2], [1, 2], "what was recorded before is still there");
+    disk.repair();
+    clerk.perform(Time::from_secs(4), vec![state(), job(5, true)]);
+    assert_eq!(clerk.report(Time::from_secs(4)), Report::default());
+    disk.reboot(Death::PowerLoss, &mut Random(7));
+    assert_eq!(found(&disk), (vec![5], false));
+}
+
+#[test]
+fn disk_full() {
+    fault_comes_and_goes(|disk| disk.limit(disk.size() + 5), "free some space");
+}
+
+#[test]
+fn folder_not_writable() {
+    let strike = |disk: &Faulty| {
+        for operation in [Operation::Create, Operation::Append, Operation::Rename] {
+            disk.fail(operation, ErrorKind::ReadOnlyFilesystem);
+        }
+    };
+    fault_comes_and_goes(strike, "writable");
+}
+
+#[test]
+fn sync_fails() {
+    // after a failed sync nothing that was appended can be trusted, even if a later one succeeds
+    fault_comes_and_goes(|disk| disk.fail(Operation::Sync, ErrorKind::Other), "check the disk");
+}
+
+#[test]
+fn names_cannot_be_synced() {
+    let strike = |disk: &Faulty| {
+        disk.fail(Operation::Append, ErrorKind::Other);
+        disk.fail(Operation::SyncNames, ErrorKind::Other);
+    };
+    fault_comes_and_goes(strike, "check the disk");
+}
+
+#[test]
+fn no_room_for_a_new_segment_the_old_one_goes_on_up_to_its_greatest_length() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 11);
+    assert!(clerk.report(Time::ZERO + Time::from_secs(1)).wants_state);
+    disk.fail(Operation::Create, ErrorKind::StorageFull);
+    clerk.perform(Time::from_secs(1), vec![state(), job(12, true)]);
+    assert_eq!(clerk.report(Time::from_secs(1)).trouble, None);
+    assert_eq!(found(&disk).0.len(), 12);
+    clerk.perform(Time::from_secs(2), (13..500).map(|n| job(n, true)).collect());
+    assert!(clerk.report(Time::from_secs(2)).trouble.is_some());
+    assert!(disk.size() < 2 * LIMITS.bytes_max as usize, "{} bytes", disk.size());
+}
+
+#[test]
+fn segment_that_failed_in_flight_is_known_as_incomplete() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 2);
+    disk.limit(disk.size());
+    clerk.perform(Time::from_secs(1), vec![job(3, true)]);
+    assert_eq!(found(&disk), (vec![1, 2], true));
+}
+
+#[test]
+fn turns_lost_before_a_disk_that_does_not_keep_up_are_never_skipped_over() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 2);
+    clerk.overrun(Time::from_secs(1));
+    clerk.perform(Time::from_secs(1), vec![job(9, true)]);
+    assert!(clerk.report(Time::from_secs(1)).trouble.is_some());
+    assert_eq!(found(&disk), (vec![1, 2], true));
+}
+
+#[test]
+fn damage_in_the_middle_stops_the_replay_there() {
+    let disk = Faulty::default();
+    clerk_with(&disk, 5);
+    let bytes_of_a_turn = encode(&turn(1)).unwrap().len() + frame::FRAME_BYTES;
+    disk.damage("segment-00000001.journal", |bytes| {
+        let third = bytes.len() - 3 * bytes_of_a_turn;
+        bytes[third + frame::FRAME_BYTES] ^= 1;
+    });
+    assert_eq!(found(&disk), (vec![1, 2], true));
+}
+
+#[test]
+fn state_damaged_the_segment_before_leads_up_to_it() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 4);
+    clerk.perform(Time::from_secs(1), vec![state(), job(5, true)]);
+    disk.damage("segment-00000002.journal", |bytes| bytes[frame::HEADER_BYTES + 40] ^= 1);
+    assert_eq!(found(&disk).0, [1, 2, 3, 4]);
+    let (mut log, found) = Log::open(disk.clone(), LIMITS);
+    let past = restart(&mut log, &found.unwrap(), &config(), Time::ZERO);
+    assert_eq!(past.manager.executor().last_token(), Token(4));
+    assert_eq!(past.troubles.len(), 1, "{:?}", past.troubles);
+    assert!(disk.names_now().contains(&"segment-00000002.unusable".to_owned()));
+}
+
+#[test]
+fn old_segments_go_when_the_state_is_on_the_disk_and_not_before() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 1);
+    for second in 1..5 {
+        clerk.perform(Time::from_secs(second), vec![state()]);
+    }
+    assert_eq!(disk.names_now(), ["segment-00000004.journal", "segment-00000005.journal"]);
+    disk.fail(Operation::SyncNames, ErrorKind::Other);
+    clerk.perform(Time::from_secs(9), vec![state()]);
+    assert_eq!(disk.names_now().len(), 3, "{:?}", disk.names_now());
+}
+
+#[test]
+fn plan_missing_or_exchanged_is_told_and_flown_without() {
+    let xml = include_str!("../../../../assets/plans/square.xml");
+    for (change, told) in [(&b"garbage"[..], "plan"), (&b"<flightPlan/>"[..], "plan")] {
+        let (disk, config) = (Faulty::default(), config());
+        let program = Arc::new(compile(xml.as_bytes(), &config).unwrap());
+        let mut state = saved();
+        state.proposed = Some(program.hash.clone());
+        clerk(&disk).perform(Time::ZERO, vec![Job::State(Box::new(state), vec![program.clone()])]);
+        disk.damage(&format!("plan-{}.xml", program.hash), |bytes| *bytes = change.to_vec());
+        let (mut log, found) = Log::open(disk.clone(), LIMITS);
+        let past = restart(&mut log, &found.unwrap(), &config, Time::ZERO);
+        assert!(past.troubles[0].contains(told), "{:?}", past.troubles);
+        assert!(past.manager.executor().proposed().is_none());
+    }
+}
+
+#[test]
+fn plans_that_were_only_proposed_do_not_pile_up() {
+    let xml = include_str!("../../../../assets/plans/square.xml");
+    let (disk, config) = (Faulty::default(), config());
+    let mut clerk = clerk_with(&disk, 0);
+    for n in 0..20 {
+        let other = xml.replace("Square circuit", &format!("Circuit {n}"));
+        let program = Arc::new(compile(other.as_bytes(), &config).unwrap());
+        clerk.perform(Time::from_secs(n), vec![Job::Plan(program)]);
+        if clerk.report(Time::from_secs(n)).wants_state {
+            clerk.perform(Time::from_secs(n), vec![state()]);
+        }
+    }
+    let plans = disk.names_now().iter().filter(|name| name.starts_with("plan")).count();
+    assert!(plans <= 2 * (LIMITS.plans + 1), "{plans} plans");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+
+    #[test]
+    fn garbage_in_place_of_a_state_or_a_turn_is_no_panic(garbage in proptest::collection::vec(any::<u8>(), 0..100)) {
+        let mut bytes = frame::header(1).to_vec();
+        frame::append(1, 0, &garbage, &mut bytes).unwrap();
+        prop_assert!(read(&bytes).is_err());
+        let mut bytes = frame::header(1).to_vec();
+        frame::append(1, 0, &encode(&saved()).unwrap(), &mut bytes).unwrap();
+        frame::append(1, 1, &garbage, &mut bytes).unwrap();
+        let chapter = read(&bytes).unwrap();
+        prop_assert!(chapter.turns.len() + usize::from(chapter.incomplete) == 1);
+    }
+}
+
+#[test]
+fn real_folder_keeps_what_was_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = || Folder::new(directory.path().join("made/when/needed"));
+    let mut clerk = Clerk::new(Log::open(folder(), LIMITS).0, None);
+    clerk.perform(Time::ZERO, vec![state(), job(1, true), job(2, false), state(), job(3, false)]);
+    assert_eq!(clerk.report(Time::ZERO).trouble, None);
+    let (mut log, found) = Log::open(folder(), LIMITS);
+    let found = found.unwrap();
+    let turns: Vec<usize> = found.iter().map(|f| log.chapter(f).unwrap().turns.len()).collect();
+    assert_eq!(turns, [1, 2], "newest first");
+}

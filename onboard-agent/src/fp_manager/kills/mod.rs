@@ -1,0 +1,406 @@
+//! A thousand deaths: a flight whose FP Manager dies at random bytes and instants, over a disk that keeps what was
+//! synced and a random part of the rest, beside the same flight undisturbed.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod gateway;
+
+use super::journal::faulty::{Death, Faulty, Random};
+use super::journal::{Clerk, Job, Limits, Log, Saved, Storage, encode};
+use super::{Config, Effect, Manager, compile, restart};
+use crate::clock::Time;
+use gateway::Gateway;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use terrain::Flat;
+use usal::contract::*;
+
+const MISSION: &str = include_str!("mission.xml");
+const KILLS: u64 = 1000;
+/// Segments are short, so that many deaths fall on a change of segments.
+const LIMITS: Limits = Limits { turns: 20, bytes: 64 << 10, bytes_max: 1 << 20, plans: 8 };
+/// A flight that takes longer does not end.
+const STEPS_MAX: usize = 2000;
+
+/// What the client asks, once so many waypoints are flown and so many steps after the last answer.
+struct Ask {
+    flown: usize,
+    steps: usize,
+    what: What,
+}
+
+enum What {
+    Propose(String),
+    Commit,
+    Command(Command),
+    /// The gateway raises an alarm.
+    Alarm(Cause),
+}
+
+fn set(name: &str, value: VariableValue) -> What {
+    What::Command(Command::SetVariable { name: Id::new(name), value })
+}
+
+/// Everything that is asked of a flight.
+fn asks(emergency: bool) -> VecDeque<Ask> {
+    let decide = Command::Decide { leg: Id::new("ask"), branch: Id::new("look") };
+    let changed = MISSION.replace("radius=\"250\" turns=\"1\"", "radius=\"260\" turns=\"1\"");
+    let list = vec![
+        (0, 0, What::Propose(MISSION.into())),
+        (0, 1, What::Commit),
+        (0, 1, What::Command(Command::Start)),
+        (8, 0, set("reach", VariableValue::Number(300.0))),
+        (12, 0, What::Command(decide)),
+        (30, 2, What::Command(Command::SkipLeg)),
+        (34, 0, What::Command(Command::Hold)),
+        (0, 5, What::Command(Command::Resume)),
+        (40, 0, What::Propose(changed)),
+        (0, 2, What::Commit),
+        (47, 0, if emergency { What::Alarm(Cause::Energy) } else { set("found", VariableValue::Bool(true)) }),
+    ];
+    list.into_iter().map(|(flown, steps, what)| Ask { flown, steps, what }).collect()
+}
+
+fn config() -> Config {
+    Config { terrain: Arc::new(Flat(322.0)), simulated: true, ..Config::new("uav1", "") }
+}
+
+struct Process {
+    manager: Manager,
+    clerk: Clerk<Faulty>,
+}
+
+/// The process died.
+#[derive(Debug)]
+struct Dead;
+
+struct Flight {
+    disk: Faulty,
+    config: Config,
+    process: Process,
+    gateway: Gateway,
+    asks: VecDeque<Ask>,
+    proposed: Option<Arc<str>>,
+    answered: BTreeMap<String, Result<(), Refusal>>,
+    since_answer: usize,
+    time: Time,
+    random: Random,
+    deadly: bool,
+    kills: u64,
+    heard: Vec<PlanEvent>,
+    /// States after the latest turns; the last turn that was written, and the last that was synced for sure.
+    history: VecDeque<(u64, Saved)>,
+    turn: u64,
+    written: u64,
+    synced: u64,
+}
+
+fn begin(disk: &Faulty, config: &Config) -> (Process, Vec<String>) {
+    let (mut log, found) = Log::open(disk.clone(), LIMITS);
+    let past = restart(&mut log, found.as_deref().unwrap_or_default(), config, Time::ZERO);
+    (Process { manager: past.manager, clerk: Clerk::new(log, None) }, past.troubles)
+}
+
+impl Flight {
+    fn new(seed: u64, deadly: bool, emergency: bool) -> Self {
+        let (disk, config) = (Faulty::default(), config());
+        let (process, _) = begin(&disk, &config);
+        let mut flight = Self {
+            disk,
+            config,
+            history: VecDeque::from([(0, process.manager.saved().0)]),
+            process,
+            gateway: Gateway::new(),
+            asks: asks(emergency),
+            proposed: None,
+            answered: BTreeMap::new(),
+            since_answer: 0,
+            time: Time::ZERO,
+            random: Random(seed),
+            deadly,
+            kills: 0,
+            heard: Vec::new(),
+            turn: 0,
+            written: 0,
+            synced: 0,
+        };
+        flight.hand_in_state();
+        flight.light_fuse();
+        flight
+    }
+
+    /// Most deaths come soon, some late, so that every kind of instant has its share.
+    fn light_fuse(&mut self) {
+        if self.deadly {
+            let most = [300, 3_000, 30_000, 100_000][self.random.below(4) as usize];
+            self.disk.light_fuse(1 + self.random.below(most));
+        }
+    }
+
+    fn hand_in_state(&mut self) {
+        let (saved, plans) = self.process.manager.saved();
+        self.process.clerk.perform(self.time, vec![Job::State(Box::new(saved), plans)]);
+        if self.alive().is_ok() {
+            self.all_is_synced();
+        }
+    }
+
+    fn all_is_synced(&mut self) {
+        self.synced = self.turn;
+        self.history.retain(|(turn, _)| *turn >= self.synced);
+    }
+
+    fn alive(&self) -> Result<(), Dead> {
+        if self.disk.is_dead() { Err(Dead) } else { Ok(()) }
+    }
+
+    /// A turn as the shell does it: recorded first, then carried out.
+    fn perform(&mut self, effects: Vec<Effect>) -> Result<(), Dead> {
+        let mut queue = VecDeque::from(effects);
+        while !queue.is_empty() {
+            let turn = std::mem::take(&mut queue).into_iter().collect();
+            for effect in self.record(turn)? {
+                self.disk.survives().then_some(()).ok_or(Dead)?;
+                queue.extend(self.carry_out(effect));
+            }
+        }
+        if self.process.clerk.report(self.time).wants_state {
+            self.hand_in_state();
+        }
+        self.alive()
+    }
+
+    fn record(&mut self, effects: Vec<Effect>) -> Result<Vec<Effect>, Dead> {
+        let (mut jobs, mut entries, mut others, mut sync) = (Vec::new(), Vec::new(), Vec::new(), false);
+        for effect in effects {
+            match effect {
+                Effect::Record(entry) => entries.push(entry),
+                Effect::Keep(program) => jobs.push(Job::Plan(program)),
+                Effect::Sync => sync = true,
+                other => others.push(other),
+            }
+        }
+        if entries.is_empty() {
+            return Ok(others);
+        }
+        self.turn += 1;
+        self.history.push_back((self.turn, self.process.manager.saved().0));
+        jobs.push(Job::Turn { payload: encode(&entries).unwrap(), sync });
+        self.process.clerk.perform(self.time, jobs);
+        self.alive()?;
+        self.written = self.turn;
+        if sync {
+            self.all_is_synced();
+        }
+        Ok(others)
+    }
+
+    fn carry_out(&mut self, effect: Effect) -> Vec<Effect> {
+        let (now, manager, mut out) = (self.time, &mut self.process.manager, Vec::new());
+        match effect {
+            Effect::Feed(feed) => {
+                let answer = self.gateway.feed(feed);
+                if self.disk.survives() {
+                    manager.fed(now, Some(answer), &mut out);
+                }
+            }
+            Effect::Join(_) => manager.joined(now, Some(self.gateway.join()), &mut out),
+            Effect::Request(request) => {
+                let answer = self.gateway.request(&request);
+                if self.disk.survives() {
+                    manager.requested(now, &request, answer, &mut out);
+                }
+            }
+            Effect::Event(event) => self.heard.push(event),
+            Effect::Record(_) | Effect::Keep(_) | Effect::Sync => unreachable!("recorded before"),
+        }
+        out
+    }
+
+    /// Something reaches the process. If it dies of it, the next one goes on, and this is not repeated.
+    fn tell(&mut self, what: impl FnOnce(&mut Manager, Time, &mut Vec<Effect>)) {
+        let mut effects = Vec::new();
+        what(&mut self.process.manager, self.time, &mut effects);
+        if self.perform(effects).is_err() {
+            self.revive();
+        }
+    }
+
+    /// The next process, and the next, should it die while it comes back.
+    fn revive(&mut self) {
+        loop {
+            self.kills += 1;
+            let death = if self.random.below(2) == 0 { Death::Kill } else { Death::PowerLoss };
+            self.disk.reboot(death, &mut self.random);
+            let (process, troubles) = begin(&self.disk, &self.config);
+            assert_eq!(troubles, Vec::<String>::new());
+            self.process = process;
+            self.expect_same_place(death);
+            self.light_fuse();
+            self.hand_in_state();
+            if self.alive().is_ok() && self.come_back().is_ok() {
+                return;
+            }
+        }
+    }
+
+    /// Exactly a state that was, and not one before anything that had taken effect.
+    fn expect_same_place(&mut self, death: Death) {
+        let now = self.process.manager.saved().0;
+        let least = if death == Death::Kill { self.written } else { self.synced };
+        let found = self.history.iter().rev().find(|(turn, saved)| *turn >= least && *saved == now);
+        let Some(turn) = found.map(|(turn, _)| *turn) else {
+            let near: Vec<_> = self.history.iter().map(|(turn, saved)| (turn, *saved == now)).collect();
+            panic!("after {death:?} in turn {}, at least turn {least} must be there: {near:?}", self.turn);
+        };
+        self.history.retain(|(t, _)| *t <= turn);
+        (self.turn, self.written) = (turn, turn);
+    }
+
+    fn come_back(&mut self) -> Result<(), Dead> {
+        let (status, mut effects) = (self.gateway.status(), Vec::new());
+        let (now, manager) = (self.time, &mut self.process.manager);
+        manager.aircraft().position(self.gateway.position());
+        manager.tick(now, &mut effects);
+        manager.gateway_appeared(now, &mut effects);
+        manager.gateway_status(now, &status, &mut effects);
+        self.perform(effects)
+    }
+
+    fn step(&mut self) {
+        self.time += Time::from_millis(500);
+        if let Some(event) = self.gateway.fly() {
+            self.tell(|manager, now, out| manager.gateway_event(now, event, out));
+        }
+        let (status, navigation, position) =
+            (self.gateway.status(), self.gateway.navigation(), self.gateway.position());
+        self.tell(|manager, now, out| manager.gateway_status(now, &status, out));
+        self.tell(|manager, now, out| manager.navigation(now, &navigation, out));
+        self.tell(|manager, now, out| {
+            manager.aircraft().position(position);
+            manager.tick(now, out);
+        });
+        self.ask();
+        self.since_answer += 1;
+    }
+
+    /// The client repeats its request under the same name until it is answered.
+    fn ask(&mut self) {
+        let due = |ask: &Ask| self.gateway.flown.len() >= ask.flown && self.since_answer >= ask.steps;
+        let Some(ask) = self.asks.pop_front_if(|ask| due(ask)) else { return };
+        let id = format!("request-{}", self.asks.len());
+        while self.ask_once(&ask.what, &id).is_err() {
+            self.revive();
+        }
+        self.since_answer = 0;
+    }
+
+    fn ask_once(&mut self, what: &What, id: &str) -> Result<(), Dead> {
+        let (now, mut effects) = (self.time, Vec::new());
+        let manager = &mut self.process.manager;
+        let command = match what {
+            What::Propose(xml) => {
+                let program = compile(xml.as_bytes(), &self.config).unwrap();
+                let report = manager.propose(now, program, &mut effects).unwrap();
+                self.perform(effects)?;
+                self.proposed = Some(report.hash);
+                return Ok(());
+            }
+            What::Alarm(cause) => {
+                let event = self.gateway.alarm(*cause);
+                manager.gateway_event(now, event, &mut effects);
+                if self.perform(effects).is_err() {
+                    self.revive();
+                    // the event is gone for good: the gateway's state says so too
+                    let status = self.gateway.status();
+                    self.tell(|manager, now, out| manager.gateway_status(now, &status, out));
+                }
+                return Ok(());
+            }
+            What::Commit => Command::Commit { hash: self.proposed.clone().unwrap(), entry: None },
+            What::Command(command) => command.clone(),
+        };
+        let answer = manager.command(now, command, Some(id), &mut effects);
+        self.perform(effects)?;
+        assert_eq!(answer, Ok(()), "{id}");
+        let repeated = self.process.manager.command(now, Command::Start, Some(id), &mut Vec::new());
+        assert_eq!(self.answered.entry(id.to_owned()).or_insert(answer), &repeated);
+        Ok(())
+    }
+
+    fn fly(mut self) -> Self {
+        for _ in 0..STEPS_MAX {
+            if self.gateway.finished() {
+                for _ in 0..3 {
+                    self.step();
+                }
+                return self;
+            }
+            self.step();
+        }
+        panic!("it never lands: {:?}", self.path());
+    }
+
+    /// What was flown, each waypoint once.
+    fn path(&self) -> Vec<String> {
+        let line = |w: &Waypoint| format!("{} {:.6} {:.6}", w.leg, w.position.lat_deg, w.position.lon_deg);
+        let mut path: Vec<String> = self.gateway.flown.iter().map(line).collect();
+        path.dedup();
+        path
+    }
+
+    fn variables(&self) -> String {
+        format!("{:?}", self.process.manager.executor().variables())
+    }
+}
+
+/// What happened once; of an event that measures, only what it is about.
+fn happened(events: &[PlanEvent]) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for event in events {
+        let key = match event {
+            PlanEvent::LegEntered { place } => {
+                format!("leg {} {:?} {:?}", place.leg, place.plan, place.iterations)
+            }
+            PlanEvent::DecisionRequested(request) => format!("asked {}", request.leg),
+            other => format!("{other:?}"),
+        };
+        *counts.entry(key).or_default() += 1;
+    }
+    counts
+}
+
+fn expect_as_undisturbed(killed: &Flight, undisturbed: &Flight) {
+    assert_eq!(killed.path(), undisturbed.path());
+    assert_eq!(killed.variables(), undisturbed.variables());
+    assert_eq!(killed.gateway.launches, 1);
+    let (once, ever) = (happened(&undisturbed.heard), happened(&killed.heard));
+    for (event, count) in ever {
+        assert!(count <= once.get(&event).copied().unwrap_or(0), "{count} times {event}");
+    }
+}
+
+#[test]
+fn a_thousand_deaths_change_nothing_of_a_flight() {
+    let seed = std::env::var("LEGWORK_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(20261);
+    let undisturbed = [false, true].map(|emergency| Flight::new(seed, false, emergency).fly());
+    let (mut kills, mut flights) = (0, 0);
+    while kills < KILLS {
+        let (seed, emergency) = (seed + flights, flights % 3 == 2);
+        println!("LEGWORK_SEED={seed} begins flight {flights}, {kills} deaths so far");
+        let flight = Flight::new(seed, true, emergency).fly();
+        expect_as_undisturbed(&flight, &undisturbed[usize::from(emergency)]);
+        kills += flight.kills;
+        flights += 1;
+    }
+    println!("{kills} deaths in {flights} flights, first seed {seed}");
+}
+
+#[test]
+fn disk_never_grows_without_bound() {
+    let flight = Flight::new(1, false, false).fly();
+    let mut disk = flight.disk.clone();
+    let names = disk.names().unwrap();
+    assert!(names.iter().filter(|name| name.starts_with("segment")).count() <= 2, "{names:?}");
+    assert!(names.iter().filter(|name| name.starts_with("plan")).count() <= 2, "{names:?}");
+    assert!(flight.turn > 5 * u64::from(LIMITS.turns), "{} turns are too few to tell", flight.turn);
+}
