@@ -113,6 +113,10 @@ pub enum Selection {
     Runway(Id),
     /// A variable.
     Variable(Id),
+    /// A keep-in or keep-out zone.
+    Zone(Id),
+    /// A procedure.
+    Procedure(Id),
 }
 
 impl Selection {
@@ -124,7 +128,9 @@ impl Selection {
             | Self::Emergency(id)
             | Self::Fix(id)
             | Self::Runway(id)
-            | Self::Variable(id) => id,
+            | Self::Variable(id)
+            | Self::Zone(id)
+            | Self::Procedure(id) => id,
         }
     }
 }

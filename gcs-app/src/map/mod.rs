@@ -12,6 +12,7 @@ pub mod polyline;
 pub mod sketch;
 pub mod text;
 pub mod view;
+pub mod zones;
 
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
@@ -75,7 +76,8 @@ impl MapState {
             }
             Selection::Fix(id) => plan.fix(id).map(|f| f.position),
             Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
-            Selection::Variable(_) => None,
+            Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
+            Selection::Variable(_) | Selection::Procedure(_) => None,
         }
     }
 
@@ -117,6 +119,7 @@ impl MapState {
         let painter = ui.painter_at(view.rect);
         self.basemap.draw(&painter, view, p);
         self.hillshade.draw(&painter, view, ui.visuals().dark_mode);
+        zones::draw(&painter, view, scene, p);
         plan::draw_areas(&painter, view, &self.sketch, scene, p);
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
         self.path.draw(&painter, view, scene, &self.sketch, p);

@@ -10,8 +10,8 @@ use crate::units::{self, Units};
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::Command;
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value, Variable,
-    VariableValue,
+    Altitude, AltitudeReference, Edit, EmergencyPlan, Fix, FlightPlan, Id, Procedure, Runway, Stage, Value,
+    Variable, VariableValue, Zone, ZoneKind, ZoneShape,
 };
 
 /// Draws the inspector.
@@ -33,6 +33,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             Some(Selection::Runway(id)) => {
                 found(ui, plan.runway(id), |ui, runway| show_runway(ui, scene, runway))
             }
+            Some(Selection::Zone(id)) => found(ui, plan.zone(id), |ui, zone| show_zone(ui, scene, zone)),
+            Some(Selection::Procedure(id)) => found(ui, plan.procedure(id), show_procedure),
             Some(Selection::Variable(id)) => {
                 found(ui, plan.variable(id), |ui, v| show_variable(ui, scene, v, queue))
             }
@@ -246,6 +248,37 @@ fn show_runway(ui: &mut Ui, scene: &Scene<'_>, runway: &Runway) {
     field::row(ui, "Heading", |ui| ui.label(units::bearing(runway.heading_deg)));
     field::row(ui, "Length", |ui| ui.label(u.length().show(runway.length_m)));
     field::row(ui, "Priority", |ui| ui.label(runway.priority.to_string()));
+}
+
+fn show_zone(ui: &mut Ui, scene: &Scene<'_>, zone: &Zone) {
+    let kind = match zone.kind {
+        ZoneKind::KeepIn => "keep-in zone",
+        ZoneKind::KeepOut => "keep-out zone",
+    };
+    heading(ui, kind, &zone.id);
+    field::row(ui, "Name", |ui| ui.label(&zone.name));
+    let shape = match &zone.shape {
+        ZoneShape::Circle { radius_m, .. } => format!("circle, {}", scene.units().length().show(*radius_m)),
+        ZoneShape::Polygon(corners) => format!("{} corners", corners.len()),
+    };
+    field::row(ui, "Outline", |ui| ui.label(shape));
+    let band = crate::map::zones::band(zone, scene.units()).unwrap_or_else(|| "every altitude".into());
+    field::row(ui, "Altitudes", |ui| ui.label(band));
+    let active = match zone.active.len() {
+        0 => "always".into(),
+        n => format!("in {n} periods"),
+    };
+    field::row(ui, "Active", |ui| ui.label(active));
+}
+
+fn show_procedure(ui: &mut Ui, procedure: &Procedure) {
+    heading(ui, "procedure", &procedure.id);
+    field::row(ui, "Name", |ui| ui.label(&procedure.name));
+    field::row(ui, "Legs", |ui| ui.label(procedure.legs.len().to_string()));
+    for parameter in &procedure.parameters {
+        let default = parameter.default.as_ref().map_or_else(|| "to be given".into(), |d| format!("= {d}"));
+        field::row(ui, parameter.name.as_str(), |ui| ui.label(default));
+    }
 }
 
 /// A variable: its initial value in the document, and its value aboard, which can be set in flight.

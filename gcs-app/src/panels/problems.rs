@@ -47,6 +47,11 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
     inside.horizontal_top(|ui| {
         ui.label(RichText::new(symbol).color(colour));
         let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
+        if let Some(fix) = &problem.fix
+            && ui.small_button("Fix").on_hover_text("Make the edit that removes this problem").clicked()
+        {
+            queue.edit((**fix).clone());
+        }
         ui.vertical(|ui| {
             let text = RichText::new(format!("{}{place}", problem.message)).size(12.0);
             ui.add(egui::Label::new(text).wrap().selectable(false).sense(Sense::hover()));
@@ -57,14 +62,6 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
         && let Some(selection) = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id))
     {
         queue.view(ViewCommand::JumpTo(selection));
-    }
-    if let Some(fix) = &problem.fix {
-        response.context_menu(|ui| {
-            if ui.button("Apply the remedy").clicked() {
-                queue.edit((**fix).clone());
-                ui.close();
-            }
-        });
     }
 }
 
@@ -85,6 +82,12 @@ pub fn find(plan: &FlightPlan, id: &Id) -> Option<Selection> {
     }
     if plan.runway(id).is_some() {
         return Some(Selection::Runway(id_()));
+    }
+    if plan.zone(id).is_some() {
+        return Some(Selection::Zone(id_()));
+    }
+    if plan.procedure(id).is_some() {
+        return Some(Selection::Procedure(id_()));
     }
     plan.variable(id).map(|_| Selection::Variable(id_()))
 }

@@ -4,7 +4,7 @@ use super::Scene;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
-use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind};
+use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind, ZoneKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One line of the tree.
@@ -80,6 +80,12 @@ fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
     });
     if !plan.emergency_plans.is_empty() {
         builder.group("Emergency plans", 0, |b| b.emergency_plans(plan));
+    }
+    if !plan.procedures.is_empty() {
+        builder.group("Procedures", 0, |b| b.procedures(plan));
+    }
+    if !plan.zones.is_empty() {
+        builder.group("Zones", 0, |b| b.zones(plan));
     }
     if !plan.variables.is_empty() {
         builder.group("Variables", 0, |b| b.variables(plan));
@@ -189,6 +195,30 @@ impl Builder<'_> {
             for stage in emergency.stages.iter().filter(|_| !hidden) {
                 self.stage(stage, 2);
             }
+        }
+    }
+
+    fn procedures(&mut self, plan: &FlightPlan) {
+        for procedure in &plan.procedures {
+            let parameters: Vec<&str> = procedure.parameters.iter().map(|p| p.name.as_str()).collect();
+            let text = title(&procedure.name, procedure.id.as_str());
+            self.item(1, "PROC", &text, parameters.join(", "), Selection::Procedure(procedure.id.clone()));
+        }
+    }
+
+    fn zones(&mut self, plan: &FlightPlan) {
+        for zone in &plan.zones {
+            let tag = match zone.kind {
+                ZoneKind::KeepIn => "IN",
+                ZoneKind::KeepOut => "OUT",
+            };
+            self.item(
+                1,
+                tag,
+                &title(&zone.name, zone.id.as_str()),
+                String::new(),
+                Selection::Zone(zone.id.clone()),
+            );
         }
     }
 
