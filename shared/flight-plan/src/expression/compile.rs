@@ -305,7 +305,9 @@ impl Checker<'_> {
     }
 
     fn function(&mut self, at: &IdedExpr, name: &str, arguments: &[&IdedExpr], depth: usize) -> Checked {
-        use Type::{Bool, Number, Position, Text};
+        use Type::{Bool, Number, Polygon, Position, Text};
+        // the one name with two meanings: told apart by what it is asked about
+        let of_polygon = name == "contains" && self.is_polygon(arguments);
         let (function, parameters, result): (_, &[Type], _) = match name {
             "double" => (Function::Double, &[Number], Number),
             "abs" => (Function::Abs, &[Number], Number),
@@ -314,6 +316,9 @@ impl Checker<'_> {
             "distance" => (Function::Distance, &[Position, Position], Number),
             "offset" => (Function::Offset, &[Position, Number, Number], Position),
             "lat_lon" => (Function::LatLon, &[Number, Number], Position),
+            "area" => (Function::Area, &[Polygon], Number),
+            "centre" => (Function::Centre, &[Polygon], Position),
+            "contains" if of_polygon => (Function::Inside, &[Polygon, Position], Bool),
             "contains" => (Function::Contains, &[Text, Text], Bool),
             "startsWith" => (Function::StartsWith, &[Text, Text], Bool),
             "endsWith" => (Function::EndsWith, &[Text, Text], Bool),
@@ -334,6 +339,13 @@ impl Checker<'_> {
             nodes.push(*self.expect(argument, *wanted, depth)?);
         }
         Ok((Node::Call(function, nodes), result))
+    }
+
+    /// The first argument is the name of a polygon.
+    fn is_polygon(&self, arguments: &[&IdedExpr]) -> bool {
+        let Some(Expr::Ident(name)) = arguments.first().map(|a| &a.expr) else { return false };
+        let variable = self.names.variables.get(name.as_str());
+        variable.is_some_and(|v| matches!(v.initial, VariableValue::Polygon(_)))
     }
 }
 

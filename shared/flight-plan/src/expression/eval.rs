@@ -2,7 +2,7 @@
 
 use super::{Expression, FlightName, Function, Node, Operator, Type};
 use crate::{Id, VariableValue, Variables};
-use geometry::LatLon;
+use geometry::{LatLon, LocalFrame, Polygon};
 use std::cmp::Ordering;
 
 /// What expressions can know about the flight.
@@ -66,6 +66,9 @@ pub enum EvalError {
     /// The result is no position on Earth.
     #[error("the result is not a valid position: check the variables it is made of")]
     NotAPosition,
+    /// A polygon is not simple, or too large to be measured.
+    #[error("this is not a simple polygon of some kilometres: check the variable that it is")]
+    NotAPolygon,
     /// A variable has no value, or one of another type: the variables are not this plan's.
     #[error("variable `{0}` has no value of its declared type: initialise the variables from this plan")]
     Variable(Id),
@@ -286,6 +289,12 @@ fn call<'a>(function: Function, arguments: &'a [Node], env: &Env<'a>) -> Result<
         Function::Distance => Scalar::Number(distance_m(place(0)?, place(1)?)?),
         Function::Offset => Scalar::Position(offset(place(0)?, real(1)?, real(2)?)?),
         Function::LatLon => Scalar::Position(LatLon::new(real(0)?, real(1)?)),
+        Function::Area => Scalar::Number(Outline::of(argument(0)?)?.polygon.area_m2()),
+        Function::Centre => {
+            let outline = Outline::of(argument(0)?)?;
+            Scalar::Position(outline.frame.to_geo(outline.polygon.centroid()))
+        }
+        Function::Inside => Scalar::Bool(Outline::of(argument(0)?)?.contains(place(1)?)?),
         Function::Contains | Function::StartsWith | Function::EndsWith => {
             match (argument(0)?, argument(1)?) {
                 (Scalar::Text(a), Scalar::Text(b)) => Scalar::Bool(match function {
@@ -297,6 +306,27 @@ fn call<'a>(function: Function, arguments: &'a [Node], env: &Env<'a>) -> Result<
             }
         }
     })
+}
+
+/// A polygon in its own plane.
+struct Outline {
+    frame: LocalFrame,
+    polygon: Polygon,
+}
+
+impl Outline {
+    fn of(value: Scalar) -> Result<Self, EvalError> {
+        let Scalar::Polygon(corners) = value else { return Err(mismatch("polygon")) };
+        let frame = LocalFrame::around(corners).ok_or(EvalError::NotAPolygon)?;
+        let polygon = Polygon::from_geo(&frame, corners, &[]).map_err(|_| EvalError::NotAPolygon)?;
+        Ok(Self { frame, polygon })
+    }
+
+    fn contains(&self, p: LatLon) -> Result<bool, EvalError> {
+        // beyond the frame's radius, where it would not be exact, there is nothing of the polygon
+        let near = distance_m(self.frame.origin(), p)? <= self.frame.radius_m();
+        Ok(near && self.polygon.contains(self.frame.to_local(p)))
+    }
 }
 
 fn distance_m(a: LatLon, b: LatLon) -> Result<f64, EvalError> {

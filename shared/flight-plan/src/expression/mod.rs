@@ -4,7 +4,8 @@
 //! small tree that is evaluated without allocation surprises: bounded in size and depth, no loops, no side effects.
 //! The subset: literals (bool, int, double, string), the plan's variables, the in-flight names, `! - + * / % == != < <= > >= && || ?:`,
 //! `double(int)`, `abs(number)`, `min(a, b)`, `max(a, b)`, `distance_to(fix or position)`, `distance(p, q)`,
-//! `offset(position, bearing_deg, distance_m)`, `lat_lon(latitude_deg, longitude_deg)` and the text tests `contains`, `startsWith`, `endsWith`.
+//! `offset(position, bearing_deg, distance_m)`, `lat_lon(latitude_deg, longitude_deg)`, of polygons
+//! `area(polygon)` in m², `centre(polygon)` (of gravity) and `contains(polygon, position)`, and the text tests `contains`, `startsWith`, `endsWith`.
 //! As in CEL, int and double compare with each other but do not mix in arithmetic.
 
 mod compile;
@@ -109,7 +110,7 @@ pub fn is_variable_name(name: &str) -> bool {
 /// True for names that a variable can't have because the language has them.
 pub fn is_reserved(name: &str) -> bool {
     /// CEL's keywords and reserved words, and our functions.
-    const WORDS: [&str; 33] = [
+    const WORDS: [&str; 35] = [
         "true",
         "false",
         "null",
@@ -140,6 +141,8 @@ pub fn is_reserved(name: &str) -> bool {
         "distance_to",
         "offset",
         "lat_lon",
+        "area",
+        "centre",
         "contains",
         "startsWith",
         "endsWith",
@@ -163,7 +166,7 @@ enum Operator {
     GreaterOrEqual,
 }
 
-/// Functions of numbers, positions and text.
+/// Functions of numbers, positions, polygons and text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Function {
     Double,
@@ -173,6 +176,9 @@ enum Function {
     Distance,
     Offset,
     LatLon,
+    Area,
+    Centre,
+    Inside,
     Contains,
     StartsWith,
     EndsWith,

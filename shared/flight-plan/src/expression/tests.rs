@@ -17,6 +17,12 @@ fn variable(name: &str, initial: VariableValue) -> Variable {
     }
 }
 
+/// A square of 2 km around a position.
+fn square(middle: LatLon) -> Vec<LatLon> {
+    let corner = |bearing_deg: f64| middle.destination(bearing_deg, 1000.0 * 2.0_f64.sqrt());
+    [45.0, 135.0, 225.0, 315.0].map(corner).to_vec()
+}
+
 fn plan() -> FlightPlan {
     let here = LatLon::new(36.3, -84.2);
     FlightPlan {
@@ -31,6 +37,16 @@ fn plan() -> FlightPlan {
             variable("flag", VariableValue::Bool(true)),
             variable("word", VariableValue::Text("smoke".into())),
             variable("place", VariableValue::Position(here)),
+            variable("field", VariableValue::Polygon(square(here))),
+            variable(
+                "bow",
+                VariableValue::Polygon(vec![
+                    here,
+                    LatLon::new(36.3, -84.1),
+                    LatLon::new(36.4, -84.2),
+                    LatLon::new(36.2, -84.1),
+                ]),
+            ),
         ],
         ..FlightPlan::default()
     }
@@ -85,6 +101,13 @@ fn conditions() {
         ("place == position || distance(place, place) > 0.0", false),
         ("abs(distance_to('A') - distance_to(place)) < 0.001", true),
         ("distance_to(offset(position, 90.0, 500.0)) > 499.9", true),
+        ("abs(distance(lat_lon(36.3, -84.2), place)) < 0.001", true),
+        ("contains(field, place) && !contains(field, position)", true),
+        ("field.contains(offset(place, 0, 999)) && !field.contains(offset(place, 0, 1001))", true),
+        // a millionth: the curvature of the Earth over a kilometre
+        ("abs(area(field) - 4000000.0) < 4.0", true),
+        ("distance(centre(field), place) < 1.0", true),
+        ("field == field && contains('field', 'eld')", true),
         // either side decides alone
         ("flag || 1 / 0 == 1", true),
         ("1 / 0 == 1 || flag", true),
@@ -103,6 +126,8 @@ fn what_has_no_value() {
         ("9223372036854775807 + 1", EvalError::Overflow),
         ("1.0 / 0.0", EvalError::NotFinite),
         ("distance(place, offset(place, 0.0, 1e300))", EvalError::NotAPosition),
+        ("area(bow)", EvalError::NotAPolygon),
+        ("distance(lat_lon(91, 0), place)", EvalError::NotAPosition),
     ];
     for (source, expected) in cases {
         assert_eq!(number(source), Err(expected), "{source}");
@@ -124,6 +149,9 @@ fn what_does_not_compile_and_where() {
         ("flag ? 1 : 2.0", "wrong-type", 12),
         ("min(1.0)", "wrong-type", 4),
         ("5u", "wrong-type", 1),
+        ("area(place)", "wrong-type", 6),
+        ("contains(field, 'a')", "wrong-type", 17),
+        ("contains(place, place)", "wrong-type", 10),
         ("[1, 2]", "expression-syntax", 1),
         ("word.length", "expression-syntax", 5),
     ];
