@@ -10,12 +10,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("aircraft", &["geometry"]),
     ("flight-plan", &["geometry", "terrain", "aircraft"]),
     ("flight-exec", &["geometry", "terrain", "aircraft", "flight-plan"]),
+    ("interchange", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec"]),
     ("usal", &["geometry", "flight-plan", "flight-exec"]),
     ("sim", &["geometry", "aircraft"]),
     ("onboard-agent", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal"]),
     (
         "gcs-app",
-        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal", "onboard-agent", "sim"],
+        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "usal", "onboard-agent", "sim"],
     ),
     ("system-tests", &["geometry", "usal"]),
 ];
@@ -28,12 +29,12 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("egui", &["gcs-app"]),
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
-    ("quick-xml", &["flight-plan"]),
+    ("quick-xml", &["flight-plan", "interchange"]),
     ("cel", &["flight-plan"]),
 ];
 
 /// Crates whose cores must stay pure: no clock, no IO, no runtime.
-const PURE: &[&str] = &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec"];
+const PURE: &[&str] = &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange"];
 
 /// Name of each workspace package → names of its ordinary dependencies.
 fn dependencies() -> BTreeMap<String, Vec<String>> {

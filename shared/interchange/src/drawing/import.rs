@@ -1,0 +1,194 @@
+//! A drawing as a plan.
+
+use super::{Drawing, Feature, Shape, Vertex};
+use crate::mission::placed::{leg, waypoint};
+use crate::names::Names;
+use crate::note::Notes;
+use crate::synthetic::{self, Assumptions};
+use crate::{Error, Import, MAX_ITEMS};
+use flight_plan::{
+    Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanStyle,
+    Spacing, StageKind, Value, Zone, ZoneKind, ZoneShape,
+};
+use geometry::LatLon;
+
+/// A drawing as a plan.
+///
+/// # Errors
+/// More legs than are read.
+pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error> {
+    let legs: usize =
+        drawing.features.iter().map(|f| if let Shape::Line(l) = &f.shape { l.len() } else { 1 }).sum();
+    if legs > MAX_ITEMS {
+        return Err(Error::TooMany { what: "points of lines", limit: MAX_ITEMS });
+    }
+    let mut names = Names::default();
+    let mut plan = synthetic::plan(assumptions);
+    if !drawing.name.is_empty() {
+        plan.name = drawing.name;
+    }
+    plan.runways.extend(
+        assumptions.runway.iter().map(|r| Runway { id: names.take(r.id.as_str(), "runway"), ..r.clone() }),
+    );
+    let mut importer = Importer { assumptions, names, notes: drawing.notes, plan };
+    importer.ends(StageKind::TakeOff, "take-off");
+    drawing.features.into_iter().for_each(|f| importer.feature(f));
+    importer.ends(StageKind::Land, "land");
+    if importer.plan.stages.is_empty() && importer.plan.fixes.is_empty() && importer.plan.zones.is_empty() {
+        importer.notes.push("empty", "file", "there is no point, line or area in this file");
+    }
+    Ok(Import { plan: importer.plan, notes: importer.notes.into_vec() })
+}
+
+struct Importer<'a> {
+    assumptions: &'a Assumptions,
+    names: Names,
+    notes: Notes,
+    plan: FlightPlan,
+}
+
+impl Importer<'_> {
+    /// Take-off or landing, where a runway is given.
+    fn ends(&mut self, kind: StageKind, name: &str) {
+        let Some(runway) = self.assumptions.runway.as_ref().map(|r| r.id.clone()) else { return };
+        let mut stage = synthetic::stage(self.names.take(name, name), "", kind);
+        stage.runway = Some(runway);
+        stage.altitude = (kind == StageKind::TakeOff)
+            .then(|| synthetic::altitude(self.assumptions.height_agl_m, AltitudeReference::Home));
+        self.plan.stages.push(stage);
+    }
+
+    fn feature(&mut self, feature: Feature) {
+        let mark = feature.mark("legwork").unwrap_or_default().to_owned();
+        match (mark.as_str(), &feature.shape) {
+            ("runway", Shape::Point(at)) => self.runway(&feature, at),
+            ("path", Shape::Point(at)) => self.line(&feature, std::slice::from_ref(at)),
+            (_, Shape::Point(at)) => self.fix(&feature, at),
+            (_, Shape::Line(line)) => self.line(&feature, line),
+            ("keep-in", Shape::Area { outer, holes, .. }) => {
+                self.zone(&feature, ZoneKind::KeepIn, outer, holes)
+            }
+            ("keep-out", Shape::Area { outer, holes, .. }) => {
+                self.zone(&feature, ZoneKind::KeepOut, outer, holes)
+            }
+            (_, Shape::Area { outer, holes, altitude }) => {
+                self.area(&feature, outer, holes, altitude.as_ref())
+            }
+        }
+    }
+
+    fn fix(&mut self, feature: &Feature, at: &Vertex) {
+        let id = self.names.take(&feature.name, "fix");
+        let (name, description) = (feature.name.clone(), feature.description.clone());
+        self.plan.fixes.push(Fix { id, position: at.position, name, description });
+    }
+
+    fn runway(&mut self, feature: &Feature, at: &Vertex) {
+        if self.assumptions.runway.is_some() {
+            let message = "this runway is left out: another one was given to take off from and land on";
+            return self.notes.push("other-runway", &feature.place, message);
+        }
+        let elevation_m = match at.altitude.as_ref().map(|a| (&a.metres, a.reference)) {
+            Some((Value::Constant(metres), AltitudeReference::Amsl)) => *metres,
+            _ => 0.0,
+        };
+        self.plan.runways.push(Runway {
+            id: self.names.take(&feature.name, "runway"),
+            threshold: at.position,
+            elevation_amsl_m: elevation_m,
+            heading_deg: feature.number("heading_deg").unwrap_or(0.0),
+            length_m: feature.number("length_m").unwrap_or(self.assumptions.runway_length_m),
+            priority: 1,
+            approach_entry: None,
+        });
+    }
+
+    fn line(&mut self, feature: &Feature, line: &[Vertex]) {
+        if line.is_empty() {
+            return;
+        }
+        let mut stage =
+            synthetic::stage(self.names.take(&feature.name, "route"), &feature.name, StageKind::EnRoute);
+        for (index, vertex) in line.iter().enumerate() {
+            let to = waypoint(vertex.position, false);
+            // the way to a line begins anywhere
+            let kind = if index == 0 { LegKind::Df { to, turn: None } } else { LegKind::Tf(to) };
+            let wish = if vertex.name.is_empty() {
+                format!("{}.{}", stage.id, index + 1)
+            } else {
+                vertex.name.clone()
+            };
+            let mut way = leg(self.names.take(&wish, "leg"), kind);
+            way.altitude = Some(self.altitude(vertex.altitude.as_ref(), &feature.place));
+            stage.legs.push(way);
+        }
+        self.plan.stages.push(stage);
+    }
+
+    fn altitude(&mut self, drawn: Option<&Altitude>, place: &str) -> Altitude {
+        drawn.cloned().unwrap_or_else(|| {
+            let message =
+                format!("what has no altitude is flown {:.0} m above ground", self.assumptions.height_agl_m);
+            self.notes.again("no-altitude", place, &message);
+            self.assumptions.altitude()
+        })
+    }
+
+    fn zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
+        if !holes.is_empty() {
+            self.notes.push(
+                "zone-holes",
+                &feature.place,
+                "the holes of this zone are left out: it counts without them",
+            );
+        }
+        let centre = feature.number("centre_lat").zip(feature.number("centre_lon"));
+        let centre = centre.map(|(lat, lon)| LatLon::new(lat, lon)).filter(|c| c.is_valid());
+        let shape = match (centre, feature.number("radius_m").filter(|r| *r > 0.0)) {
+            (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
+            _ => ZoneShape::Polygon(outer.to_vec()),
+        };
+        let (id, name) = (self.names.take(&feature.name, "zone"), feature.name.clone());
+        let (floor, ceiling) = (None, None);
+        self.plan.zones.push(Zone { id, name, kind, shape, floor, ceiling, active: Vec::new() });
+    }
+
+    fn area(&mut self, feature: &Feature, outer: &[LatLon], holes: &[Vec<LatLon>], drawn: Option<&Altitude>) {
+        let id: Id = self.names.take(&feature.name, "area");
+        let spacing_m = self.assumptions.spacing_m;
+        let message = format!(
+            "area `{id}` is scanned with tracks {spacing_m:.0} m apart: change that, or make a zone of it"
+        );
+        self.notes.push("area-as-scan", &feature.place, message);
+        let scan = Scan {
+            area: Area::Polygon { corners: outer.to_vec(), holes: holes.to_vec() },
+            style: ScanStyle::Parallel,
+            spacing: Spacing::Metres(Value::Constant(spacing_m)),
+            heading_deg: None,
+            overshoot_m: Value::Constant(0.0),
+            entry: ScanEntry::Nearest,
+        };
+        let mut stage = synthetic::stage(
+            self.names.take(&format!("{id}-stage"), "stage"),
+            &feature.name,
+            StageKind::Mission,
+        );
+        // an area drawn on the ground is not meant to be flown on the ground
+        let drawn = drawn.filter(|a| !matches!(a.metres, Value::Constant(m) if m == 0.0));
+        let altitude = Some(self.altitude(drawn, &feature.place));
+        if self.plan.stages.iter().all(|s| s.legs.is_empty())
+            && let Some(corner) = outer.first()
+        {
+            let mut way = leg(
+                self.names.take(&format!("{id}-entry"), "entry"),
+                LegKind::Df { to: waypoint(*corner, false), turn: None },
+            );
+            way.altitude = altitude.clone();
+            stage.legs.push(way);
+        }
+        let mut way = leg(id, LegKind::Scan(scan));
+        (way.name, way.altitude) = (feature.name.clone(), altitude);
+        stage.legs.push(way);
+        self.plan.stages.push(stage);
+    }
+}

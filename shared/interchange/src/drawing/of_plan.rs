@@ -1,0 +1,113 @@
+//! A plan and its flown waypoints as a drawing.
+
+use super::{Drawing, Feature, Shape, Vertex};
+use crate::losses::{self, Kept};
+use crate::note::Notes;
+use crate::synthetic::altitude;
+use crate::{Export, Format, csv};
+use flight_plan::{AltitudeReference, FlightPlan, Zone, ZoneKind, ZoneShape};
+use geometry::LatLon;
+
+/// Corners that stand for a circle.
+const CIRCLE_CORNERS: u32 = 72;
+
+/// The flown path as a line, fixes and runways as points, zones as areas. GPX knows no areas.
+pub fn of(export: &Export<'_>, format: Format, notes: &mut Notes) -> Drawing {
+    let areas = format != Format::Gpx;
+    losses::tell(
+        export,
+        Kept { fixes: true, runways: areas, zones: areas, ..Kept::default() },
+        &|_| false,
+        notes,
+    );
+    let mut features: Vec<Feature> = path(export, notes).into_iter().collect();
+    features.extend(points(export.plan));
+    if areas {
+        features.extend(export.plan.zones.iter().map(|z| zone(z, notes)));
+    }
+    Drawing { name: export.plan.name.clone(), features, notes: Notes::default() }
+}
+
+fn path(export: &Export<'_>, notes: &mut Notes) -> Option<Feature> {
+    let vertices: Vec<Vertex> = export
+        .steps
+        .iter()
+        .map(|s| Vertex {
+            position: s.waypoint.position,
+            altitude: Some(altitude(s.waypoint.altitude_amsl_m, AltitudeReference::Amsl)),
+            name: s.waypoint.leg.to_string(),
+            kind: csv::action(&s.waypoint.action).into(),
+        })
+        .collect();
+    let crosses = vertices.windows(2).any(|w| (w[0].position.lon_deg - w[1].position.lon_deg).abs() > 180.0);
+    if crosses {
+        notes.push(
+            "antimeridian",
+            "path",
+            "the path crosses the antimeridian: other programs may draw it around the world",
+        );
+    }
+    if export.steps.iter().any(|s| s.waypoint.fly_over) {
+        notes.push("fly-over-not-carried", "path", "which waypoints are crossed before the turn is left out");
+    }
+    let shape = match vertices.len() {
+        0 => return None,
+        1 => vertices.into_iter().next().map(Shape::Point)?,
+        _ => Shape::Line(vertices),
+    };
+    let name = export.plan.name.clone();
+    Some(Feature { place: String::new(), name, description: String::new(), marks: marks("path", &[]), shape })
+}
+
+fn points(plan: &FlightPlan) -> impl Iterator<Item = Feature> + '_ {
+    let fixes = plan.fixes.iter().map(|fix| Feature {
+        place: String::new(),
+        name: fix.id.to_string(),
+        description: fix.description.clone(),
+        marks: marks("fix", &[]),
+        shape: Shape::Point(Vertex { kind: "fix".into(), ..Vertex::new(fix.position, None) }),
+    });
+    let runways = plan.runways.iter().map(|r| {
+        let elevation = altitude(r.elevation_amsl_m, AltitudeReference::Amsl);
+        Feature {
+            place: String::new(),
+            name: r.id.to_string(),
+            description: String::new(),
+            marks: marks("runway", &[("heading_deg", r.heading_deg), ("length_m", r.length_m)]),
+            shape: Shape::Point(Vertex {
+                kind: "runway".into(),
+                ..Vertex::new(r.threshold, Some(elevation))
+            }),
+        }
+    });
+    fixes.chain(runways)
+}
+
+fn zone(zone: &Zone, notes: &mut Notes) -> Feature {
+    let kind = match zone.kind {
+        ZoneKind::KeepIn => "keep-in",
+        ZoneKind::KeepOut => "keep-out",
+    };
+    let (outer, marks) = match &zone.shape {
+        ZoneShape::Polygon(corners) => (corners.clone(), marks(kind, &[])),
+        ZoneShape::Circle { centre, radius_m } => {
+            notes.push("circle-as-polygon", zone.id.as_str(), "this circle is drawn as a polygon");
+            let circle =
+                [("centre_lat", centre.lat_deg), ("centre_lon", centre.lon_deg), ("radius_m", *radius_m)];
+            (round(*centre, *radius_m), marks(kind, &circle))
+        }
+    };
+    let shape = Shape::Area { outer, holes: Vec::new(), altitude: None };
+    Feature { place: String::new(), name: zone.id.to_string(), description: zone.name.clone(), marks, shape }
+}
+
+fn round(centre: LatLon, radius_m: f64) -> Vec<LatLon> {
+    let step_deg = 360.0 / f64::from(CIRCLE_CORNERS);
+    // anticlockwise, as RFC 7946 wants outer rings
+    (0..CIRCLE_CORNERS).map(|i| centre.destination(360.0 - step_deg * f64::from(i), radius_m)).collect()
+}
+
+fn marks(kind: &str, numbers: &[(&str, f64)]) -> Vec<(String, String)> {
+    let kind = std::iter::once(("legwork".to_owned(), kind.to_owned()));
+    kind.chain(numbers.iter().map(|(name, value)| ((*name).to_owned(), value.to_string()))).collect()
+}

@@ -1,0 +1,196 @@
+//! GeoJSON, RFC 7946.
+
+use crate::drawing::{Drawing, Feature, Shape, Vertex, open_ring};
+use crate::note::Notes;
+use crate::qgc::bounded_json;
+use crate::synthetic::altitude;
+use crate::{Error, MAX_ITEMS};
+use flight_plan::{AltitudeReference, Value};
+use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, JsonValue, Position};
+use geometry::LatLon;
+use std::str::FromStr;
+
+/// Reads a file.
+pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
+    let file = GeoJson::from_str(bounded_json(bytes)?).map_err(|error| {
+        Error::malformed("file", format!("this is no complete GeoJSON document: {error}"))
+    })?;
+    let features = match file {
+        GeoJson::FeatureCollection(collection) => collection.features,
+        GeoJson::Feature(feature) => vec![feature],
+        GeoJson::Geometry(geometry) => vec![geojson::Feature::from(geometry)],
+    };
+    if features.len() > MAX_ITEMS {
+        return Err(Error::TooMany { what: "features", limit: MAX_ITEMS });
+    }
+    let mut drawing = Drawing::default();
+    for (index, feature) in features.into_iter().enumerate() {
+        self::feature(index, feature, &mut drawing);
+    }
+    Ok(drawing)
+}
+
+fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) {
+    let properties = feature.properties.unwrap_or_default();
+    let text = |key: &str| properties.get(key).and_then(JsonValue::as_str).unwrap_or_default().to_owned();
+    let name = if text("name").is_empty() { text("title") } else { text("name") };
+    let short: String = name.chars().take(60).collect();
+    let place = if name.is_empty() {
+        format!("feature {}", index + 1)
+    } else {
+        format!("feature {} ({short})", index + 1)
+    };
+    let marks = marks(&properties, &place, &mut drawing.notes);
+    let Some(geometry) = feature.geometry else {
+        return drawing.notes.push("no-geometry", place, "this feature is left out: it has no geometry");
+    };
+    let ours = marks.iter().any(|(name, _)| name == "legwork");
+    let mut shapes = Vec::new();
+    self::shapes(geometry, &mut shapes, &mut Reader { place: &place, ours, notes: &mut drawing.notes });
+    if index == 0 && ours {
+        drawing.name = name.clone();
+    }
+    let description = text("description");
+    drawing.features.extend(shapes.into_iter().map(|shape| Feature {
+        place: place.clone(),
+        name: name.clone(),
+        description: description.clone(),
+        marks: marks.clone(),
+        shape,
+    }));
+}
+
+/// Our own marks; other properties are noted.
+fn marks(properties: &JsonObject, place: &str, notes: &mut Notes) -> Vec<(String, String)> {
+    let own = properties.contains_key("legwork");
+    let mut marks = Vec::new();
+    for (key, value) in properties {
+        match value {
+            _ if ["name", "title", "description"].contains(&key.as_str()) => {}
+            JsonValue::String(text) if own => marks.push((key.clone(), text.clone())),
+            JsonValue::Number(number) if own => marks.push((key.clone(), number.to_string())),
+            JsonValue::Null => {}
+            _ => {
+                let message = format!("property `{}` is left out", key.chars().take(60).collect::<String>());
+                notes.again("property-not-carried", place, &message);
+            }
+        }
+    }
+    marks
+}
+
+struct Reader<'a> {
+    place: &'a str,
+    /// Written by us: altitudes are AMSL.
+    ours: bool,
+    notes: &'a mut Notes,
+}
+
+/// Nesting is bounded: the JSON reader stops at 128 levels.
+fn shapes(geometry: Geometry, into: &mut Vec<Shape>, reader: &mut Reader<'_>) {
+    match geometry.value {
+        GeometryValue::Point { coordinates } => into.extend(reader.vertex(&coordinates).map(Shape::Point)),
+        GeometryValue::MultiPoint { coordinates } => {
+            into.extend(coordinates.iter().filter_map(|c| reader.vertex(c)).map(Shape::Point));
+        }
+        GeometryValue::LineString { coordinates } => into.push(Shape::Line(reader.line(&coordinates))),
+        GeometryValue::MultiLineString { coordinates } => {
+            into.extend(coordinates.iter().map(|c| Shape::Line(reader.line(c))));
+        }
+        GeometryValue::Polygon { coordinates } => into.extend(reader.area(&coordinates)),
+        GeometryValue::MultiPolygon { coordinates } => {
+            into.extend(coordinates.iter().filter_map(|c| reader.area(c)));
+        }
+        GeometryValue::GeometryCollection { geometries } => {
+            geometries.into_iter().for_each(|g| shapes(g, into, reader));
+        }
+    }
+}
+
+impl Reader<'_> {
+    fn vertex(&mut self, position: &Position) -> Option<Vertex> {
+        let (lon, lat, metres) = match position.as_slice() {
+            [lon, lat] => (*lon, *lat, None),
+            [lon, lat, metres, ..] => (*lon, *lat, Some(*metres)),
+            _ => (f64::NAN, f64::NAN, None),
+        };
+        let at = LatLon::new(lat, lon);
+        if !at.is_valid() {
+            self.notes.again(
+                "no-position",
+                self.place,
+                "coordinates that are no longitude and latitude are left out",
+            );
+            return None;
+        }
+        let metres = metres.filter(|m| m.abs() < 1e5);
+        if metres.is_some() && !self.ours {
+            self.notes.again(
+                "ellipsoid",
+                self.place,
+                "heights above the ellipsoid are taken as above mean sea level",
+            );
+        }
+        Some(Vertex::new(at, metres.map(|m| altitude(m, AltitudeReference::Amsl))))
+    }
+
+    fn line(&mut self, coordinates: &[Position]) -> Vec<Vertex> {
+        coordinates.iter().filter_map(|c| self.vertex(c)).collect()
+    }
+
+    fn area(&mut self, rings: &[Vec<Position>]) -> Option<Shape> {
+        let mut rings = rings.iter().map(|r| self.line(r)).collect::<Vec<_>>().into_iter();
+        let outer = rings.next()?;
+        let altitude = outer.first().and_then(|v| v.altitude.clone());
+        let positions = |ring: Vec<Vertex>| open_ring(ring.into_iter().map(|v| v.position).collect());
+        let outer = positions(outer);
+        if outer.len() < 3 {
+            self.notes.push("no-geometry", self.place, "this area is left out: it has no three good corners");
+            return None;
+        }
+        Some(Shape::Area { outer, holes: rings.map(positions).filter(|h| h.len() >= 3).collect(), altitude })
+    }
+}
+
+/// Writes a file. Altitudes are AMSL; each feature says so.
+pub fn write(drawing: &Drawing) -> Result<Vec<u8>, Error> {
+    let features = drawing.features.iter().map(written);
+    let collection: FeatureCollection = features.collect();
+    let mut bytes =
+        serde_json::to_vec_pretty(&collection).map_err(|e| Error::malformed("file", e.to_string()))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+fn written(feature: &Feature) -> geojson::Feature {
+    let mut properties = JsonObject::new();
+    properties.insert("name".into(), feature.name.clone().into());
+    if !feature.description.is_empty() {
+        properties.insert("description".into(), feature.description.clone().into());
+    }
+    properties.insert("altitude_datum".into(), "amsl".into());
+    for (name, value) in &feature.marks {
+        properties.insert(name.clone(), value.clone().into());
+    }
+    let value = match &feature.shape {
+        Shape::Point(vertex) => GeometryValue::Point { coordinates: position(vertex) },
+        Shape::Line(line) => GeometryValue::LineString { coordinates: line.iter().map(position).collect() },
+        Shape::Area { outer, holes, .. } => {
+            let coordinates = std::iter::once(outer).chain(holes).map(|r| ring(r)).collect();
+            GeometryValue::Polygon { coordinates }
+        }
+    };
+    geojson::Feature { properties: Some(properties), ..geojson::Feature::from(Geometry::new(value)) }
+}
+
+fn position(vertex: &Vertex) -> Position {
+    let (lon, lat) = (vertex.position.lon_deg, vertex.position.lat_deg);
+    match vertex.altitude.as_ref().map(|a| &a.metres) {
+        Some(Value::Constant(metres)) => Position::from([lon, lat, *metres]),
+        _ => Position::from([lon, lat]),
+    }
+}
+
+fn ring(corners: &[LatLon]) -> Vec<Position> {
+    corners.iter().chain(corners.first()).map(|c| Position::from([c.lon_deg, c.lat_deg])).collect()
+}

@@ -1,0 +1,139 @@
+//! GPX 1.1 (read: 1.0, too): routes and tracks as lines, waypoints as points. Elevations are metres AMSL.
+//! Source: the schema at topografix.com/GPX/1/1.
+
+use crate::drawing::{Drawing, Feature, Shape, Vertex};
+use crate::note::Notes;
+use crate::synthetic::altitude;
+use crate::xml::{self, Element, escaped};
+use crate::{Error, MAX_ITEMS, text_of};
+use flight_plan::{AltitudeReference, Value};
+use geometry::LatLon;
+use std::fmt::Write;
+
+/// What is read of the file, a route or track, and a point.
+const KNOWN: [&[&str]; 3] = [
+    &["metadata", "wpt", "rte", "trk"],
+    &["name", "desc", "rtept", "trkseg", "trkpt"],
+    &["ele", "name", "desc", "type"],
+];
+
+/// Reads a file.
+pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
+    let root = xml::parse(text_of(bytes)?)?;
+    if root.name != "gpx" {
+        return Err(Error::malformed(
+            root.place(),
+            format!("this is no GPX file: its root is <{}>", shown(&root.name)),
+        ));
+    }
+    let mut drawing = Drawing::default();
+    let metadata = root.child("metadata").unwrap_or(&root);
+    drawing.name = metadata.text_of("name").to_owned();
+    lost(&root, KNOWN[0], &mut drawing.notes);
+    for element in &root.children {
+        match element.name.as_str() {
+            "wpt" => point(element, &mut drawing),
+            "rte" => line(element, element, &mut drawing),
+            "trk" => {
+                lost(element, KNOWN[1], &mut drawing.notes);
+                let segments = element.children.iter().filter(|c| c.name == "trkseg");
+                segments.for_each(|segment| line(element, segment, &mut drawing));
+            }
+            _ => {}
+        }
+        if drawing.features.len() > MAX_ITEMS {
+            return Err(Error::TooMany { what: "features", limit: MAX_ITEMS });
+        }
+    }
+    Ok(drawing)
+}
+
+fn point(element: &Element, drawing: &mut Drawing) {
+    let Some(vertex) = vertex(element, &mut drawing.notes) else { return };
+    let marks = vec![("legwork".to_owned(), vertex.kind.clone())];
+    let (place, name, description) =
+        (element.place(), vertex.name.clone(), element.text_of("desc").to_owned());
+    drawing.features.push(Feature { place, name, description, marks, shape: Shape::Point(vertex) });
+}
+
+fn line(named: &Element, element: &Element, drawing: &mut Drawing) {
+    lost(element, KNOWN[1], &mut drawing.notes);
+    let points = element.children.iter().filter(|c| matches!(c.name.as_str(), "rtept" | "trkpt"));
+    let vertices: Vec<Vertex> = points.filter_map(|p| vertex(p, &mut drawing.notes)).collect();
+    let (place, name, description) =
+        (element.place(), named.text_of("name").to_owned(), named.text_of("desc").to_owned());
+    drawing.features.push(Feature {
+        place,
+        name,
+        description,
+        marks: Vec::new(),
+        shape: Shape::Line(vertices),
+    });
+}
+
+fn vertex(element: &Element, notes: &mut Notes) -> Option<Vertex> {
+    let degrees = |name: &str| element.attribute(name).and_then(|v| v.trim().parse::<f64>().ok());
+    let position = degrees("lat").zip(degrees("lon")).map(|(lat, lon)| LatLon::new(lat, lon));
+    let Some(position) = position.filter(|p| p.is_valid()) else {
+        notes.again("no-position", element.place(), "a point without a good `lat` and `lon` is left out");
+        return None;
+    };
+    lost(element, KNOWN[2], notes);
+    let ele = element.child("ele").map(|e| e.text.parse::<f64>());
+    let metres = ele.as_ref().and_then(|e| e.as_ref().ok()).copied().filter(|m| m.abs() < 1e5);
+    if ele.is_some() && metres.is_none() {
+        notes.again("bad-altitude", element.place(), "an elevation that is no number is left out");
+    }
+    let altitude = metres.map(|m| altitude(m, AltitudeReference::Amsl));
+    let (name, kind) = (element.text_of("name").to_owned(), element.text_of("type").to_owned());
+    Some(Vertex { position, altitude, name, kind })
+}
+
+/// Notes children that are not read.
+fn lost(element: &Element, known: &[&str], notes: &mut Notes) {
+    for child in element.children.iter().filter(|c| !known.contains(&c.name.as_str())) {
+        let message = format!("<{}> of <{}> is left out", shown(&child.name), shown(&element.name));
+        notes.again("element-not-carried", child.place(), &message);
+    }
+}
+
+fn shown(name: &str) -> String {
+    name.chars().take(60).collect()
+}
+
+/// Writes a file.
+pub fn write(drawing: &Drawing) -> Vec<u8> {
+    let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<gpx xmlns=\"http://www.topografix.com/GPX/1/1\" version=\"1.1\" creator=\"Legwork\">\n".to_owned();
+    // writing to a string can't fail
+    let _ = writeln!(text, "  <metadata><name>{}</name></metadata>", escaped(&drawing.name));
+    for feature in &drawing.features {
+        if let Shape::Point(vertex) = &feature.shape
+            && feature.mark("legwork") != Some("path")
+        {
+            write_point(&mut text, "wpt", "  ", vertex, &feature.name);
+        }
+    }
+    for feature in &drawing.features {
+        let vertices = match &feature.shape {
+            Shape::Line(vertices) => vertices.as_slice(),
+            Shape::Point(vertex) if feature.mark("legwork") == Some("path") => std::slice::from_ref(vertex),
+            _ => continue,
+        };
+        let _ = writeln!(text, "  <rte>\n    <name>{}</name>", escaped(&feature.name));
+        vertices.iter().for_each(|v| write_point(&mut text, "rtept", "    ", v, &v.name));
+        text += "  </rte>\n";
+    }
+    text += "</gpx>\n";
+    text.into_bytes()
+}
+
+fn write_point(text: &mut String, element: &str, indent: &str, vertex: &Vertex, name: &str) {
+    // GPX longitudes are below +180
+    let lon = if vertex.position.lon_deg >= 180.0 { -180.0 } else { vertex.position.lon_deg };
+    let _ = write!(text, "{indent}<{element} lat=\"{:.9}\" lon=\"{lon:.9}\">", vertex.position.lat_deg);
+    if let Some(Value::Constant(metres)) = vertex.altitude.as_ref().map(|a| &a.metres) {
+        let _ = write!(text, "<ele>{metres:.4}</ele>");
+    }
+    let _ =
+        writeln!(text, "<name>{}</name><type>{}</type></{element}>", escaped(name), escaped(&vertex.kind));
+}

@@ -1,0 +1,90 @@
+//! What a format can't hold of a plan.
+
+use crate::Export;
+use crate::note::Notes;
+use flight_plan::{Leg, LegKind, Zone};
+use std::collections::HashSet;
+
+/// What a format keeps.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Kept {
+    /// Named positions.
+    pub fixes: bool,
+    /// Runways with heading and length.
+    pub runways: bool,
+    /// Outlines of zones.
+    pub zones: bool,
+    /// Actions of legs.
+    pub actions: bool,
+    /// Airspeeds.
+    pub speeds: bool,
+}
+
+/// Tells everything of the plan that is not `kept`; `whole` are the legs that are written as patterns.
+pub fn tell(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes: &mut Notes) {
+    let plan = export.plan;
+    let flown: HashSet<&str> = export.steps.iter().map(|s| s.waypoint.leg.as_str()).collect();
+    for context in plan.all_legs() {
+        let leg = context.leg;
+        let control =
+            matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. } | LegKind::Call(_));
+        if !control && !flown.contains(leg.id.as_str()) {
+            continue;
+        }
+        if !matches!(leg.kind, LegKind::If(_) | LegKind::Tf(_) | LegKind::Df { .. }) && !whole(leg) {
+            let message = format!("this leg ({}) becomes the waypoints that are flown", leg.kind_name());
+            notes.push("flattened", leg.id.as_str(), message);
+        }
+        if !kept.actions && !leg.actions.is_empty() {
+            notes.push("action-not-carried", leg.id.as_str(), "the actions of this leg are left out");
+        }
+    }
+    for variable in &plan.variables {
+        let message = "this variable is left out: the waypoints are those for the value it had";
+        notes.push("variable-not-carried", variable.name.as_str(), message);
+    }
+    for emergency in &plan.emergency_plans {
+        let is_flown = emergency.stages.iter().flat_map(|s| &s.legs).any(|l| flown.contains(l.id.as_str()));
+        if !is_flown {
+            let message = "this emergency plan is left out: write its waypoints to another file";
+            notes.push("emergency-not-carried", emergency.id.as_str(), message);
+        }
+    }
+    places(export, kept, notes);
+}
+
+fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
+    let plan = export.plan;
+    if !kept.fixes && !plan.fixes.is_empty() {
+        notes.push(
+            "fixes-not-carried",
+            "fixes",
+            format!("the names of {} fixes are left out", plan.fixes.len()),
+        );
+    }
+    if !kept.runways {
+        for runway in &plan.runways {
+            notes.push(
+                "runway-not-carried",
+                runway.id.as_str(),
+                "heading and length of this runway are left out",
+            );
+        }
+    }
+    if !kept.speeds && !export.steps.is_empty() {
+        notes.push("speeds-not-carried", "waypoints", "airspeeds are left out");
+    }
+    for zone in &plan.zones {
+        if !kept.zones {
+            notes.push("zone-not-carried", zone.id.as_str(), "this zone is left out");
+        } else if has_limits(zone) {
+            let message =
+                "altitude limits and times of this zone are left out: it counts at every height, always";
+            notes.push("zone-limits-not-carried", zone.id.as_str(), message);
+        }
+    }
+}
+
+fn has_limits(zone: &Zone) -> bool {
+    zone.floor.is_some() || zone.ceiling.is_some() || !zone.active.is_empty()
+}

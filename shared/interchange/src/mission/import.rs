@@ -1,0 +1,452 @@
+//! Mission items into stages and legs.
+
+use super::altitudes::Datum;
+use super::commands as cmd;
+use super::placed::{Placed, action, leg, place, waypoint};
+use super::runways::{Direction, Runways};
+use super::{Approach, Entry, Item, Mission, jumps, rally};
+use crate::names::Names;
+use crate::note::Notes;
+use crate::synthetic::{self, Assumptions};
+use crate::{Import, MAX_ITEMS};
+use flight_plan::{
+    Act, Altitude, FlightPlan, Holding, HoldingLength, Id, Leg, LegAction, LegKind, Stage, StageKind,
+    Trigger, TurnDirection, Value,
+};
+use geometry::LatLon;
+
+/// An acceptance radius (parameter 2) up to this is a waypoint that is to be crossed, metres; so the gateway sends its fly-overs.
+pub const FLY_OVER_M: f64 = 5.0;
+/// Straight legs of the racetrack that stands for an endless circle, metres.
+const RACETRACK_M: f64 = 500.0;
+
+/// A mission as a plan.
+pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
+    let mut names = Names::default();
+    let runways = Runways::new(assumptions, &mut names);
+    let has_take_off = mission.entries.iter().any(|e| matches!(e, Entry::Item(i) if is_take_off(i)));
+    let home_amsl_m = mission.home.map(|h| h.1).or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
+    let mut importer = Importer {
+        assumptions,
+        names: &mut names,
+        notes: &mut notes,
+        runways,
+        datum: Datum { home_amsl_m, has_take_off },
+        home: mission.home,
+        take_off: None,
+        land: None,
+        legs: Vec::new(),
+        pending: Vec::new(),
+        speed_mps: None,
+        last: None,
+    };
+    for (index, entry) in mission.entries.iter().enumerate() {
+        let ahead = || mission.entries.iter().skip(index + 1).find_map(where_to);
+        importer.entry(entry, &ahead);
+    }
+    let mut plan = importer.finish();
+    for mut zone in mission.zones {
+        zone.id = names.take(zone.id.as_str(), "zone");
+        plan.zones.push(zone);
+    }
+    rally::add(&mut plan, &mission.rally, &mut names, &mut notes);
+    if plan.stages.is_empty() {
+        notes.push("empty", "file", "there is no mission in this file");
+    }
+    Import { plan, notes: notes.into_vec() }
+}
+
+fn is_take_off(item: &Item) -> bool {
+    matches!(item.command, cmd::TAKEOFF | cmd::VTOL_TAKEOFF)
+}
+
+/// Where the aircraft goes with an entry, if it goes anywhere.
+fn where_to(entry: &Entry) -> Option<LatLon> {
+    match entry {
+        Entry::Item(item) if item.command < 100 => item.position(),
+        Entry::Item(_) => None,
+        Entry::Leg { .. } => None,
+        Entry::Landing { approach, .. } => Some(approach.position),
+    }
+}
+
+struct Importer<'a> {
+    assumptions: &'a Assumptions,
+    names: &'a mut Names,
+    notes: &'a mut Notes,
+    runways: Runways<'a>,
+    datum: Datum,
+    home: Option<(LatLon, f64)>,
+    take_off: Option<Stage>,
+    land: Option<Stage>,
+    legs: Vec<Placed>,
+    /// Actions that wait for the leg they begin with.
+    pending: Vec<LegAction>,
+    speed_mps: Option<f64>,
+    last: Option<LatLon>,
+}
+
+impl Importer<'_> {
+    fn entry(&mut self, entry: &Entry, ahead: &dyn Fn() -> Option<LatLon>) {
+        let (place, number) = match entry {
+            Entry::Item(item) => (&item.place, item.number),
+            Entry::Leg { place, number, .. } | Entry::Landing { place, number, .. } => (place, *number),
+        };
+        if self.land.is_some() {
+            let message = "this comes after the landing and is left out: move it to an emergency plan if it is a go-around";
+            return self.notes.again("after-landing", place, message);
+        }
+        if self.legs.len() >= MAX_ITEMS {
+            return self.notes.again("too-many", place, "this is beyond what is read, and left out");
+        }
+        match entry {
+            Entry::Item(item) => self.item(item, ahead),
+            Entry::Leg { leg, .. } => self.ready(number, (**leg).clone()),
+            Entry::Landing { place, approach, land, relative, .. } => {
+                self.landing(place, number, approach, *land, *relative)
+            }
+        }
+    }
+
+    fn item(&mut self, item: &Item, ahead: &dyn Fn() -> Option<LatLon>) {
+        match item.command {
+            cmd::WAYPOINT | cmd::SPLINE_WAYPOINT => self.waypoint(item),
+            cmd::LOITER_UNLIMITED | cmd::LOITER_TURNS | cmd::LOITER_TIME | cmd::LOITER_TO_ALTITUDE => {
+                self.loiter(item);
+            }
+            cmd::TAKEOFF | cmd::VTOL_TAKEOFF => self.take_off(item, ahead),
+            cmd::LAND | cmd::VTOL_LAND => self.land(item),
+            cmd::RETURN_TO_LAUNCH => self.return_home(item),
+            cmd::DELAY => self.delay(item),
+            cmd::JUMP => self.jump(item),
+            cmd::CHANGE_SPEED => self.speed(item),
+            cmd::LAND_START => {
+                let message = "the mark where a landing begins is left out: name an emergency plan instead";
+                self.notes.push("land-start", &item.place, message);
+            }
+            _ => match camera(item) {
+                Some(act) => self.pending.push(action(Trigger::Start, act)),
+                None => self.not_carried(item),
+            },
+        }
+    }
+
+    fn not_carried(&mut self, item: &Item) {
+        let message = format!("{} has no counterpart in a plan and is left out", cmd::shown(item.command));
+        self.notes.again("command-not-carried", &item.place, &message);
+    }
+
+    fn waypoint(&mut self, item: &Item) {
+        let Some(position) = item.position() else {
+            let message =
+                format!("a waypoint at {} {} is left out: it has no position", item.param(5), item.param(6));
+            return self.notes.push("no-position", &item.place, message);
+        };
+        if item.command == cmd::SPLINE_WAYPOINT {
+            self.notes.again("spline", &item.place, "a spline waypoint becomes a straight track");
+        }
+        let radius_m = item.param(2);
+        if radius_m > FLY_OVER_M {
+            self.notes.again(
+                "acceptance-radius",
+                &item.place,
+                "an acceptance radius is left out: the aircraft's own turn counts",
+            );
+        }
+        if item.param(3) != 0.0 && item.param(3).is_finite() {
+            self.notes.again(
+                "pass-radius",
+                &item.place,
+                "a pass radius is left out: the waypoint is passed through",
+            );
+        }
+        let to = waypoint(position, radius_m > 0.0 && radius_m <= FLY_OVER_M);
+        self.push(item, LegKind::Tf(to));
+        if item.param(1) > 0.0 {
+            self.at_end(Act::Wait { seconds: Value::Constant(item.param(1)) });
+        }
+        self.last = Some(position);
+    }
+
+    fn loiter(&mut self, item: &Item) {
+        let Some(position) = item.position().or(self.last).or(self.home.map(|h| h.0)) else {
+            return self.notes.push("no-position", &item.place, "a loiter before any position is left out");
+        };
+        let signed_m = match item.command {
+            cmd::LOITER_TO_ALTITUDE => item.param(2),
+            _ => item.param(3),
+        };
+        let turn = if signed_m < 0.0 { TurnDirection::Left } else { TurnDirection::Right };
+        match item.command {
+            cmd::LOITER_TURNS => self.orbit(item, position, signed_m, turn),
+            cmd::LOITER_TIME => {
+                self.push(item, LegKind::Tf(waypoint(position, false)));
+                self.at_end(Act::Wait { seconds: Value::Constant(item.param(1).clamp(0.0, 1e6)) });
+                self.radius_lost(item, signed_m);
+            }
+            cmd::LOITER_TO_ALTITUDE => {
+                self.push(item, LegKind::Ha(racetrack(position, turn, signed_m.abs())));
+                self.notes.again(
+                    "loiter-as-racetrack",
+                    &item.place,
+                    "a circle to an altitude becomes a holding to that altitude (HA)",
+                );
+            }
+            _ => {
+                let holding = racetrack(position, turn, signed_m.abs());
+                self.push(item, LegKind::Hm { holding, until: None, max_laps: None });
+                self.notes.again(
+                    "loiter-as-racetrack",
+                    &item.place,
+                    "an endless circle becomes a holding until released (HM)",
+                );
+            }
+        }
+        self.last = Some(position);
+    }
+
+    fn orbit(&mut self, item: &Item, centre: LatLon, signed_m: f64, turn: TurnDirection) {
+        let radius_m = match signed_m.abs() {
+            radius_m if radius_m > 0.0 => radius_m,
+            _ => {
+                let radius_m = self.assumptions.loiter_radius_m;
+                self.notes.again(
+                    "loiter-radius",
+                    &item.place,
+                    &format!("a circle without a radius gets {radius_m:.0} m"),
+                );
+                radius_m
+            }
+        };
+        let turns = item.param(1);
+        let turns = if turns.is_finite() { turns.clamp(0.25, 1e6) } else { 1.0 };
+        let (radius_m, turns) = (Value::Constant(radius_m), Value::Constant(turns));
+        self.push(item, LegKind::Orbit { centre: place(centre), radius_m, turns, turn });
+    }
+
+    fn radius_lost(&mut self, item: &Item, signed_m: f64) {
+        if signed_m != 0.0 && signed_m.is_finite() {
+            self.notes.again(
+                "loiter-radius",
+                &item.place,
+                "the radius of a timed circle is left out: the aircraft's own counts",
+            );
+        }
+    }
+
+    fn take_off(&mut self, item: &Item, ahead: &dyn Fn() -> Option<LatLon>) {
+        if self.take_off.is_some() || !self.legs.is_empty() {
+            return self.notes.push("second-take-off", &item.place, "a take-off in flight is left out");
+        }
+        if item.command == cmd::VTOL_TAKEOFF {
+            self.notes.push("vtol", &item.place, "a vertical take-off becomes one from a runway");
+        }
+        let Some(position) = self.home.map(|h| h.0).or(item.position()).or_else(ahead) else {
+            return self.notes.push(
+                "no-position",
+                &item.place,
+                "a take-off without home or position is left out",
+            );
+        };
+        let elevation_m = self.datum.home_amsl_m.unwrap_or_else(|| {
+            self.notes.push(
+                "no-home",
+                &item.place,
+                "the file has no home position: its elevation is taken as 0 m",
+            );
+            0.0
+        });
+        let direction =
+            Direction { heading_deg: item.param(4), towards: item.position().or_else(ahead), from: None };
+        let naming = (&mut *self.names, &mut *self.notes);
+        let id = self.runways.at("runway", (position, elevation_m), direction, &item.place, naming);
+        let mut stage =
+            synthetic::stage(self.names.take("take-off", "take-off"), "Take-off", StageKind::TakeOff);
+        stage.runway = Some(id);
+        stage.altitude = self.altitude(item).or(Some(self.assumptions.altitude()));
+        self.take_off = Some(stage);
+        self.last = Some(position);
+    }
+
+    fn land(&mut self, item: &Item) {
+        if item.command == cmd::VTOL_LAND {
+            self.notes.push("vtol", &item.place, "a vertical landing becomes one on a runway");
+        }
+        let Some(position) = item.position().or(self.home.map(|h| h.0)) else {
+            return self.notes.push(
+                "no-position",
+                &item.place,
+                "a landing without home or position is left out",
+            );
+        };
+        let elevation_m = match item.frame {
+            cmd::FRAME_GLOBAL | cmd::FRAME_GLOBAL_INT => item.param(7),
+            _ => self.datum.home_amsl_m.unwrap_or(0.0) + item.param(7),
+        };
+        self.land_at(&item.place, (position, elevation_m), item.param(4));
+    }
+
+    fn return_home(&mut self, item: &Item) {
+        let Some((position, elevation_m)) = self.home else {
+            return self.notes.push(
+                "no-home",
+                &item.place,
+                "the return to launch is left out: the file has no home position",
+            );
+        };
+        self.notes.push(
+            "return-to-launch",
+            &item.place,
+            "the return to launch becomes a landing at the home position",
+        );
+        self.land_at(&item.place, (position, elevation_m), f64::NAN);
+    }
+
+    fn land_at(&mut self, at: &str, (position, elevation_m): (LatLon, f64), heading_deg: f64) {
+        let elevation_m = if elevation_m.is_finite() { elevation_m } else { 0.0 };
+        let direction = Direction { heading_deg, towards: None, from: self.last };
+        let naming = (&mut *self.names, &mut *self.notes);
+        let id = self.runways.at("landing", (position, elevation_m), direction, at, naming);
+        let mut stage = synthetic::stage(self.names.take("land", "land"), "Landing", StageKind::Land);
+        stage.runway = Some(id);
+        self.land = Some(stage);
+    }
+
+    fn landing(&mut self, at: &str, number: i64, approach: &Approach, land: (LatLon, f64), relative: bool) {
+        let frame = if relative { cmd::FRAME_RELATIVE } else { cmd::FRAME_GLOBAL };
+        let kind = match approach.loiter_radius_m {
+            Some(signed_m) => {
+                let turn = if signed_m < 0.0 { TurnDirection::Left } else { TurnDirection::Right };
+                LegKind::Ha(racetrack(approach.position, turn, signed_m.abs()))
+            }
+            None => LegKind::Tf(waypoint(approach.position, false)),
+        };
+        let mut way = leg(Id::new("approach"), kind);
+        way.altitude = self.datum.altitude(frame, approach.altitude_m, at, self.notes);
+        self.ready(number, way);
+        self.last = Some(approach.position);
+        let home_m = if relative { self.datum.home_amsl_m.unwrap_or(0.0) } else { 0.0 };
+        self.land_at(at, (land.0, land.1 + home_m), f64::NAN);
+    }
+
+    fn delay(&mut self, item: &Item) {
+        let seconds = item.param(1);
+        if seconds > 0.0 && !self.legs.is_empty() {
+            self.at_end(Act::Wait { seconds: Value::Constant(seconds) });
+        } else {
+            self.not_carried(item);
+        }
+    }
+
+    fn jump(&mut self, item: &Item) {
+        // what was to be done before the jump is done at the end of each pass
+        self.flush_at_end();
+        let (target, repeats) = (item.param(1), item.param(2));
+        let target = if target.is_finite() { target as i64 } else { i64::MAX };
+        match jumps::close(&mut self.legs, target, item.number, repeats, self.names) {
+            Ok(()) if repeats < 0.0 => {
+                let message = format!("a jump for ever becomes a loop of {} passes", jumps::FOR_EVER);
+                self.notes.push("endless-jump", &item.place, message);
+            }
+            Ok(()) => {}
+            Err(why) => self.notes.push("jump", &item.place, why),
+        }
+    }
+
+    fn speed(&mut self, item: &Item) {
+        let (kind, speed_mps) = (item.param(1), item.param(2));
+        if item.param(3) > 0.0 {
+            self.notes.again("throttle", &item.place, "a throttle setting is left out");
+        }
+        match speed_mps {
+            // -1: no change, -2: the vehicle's own
+            -2.0 => self.speed_mps = None,
+            s if s.is_finite() && s > 0.0 && s < 1000.0 => {
+                self.speed_mps = Some(s);
+                if kind == 1.0 {
+                    self.notes.again("ground-speed", &item.place, "a ground speed is taken as airspeed");
+                }
+            }
+            -1.0 => {}
+            other => self.notes.push("bad-speed", &item.place, format!("speed {other} m/s is left out")),
+        }
+    }
+
+    fn altitude(&mut self, item: &Item) -> Option<Altitude> {
+        self.datum.altitude(item.frame, item.param(7), &item.place, self.notes)
+    }
+
+    fn push(&mut self, item: &Item, kind: LegKind) {
+        let mut leg = leg(Id::new(&format!("item{}", item.number)), kind);
+        leg.altitude = self.altitude(item);
+        self.ready(item.number, leg);
+    }
+
+    /// A leg with everything that waits for one; its identifier is a wish.
+    fn ready(&mut self, number: i64, mut leg: Leg) {
+        leg.id = self.names.take(leg.id.as_str(), "leg");
+        leg.speed_mps = self.speed_mps.map(Value::Constant);
+        leg.actions.splice(0..0, self.pending.drain(..));
+        self.legs.push(Placed { leg, first: number, last: number, depth: 0 });
+    }
+
+    fn at_end(&mut self, act: Act) {
+        if let Some(last) = self.legs.last_mut() {
+            last.leg.actions.push(action(Trigger::End, act));
+        }
+    }
+
+    fn flush_at_end(&mut self) {
+        for waiting in std::mem::take(&mut self.pending) {
+            self.at_end(waiting.act);
+        }
+    }
+
+    fn finish(mut self) -> FlightPlan {
+        self.flush_at_end();
+        let mut plan = synthetic::plan(self.assumptions);
+        if !self.legs.is_empty() {
+            let mut mission =
+                synthetic::stage(self.names.take("mission", "mission"), "Mission", StageKind::Mission);
+            mission.legs = self.legs.into_iter().map(|l| l.leg).collect();
+            // there is nothing to track from before the first leg
+            if self.take_off.is_none()
+                && let Some(first) = mission.legs.first_mut()
+                && let LegKind::Tf(to) = &first.kind
+            {
+                first.kind = LegKind::Df { to: to.clone(), turn: None };
+            }
+            plan.stages.push(mission);
+        }
+        plan.stages.splice(0..0, self.take_off);
+        plan.stages.extend(self.land);
+        plan.runways = self.runways.into_vec();
+        plan
+    }
+}
+
+fn racetrack(position: LatLon, turn: TurnDirection, radius_m: f64) -> Holding {
+    let length_m = if radius_m > 0.0 { radius_m.min(1e5) } else { RACETRACK_M };
+    Holding {
+        fix: waypoint(position, false),
+        inbound_course_deg: None,
+        turn,
+        leg: HoldingLength::Distance(Value::Constant(length_m)),
+    }
+}
+
+/// A camera command as an action.
+fn camera(item: &Item) -> Option<Act> {
+    match item.command {
+        cmd::DIGICAM_CONTROL if item.param(5) == 1.0 => Some(Act::Photo),
+        cmd::CAMERA_TRIGGER_DISTANCE if item.param(1) > 0.0 => {
+            Some(Act::PhotoSeries { every_m: Value::Constant(item.param(1)) })
+        }
+        cmd::CAMERA_TRIGGER_DISTANCE => Some(Act::PhotoStop),
+        cmd::IMAGE_START_CAPTURE if item.param(3) == 1.0 => Some(Act::Photo),
+        cmd::IMAGE_STOP_CAPTURE => Some(Act::PhotoStop),
+        cmd::VIDEO_START_CAPTURE => Some(Act::VideoStart),
+        cmd::VIDEO_STOP_CAPTURE => Some(Act::VideoStop),
+        _ => None,
+    }
+}

@@ -1,0 +1,102 @@
+//! Missions of MAVLink items, as QGC plans and WPL lists hold them.
+//!
+//! `import` turns items into stages and legs, `export` turns flown waypoints into items; the file formats are elsewhere.
+
+mod altitudes;
+pub mod commands;
+mod export;
+mod import;
+mod jumps;
+pub mod placed;
+mod rally;
+mod runways;
+#[cfg(test)]
+mod tests;
+
+pub use export::{Flown, home, items};
+pub use import::read;
+
+use flight_plan::{Leg, Zone};
+use geometry::LatLon;
+
+/// One mission item.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Item {
+    /// For notes: `line 7`, `item 4`.
+    pub place: String,
+    /// The number that jumps name.
+    pub number: i64,
+    /// MAV_FRAME.
+    pub frame: u16,
+    /// MAV_CMD.
+    pub command: u16,
+    /// The seven parameters; NaN where there is none. The last three are latitude and longitude (degrees) and altitude (metres).
+    pub params: [f64; 7],
+}
+
+impl Item {
+    /// Parameter 1..=7.
+    pub fn param(&self, number: usize) -> f64 {
+        number.checked_sub(1).and_then(|i| self.params.get(i)).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Where it is; `None` for 0/0, which means "here" in a mission, and for what is no position.
+    pub fn position(&self) -> Option<LatLon> {
+        let position = LatLon::new(self.param(5), self.param(6));
+        let here = position.lat_deg == 0.0 && position.lon_deg == 0.0;
+        (position.is_valid() && !here).then_some(position)
+    }
+}
+
+/// One step of a mission.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Entry {
+    /// A plain item.
+    Item(Item),
+    /// A pattern that is a leg of ours; its identifier is only a wish.
+    Leg {
+        /// For notes.
+        place: String,
+        /// The number that jumps name.
+        number: i64,
+        /// The leg.
+        leg: Box<Leg>,
+    },
+    /// A landing after an approach.
+    Landing {
+        /// For notes.
+        place: String,
+        /// The number that jumps name.
+        number: i64,
+        /// Where the approach begins.
+        approach: Approach,
+        /// The touch-down point and its altitude, metres.
+        land: (LatLon, f64),
+        /// Altitudes are above home, else AMSL.
+        relative: bool,
+    },
+}
+
+/// Where a landing pattern begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Where.
+    pub position: LatLon,
+    /// Metres, as the pattern's altitudes are meant.
+    pub altitude_m: f64,
+    /// Circle down to the altitude here: signed radius in metres, positive clockwise.
+    pub loiter_radius_m: Option<f64>,
+}
+
+/// A mission and what belongs to it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mission {
+    /// Where the aircraft starts, and its elevation in metres AMSL.
+    pub home: Option<(LatLon, f64)>,
+    /// Its steps.
+    pub entries: Vec<Entry>,
+    /// Its fences.
+    pub zones: Vec<Zone>,
+    /// Rally points: place in the file, position, metres above home.
+    pub rally: Vec<(String, LatLon, f64)>,
+}

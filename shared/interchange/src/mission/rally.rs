@@ -1,0 +1,48 @@
+//! Rally points as emergency plans, where a runway is near.
+
+use super::placed::{leg, waypoint};
+use crate::names::Names;
+use crate::note::Notes;
+use crate::synthetic::{altitude, stage};
+use flight_plan::{AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, StageKind};
+use geometry::LatLon;
+
+/// A rally point belongs to a runway at most so far away, metres.
+const NEAR_M: f64 = 2000.0;
+
+/// Adds an emergency plan for each rally point near a runway; the others are noted.
+pub fn add(plan: &mut FlightPlan, rally: &[(String, LatLon, f64)], names: &mut Names, notes: &mut Notes) {
+    for (place, position, height_m) in rally {
+        let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
+        let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(runway) = nearest.filter(|r| distance(r) <= NEAR_M) else {
+            let message = format!(
+                "rally point {:.7} {:.7} is left out: an emergency plan ends on a runway, and none is within {NEAR_M:.0} m",
+                position.lat_deg, position.lon_deg
+            );
+            notes.push("rally-without-runway", place, message);
+            continue;
+        };
+        let mut way = leg(
+            names.take("rally-to", "rally-to"),
+            LegKind::Df { to: waypoint(*position, false), turn: None },
+        );
+        way.altitude = Some(altitude(runway.elevation_amsl_m + height_m, AltitudeReference::Amsl));
+        let mut arrival =
+            stage(names.take("rally-arrival", "arrival"), "To the rally point", StageKind::Arrival);
+        arrival.legs.push(way);
+        let mut land = stage(names.take("rally-land", "land"), "Land", StageKind::Land);
+        land.runway = Some(runway.id.clone());
+        let id = names.take("rally", "rally");
+        notes.push(
+            "rally-as-emergency",
+            place,
+            format!("rally point becomes emergency plan `{id}`, which lands on runway `{}`", runway.id),
+        );
+        let (name, runway) = ("Rally point".to_owned(), runway.id.clone());
+        plan.emergency_plans.push(EmergencyPlan { id, name, runway, stages: vec![arrival, land] });
+    }
+    if let Some(first) = plan.emergency_plans.first() {
+        plan.emergency = EmergencyChoice { by_cause: vec![(None, first.id.clone())] };
+    }
+}

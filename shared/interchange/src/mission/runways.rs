@@ -1,0 +1,82 @@
+//! Runways for missions, which only know points.
+
+use crate::names::Names;
+use crate::note::Notes;
+use crate::synthetic::{Assumptions, runway};
+use flight_plan::{Id, Runway};
+use geometry::LatLon;
+
+/// Two points nearer than this are one runway, and give it no direction, metres.
+const SAME_M: f64 = 1.0;
+
+/// Makes runways up, or takes the one that was given.
+pub struct Runways<'a> {
+    assumptions: &'a Assumptions,
+    list: Vec<Runway>,
+}
+
+impl<'a> Runways<'a> {
+    /// None yet, but the one that was given.
+    pub fn new(assumptions: &'a Assumptions, names: &mut Names) -> Self {
+        let list: Vec<Runway> = assumptions.runway.iter().cloned().collect();
+        list.iter().for_each(|r| {
+            names.take(r.id.as_str(), "runway");
+        });
+        Self { assumptions, list }
+    }
+
+    /// A runway at a point, in the direction towards `to` (or `heading_deg`, if the mission gives one).
+    pub fn at(
+        &mut self,
+        wish: &str,
+        point: (LatLon, f64),
+        direction: Direction,
+        place: &str,
+        (names, notes): (&mut Names, &mut Notes),
+    ) -> Id {
+        if let Some(given) = &self.assumptions.runway {
+            return given.id.clone();
+        }
+        let heading_deg = direction.heading_deg(point.0);
+        if let Some(same) = self.list.iter().find(|r| {
+            r.threshold.distance_m(point.0) < SAME_M && (r.heading_deg - heading_deg).abs() < SAME_M
+        }) {
+            return same.id.clone();
+        }
+        let length_m = self.assumptions.runway_length_m;
+        let made = runway(names.take(wish, "runway"), point.0, point.1, heading_deg, length_m, place, notes);
+        let id = made.id.clone();
+        self.list.push(made);
+        id
+    }
+
+    /// All of them.
+    pub fn into_vec(self) -> Vec<Runway> {
+        self.list
+    }
+}
+
+/// How the direction of a runway is found.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    /// Degrees true, if the mission says so; 0 and NaN say nothing.
+    pub heading_deg: f64,
+    /// A point ahead of the runway.
+    pub towards: Option<LatLon>,
+    /// A point that it is approached from.
+    pub from: Option<LatLon>,
+}
+
+impl Direction {
+    fn heading_deg(self, at: LatLon) -> f64 {
+        if self.heading_deg.is_finite() && self.heading_deg != 0.0 {
+            return geometry::geodesy::normalise_360(self.heading_deg % 360.0);
+        }
+        let far = |p: &LatLon| p.distance_m(at) > SAME_M;
+        match (self.towards.filter(far), self.from.filter(far)) {
+            (Some(to), _) => at.bearing_deg(to),
+            (None, Some(from)) => from.inverse(at).bearing_end_deg,
+            (None, None) => 0.0,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Geofences as zones.
+
+use super::json::{flag, list, number, of, position};
+use crate::note::Notes;
+use crate::{Error, MAX_POINTS};
+use flight_plan::{Id, Zone, ZoneKind, ZoneShape};
+use serde_json::{Value, json};
+
+/// The zones of a `geoFence`.
+pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
+    let mut zones = Vec::new();
+    for (index, polygon) in list(fence, "polygons").iter().enumerate() {
+        let place = format!("fence polygon {}", index + 1);
+        let points = list(polygon, "polygon");
+        if points.len() > MAX_POINTS {
+            return Err(Error::TooMany { what: "corners", limit: MAX_POINTS });
+        }
+        let corners: Option<Vec<_>> = points.iter().map(position).collect();
+        match corners.filter(|c| c.len() >= 3) {
+            Some(corners) => zones.push(zone(polygon, ZoneShape::Polygon(corners))),
+            None => notes.push("bad-fence", place, "this polygon is left out: it has no three good corners"),
+        }
+    }
+    for (index, circle) in list(fence, "circles").iter().enumerate() {
+        let place = format!("fence circle {}", index + 1);
+        let shape = circle.get("circle").unwrap_or(&Value::Null);
+        let centre = shape.get("center").and_then(position);
+        match (centre, number(shape, "radius").filter(|r| *r > 0.0)) {
+            (Some(centre), Some(radius_m)) => {
+                zones.push(zone(circle, ZoneShape::Circle { centre, radius_m }))
+            }
+            _ => notes.push("bad-fence", place, "this circle is left out: it has no good centre and radius"),
+        }
+    }
+    if fence.get("breachReturn").is_some_and(|b| !b.is_null()) {
+        notes.push(
+            "breach-return",
+            "fence",
+            "the breach return point is left out: name an emergency plan instead",
+        );
+    }
+    Ok(zones)
+}
+
+fn zone(fence: &Value, shape: ZoneShape) -> Zone {
+    let kind = if flag(fence, "inclusion") { ZoneKind::KeepIn } else { ZoneKind::KeepOut };
+    let name = if kind == ZoneKind::KeepIn { "keep-in" } else { "keep-out" };
+    let (floor, ceiling) = (None, None);
+    Zone { id: Id::new(name), name: String::new(), kind, shape, floor, ceiling, active: Vec::new() }
+}
+
+/// The `geoFence` of zones.
+pub fn write(zones: &[Zone]) -> Value {
+    let inclusion = |zone: &Zone| zone.kind == ZoneKind::KeepIn;
+    let mut polygons = Vec::new();
+    let mut circles = Vec::new();
+    for zone in zones {
+        match &zone.shape {
+            ZoneShape::Polygon(corners) => {
+                let corners: Vec<_> = corners.iter().map(|c| of(*c)).collect();
+                polygons.push(json!({"inclusion": inclusion(zone), "polygon": corners, "version": 1}));
+            }
+            ZoneShape::Circle { centre, radius_m } => {
+                let circle = json!({"center": of(*centre), "radius": radius_m});
+                circles.push(json!({"circle": circle, "inclusion": inclusion(zone), "version": 1}));
+            }
+        }
+    }
+    json!({"circles": circles, "polygons": polygons, "version": 2})
+}

@@ -1,0 +1,220 @@
+//! Survey and corridor patterns as legs.
+
+use super::camera::{self, Camera};
+use super::json::{flag, list, number, of, position};
+use crate::note::Notes;
+use crate::synthetic::{Assumptions, altitude};
+use crate::{Error, MAX_POINTS};
+use flight_plan::{
+    Act, Area, Id, Leg, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing, Trigger,
+    Value,
+};
+use geometry::LatLon;
+use serde_json::{Value as Json, json};
+
+/// QGC's entry locations 0..=3, seen along the angle: top left, top right, bottom left, bottom right.
+const ENTRIES: [ScanEntry; 4] =
+    [ScanEntry::EndLeft, ScanEntry::EndRight, ScanEntry::StartLeft, ScanEntry::StartRight];
+
+/// A survey or a corridor scan; `None`, with a note, if it can't be flown.
+pub fn read(
+    item: &Json,
+    place: &str,
+    assumptions: &Assumptions,
+    notes: &mut Notes,
+) -> Result<Option<Leg>, Error> {
+    let corridor = item.get("complexItemType").and_then(Json::as_str) == Some("CorridorScan");
+    let points = list(item, if corridor { "polyline" } else { "polygon" });
+    if points.len() > MAX_POINTS {
+        return Err(Error::TooMany { what: "corners", limit: MAX_POINTS });
+    }
+    let corners: Option<Vec<LatLon>> = points.iter().map(position).collect();
+    let Some(corners) = corners.filter(|c| c.len() >= if corridor { 2 } else { 3 }) else {
+        notes.push("bad-pattern", place, "this pattern is left out: it has too few good corners");
+        return Ok(None);
+    };
+    let transect = item.get("TransectStyleComplexItem").unwrap_or(&Json::Null);
+    let camera = camera::read(transect, place, notes);
+    let spacing = camera.spacing.clone().unwrap_or_else(|| {
+        notes.push(
+            "no-spacing",
+            place,
+            format!("this pattern names no spacing: it gets {} m", assumptions.spacing_m),
+        );
+        Spacing::Metres(Value::Constant(assumptions.spacing_m))
+    });
+    lost(item, transect, place, notes);
+    let (kind, wish) = match corridor {
+        true => (LegKind::Pattern(along(item, transect, &corners, spacing, place, notes)), "corridor"),
+        false => (LegKind::Scan(survey(item, transect, corners, spacing)), "survey"),
+    };
+    Ok(Some(leg(wish, kind, &camera)))
+}
+
+fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
+    let action = |trigger, act| LegAction { trigger, act };
+    let pictures = camera.every_m.map(|every_m| {
+        let series = Act::PhotoSeries { every_m: Value::Constant(every_m) };
+        vec![action(Trigger::Start, series), action(Trigger::End, Act::PhotoStop)]
+    });
+    Leg {
+        id: Id::new(wish),
+        name: String::new(),
+        emergency: Default::default(),
+        altitude: camera.height_m.map(|m| altitude(m, camera.reference)),
+        speed_mps: None,
+        next: None,
+        actions: pictures.unwrap_or_default(),
+        kind,
+    }
+}
+
+fn survey(item: &Json, transect: &Json, corners: Vec<LatLon>, spacing: Spacing) -> Scan {
+    let crossed = flag(transect, "Refly90Degrees");
+    let entry = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
+    Scan {
+        area: Area::Polygon { corners, holes: Vec::new() },
+        style: if crossed { ScanStyle::CrissCross } else { ScanStyle::Parallel },
+        spacing,
+        heading_deg: number(item, "angle")
+            .map(|a| Value::Constant(geometry::geodesy::normalise_360(a % 360.0))),
+        overshoot_m: Value::Constant(number(transect, "TurnAroundDistance").unwrap_or(0.0).clamp(0.0, 1e5)),
+        entry: entry.copied().unwrap_or(ScanEntry::Nearest),
+    }
+}
+
+fn along(
+    item: &Json,
+    transect: &Json,
+    corners: &[LatLon],
+    spacing: Spacing,
+    place: &str,
+    notes: &mut Notes,
+) -> Pattern {
+    if number(transect, "TurnAroundDistance").is_some_and(|d| d > 0.0) {
+        notes.push("turnaround", place, "the turnaround distance of the corridor is left out");
+    }
+    if number(item, "EntryPoint").is_some_and(|e| e != 0.0) {
+        notes.push(
+            "entry-point",
+            place,
+            "the entry point of the corridor is left out: it begins at its first point",
+        );
+    }
+    let route = corners.iter().map(|c| Place::Position(Value::Constant(*c))).collect();
+    let width_m = number(item, "CorridorWidth").unwrap_or(0.0).max(0.0);
+    Pattern::Corridor { route, width_m: Value::Constant(width_m), spacing }
+}
+
+/// Settings that have no counterpart.
+fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
+    let cases = [
+        (transect, "HoverAndCapture", "stopping for each picture is left out"),
+        (
+            transect,
+            "CameraTriggerInTurnAround",
+            "pictures are taken in the turns, too, as asked; switch them off in the leg's actions if need be",
+        ),
+        (
+            item,
+            "flyAlternateTransects",
+            "alternate tracks are left out: tracks are interleaved where the turn radius asks for it",
+        ),
+        (item, "splitConcavePolygons", "the area is not split into convex parts"),
+    ];
+    for (object, key, message) in cases {
+        if flag(object, key) {
+            notes.again("pattern-setting", place, message);
+        }
+    }
+}
+
+/// The pattern as QGC knows it, around the items that fly it; `None` if this leg is none.
+pub fn write(leg: &Leg, items: &[Json], visual: Vec<Json>) -> Option<Json> {
+    let turnaround_m = match &leg.kind {
+        LegKind::Scan(scan) => constant(&scan.overshoot_m)?,
+        _ => 0.0,
+    };
+    let (spacing, crossed) = match &leg.kind {
+        LegKind::Scan(scan) => (&scan.spacing, scan.style == ScanStyle::CrissCross),
+        LegKind::Pattern(Pattern::Corridor { spacing, .. }) => (spacing, false),
+        _ => return None,
+    };
+    let every_m = leg.actions.iter().find_map(|a| match &a.act {
+        Act::PhotoSeries { every_m } => constant(every_m),
+        _ => None,
+    });
+    let transect = json!({
+        "CameraCalc": camera::write(metres(spacing)?, every_m, leg.altitude.as_ref()),
+        "CameraShots": 0,
+        "CameraTriggerInTurnAround": every_m.is_some(),
+        "HoverAndCapture": false,
+        "Items": items,
+        "Refly90Degrees": crossed,
+        "TurnAroundDistance": turnaround_m,
+        "VisualTransectPoints": visual,
+        "version": 2,
+    });
+    match &leg.kind {
+        LegKind::Scan(scan) => area(scan, transect),
+        LegKind::Pattern(Pattern::Corridor { route, width_m, .. }) => {
+            let corners: Option<Vec<Json>> = route.iter().map(|p| at(p).map(of)).collect();
+            Some(json!({
+                "CorridorWidth": constant(width_m)?,
+                "EntryPoint": 0,
+                "TransectStyleComplexItem": transect,
+                "complexItemType": "CorridorScan",
+                "polyline": corners?,
+                "type": "ComplexItem",
+                "version": 2,
+            }))
+        }
+        _ => None,
+    }
+}
+
+fn area(scan: &Scan, transect: Json) -> Option<Json> {
+    let Area::Polygon { corners, holes } = &scan.area else { return None };
+    // a direction that is found by ourselves, or tracks along the short side, is another survey in QGC
+    let heading_deg = constant(scan.heading_deg.as_ref()?)?;
+    if !holes.is_empty() || scan.style == ScanStyle::Creeping {
+        return None;
+    }
+    let entry = ENTRIES.iter().position(|e| *e == scan.entry).unwrap_or(0);
+    let corners: Vec<Json> = corners.iter().map(|c| of(*c)).collect();
+    Some(json!({
+        "TransectStyleComplexItem": transect,
+        "angle": heading_deg,
+        "complexItemType": "survey",
+        "entryLocation": entry,
+        "flyAlternateTransects": false,
+        "polygon": corners,
+        "splitConcavePolygons": false,
+        "type": "ComplexItem",
+        "version": 5,
+    }))
+}
+
+fn metres(spacing: &Spacing) -> Option<f64> {
+    match spacing {
+        Spacing::Metres(metres) => constant(metres),
+        Spacing::Camera { field_of_view_deg, overlap, height_m } => {
+            let half = (constant(field_of_view_deg)? / 2.0).to_radians();
+            Some(2.0 * constant(height_m.as_ref()?)? * half.tan() * (1.0 - constant(overlap)?))
+        }
+    }
+}
+
+fn constant(value: &Value<f64>) -> Option<f64> {
+    match value {
+        Value::Constant(number) => Some(*number),
+        Value::Expression(_) => None,
+    }
+}
+
+fn at(place: &Place) -> Option<LatLon> {
+    match place {
+        Place::Position(Value::Constant(position)) => Some(*position),
+        _ => None,
+    }
+}

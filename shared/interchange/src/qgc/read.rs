@@ -1,0 +1,181 @@
+//! A `.plan` as a plan.
+
+use super::json::{flag, list, number, position_3d};
+use super::{fence, pattern};
+use crate::mission::{self, Approach, Entry, Item, Mission, commands};
+use crate::note::Notes;
+use crate::synthetic::Assumptions;
+use crate::{Error, Import, MAX_ITEMS, text_of};
+use serde_json::Value;
+
+/// Most values in a file: each takes memory while it is read.
+pub const MAX_VALUES: usize = 8_000_000;
+
+/// Keys of the file, and of its mission, that are understood (or say nothing about the flight).
+const KEYS: &[&str] = &["fileType", "geoFence", "groundStation", "mission", "rallyPoints", "version"];
+const MISSION_KEYS: &[&str] = &[
+    "cruiseSpeed",
+    "firmwareType",
+    "globalPlanAltitudeMode",
+    "hoverSpeed",
+    "items",
+    "plannedHomePosition",
+    "vehicleType",
+    "version",
+];
+
+/// JSON whose number of values is bounded before it is read.
+pub fn bounded_json(bytes: &[u8]) -> Result<&str, Error> {
+    let text = text_of(bytes)?;
+    let values = bytes.iter().filter(|b| matches!(b, b',' | b'[' | b'{')).count();
+    if values > MAX_VALUES {
+        return Err(Error::TooMany { what: "values", limit: MAX_VALUES });
+    }
+    Ok(text)
+}
+
+/// Reads a file.
+pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
+    let file: Value = serde_json::from_str(bounded_json(bytes)?).map_err(|error| {
+        Error::malformed(format!("line {}", error.line()), format!("not a complete JSON document: {error}"))
+    })?;
+    if file.get("fileType").and_then(Value::as_str) != Some("Plan") {
+        return Err(Error::malformed("file", "this is no QGroundControl plan: fileType is not \"Plan\""));
+    }
+    let mut notes = Notes::default();
+    let mission = file.get("mission").unwrap_or(&Value::Null);
+    unknown(&file, KEYS, "file", &mut notes);
+    unknown(mission, MISSION_KEYS, "mission", &mut notes);
+    if number(mission, "cruiseSpeed").is_some() {
+        let message = "the cruise speed is left out: QGC plans with it, but no item commands it";
+        notes.push("cruise-speed", "mission", message);
+    }
+    let items = list(mission, "items");
+    if items.len() > MAX_ITEMS {
+        return Err(Error::TooMany { what: "items", limit: MAX_ITEMS });
+    }
+    let mut reader = Reader { assumptions, notes: &mut notes, entries: Vec::new(), number: 0 };
+    for (index, item) in items.iter().enumerate() {
+        reader.item(item, format!("item {}", index + 1))?;
+    }
+    let mission = Mission {
+        home: mission.get("plannedHomePosition").and_then(position_3d),
+        entries: reader.entries,
+        zones: fence::read(file.get("geoFence").unwrap_or(&Value::Null), &mut notes)?,
+        rally: rally(file.get("rallyPoints").unwrap_or(&Value::Null), &mut notes),
+    };
+    Ok(mission::read(mission, assumptions, notes))
+}
+
+fn unknown(object: &Value, known: &[&str], place: &str, notes: &mut Notes) {
+    for key in object.as_object().into_iter().flat_map(|o| o.keys()).filter(|k| !known.contains(&k.as_str()))
+    {
+        let key: String = key.chars().take(60).collect();
+        notes.push("unknown-key", place, format!("`{key}` is not known and left out"));
+    }
+}
+
+fn rally(points: &Value, notes: &mut Notes) -> Vec<(String, geometry::LatLon, f64)> {
+    let mut good = Vec::new();
+    for (index, point) in list(points, "points").iter().take(MAX_ITEMS).enumerate() {
+        let place = format!("rally point {}", index + 1);
+        match position_3d(point) {
+            Some((position, height_m)) => good.push((place, position, height_m)),
+            None => notes.push("no-position", place, "this rally point is left out: it has no good position"),
+        }
+    }
+    good
+}
+
+struct Reader<'a> {
+    assumptions: &'a Assumptions,
+    notes: &'a mut Notes,
+    entries: Vec<Entry>,
+    /// The last number that jumps can name.
+    number: i64,
+}
+
+impl Reader<'_> {
+    fn item(&mut self, item: &Value, place: String) -> Result<(), Error> {
+        let kind = item.get("type").and_then(Value::as_str).unwrap_or("SimpleItem");
+        match (kind, item.get("complexItemType").and_then(Value::as_str)) {
+            ("SimpleItem", _) => self.simple(item, place),
+            (_, Some("survey" | "CorridorScan")) => self.pattern(item, place)?,
+            (_, Some("fwLandingPattern" | "vtolLandingPattern")) => self.landing(item, place),
+            (_, other) => {
+                let name: String = other.unwrap_or(kind).chars().take(60).collect();
+                self.notes.push(
+                    "pattern-not-carried",
+                    place,
+                    format!("pattern `{name}` has no counterpart in a plan and is left out"),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn simple(&mut self, item: &Value, place: String) {
+        let listed = list(item, "params");
+        if listed.is_empty() {
+            return self.notes.push("bad-item", place, "this item is left out: it has no params");
+        }
+        let mut params = [f64::NAN; 7];
+        for (param, value) in params.iter_mut().zip(listed) {
+            *param = value.as_f64().unwrap_or(f64::NAN);
+        }
+        let whole = |key: &str| item.get(key).and_then(Value::as_u64).unwrap_or(u64::MAX);
+        let mut frame = whole("frame").min(u16::MAX.into()) as u16;
+        // altitude mode 3: QGC has worked out AMSL from terrain; what was meant is the height above it
+        if whole("AltitudeMode") == 3
+            && let Some(height_m) = number(item, "Altitude")
+        {
+            (frame, params[6]) = (commands::FRAME_TERRAIN, height_m);
+        }
+        if item.get("autoContinue").and_then(Value::as_bool) == Some(false) {
+            self.notes.again("autocontinue", &place, "an item that waits for the operator goes on by itself");
+        }
+        let number = item.get("doJumpId").and_then(Value::as_i64).unwrap_or(self.number + 1);
+        self.number = number;
+        let command = whole("command").min(u16::MAX.into()) as u16;
+        self.entries.push(Entry::Item(Item { place, number, frame, command, params }));
+    }
+
+    fn pattern(&mut self, item: &Value, place: String) -> Result<(), Error> {
+        let flown = item.get("TransectStyleComplexItem").map_or(&[][..], |t| list(t, "Items"));
+        let numbers = || flown.iter().filter_map(|i| i.get("doJumpId")?.as_i64());
+        let number = numbers().next().unwrap_or(self.number.saturating_add(1));
+        self.number = numbers().next_back().unwrap_or(number);
+        if let Some(leg) = pattern::read(item, &place, self.assumptions, self.notes)? {
+            self.entries.push(Entry::Leg { place, number, leg: Box::new(leg) });
+        }
+        Ok(())
+    }
+
+    fn landing(&mut self, item: &Value, place: String) {
+        let approach =
+            item.get("landingApproachCoordinate").or(item.get("loiterCoordinate")).and_then(position_3d);
+        let land = item.get("landCoordinate").and_then(position_3d);
+        let (Some((position, altitude_m)), Some(land)) = (approach, land) else {
+            return self.notes.push(
+                "bad-pattern",
+                place,
+                "this landing is left out: it has no good approach and landing point",
+            );
+        };
+        let circles = item.get("useLoiterToAlt").and_then(Value::as_bool).unwrap_or(true);
+        let side = if flag(item, "loiterClockwise") { 1.0 } else { -1.0 };
+        let radius_m = number(item, "loiterRadius").unwrap_or(self.assumptions.loiter_radius_m);
+        let approach =
+            Approach { position, altitude_m, loiter_radius_m: circles.then_some(side * radius_m.abs()) };
+        if flag(item, "stopTakingPhotos") || flag(item, "stopVideoPhotos") {
+            self.notes.push(
+                "pattern-setting",
+                &place,
+                "stopping photos and video for the landing is left out: end them on the leg before",
+            );
+        }
+        let relative = item.get("altitudesAreRelative").and_then(Value::as_bool).unwrap_or(true);
+        self.number = self.number.saturating_add(1);
+        self.entries.push(Entry::Landing { place, number: self.number, approach, land, relative });
+    }
+}

@@ -1,0 +1,91 @@
+//! What other formats leave open and a plan needs: aircraft, runways, heights and spacings.
+
+use crate::note::Notes;
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Runway, Stage, StageKind, Value};
+use geometry::LatLon;
+
+/// What is taken where a file says nothing; each use of one is a note.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assumptions {
+    /// The aircraft of the plan: name of a profile.
+    pub aircraft: String,
+    /// Name of the plan, where the file has none.
+    pub name: String,
+    /// Height above ground of what has no altitude, metres.
+    pub height_agl_m: f64,
+    /// Length of a runway that is made up, metres.
+    pub runway_length_m: f64,
+    /// Radius of a loiter that names none, metres.
+    pub loiter_radius_m: f64,
+    /// Distance between tracks over an area that names none, metres.
+    pub spacing_m: f64,
+    /// The runway to take off from and to land on, instead of one that is made up; a drawing gets take-off and landing only
+    /// with it.
+    pub runway: Option<Runway>,
+}
+
+impl Default for Assumptions {
+    fn default() -> Self {
+        Self {
+            aircraft: "trainer".into(),
+            name: "Imported plan".into(),
+            height_agl_m: 100.0,
+            runway_length_m: 600.0,
+            loiter_radius_m: 80.0,
+            spacing_m: 100.0,
+            runway: None,
+        }
+    }
+}
+
+impl Assumptions {
+    /// The altitude of what has none.
+    pub fn altitude(&self) -> Altitude {
+        altitude(self.height_agl_m, AltitudeReference::Agl)
+    }
+}
+
+/// A constant altitude.
+pub fn altitude(metres: f64, reference: AltitudeReference) -> Altitude {
+    Altitude { metres: Value::Constant(metres), reference }
+}
+
+/// A runway where a mission only names a point; says so.
+pub fn runway(
+    id: Id,
+    threshold: LatLon,
+    elevation_amsl_m: f64,
+    heading_deg: f64,
+    length_m: f64,
+    place: &str,
+    notes: &mut Notes,
+) -> Runway {
+    let message = format!(
+        "runway `{id}` is made up from a point: {length_m:.0} m long, heading {heading_deg:.0}°, elevation {elevation_amsl_m:.0} m; correct it"
+    );
+    notes.push("runway-made-up", place, message);
+    Runway { id, threshold, elevation_amsl_m, heading_deg, length_m, priority: 1, approach_entry: None }
+}
+
+/// A stage without legs, altitude and speed.
+pub fn stage(id: Id, name: &str, kind: StageKind) -> Stage {
+    Stage {
+        id,
+        name: name.into(),
+        kind,
+        emergency: Default::default(),
+        runway: None,
+        altitude: None,
+        speed_mps: None,
+        legs: Vec::new(),
+    }
+}
+
+/// A plan without content.
+pub fn plan(assumptions: &Assumptions) -> FlightPlan {
+    FlightPlan {
+        name: assumptions.name.clone(),
+        aircraft: assumptions.aircraft.clone(),
+        ..FlightPlan::default()
+    }
+}
