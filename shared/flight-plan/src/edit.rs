@@ -1,8 +1,10 @@
 //! Edits as values: what a person did to a plan, to be applied, undone, or offered as a remedy.
 
+mod repair;
+
 use crate::{
     Altitude, Area, Cause, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Place, PlanWaypoint,
-    Value, VariableError, VariableValue,
+    Runway, Stage, Value, Variable, VariableError, VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::sync::Arc;
@@ -134,6 +136,64 @@ pub enum Edit {
         /// The new one.
         with: Box<Leg>,
     },
+    /// Gives the last thing of an identifier another one. What refers to it goes on meaning the first.
+    Distinguish {
+        /// The identifier that several things have.
+        id: Id,
+        /// The last one's new identifier.
+        to: Id,
+    },
+    /// Corrects what a leg, stage or emergency plan refers to.
+    Refer {
+        /// Whose reference; `None`: the document's own emergency association.
+        of: Option<Id>,
+        /// What it names.
+        from: Id,
+        /// What it is to name.
+        to: Id,
+    },
+    /// Makes the plan one for another aircraft.
+    SetAircraft(String),
+    /// Names the runway of a stage or of an emergency plan.
+    SetRunway {
+        /// The stage or emergency plan.
+        of: Id,
+        /// The runway.
+        runway: Id,
+    },
+    /// Puts another runway in the place of one.
+    ReplaceRunway {
+        /// The old runway.
+        runway: Id,
+        /// The new one.
+        with: Box<Runway>,
+    },
+    /// Puts another variable in the place of one.
+    ReplaceVariable {
+        /// The old variable.
+        name: Id,
+        /// The new one.
+        with: Box<Variable>,
+    },
+    /// Puts another zone in the place of one.
+    ReplaceZone {
+        /// The old zone.
+        zone: Id,
+        /// The new one.
+        with: Box<Zone>,
+    },
+    /// Adds a stage at the end.
+    AppendStage {
+        /// Of which emergency plan; `None`: of the main plan.
+        to: Option<Id>,
+        /// The stage.
+        stage: Box<Stage>,
+    },
+    /// Removes a procedure and what is in it.
+    DeleteProcedure {
+        /// The procedure.
+        procedure: Id,
+    },
     /// Several edits as one.
     All(Vec<Edit>),
 }
@@ -219,6 +279,15 @@ impl Edit {
                 return insert(plan, moved, at);
             }
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
+            Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
+            Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
+            Edit::SetAircraft(name) => plan.aircraft.clone_from(name),
+            Edit::SetRunway { of, runway } => return repair::set_runway(plan, of, runway),
+            Edit::ReplaceRunway { runway, with } => return repair::replace_runway(plan, runway, with),
+            Edit::ReplaceVariable { name, with } => return repair::replace_variable(plan, name, with),
+            Edit::ReplaceZone { zone, with } => return repair::replace_zone(plan, zone, with),
+            Edit::AppendStage { to, stage } => return repair::append_stage(plan, to.as_ref(), stage),
+            Edit::DeleteProcedure { procedure } => return repair::delete_procedure(plan, procedure),
             Edit::All(edits) => return edits.iter().try_for_each(|edit| edit.change(plan)),
         }
         Ok(())

@@ -1,11 +1,8 @@
 //! A checked plan, ready for the executor.
 
-use crate::checks::check_flown;
+use crate::checks::checked;
 use crate::expression::{self, Env, EvalError, Expression, Names};
-use crate::{
-    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, instantiate,
-    xml,
-};
+use crate::{Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, xml};
 use aircraft::Profile;
 use geometry::LatLon;
 use std::borrow::Cow;
@@ -50,8 +47,7 @@ pub struct LegPath {
 /// # Errors
 /// Every problem of the plan, if one of them forbids flying.
 pub fn compile(plan: FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Result<Program, Vec<Problem>> {
-    let (flown, mut problems) = instantiate(&plan);
-    problems.extend(check_flown(&flown, profile, terrain));
+    let (flown, problems) = checked(&plan, profile, terrain);
     if problems.iter().any(Problem::is_error) {
         return Err(problems);
     }

@@ -1,6 +1,6 @@
 //! Walking a plan: every leg with what is around it.
 
-use crate::{EmergencyPlan, FlightPlan, Id, Leg, LegKind, Pattern, ScanStyle, Stage};
+use crate::{Area, EmergencyPlan, FlightPlan, Id, Leg, LegKind, Pattern, Place, ScanStyle, Stage};
 
 /// Which part of the document a stage is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +47,22 @@ impl Leg {
         }
     }
 
+    /// Where it goes, holds, or what it is about; `None` for control legs and polygons.
+    pub fn place(&self) -> Option<&Place> {
+        match &self.kind {
+            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
+                Some(&to.place)
+            }
+            LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Some(&to.place),
+            LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&h.fix.place),
+            LegKind::Orbit { centre, .. } => Some(centre),
+            LegKind::Scan(scan) => scan.area.centre(),
+            LegKind::Pattern(pattern) => pattern.centre(),
+            LegKind::Call(call) => call.anchor.as_ref(),
+            LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
+        }
+    }
+
     /// What it is called in the document.
     pub fn kind_name(&self) -> &'static str {
         match &self.kind {
@@ -73,7 +89,29 @@ impl Leg {
     }
 }
 
+impl Area {
+    /// The centre of a circle.
+    pub fn centre(&self) -> Option<&Place> {
+        match self {
+            Area::Circle { centre, .. } => Some(centre),
+            Area::Polygon { .. } | Area::Expression(_) => None,
+        }
+    }
+}
+
 impl Pattern {
+    /// What it is about, or where its route begins.
+    pub fn centre(&self) -> Option<&Place> {
+        match self {
+            Pattern::Spiral { centre, .. }
+            | Pattern::ExpandingSquare { centre, .. }
+            | Pattern::Sector { centre, .. }
+            | Pattern::FigureEight { centre, .. } => Some(centre),
+            Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => route.first(),
+            Pattern::Contour { area, .. } => area.centre(),
+        }
+    }
+
     /// What it is called in the document.
     pub fn name(&self) -> &'static str {
         match self {
@@ -131,6 +169,11 @@ impl FlightPlan {
     /// A variable by its name.
     pub fn variable(&self, name: &Id) -> Option<&crate::Variable> {
         self.variables.iter().find(|v| v.name == *name)
+    }
+
+    /// A zone by its identifier.
+    pub fn zone(&self, id: &Id) -> Option<&crate::Zone> {
+        self.zones.iter().find(|z| z.id == *id)
     }
 
     /// A procedure by its identifier.

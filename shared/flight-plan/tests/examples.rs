@@ -3,6 +3,7 @@
 
 use aircraft::Profile;
 use flight_plan::{Problem, Reading, check, compile_document, read, write};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use terrain::{Terrain, Tile, Tiles};
 
@@ -96,4 +97,24 @@ fn a_bad_plan_is_never_compiled() {
         let compiled = compile_document(&document, &Profile::default(), &ground);
         assert_eq!(compiled.is_err(), errors > 0, "{}", path.display());
     }
+}
+
+#[test]
+fn every_fix_removes_its_problem() {
+    let ground = ground();
+    let mut fixed = BTreeSet::new();
+    for path in plans("bad") {
+        let plan = read(std::fs::read(&path).unwrap()).plan;
+        let found = check(&plan, &Profile::default(), &ground);
+        for problem in found.iter().filter(|p| p.fix.is_some()) {
+            let repaired = problem.fix.as_ref().unwrap().apply(&plan);
+            let repaired = repaired.unwrap_or_else(|error| panic!("{}: {problem}: {error}", path.display()));
+            let left = check(&repaired, &Profile::default(), &ground);
+            let same = |p: &&Problem| p.code == problem.code && p.subject == problem.subject;
+            let (before, after) = (found.iter().filter(same).count(), left.iter().filter(same).count());
+            assert!(after < before, "{}: {:?} does not help", path.display(), problem.fix);
+            fixed.insert(problem.code);
+        }
+    }
+    assert!(fixed.len() >= 40, "codes with a fix: {fixed:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::Inspection;
 use super::inspection::{Step, altitude_of};
+use super::remedy::level;
 use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -35,7 +36,8 @@ fn ceiling(view: &Inspection, amsl_m: Option<f64>, of: &Id, problems: &mut Vec<P
         let message = format!(
             "lower the altitude to {ceiling_m:.0} m AMSL or less: {amsl_m:.0} m is above the aircraft's ceiling"
         );
-        problems.push(Problem::error("above-ceiling", message).of(of));
+        let fix = level(of, ceiling_m);
+        problems.push(Problem::error("above-ceiling", message).of(of).fixed_by(fix));
     }
 }
 
@@ -53,7 +55,7 @@ fn unknown(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document};
+    use crate::checks::testing::{check_legs, codes, document, fixed_legs};
 
     #[test]
     fn above_the_ceiling_in_any_datum() {
@@ -64,6 +66,7 @@ mod tests {
             (&with(r#"altitude="2701" altitudeReference="agl""#), &["above-ceiling"]),
             (&with(r#"altitude="2701" altitudeReference="home""#), &["above-ceiling"]),
         ]);
+        fixed_legs(&[(&with(r#"altitude="2701" altitudeReference="agl""#), "above-ceiling")]);
     }
 
     #[test]

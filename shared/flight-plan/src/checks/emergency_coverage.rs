@@ -1,9 +1,18 @@
-//! `no-emergency-plan`: a leg for which no emergency plan is named, whatever the cause.
+//! `no-emergency-plan`: a leg for which no emergency plan is named, whatever the cause; `duplicate-cause`: two plans are
+//! named for one cause at one place.
 
 use super::Inspection;
-use crate::{EmergencyChoice, Problem, Section};
+use crate::{Edit, EmergencyChoice, Id, Problem, Section};
+use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    duplicates(&view.plan.emergency, None, problems);
+    for (_, stage) in view.plan.all_stages() {
+        duplicates(&stage.emergency, Some(&stage.id), problems);
+    }
+    for step in &view.steps {
+        duplicates(&step.context.leg.emergency, Some(&step.context.leg.id), problems);
+    }
     let covers = |choice: &EmergencyChoice| choice.by_cause.iter().any(|(cause, _)| cause.is_none());
     if covers(&view.plan.emergency) {
         return;
@@ -13,23 +22,54 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         let around = context.loops.iter().chain([&context.leg]).any(|l| covers(&l.emergency));
         if !around && !covers(&context.stage.emergency) && context.leg.body().is_empty() {
             let message = "name an emergency plan here, on the stage or on the main plan: without one the gateway decides alone";
-            problems.push(Problem::warning("no-emergency-plan", message).of(&context.leg.id));
+            let problem = Problem::warning("no-emergency-plan", message).of(&context.leg.id);
+            problems.push(problem.perhaps_fixed_by(only_plan(view)));
         }
+    }
+}
+
+/// The plan's only emergency plan, for the whole document.
+fn only_plan(view: &Inspection) -> Option<Edit> {
+    let [only] = view.plan.emergency_plans.as_slice() else { return None };
+    Some(Edit::SetEmergency { of: None, cause: None, plan: Some(only.id.clone()) })
+}
+
+fn duplicates(choice: &EmergencyChoice, of: Option<&Id>, problems: &mut Vec<Problem>) {
+    let mut seen = HashSet::new();
+    for (cause, plan) in &choice.by_cause {
+        if seen.insert(cause) {
+            continue;
+        }
+        let message =
+            format!("only the first emergency plan for a cause counts: remove `{plan}` or the one before it");
+        let problem = Problem::warning("duplicate-cause", message);
+        let problem = of.map_or(problem.clone(), |of| problem.of(of));
+        let first = choice.by_cause.iter().find(|(c, _)| c == cause).map(|(_, plan)| plan.clone());
+        problems.push(problem.fixed_by(Edit::SetEmergency { of: of.cloned(), cause: *cause, plan: first }));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes, plan_with};
+    use crate::checks::testing::{check_legs, codes, fixed, fixed_legs, plan_with};
 
     #[test]
     fn legs_without_an_alternate() {
         let legs =
             |a: &str, b: &str| plan_with(&format!(r#"<IF id="a" fix="A" {a}/><TF id="b" fix="B" {b}/>"#));
-        let uncovered = |plan: String| codes(&plan.replace(r#"<mainPlan emergency="home">"#, "<mainPlan>"));
+        let uncovered = |plan: String| plan.replace(r#"<mainPlan emergency="home">"#, "<mainPlan>");
         let home = r#"emergency="home""#;
-        assert_eq!(uncovered(legs("", "")), ["no-emergency-plan", "no-emergency-plan"]);
-        assert_eq!(uncovered(legs(home, "")), ["no-emergency-plan"]);
-        assert_eq!(uncovered(legs(home, home)), [""; 0]);
+        assert_eq!(codes(&uncovered(legs("", ""))), ["no-emergency-plan", "no-emergency-plan"]);
+        assert_eq!(codes(&uncovered(legs(home, ""))), ["no-emergency-plan"]);
+        assert_eq!(codes(&uncovered(legs(home, home))), [""; 0]);
+        fixed(&uncovered(legs("", "")), "no-emergency-plan");
+    }
+
+    #[test]
+    fn one_plan_for_a_cause() {
+        let engine = r#"<emergency cause="engine" plan="home"/>"#;
+        let legs = format!(r#"<IF id="a" fix="A">{engine}{engine}</IF>"#);
+        check_legs(&[(&legs, &["duplicate-cause"])]);
+        fixed_legs(&[(&legs, "duplicate-cause")]);
     }
 }

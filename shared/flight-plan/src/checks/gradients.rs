@@ -1,8 +1,9 @@
 //! `too-steep`: a climb or descent that the aircraft can't fly on the length of the leg.
 
 use super::Inspection;
-use super::inspection::Step;
-use crate::{IterativeForm, LegKind, Problem};
+use super::inspection::{SHORTEST_M, Step};
+use super::remedy::level;
+use crate::{Edit, IterativeForm, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for step in &view.steps {
@@ -17,13 +18,24 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
                 "lengthen this leg, change its altitude or hold to {what} (HA): it takes {:.1} m/s, the aircraft does {limit:.1} m/s",
                 rate_mps.abs()
             );
-            problems.push(Problem::error("too-steep", message).of(&step.context.leg.id));
+            let problem = Problem::error("too-steep", message).of(&step.context.leg.id);
+            problems.push(problem.perhaps_fixed_by(gentler(step, limit)));
         }
     }
 }
 
+/// The altitude, to whole metres, that is reached at the end of the leg.
+fn gentler(step: &Step, limit_mps: f64) -> Option<Edit> {
+    let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
+    let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
+    let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
+    let whole_m = if to_m > from_m { reached_m.floor() } else { reached_m.ceil() };
+    Some(level(&step.context.leg.id, whole_m))
+}
+
 fn vertical_speed_mps(step: &Step) -> Option<f64> {
-    let time_s = step.path?.length_m() / step.speed_mps;
+    let length_m = step.path.map(|p| p.length_m()).filter(|m| *m >= SHORTEST_M)?;
+    let time_s = length_m / step.speed_mps;
     let gain_m = step.end?.altitude_amsl_m? - step.start?.altitude_amsl_m?;
     // nothing to gain needs no time
     (gain_m.abs() > 0.1).then(|| gain_m / time_s)
@@ -36,7 +48,7 @@ fn flown_backwards(step: &Step) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     /// From A at 500 m to B, 2695 m away: 107.8 s at 25 m/s, so at most 431 m.
     fn with(altitude_m: f64) -> String {
@@ -55,5 +67,6 @@ mod tests {
                 &["too-steep"],
             ),
         ]);
+        fixed_legs(&[(&with(935.0), "too-steep"), (&with(60.0), "too-steep")]);
     }
 }

@@ -1,21 +1,26 @@
 //! `bad-id`: an identifier is missing or has a character that it may not have; `duplicate-id`: it is there twice.
 
 use super::Inspection;
-use crate::{Id, LegKind, Problem, expression};
+use crate::{Edit, Id, LegKind, Problem, expression};
 use std::collections::HashSet;
 
 /// Longest identifier, bytes.
 const LONGEST: usize = 64;
+/// Most numbers that are tried for a free identifier.
+const MOST_NUMBERS: usize = 1000;
+/// Most identifiers for which another one is looked for.
+const MOST_RENAMED: usize = 64;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
     let ids = plan.fixes.iter().map(|f| &f.id).chain(plan.runways.iter().map(|r| &r.id));
+    let ids = ids.chain(plan.zones.iter().map(|z| &z.id));
+    let ids = ids.chain(plan.procedures.iter().map(|p| &p.id));
     let ids = ids.chain(plan.emergency_plans.iter().map(|e| &e.id));
     let ids = ids.chain(plan.all_stages().map(|(_, s)| &s.id));
-    let ids: Vec<&Id> = ids.chain(view.steps.iter().map(|s| &s.context.leg.id)).collect();
-    unique(ids.into_iter(), problems);
+    unique(ids.chain(view.steps.iter().map(|s| &s.context.leg.id)), problems);
     unique(plan.variables.iter().map(|v| &v.name), problems);
-    plan.variables.iter().map(|v| &v.name).for_each(|name| variable_name(name, problems));
+    plan.variables.iter().for_each(|v| variable_name(&v.name, problems));
     for step in &view.steps {
         if let LegKind::Intersection { branches, .. } = &step.context.leg.kind {
             unique(branches.iter().map(|b| &b.id), problems);
@@ -25,6 +30,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 
 fn unique<'a>(ids: impl Iterator<Item = &'a Id>, problems: &mut Vec<Problem>) {
     let mut seen = HashSet::new();
+    let mut twice = Vec::new();
     for id in ids {
         if !is_identifier(id.as_str()) {
             let message = format!(
@@ -34,11 +40,22 @@ fn unique<'a>(ids: impl Iterator<Item = &'a Id>, problems: &mut Vec<Problem>) {
             problems.push(Problem::error("bad-id", message).of(id));
         }
         if !seen.insert(id) {
-            problems.push(
-                Problem::error("duplicate-id", format!("rename one of those that are called `{id}`")).of(id),
-            );
+            twice.push(id);
         }
     }
+    for (index, id) in twice.into_iter().enumerate() {
+        let message = format!("rename one of those that are called `{id}`");
+        let free = || free(id, |other| seen.contains(other));
+        let free = (index < MOST_RENAMED).then(free).flatten();
+        let fix = free.map(|to| Edit::Distinguish { id: id.clone(), to });
+        problems.push(Problem::error("duplicate-id", message).of(id).perhaps_fixed_by(fix));
+    }
+}
+
+/// An identifier that nobody has, made of one that somebody has. Variables may not have a `-`.
+fn free(id: &Id, taken: impl Fn(&Id) -> bool) -> Option<Id> {
+    let numbered = |n: usize| Id::new(&format!("{id}_{n}"));
+    (2..MOST_NUMBERS).map(numbered).find(|id| !taken(id)).filter(|id| is_identifier(id.as_str()))
 }
 
 fn is_identifier(id: &str) -> bool {
@@ -48,10 +65,7 @@ fn is_identifier(id: &str) -> bool {
 
 /// Variables are names of the expression language too.
 fn variable_name(name: &Id, problems: &mut Vec<Problem>) {
-    let text = name.as_str();
-    let word = text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !text.starts_with(|c: char| c.is_ascii_digit());
-    if !word || expression::is_reserved(text) {
+    if !expression::is_variable_name(name.as_str()) {
         let message = format!(
             "rename the variable `{name}`: letters, digits and `_`, no digit first, no word of the expression language"
         );
@@ -61,7 +75,7 @@ fn variable_name(name: &Id, problems: &mut Vec<Problem>) {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document_with};
+    use crate::checks::testing::{check_legs, codes, document_with, fixed_legs};
 
     #[test]
     fn duplicate_and_malformed_ids() {
@@ -70,6 +84,14 @@ mod tests {
             (r#"<IF id="way" fix="A"/><TF id="b" fix="B"/>"#, &["duplicate-id"]),
             (r#"<IF id="a b" fix="A"/>"#, &["bad-id"]),
             (r#"<IF id="" fix="A"/>"#, &["bad-id"]),
+        ]);
+    }
+
+    #[test]
+    fn the_last_of_several_is_renamed() {
+        fixed_legs(&[
+            (r#"<IF id="a" fix="A"/><TF id="a" fix="B"/>"#, "duplicate-id"),
+            (r#"<IF id="way" fix="A"/><TF id="b" fix="B"/>"#, "duplicate-id"),
         ]);
     }
 

@@ -3,7 +3,7 @@
 use crate::expression::{self, Expression, ExpressionError, Names};
 use crate::{
     Altitude, AltitudeReference, Branch, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Place,
-    Runway, Section, Stage, StageKind, TurnDirection, Use, Value, Variables,
+    Runway, Section, Stage, StageKind, TurnDirection, Use, Value, VariableValue, Variables,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -15,8 +15,8 @@ use terrain::Terrain;
 /// Most different expressions of a plan: compiling one takes some 50 µs.
 const MOST_EXPRESSIONS: usize = 10_000;
 
-/// Standard gravity, m/s².
-const GRAVITY_MPS2: f64 = 9.80665;
+/// Shorter than this a path has no direction, metres.
+pub(super) const SHORTEST_M: f64 = 1.0;
 
 /// A plan under inspection.
 pub(super) struct Inspection<'a> {
@@ -169,6 +169,11 @@ impl<'a> Inspection<'a> {
         })
     }
 
+    /// A value at the start, of whatever type.
+    pub fn value(&self, source: &str) -> Option<VariableValue> {
+        self.expression(source)?.value(&self.env()).ok()
+    }
+
     fn env(&self) -> Env<'_> {
         let home = self.home().map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
         Env {
@@ -211,9 +216,9 @@ impl<'a> Inspection<'a> {
         Some(self.number(&altitude.metres)? + datum_m)
     }
 
-    /// The aircraft's planning turn radius, metres: V² / (g · tan φ).
+    /// The aircraft's planning turn radius, metres.
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
-        speed_mps * speed_mps / (GRAVITY_MPS2 * self.profile.planning_bank_deg.to_radians().tan())
+        self.profile.turn_radius_m(speed_mps)
     }
 
     fn trace(&mut self) {

@@ -2,7 +2,9 @@
 //! ask; `bad-deadline`: decided after the intersection.
 
 use super::Inspection;
-use crate::{DecideBefore, Edit, LegKind, Problem};
+use super::remedy::changed;
+use super::suggest::meant;
+use crate::{Branch, DecideBefore, Edit, Id, Leg, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for step in &view.steps {
@@ -12,45 +14,60 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
             Some(id) if !branches.iter().any(|b| b.id == *id) => {
                 let message =
                     format!("the default `{id}` is no branch of this intersection: name one of them");
-                problems.push(Problem::error("unknown-branch", message).of(&leg.id));
+                let near = meant(id, branches.iter().map(|b| &b.id));
+                let problem = Problem::error("unknown-branch", message).of(&leg.id);
+                problems.push(problem.perhaps_fixed_by(near.map(|id| set_default(&leg.id, id))));
             }
-            None if branches.len() > 1 => {
-                let problem = Problem::warning(
-                    "no-default",
-                    "name a default branch: without one the aircraft holds here and asks",
-                );
-                let first = branches
-                    .first()
-                    .map(|b| Edit::SetDefault { leg: leg.id.clone(), branch: Some(b.id.clone()) });
-                let problem = problem.of(&leg.id);
-                problems.push(first.map_or(problem.clone(), |edit| problem.fixed_by(edit)));
-            }
+            None if branches.len() > 1 => problems.push(undecided(leg, branches)),
             _ => {}
         }
         let (DecideBefore::Time(ahead) | DecideBefore::Distance(ahead)) = decide_before;
         if *ahead < 0.0 {
-            problems.push(Problem::error("bad-deadline", "make `decideBefore` 0 or more").of(&leg.id));
+            let problem = Problem::error("bad-deadline", "make `decideBefore` 0 or more").of(&leg.id);
+            problems.push(problem.perhaps_fixed_by(changed(leg, at_the_intersection)));
         }
     }
 }
 
+fn undecided(leg: &Leg, branches: &[Branch]) -> Problem {
+    let message = "name a default branch: without one the aircraft holds here and asks";
+    let first = branches.first().map(|b| set_default(&leg.id, &b.id));
+    Problem::warning("no-default", message).of(&leg.id).perhaps_fixed_by(first)
+}
+
+fn set_default(leg: &Id, branch: &Id) -> Edit {
+    Edit::SetDefault { leg: leg.clone(), branch: Some(branch.clone()) }
+}
+
+fn at_the_intersection(kind: &mut LegKind) -> Option<()> {
+    let LegKind::Intersection { decide_before, .. } = kind else { return None };
+    let (DecideBefore::Time(ahead) | DecideBefore::Distance(ahead)) = decide_before;
+    *ahead = 0.0;
+    Some(())
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     #[test]
     fn defaults_and_deadlines() {
         let with = |attributes: &str| {
             format!(
                 r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>
-                <intersection id="i" {attributes}><branch id="x"/><branch id="y" next="c"/></intersection><TF id="c" fix="C"/>"#
+                <intersection id="i" {attributes}><branch id="left"/><branch id="right" next="c"/></intersection><TF id="c" fix="C"/>"#
             )
         };
         check_legs(&[
-            (&with(r#"default="x" decideBefore="300m""#), &[]),
+            (&with(r#"default="left" decideBefore="300m""#), &[]),
             (&with(r#"default="z""#), &["unknown-branch"]),
             (&with(""), &["no-default"]),
-            (&with(r#"default="x" decideBefore="-1s""#), &["bad-deadline"]),
+            (&with(r#"default="left" decideBefore="-1s""#), &["bad-deadline"]),
+        ]);
+        fixed_legs(&[
+            (&with(r#"default="rigt""#), "unknown-branch"),
+            (&with(""), "no-default"),
+            (&with(r#"default="left" decideBefore="-1s""#), "bad-deadline"),
         ]);
     }
 }

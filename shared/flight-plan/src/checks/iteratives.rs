@@ -1,31 +1,37 @@
 //! `no-loop-end`: neither count nor condition; `bad-count`: a count below 1 or not whole; `empty-loop`: nothing to repeat.
 
 use super::Inspection;
-use crate::{Edit, LegKind, Problem, Value};
+use crate::{Edit, Id, LegKind, Problem, Value};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for step in &view.steps {
         let leg = step.context.leg;
         let LegKind::Iterative { count, until, body, .. } = &leg.kind else { continue };
         if count.is_none() && until.is_none() {
-            let once = Edit::SetCount { leg: leg.id.clone(), count: Some(Value::Constant(1.0)) };
             let message = "give this loop a `count` or an `until` condition: it would never end";
-            problems.push(Problem::error("no-loop-end", message).of(&leg.id).fixed_by(once));
+            problems.push(Problem::error("no-loop-end", message).of(&leg.id).fixed_by(counted(&leg.id, 1.0)));
         }
         if let Some(n) = count.as_ref().and_then(|c| view.number(c)).filter(|n| *n < 1.0 || n.fract() != 0.0)
         {
             let message = format!("make the count a whole number of at least 1, not {n}");
-            problems.push(Problem::error("bad-count", message).of(&leg.id));
+            let fix = counted(&leg.id, n.round().max(1.0));
+            problems.push(Problem::error("bad-count", message).of(&leg.id).fixed_by(fix));
         }
         if body.is_empty() {
-            problems.push(Problem::error("empty-loop", "put legs into this loop or remove it").of(&leg.id));
+            let fix = Edit::DeleteLeg { leg: leg.id.clone() };
+            let message = "put legs into this loop or remove it";
+            problems.push(Problem::error("empty-loop", message).of(&leg.id).fixed_by(fix));
         }
     }
 }
 
+fn counted(leg: &Id, count: f64) -> Edit {
+    Edit::SetCount { leg: leg.clone(), count: Some(Value::Constant(count)) }
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     fn with(attributes: &str, body: &str) -> String {
         format!(r#"<IF id="a" fix="A"/><iterative id="l" form="forward" {attributes}>{body}</iterative>"#)
@@ -41,6 +47,12 @@ mod tests {
             (&with(r#"count="0""#, body), &["bad-count"]),
             (&with(r#"count="2.5""#, body), &["bad-count"]),
             (&with(r#"count="2""#, ""), &["empty-loop"]),
+        ]);
+        fixed_legs(&[
+            (&with("", body), "no-loop-end"),
+            (&with(r#"count="0""#, body), "bad-count"),
+            (&with(r#"count="2.5""#, body), "bad-count"),
+            (&with(r#"count="2""#, ""), "empty-loop"),
         ]);
     }
 }

@@ -1,7 +1,7 @@
 //! `unreachable-leg`: no path leads to a leg; `endless-loop`: `next` leads back and never out again.
 
 use super::Inspection;
-use crate::{Leg, LegKind, Problem};
+use crate::{Edit, Leg, LegKind, Problem};
 use std::collections::HashMap;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -28,7 +28,8 @@ fn list(legs: &[Leg], problems: &mut Vec<Problem>) {
     for ((leg, reached), leaves) in legs.iter().zip(&reached).zip(&leaves) {
         if !reached {
             let message = "no leg leads here: remove it, or lead a `next` or a branch to it";
-            problems.push(Problem::warning("unreachable-leg", message).of(&leg.id));
+            let fix = Edit::DeleteLeg { leg: leg.id.clone() };
+            problems.push(Problem::warning("unreachable-leg", message).of(&leg.id).fixed_by(fix));
         } else if !leaves {
             let message = "`next` leads back here for ever: lead one way out, or use an iterative leg with a count or condition";
             problems.push(Problem::error("endless-loop", message).of(&leg.id));
@@ -62,7 +63,13 @@ fn reach(from: usize, edges: &[Vec<usize>], nodes: usize) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
+
+    #[test]
+    fn what_nobody_reaches_is_removed() {
+        let legs = r#"<IF id="a" fix="A" next="c"/><TF id="b" fix="B"/><TF id="c" fix="C"/>"#;
+        fixed_legs(&[(legs, "unreachable-leg")]);
+    }
 
     #[test]
     fn jumps_that_skip_or_never_end() {

@@ -1,112 +1,126 @@
-//! `unknown-fix`, `unknown-runway`, `unknown-emergency-plan`, `unknown-leg`: something is named that is not there.
+//! `unknown-fix`, `unknown-runway`, `unknown-emergency-plan`, `unknown-leg`, `unknown-variable`: something is named
+//! that is not there. (Procedures: where they are instantiated.)
 
 use super::Inspection;
-use crate::{Area, EmergencyChoice, Id, Leg, LegContext, LegKind, Pattern, Place, Problem};
+use super::suggest::meant;
+use crate::uses::Part;
+use crate::{Act, Edit, EmergencyChoice, Id, Leg, LegContext, LegKind, Place, Problem};
 use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
-    emergencies(view, &plan.emergency, None, problems);
+    let mut found = Found { view, left: MOST_SUGGESTIONS, problems };
+    found.emergencies(&plan.emergency, None);
     for emergency in &plan.emergency_plans {
-        runway(view, &emergency.runway, &emergency.id, problems);
+        found.runway(&emergency.runway, &emergency.id);
     }
     for (_, stage) in plan.all_stages() {
-        emergencies(view, &stage.emergency, Some(&stage.id), problems);
-        stage.runway.iter().for_each(|id| runway(view, id, &stage.id, problems));
+        found.emergencies(&stage.emergency, Some(&stage.id));
+        stage.runway.iter().for_each(|id| found.runway(id, &stage.id));
     }
     let known: Known = view.steps.iter().map(|s| (s.context.siblings.as_ptr(), &s.context.leg.id)).collect();
     for step in &view.steps {
         let leg = step.context.leg;
-        emergencies(view, &leg.emergency, Some(&leg.id), problems);
-        place(leg.place(), view, &leg.id, problems);
-        next(&known, &step.context, leg.next.as_ref(), problems);
+        found.leg(leg);
+        found.next(&known, &step.context, leg.next.as_ref());
         if let LegKind::Intersection { branches, .. } = &leg.kind {
-            branches.iter().for_each(|b| next(&known, &step.context, b.next.as_ref(), problems));
+            branches.iter().for_each(|b| found.next(&known, &step.context, b.next.as_ref()));
         }
     }
 }
 
-impl Leg {
-    /// Where it goes, holds, or what it is about; `None` for control legs and polygons.
-    pub fn place(&self) -> Option<&Place> {
-        match &self.kind {
-            LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
-                Some(&to.place)
-            }
-            LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Some(&to.place),
-            LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&h.fix.place),
-            LegKind::Orbit { centre, .. } => Some(centre),
-            LegKind::Scan(scan) => scan.area.centre(),
-            LegKind::Pattern(pattern) => pattern.centre(),
-            LegKind::Call(call) => call.anchor.as_ref(),
-            LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
-        }
-    }
-}
-
-impl Area {
-    /// The centre of a circle.
-    pub fn centre(&self) -> Option<&Place> {
-        match self {
-            Area::Circle { centre, .. } => Some(centre),
-            Area::Polygon { .. } | Area::Expression(_) => None,
-        }
-    }
-}
-
-impl Pattern {
-    /// What it is about, or where its route begins.
-    pub fn centre(&self) -> Option<&Place> {
-        match self {
-            Pattern::Spiral { centre, .. }
-            | Pattern::ExpandingSquare { centre, .. }
-            | Pattern::Sector { centre, .. }
-            | Pattern::FigureEight { centre, .. } => Some(centre),
-            Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => route.first(),
-            Pattern::Contour { area, .. } => area.centre(),
-        }
-    }
-}
-
-fn emergencies(view: &Inspection, choice: &EmergencyChoice, of: Option<&Id>, problems: &mut Vec<Problem>) {
-    for (_, id) in choice.by_cause.iter().filter(|(_, id)| !view.emergency_plans.contains(id)) {
-        let message = format!("there is no emergency plan `{id}`: add it or name another");
-        let problem = Problem::error("unknown-emergency-plan", message);
-        problems.push(of.map_or(problem.clone(), |of| problem.of(of)));
-    }
-}
-
-fn runway(view: &Inspection, id: &Id, of: &Id, problems: &mut Vec<Problem>) {
-    if !view.runways.contains_key(id) {
-        let message = format!("there is no runway `{id}`: add it or name another");
-        problems.push(Problem::error("unknown-runway", message).of(of));
-    }
-}
-
-fn place(place: Option<&Place>, view: &Inspection, of: &Id, problems: &mut Vec<Problem>) {
-    if let Some(Place::Fix(id)) = place
-        && !view.fixes.contains_key(id)
-    {
-        let message = format!("there is no fix `{id}`: add it or name another");
-        problems.push(Problem::error("unknown-fix", message).of(of));
-    }
-}
+/// Most misspelt names for which another one is looked for.
+const MOST_SUGGESTIONS: usize = 64;
 
 /// Each leg with the list it is in.
 type Known<'a> = HashSet<(*const Leg, &'a Id)>;
 
-fn next(known: &Known, context: &LegContext, next: Option<&Id>, problems: &mut Vec<Problem>) {
-    if let Some(id) = next.filter(|id| !known.contains(&(context.siblings.as_ptr(), *id))) {
+struct Found<'a, 'p> {
+    view: &'a Inspection<'a>,
+    /// Names that may still be compared with others.
+    left: usize,
+    problems: &'p mut Vec<Problem>,
+}
+
+impl<'a> Found<'a, '_> {
+    fn leg(&mut self, leg: &'a Leg) {
+        self.emergencies(&leg.emergency, Some(&leg.id));
+        leg.for_each_part(&mut |part| {
+            if let Part::Place(Place::Fix(id)) = part {
+                self.fix(id, &leg.id);
+            }
+        });
+        for action in &leg.actions {
+            if let Act::Set { variable, .. } = &action.act
+                && self.view.plan.variable(variable).is_none()
+            {
+                let known = self.view.plan.variables.iter().map(|v| &v.name);
+                self.report("unknown-variable", "variable", variable, Some(&leg.id), known);
+            }
+        }
+    }
+
+    fn emergencies(&mut self, choice: &EmergencyChoice, of: Option<&Id>) {
+        for (_, id) in choice.by_cause.iter().filter(|(_, id)| !self.view.emergency_plans.contains(id)) {
+            let known = self.view.plan.emergency_plans.iter().map(|e| &e.id);
+            self.report("unknown-emergency-plan", "emergency plan", id, of, known);
+        }
+    }
+
+    fn runway(&mut self, id: &Id, of: &Id) {
+        if !self.view.runways.contains_key(id) {
+            let known = self.view.plan.runways.iter().map(|r| &r.id);
+            self.report("unknown-runway", "runway", id, Some(of), known);
+        }
+    }
+
+    fn fix(&mut self, id: &Id, of: &Id) {
+        if !self.view.fixes.contains_key(id) {
+            self.report("unknown-fix", "fix", id, Some(of), self.view.plan.fixes.iter().map(|f| &f.id));
+        }
+    }
+
+    fn next(&mut self, known: &Known, context: &LegContext<'a>, next: Option<&Id>) {
+        let Some(id) = next.filter(|id| !known.contains(&(context.siblings.as_ptr(), *id))) else { return };
         let message = format!(
             "`next` names `{id}`, which is no leg of the same list: name a leg of this stage or loop"
         );
-        problems.push(Problem::error("unknown-leg", message).of(&context.leg.id));
+        let problem = Problem::error("unknown-leg", message).of(&context.leg.id);
+        let fix = self.corrected(id, Some(&context.leg.id), context.siblings.iter().map(|l| &l.id));
+        self.problems.push(problem.perhaps_fixed_by(fix));
+    }
+
+    fn report<'k>(
+        &mut self,
+        code: &'static str,
+        what: &str,
+        id: &Id,
+        of: Option<&Id>,
+        known: impl Iterator<Item = &'k Id>,
+    ) {
+        let message = format!("there is no {what} `{id}`: add it or name another");
+        let problem = Problem::error(code, message);
+        let problem = of.map_or(problem.clone(), |of| problem.of(of));
+        let fix = self.corrected(id, of, known);
+        self.problems.push(problem.perhaps_fixed_by(fix));
+    }
+
+    /// The edit that names what was probably meant.
+    fn corrected<'k>(
+        &mut self,
+        id: &Id,
+        of: Option<&Id>,
+        known: impl Iterator<Item = &'k Id>,
+    ) -> Option<Edit> {
+        self.left = self.left.checked_sub(1)?;
+        let to = meant(id, known)?.clone();
+        Some(Edit::Refer { of: of.cloned(), from: id.clone(), to })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     #[test]
     fn names_of_things_that_are_not_there() {
@@ -118,6 +132,18 @@ mod tests {
                 &["unknown-emergency-plan"],
             ),
             (r#"<IF id="a" fix="A" next="z"/><TF id="b" fix="B"/>"#, &["unknown-leg"]),
+            (
+                r#"<trackLine id="t" spacing="300"><route><point fix="A"/><point fix="Z"/></route></trackLine>"#,
+                &["unknown-fix"],
+            ),
+            (
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"><action on="abeam" fix="Z"><photo/></action></TF>"#,
+                &["unknown-fix"],
+            ),
+            (
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"><action on="end"><set variable="z" to="= 1.0"/></action></TF>"#,
+                &["unknown-variable"],
+            ),
         ]);
     }
 
@@ -126,5 +152,14 @@ mod tests {
         let legs = r#"<IF id="a" fix="A"/>
             <iterative id="loop" form="forward" count="2"><TF id="b" fix="B"/><TF id="c" fix="C" next="a"/></iterative>"#;
         check_legs(&[(legs, &["unknown-leg"])]);
+    }
+
+    #[test]
+    fn a_slip_of_the_pen_is_corrected() {
+        fixed_legs(&[
+            (r#"<IF id="a" fix="GATE8"/>"#, "unknown-fix"),
+            (r#"<IF id="a" fix="A" emergency="homr"/>"#, "unknown-emergency-plan"),
+            (r#"<IF id="a" fix="A" next="bett"/><TF id="beta" fix="B"/><TF id="c" fix="C"/>"#, "unknown-leg"),
+        ]);
     }
 }

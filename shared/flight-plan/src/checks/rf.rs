@@ -2,8 +2,10 @@
 //! more than 1° where the arc begins or ends; `turn-too-tight`: the radius is below the aircraft's at that speed.
 
 use super::Inspection;
-use super::inspection::{Path, Step, course_change_deg};
-use crate::{LegKind, Problem};
+use super::inspection::{Path, SHORTEST_M, Step, course_change_deg};
+use super::remedy::{changed, slower, speed_for_radius_mps};
+use crate::{Edit, LegKind, Problem, TurnDirection};
+use geometry::{LatLon, LocalFrame};
 
 /// Radii may differ by so much, metres, or by the share below, whichever is more.
 const TOLERANCE_M: f64 = 2.0;
@@ -12,15 +14,15 @@ const TOLERANCE_SHARE: f64 = 0.005;
 const TANGENT_DEG: f64 = 1.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
+    for (index, step) in view.steps.iter().enumerate() {
         if let LegKind::Rf { to, centre, .. } = &step.context.leg.kind
             && centre.is_valid()
             && let Some(end) = view.place(&to.place)
         {
             too_tight(view, step, centre.distance_m(end), problems);
-            circle(step, centre.distance_m(end), problems);
+            circle(view, index, centre.distance_m(end), problems);
         }
-        tangent(view, step, problems);
+        tangent(view, index, problems);
     }
 }
 
@@ -31,28 +33,34 @@ fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<P
             "widen the arc to {needed_m:.0} m or fly it slower: its radius is {radius_m:.0} m, too tight at {:.0} m/s",
             step.speed_mps
         );
-        problems.push(Problem::error("turn-too-tight", message).of(&step.context.leg.id));
+        let leg = &step.context.leg.id;
+        let fix = slower(view, leg, speed_for_radius_mps(view, radius_m));
+        problems.push(Problem::error("turn-too-tight", message).of(leg).perhaps_fixed_by(fix));
     }
 }
 
-fn circle(step: &Step, radius_m: f64, problems: &mut Vec<Problem>) {
+fn circle(view: &Inspection, index: usize, radius_m: f64, problems: &mut Vec<Problem>) {
+    let Some(step) = view.steps.get(index) else { return };
     let (Some(start), LegKind::Rf { centre, .. }) = (step.start, &step.context.leg.kind) else { return };
     let start_m = centre.distance_m(start.position);
     if (start_m - radius_m).abs() > TOLERANCE_M.max(radius_m * TOLERANCE_SHARE) {
         let message = format!(
             "move the centre or an end: the arc starts {start_m:.1} m from its centre and ends {radius_m:.1} m from it"
         );
-        problems.push(Problem::error("rf-not-on-circle", message).of(&step.context.leg.id));
+        let fix = tangent_arc(view, index).or_else(|| on_circle(view, step));
+        let problem = Problem::error("rf-not-on-circle", message).of(&step.context.leg.id);
+        problems.push(problem.perhaps_fixed_by(fix));
     }
 }
 
 /// Where this path meets the one before it, if one of the two is an arc.
-fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
-    let Some(before) = step.before.and_then(|i| view.steps.get(i)) else { return };
-    let (Some(here), Some(there)) = (step.path, before.path) else { return };
-    let blame = match (here, there) {
-        (Path::Arc { .. }, _) => step,
-        (_, Path::Arc { .. }) => before,
+fn tangent(view: &Inspection, index: usize, problems: &mut Vec<Problem>) {
+    let Some(step) = view.steps.get(index) else { return };
+    let Some((earlier, before)) = step.before.and_then(|i| Some((i, view.steps.get(i)?))) else { return };
+    let (Some(here), Some(there)) = (directed(step), directed(before)) else { return };
+    let (culprit, blame) = match (here, there) {
+        (Path::Arc { .. }, _) => (index, step),
+        (_, Path::Arc { .. }) => (earlier, before),
         _ => return,
     };
     let corner_deg = course_change_deg(there.course_end_deg(), here.course_start_deg());
@@ -61,13 +69,65 @@ fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
             "move the centre or an end: between `{}` and `{}` the path turns by {corner_deg:.1}°, at most {TANGENT_DEG}° is tangent",
             before.context.leg.id, step.context.leg.id
         );
-        problems.push(Problem::error("rf-not-tangent", message).of(&blame.context.leg.id));
+        let problem = Problem::error("rf-not-tangent", message).of(&blame.context.leg.id);
+        problems.push(problem.perhaps_fixed_by(tangent_arc(view, culprit)));
     }
+}
+
+/// The path of a step that is long enough to have a direction.
+fn directed(step: &Step) -> Option<Path> {
+    step.path.filter(|p| p.length_m() >= SHORTEST_M)
+}
+
+/// The centre of the arc from the step's start to its end that begins tangent to the path before it, if it ends tangent to the
+/// path after it too, and is wide enough: on the normal of the path at the start, where it is equally far from both ends.
+fn tangent_arc(view: &Inspection, index: usize) -> Option<Edit> {
+    let step = view.steps.get(index)?;
+    let LegKind::Rf { turn, .. } = &step.context.leg.kind else { return None };
+    let (start, end) = (step.start?.position, step.end?.position);
+    let course_deg = directed(view.steps.get(step.before?)?)?.course_end_deg();
+    let frame = LocalFrame::new(start);
+    let chord = frame.to_local(end);
+    let side_deg = if *turn == TurnDirection::Right { 90.0 } else { -90.0 };
+    let normal = geometry::Vec2::from_bearing_rad((course_deg + side_deg).to_radians());
+    let radius_m = chord.dot(chord) / (2.0 * chord.dot(normal));
+    if !(radius_m >= view.turn_radius_m(step.speed_mps) && radius_m < frame.radius_m()) {
+        return None;
+    }
+    let centre = frame.to_geo(normal * radius_m);
+    let follows = |s: &&Step| s.before == Some(index);
+    let after = view.steps.iter().skip(index + 1).take(2).find(follows).and_then(directed);
+    let leaves_deg = Path::arc(start, end, centre, *turn).course_end_deg();
+    let smooth = |path: Path| course_change_deg(leaves_deg, path.course_start_deg()) <= TANGENT_DEG;
+    if !after.is_none_or(smooth) {
+        return None;
+    }
+    moved_centre(step, centre)
+}
+
+/// The centre moved the shortest way to where it is equally far from both ends.
+fn on_circle(view: &Inspection, step: &Step) -> Option<Edit> {
+    let LegKind::Rf { centre, .. } = &step.context.leg.kind else { return None };
+    let frame = LocalFrame::new(step.start?.position);
+    let end = frame.to_local(step.end?.position);
+    let off = frame.to_local(*centre);
+    let along = off.dot(end) / end.dot(end) - 0.5;
+    let moved = off - end * along;
+    let wide = moved.length() >= view.turn_radius_m(step.speed_mps) && moved.length() < frame.radius_m();
+    wide.then(|| moved_centre(step, frame.to_geo(moved))).flatten()
+}
+
+fn moved_centre(step: &Step, to: LatLon) -> Option<Edit> {
+    changed(step.context.leg, |kind| {
+        let LegKind::Rf { centre, .. } = kind else { return None };
+        *centre = to;
+        Some(())
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
     use geometry::LatLon;
 
     /// Eastward from A to B, then a right turn of 90° about a centre south of B.
@@ -91,6 +151,11 @@ mod tests {
             (&with(300.0, 0.0, 1.2), &["rf-not-tangent"]),
             (&with(300.0, 10.0, 0.0), &["rf-not-on-circle"]),
             (&with(130.0, 0.0, 0.0), &["turn-too-tight"]),
+        ]);
+        fixed_legs(&[
+            (&with(300.0, 10.0, 0.0), "rf-not-on-circle"),
+            (&with(300.0, 0.0, 1.2), "rf-not-tangent"),
+            (&with(130.0, 0.0, 0.0), "turn-too-tight"),
         ]);
     }
 }

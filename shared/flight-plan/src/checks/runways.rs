@@ -1,7 +1,8 @@
 //! `runway-too-short`: the aircraft needs a longer one; `bad-heading`: outside 0..360.
 
 use super::Inspection;
-use crate::Problem;
+use super::remedy::normal_deg;
+use crate::{Edit, Problem, Runway};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for runway in &view.plan.runways {
@@ -14,22 +15,28 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
             problems.push(Problem::error("runway-too-short", message).of(&runway.id));
         }
         if runway.heading_deg.is_finite() && !(0.0..=360.0).contains(&runway.heading_deg) {
-            problems.push(
-                Problem::error("bad-heading", "write the runway's heading as degrees true in 0..360")
-                    .of(&runway.id),
-            );
+            let message = "write the runway's heading as degrees true in 0..360";
+            let problem = Problem::error("bad-heading", message).of(&runway.id);
+            problems.push(problem.perhaps_fixed_by(normalised(runway)));
         }
     }
 }
 
+fn normalised(runway: &Runway) -> Option<Edit> {
+    let with = Runway { heading_deg: normal_deg(runway.heading_deg)?, ..runway.clone() };
+    Some(Edit::ReplaceRunway { runway: runway.id.clone(), with: Box::new(with) })
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes, plan_with};
+    use crate::checks::testing::{codes, fixed, plan_with};
 
     #[test]
     fn a_runway_that_is_too_short_or_points_nowhere() {
         let plan = plan_with(r#"<IF id="a" fix="A"/>"#);
         assert_eq!(codes(&plan.replace(r#"length="500""#, r#"length="100""#)), ["runway-too-short"]);
-        assert_eq!(codes(&plan.replace(r#"heading="90""#, r#"heading="450""#)), ["bad-heading"]);
+        let turned = plan.replace(r#"heading="90""#, r#"heading="450""#);
+        assert_eq!(codes(&turned), ["bad-heading"]);
+        fixed(&turned, "bad-heading");
     }
 }

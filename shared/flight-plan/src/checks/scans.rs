@@ -1,57 +1,76 @@
-//! `bad-scan`: spacing, radius or overshoot that give no pattern; `bad-polygon`: an area that is no simple polygon.
+//! `bad-scan`: radius or overshoot that give no scan; `bad-polygon`: the area of a pattern is no simple polygon.
 
 use super::Inspection;
-use crate::{Area, Id, LegKind, Problem, Scan, Spacing};
+use super::remedy::changed;
+use crate::{Area, Edit, Leg, LegKind, Pattern, Problem, Scan, Value};
 use geometry::{LatLon, LocalFrame, Polygon};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for step in &view.steps {
-        if let LegKind::Scan(scan) = &step.context.leg.kind {
-            sizes(view, scan, &step.context.leg.id, problems);
-            if let Area::Polygon { corners, holes } = &scan.area {
-                polygon(corners, holes, &step.context.leg.id, problems);
+        let leg = step.context.leg;
+        match &leg.kind {
+            LegKind::Scan(scan) => {
+                overshoot(view, leg, scan, problems);
+                area(view, leg, &scan.area, problems);
             }
+            LegKind::Pattern(Pattern::Contour { area: outline, .. }) => area(view, leg, outline, problems),
+            _ => {}
         }
     }
 }
 
-fn sizes(view: &Inspection, scan: &Scan, of: &Id, problems: &mut Vec<Problem>) {
-    let mut report = |message: &str| problems.push(Problem::error("bad-scan", message).of(of));
-    if let Spacing::Metres(spacing_m) = &scan.spacing
-        && view.number(spacing_m).is_some_and(|s| s <= 0.0)
-    {
-        report("make the spacing of the tracks more than 0 m");
-    }
+fn overshoot(view: &Inspection, leg: &Leg, scan: &Scan, problems: &mut Vec<Problem>) {
     if view.number(&scan.overshoot_m).is_some_and(|o| o < 0.0) {
-        report("make the overshoot 0 m or more");
-    }
-    if let Area::Circle { radius_m, .. } = &scan.area
-        && view.number(radius_m).is_some_and(|r| r <= 0.0)
-    {
-        report("make the radius of the area more than 0 m");
+        let problem = Problem::error("bad-scan", "make the overshoot 0 m or more").of(&leg.id);
+        problems.push(problem.perhaps_fixed_by(without_overshoot(leg)));
     }
 }
 
-fn polygon(corners: &[LatLon], holes: &[Vec<LatLon>], of: &Id, problems: &mut Vec<Problem>) {
-    let mut report = |message: String| problems.push(Problem::error("bad-polygon", message).of(of));
+fn without_overshoot(leg: &Leg) -> Option<Edit> {
+    changed(leg, |kind| {
+        let LegKind::Scan(scan) = kind else { return None };
+        scan.overshoot_m = Value::Constant(0.0);
+        Some(())
+    })
+}
+
+fn area(view: &Inspection, leg: &Leg, area: &Area, problems: &mut Vec<Problem>) {
+    match area {
+        Area::Circle { radius_m, .. } => {
+            if view.number(radius_m).is_some_and(|r| r <= 0.0) {
+                let message = "make the radius of the area more than 0 m";
+                problems.push(Problem::error("bad-scan", message).of(&leg.id));
+            }
+        }
+        Area::Polygon { corners, holes } => {
+            let wrong = not_simple(corners, holes);
+            problems.extend(wrong.map(|what| Problem::error("bad-polygon", what).of(&leg.id)));
+        }
+        // a polygon variable takes nothing but simple polygons
+        Area::Expression(_) => {}
+    }
+}
+
+/// Why rings are no area, and what to do.
+pub(super) fn not_simple(corners: &[LatLon], holes: &[Vec<LatLon>]) -> Option<String> {
     match LocalFrame::around(corners).map(|frame| Polygon::from_geo(&frame, corners, holes)) {
-        None => report("give the area at least three corners, or a centre and a radius".into()),
-        Some(Err(error)) => report(format!("correct the area: {error}")),
-        Some(Ok(_)) => {}
+        None => Some("give the area at least three corners, or a centre and a radius".into()),
+        Some(Err(error)) => Some(format!("correct the area: {error}")),
+        Some(Ok(_)) => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
+
+    fn ring(corners: &[(f64, f64)]) -> String {
+        let corner =
+            |(x, y): &(f64, f64)| format!(r#"<corner lat="{}" lon="{}"/>"#, 36.3 + y / 1e3, -84.2 + x / 1e3);
+        corners.iter().map(corner).collect()
+    }
 
     fn area(corners: &[(f64, f64)], hole: &[(f64, f64)]) -> String {
-        let ring = |ring: &[(f64, f64)]| -> String {
-            let corner = |(x, y): &(f64, f64)| {
-                format!(r#"<corner lat="{}" lon="{}"/>"#, 36.3 + y / 1e3, -84.2 + x / 1e3)
-            };
-            ring.iter().map(corner).collect()
-        };
         let hole = if hole.is_empty() { String::new() } else { format!("<hole>{}</hole>", ring(hole)) };
         format!(r#"<scan id="s" spacing="150"><area>{}{hole}</area></scan>"#, ring(corners))
     }
@@ -61,28 +80,36 @@ mod tests {
         let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)];
         let inside = [(2.0, 2.0), (4.0, 2.0), (4.0, 4.0)];
         let concave = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (5.0, 2.0), (0.0, 10.0)];
+        let crossing = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)];
+        let crossing_hole = [(2.0, 2.0), (6.0, 6.0), (6.0, 2.0), (2.0, 6.0)];
+        let contour = format!(
+            r#"<contour id="s" spacing="150" turn="left" direction="inward"><area>{}</area></contour>"#,
+            ring(&crossing)
+        );
         check_legs(&[
             (&area(&square, &[]), &[]),
             (&area(&concave, &[]), &[]),
             (&area(&square, &inside), &[]),
             (&area(&[], &[]), &["bad-polygon"]),
             (&area(&[(0.0, 0.0), (10.0, 0.0)], &[]), &["bad-polygon"]),
-            (&area(&[(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)], &[]), &["bad-polygon"]),
+            (&area(&crossing, &[]), &["bad-polygon"]),
+            (&area(&square, &crossing_hole), &["bad-polygon"]),
             (&area(&square, &[(12.0, 2.0), (14.0, 2.0), (14.0, 4.0)]), &["bad-polygon"]),
             (&area(&square, &[(8.0, 2.0), (12.0, 2.0), (12.0, 4.0)]), &["bad-polygon"]),
+            (&contour, &["bad-polygon"]),
         ]);
     }
 
     #[test]
-    fn sizes_give_a_pattern() {
+    fn sizes_give_a_scan() {
         let with = |attributes: &str, radius: &str| {
             format!(r#"<scan id="s" {attributes}><area fix="A" radius="{radius}"/></scan>"#)
         };
         check_legs(&[
             (&with(r#"spacing="150""#, "500"), &[]),
-            (&with(r#"spacing="0""#, "500"), &["bad-scan"]),
             (&with(r#"spacing="150" overshoot="-1""#, "500"), &["bad-scan"]),
             (&with(r#"spacing="150""#, "0"), &["bad-scan"]),
         ]);
+        fixed_legs(&[(&with(r#"spacing="150" overshoot="-1""#, "500"), "bad-scan")]);
     }
 }

@@ -1,8 +1,9 @@
 //! `segment-too-short`: a track is shorter than what the turns at its ends take of it.
 
 use super::Inspection;
-use super::inspection::{Path, Step, course_change_deg};
-use crate::{LegKind, Problem};
+use super::inspection::{Path, SHORTEST_M, Step, course_change_deg};
+use super::remedy::slower;
+use crate::{Edit, LegKind, Problem};
 
 /// Turns up to this need no room, degrees (guidance: no fly-by for less).
 const STRAIGHT_DEG: f64 = 3.0;
@@ -13,27 +14,54 @@ const STEEPEST_FLY_BY_DEG: f64 = 150.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     // what the turn at each step's end takes of the step that follows it
-    let mut taken_after = vec![0.0; view.steps.len()];
-    let mut taken_before = vec![0.0; view.steps.len()];
+    let mut turns = vec![Turns::default(); view.steps.len()];
     for (index, step) in view.steps.iter().enumerate() {
         let Some((before, from)) = step.before.and_then(|i| Some((i, view.steps.get(i)?))) else { continue };
-        let (Some(arriving), Some(leaving)) = (from.path, step.path) else { continue };
+        let (Some(arriving), Some(leaving)) = (directed(from), directed(step)) else { continue };
         let change_deg = course_change_deg(arriving.course_end_deg(), leaving.course_start_deg());
         let (at_end_m, at_start_m) = room(view, from, change_deg);
-        taken_before.get_mut(before).into_iter().for_each(|t| *t = at_end_m);
-        taken_after.get_mut(index).into_iter().for_each(|t| *t = at_start_m);
+        turns.get_mut(before).into_iter().for_each(|t| (t.end_m, t.end_deg) = (at_end_m, change_deg));
+        turns.get_mut(index).into_iter().for_each(|t| t.start_m = at_start_m);
     }
-    for ((step, before_m), after_m) in view.steps.iter().zip(taken_before).zip(taken_after) {
-        if let Some(Path::Line { length_m, .. }) = step.path
-            && length_m < before_m + after_m
-        {
+    for (step, turns) in view.steps.iter().zip(turns) {
+        let Some(Path::Line { length_m, .. }) = directed(step) else { continue };
+        let needed_m = turns.start_m + turns.end_m;
+        if length_m < needed_m {
             let message = format!(
-                "lengthen this track to {:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more",
-                before_m + after_m
+                "lengthen this track to {needed_m:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more"
             );
-            problems.push(Problem::warning("segment-too-short", message).of(&step.context.leg.id));
+            let problem = Problem::warning("segment-too-short", message).of(&step.context.leg.id);
+            problems.push(problem.perhaps_fixed_by(fitted(view, step, &turns, length_m)));
         }
     }
+}
+
+/// What the turns at the ends of a track take of it, metres.
+#[derive(Debug, Clone, Default)]
+struct Turns {
+    start_m: f64,
+    end_m: f64,
+    /// The track change at its end.
+    end_deg: f64,
+}
+
+/// The path of a step that is long enough to have a direction.
+fn directed(step: &Step) -> Option<Path> {
+    step.path.filter(|p| p.length_m() >= SHORTEST_M)
+}
+
+/// Fly-over instead of fly-by at the end, or a lower speed on this track and the one before it.
+fn fitted(view: &Inspection, step: &Step, turns: &Turns, length_m: f64) -> Option<Edit> {
+    let leg = step.context.leg;
+    let turn_is_fly_by = turns.end_m > 0.0 && matches!(leg.kind, LegKind::Tf(_));
+    if turn_is_fly_by && turns.start_m <= length_m && turns.end_deg <= STEEPEST_FLY_BY_DEG {
+        return Some(Edit::SetFlyOver { leg: leg.id.clone(), fly_over: true });
+    }
+    // the room of a turn grows with the square of the speed, which rounds down to tenths
+    let factor = (length_m / (turns.start_m + turns.end_m)).sqrt();
+    let before = step.before.and_then(|i| view.steps.get(i))?;
+    let both = [before, step].map(|s| slower(view, &s.context.leg.id, s.speed_mps * factor));
+    Some(Edit::All(both.into_iter().collect::<Option<Vec<_>>>()?))
 }
 
 /// Metres that a turn takes of the track before it and of the track after it (guidance.md §1).
@@ -59,7 +87,7 @@ fn fly_over_room_m(radius_m: f64, change_rad: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     /// East, `metres` north, then west again: two turns of 90° by 137 m each.
     fn with(metres: f64, attributes: &str) -> String {
@@ -77,6 +105,10 @@ mod tests {
             (&with(500.0, r#"flyOver="true""#), &["segment-too-short"]),
             (&with(700.0, r#"flyOver="true""#), &[]),
             (&with(250.0, r#"speed="20""#), &[]),
+        ]);
+        fixed_legs(&[
+            (&with(250.0, ""), "segment-too-short"),
+            (&with(500.0, r#"flyOver="true""#), "segment-too-short"),
         ]);
     }
 }

@@ -1,7 +1,7 @@
 //! `speed-outside-envelope`: slower or faster than the aircraft flies.
 
 use super::Inspection;
-use crate::{Id, Problem, Value};
+use crate::{Edit, Id, Problem, Value};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
@@ -18,20 +18,24 @@ fn one(view: &Inspection, speed: Option<&Value<f64>>, of: &Id, problems: &mut Ve
         let message = format!(
             "choose a speed between {min:.0} and {max:.0} m/s: the aircraft can't fly {speed:.0} m/s"
         );
-        problems.push(Problem::error("speed-outside-envelope", message).of(of));
+        let nearest = Value::Constant(speed.clamp(min, max));
+        let fix = Edit::SetSpeed { of: of.clone(), speed_mps: Some(nearest) };
+        problems.push(Problem::error("speed-outside-envelope", message).of(of).fixed_by(fix));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::check_legs;
+    use crate::checks::testing::{check_legs, fixed_legs};
 
     #[test]
     fn too_slow_and_too_fast() {
+        let with = |speed: u32| format!(r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="{speed}"/>"#);
         check_legs(&[
-            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="16"/>"#, &[]),
-            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="15"/>"#, &["speed-outside-envelope"]),
-            (r#"<IF id="a" fix="A"/><TF id="b" fix="B" speed="36"/>"#, &["speed-outside-envelope"]),
+            (&with(16), &[]),
+            (&with(15), &["speed-outside-envelope"]),
+            (&with(36), &["speed-outside-envelope"]),
         ]);
+        fixed_legs(&[(&with(15), "speed-outside-envelope"), (&with(36), "speed-outside-envelope")]);
     }
 }

@@ -2,16 +2,20 @@
 //! landing not last; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
 
 use super::Inspection;
-use crate::{Problem, Stage, StageKind};
+use crate::{Altitude, AltitudeReference, Edit, Id, Problem, Stage, StageKind, Value};
+
+/// Climb-out altitude where a take-off has none, metres above its runway.
+const CLIMB_OUT_M: f64 = 100.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
-    let lists = std::iter::once(&plan.stages).chain(plan.emergency_plans.iter().map(|e| &e.stages));
-    for (list, stages) in lists.enumerate() {
+    let main = std::iter::once((&plan.stages, None));
+    let lists = main.chain(plan.emergency_plans.iter().map(|e| (&e.stages, Some(&e.runway))));
+    for (stages, landing) in lists {
         for (index, stage) in stages.iter().enumerate() {
-            complete(stage, problems);
+            complete(view, stage, landing, problems);
             let wrong = match stage.kind {
-                StageKind::TakeOff => index != 0 || list != 0,
+                StageKind::TakeOff => index != 0 || landing.is_some(),
                 StageKind::Land => index + 1 != stages.len(),
                 _ => false,
             };
@@ -23,40 +27,64 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     }
 }
 
-fn complete(stage: &Stage, problems: &mut Vec<Problem>) {
-    let mut report = |code, message: &str| problems.push(Problem::error(code, message).of(&stage.id));
+/// `landing`: the runway of the emergency plan that the stage is in.
+fn complete(view: &Inspection, stage: &Stage, landing: Option<&Id>, problems: &mut Vec<Problem>) {
+    let mut report = |code, message: &str, fix: Option<Edit>| {
+        problems.push(Problem::error(code, message).of(&stage.id).perhaps_fixed_by(fix));
+    };
     match stage.kind {
         StageKind::TakeOff if stage.runway.is_none() || stage.altitude.is_none() => {
-            report("take-off-incomplete", "give the take-off stage a `runway` and a climb-out `altitude`");
+            let message = "give the take-off stage a `runway` and a climb-out `altitude`";
+            report("take-off-incomplete", message, completed(view, stage));
         }
         StageKind::Land if stage.runway.is_none() => {
-            report("land-incomplete", "give the land stage a `runway`")
+            let runway = landing.or_else(|| only_runway(view));
+            report("land-incomplete", "give the land stage a `runway`", runway.map(|r| named(stage, r)));
         }
         _ => {}
     }
     if matches!(stage.kind, StageKind::TakeOff | StageKind::Land) && !stage.legs.is_empty() {
-        report(
-            "stage-with-legs",
-            "move these legs to a stage before or after: the autopilot performs take-off and landing itself",
-        );
+        let message =
+            "move these legs to a stage before or after: the autopilot performs take-off and landing itself";
+        report("stage-with-legs", message, None);
+    }
+}
+
+fn completed(view: &Inspection, stage: &Stage) -> Option<Edit> {
+    let runway = stage.runway.as_ref().or_else(|| only_runway(view))?;
+    let usual = || Altitude { metres: Value::Constant(CLIMB_OUT_M), reference: AltitudeReference::Home };
+    let altitude = Some(stage.altitude.clone().unwrap_or_else(usual));
+    Some(Edit::All(vec![named(stage, runway), Edit::SetAltitude { of: stage.id.clone(), altitude }]))
+}
+
+fn named(stage: &Stage, runway: &Id) -> Edit {
+    Edit::SetRunway { of: stage.id.clone(), runway: runway.clone() }
+}
+
+/// The plan's runway, if it has just one.
+fn only_runway<'a>(view: &Inspection<'a>) -> Option<&'a Id> {
+    match view.plan.runways.as_slice() {
+        [runway] => Some(&runway.id),
+        _ => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes, document};
+    use crate::checks::testing::{codes, document, fixed};
+
+    const WAY: &str = r#"<stage id="w" type="en-route" altitude="500" altitudeReference="amsl"><IF id="a" fix="A"/></stage>"#;
 
     #[test]
     fn take_off_and_land_need_what_they_need() {
-        let way = r#"<stage id="w" type="en-route" altitude="500" altitudeReference="amsl"><IF id="a" fix="A"/></stage>"#;
         let to = r#"<stage id="t" type="take-off" runway="R" altitude="100" altitudeReference="home"/>"#;
         let cases: [(&str, &[&str]); 5] = [
-            (&format!("{to}{way}"), &[]),
-            (&format!(r#"<stage id="t" type="take-off" runway="R"/>{way}"#), &["take-off-incomplete"]),
-            (&format!(r#"{way}<stage id="l" type="land"/>"#), &["land-incomplete"]),
-            (&format!("{way}{to}"), &["stage-order"]),
+            (&format!("{to}{WAY}"), &[]),
+            (&format!(r#"<stage id="t" type="take-off" runway="R"/>{WAY}"#), &["take-off-incomplete"]),
+            (&format!(r#"{WAY}<stage id="l" type="land"/>"#), &["land-incomplete"]),
+            (&format!("{WAY}{to}"), &["stage-order"]),
             (
-                &format!(r#"{to}{way}<stage id="l" type="land" runway="R"><TF id="z" fix="B"/></stage>"#),
+                &format!(r#"{to}{WAY}<stage id="l" type="land" runway="R"><TF id="z" fix="B"/></stage>"#),
                 &["stage-with-legs"],
             ),
         ];
@@ -65,5 +93,11 @@ mod tests {
                 codes(&document(stages)).into_iter().filter(|c| *c != "no-altitude").collect();
             assert_eq!(found, expected, "{stages}");
         }
+    }
+
+    #[test]
+    fn the_only_runway_is_proposed() {
+        fixed(&document(&format!(r#"<stage id="t" type="take-off"/>{WAY}"#)), "take-off-incomplete");
+        fixed(&document(&format!(r#"{WAY}<stage id="l" type="land"/>"#)), "land-incomplete");
     }
 }

@@ -2,7 +2,8 @@
 
 use super::Inspection;
 use super::inspection::{Point, Step};
-use crate::{Problem, StageKind};
+use super::remedy::level;
+use crate::{Edit, Problem, StageKind};
 
 /// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
 const MARGIN_M: f64 = 50.0;
@@ -22,15 +23,27 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
                 "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high there",
                 MARGIN_M - clearance_m
             );
-            problems.push(Problem::error("below-terrain", message).of(leg));
+            let problem = Problem::error("below-terrain", message).of(leg);
+            problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
         } else if clearance_m < MARGIN_M && !near_runway {
             let message = format!(
                 "raise this leg by {:.0} m: it passes {clearance_m:.0} m above the ground",
                 MARGIN_M - clearance_m
             );
-            problems.push(Problem::warning("low-clearance", message).of(leg));
+            let problem = Problem::warning("low-clearance", message).of(leg);
+            problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
         }
     }
+}
+
+/// The leg raised at both ends by what it lacks, to whole metres.
+fn raised(view: &Inspection, step: &Step, clearance_m: f64) -> Option<Edit> {
+    let lacks_m = MARGIN_M - clearance_m;
+    let lift = |of: &Step| Some(level(&of.context.leg.id, (of.end?.altitude_amsl_m? + lacks_m).ceil()));
+    let end = lift(step)?;
+    let Some(before) = step.before.and_then(|i| view.steps.get(i)) else { return Some(end) };
+    let start = lift(before)?;
+    Some(Edit::All(vec![start, end]))
 }
 
 /// `(least height above the ground, ground elevation there)`, metres.
@@ -58,7 +71,7 @@ fn clearance_m(view: &Inspection, at: Point, altitude_m: f64) -> Option<(f64, f6
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes_over, plan_with};
+    use crate::checks::testing::{codes_over, fixed, plan_with};
     use geometry::LatLon;
     use terrain::Terrain;
 
@@ -77,6 +90,18 @@ mod tests {
             [(440.0, &[][..]), (460.0, &["low-clearance"]), (510.0, &["below-terrain"])]
         {
             assert_eq!(codes_over(&plan, &Ridge(ridge_m)), expected, "{ridge_m}");
+        }
+    }
+
+    /// Over flat ground at 300 m.
+    #[test]
+    fn a_leg_that_is_too_low_is_raised() {
+        for altitude_m in [340, 250] {
+            let low = format!(
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B" altitude="{altitude_m}" altitudeReference="amsl"/>"#
+            );
+            let code = if altitude_m < 300 { "below-terrain" } else { "low-clearance" };
+            fixed(&plan_with(&low), code);
         }
     }
 }

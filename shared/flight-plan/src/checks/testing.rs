@@ -1,7 +1,7 @@
 //! For the rules' tests: a good plan, changed at one place.
 #![allow(clippy::panic)]
 
-use crate::{check, read};
+use crate::{FlightPlan, Problem, check, read};
 use aircraft::Profile;
 use terrain::{Flat, Terrain};
 
@@ -31,6 +31,7 @@ pub fn document_with(variables: &str, stages: &str, emergency_plans: &str) -> St
         r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
              <fixes>
                <fix id="A" lat="36.3" lon="-84.20"/> <fix id="B" lat="36.3" lon="-84.17"/> <fix id="C" lat="36.33" lon="-84.17"/>
+               <fix id="GATE" lat="36.3" lon="-84.23"/>
              </fixes>
              <runways><runway id="R" lat="36.3" lon="-84.21" elevation="300" heading="90" length="500" priority="1"/></runways>
              <variables>{variables}</variables>
@@ -57,6 +58,27 @@ pub fn check_legs(cases: &[(&str, &[&str])]) {
     for (legs, expected) in cases {
         assert_eq!(codes(&plan_with(legs)), *expected, "{legs}");
     }
+}
+
+/// Each main plan's legs have a problem with this code, and the edit that it offers removes it.
+pub fn fixed_legs(cases: &[(&str, &str)]) {
+    for (legs, code) in cases {
+        fixed(&plan_with(legs), code);
+    }
+}
+
+/// A document has a problem with this code, and the edit that it offers removes it.
+pub fn fixed(document: &str, code: &str) {
+    let plan = read(document).plan;
+    let problem = with_code(&plan, code).unwrap_or_else(|| panic!("no {code}: {document}"));
+    let fix = problem.fix.clone().unwrap_or_else(|| panic!("no edit offered: {problem}"));
+    let repaired = fix.apply(&plan).unwrap_or_else(|error| panic!("{error}: {fix:?}"));
+    let again = with_code(&repaired, code).filter(|again| again.subject == problem.subject);
+    assert_eq!(again, None, "{fix:?} of {document}");
+}
+
+fn with_code(plan: &FlightPlan, code: &str) -> Option<Problem> {
+    check(plan, &Profile::default(), &Flat(300.0)).into_iter().find(|p| p.code == code)
 }
 
 #[test]

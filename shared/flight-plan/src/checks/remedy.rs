@@ -1,0 +1,51 @@
+//! Edits that several rules offer.
+
+use super::Inspection;
+use crate::{Altitude, AltitudeReference, Edit, Id, Leg, LegKind, Problem, Value};
+
+impl Problem {
+    /// The same problem, with an edit that removes it, if there is one.
+    pub(super) fn perhaps_fixed_by(self, edit: Option<Edit>) -> Self {
+        match edit {
+            Some(edit) => self.fixed_by(edit),
+            None => self,
+        }
+    }
+}
+
+/// The leg with another kind. Not for loops: their bodies may be large.
+pub(super) fn with_kind(leg: &Leg, kind: LegKind) -> Edit {
+    let with = Box::new(Leg { kind, ..leg.clone() });
+    Edit::ReplaceLeg { leg: leg.id.clone(), with }
+}
+
+/// The leg with its kind changed in place; `None` if `change` has nothing to change. Not for loops.
+pub(super) fn changed(leg: &Leg, change: impl FnOnce(&mut LegKind) -> Option<()>) -> Option<Edit> {
+    let mut kind = leg.kind.clone();
+    change(&mut kind)?;
+    Some(with_kind(leg, kind))
+}
+
+/// Flying a leg at a lower speed, where the aircraft can: to tenths of m/s below `speed_mps`.
+pub(super) fn slower(view: &Inspection, of: &Id, speed_mps: f64) -> Option<Edit> {
+    let tenths_mps = (speed_mps * 10.0).floor() / 10.0;
+    let possible = tenths_mps >= view.profile.min_airspeed_mps;
+    possible.then(|| Edit::SetSpeed { of: of.clone(), speed_mps: Some(Value::Constant(tenths_mps)) })
+}
+
+/// The greatest speed at which the aircraft turns within a radius, m/s.
+pub(super) fn speed_for_radius_mps(view: &Inspection, radius_m: f64) -> f64 {
+    let per_speed = view.turn_radius_m(1.0);
+    (radius_m / per_speed).max(0.0).sqrt()
+}
+
+/// An altitude above mean sea level for a leg or stage.
+pub(super) fn level(of: &Id, amsl_m: f64) -> Edit {
+    let altitude = Altitude { metres: Value::Constant(amsl_m), reference: AltitudeReference::Amsl };
+    Edit::SetAltitude { of: of.clone(), altitude: Some(altitude) }
+}
+
+/// A direction as degrees true in 0..360; `None` if it is no number.
+pub(super) fn normal_deg(direction_deg: f64) -> Option<f64> {
+    direction_deg.is_finite().then(|| geometry::geodesy::normalise_360(direction_deg))
+}

@@ -1,0 +1,80 @@
+//! What somebody meant who misspelt an identifier.
+
+use crate::Id;
+
+/// Most identifiers that are compared with a misspelt one.
+const MOST_CANDIDATES: usize = 10_000;
+/// Longest identifier that is compared, bytes.
+const LONGEST: usize = 64;
+/// One slip for so many letters, up to [`MOST_SLIPS`].
+const LETTERS_A_SLIP: usize = 3;
+const MOST_SLIPS: usize = 2;
+
+/// The one identifier that is spelt nearly like `wanted`: a slip for three letters, two at most; `None` if there is no such
+/// one, or if several are equally near.
+pub(super) fn meant<'a>(wanted: &Id, known: impl Iterator<Item = &'a Id>) -> Option<&'a Id> {
+    let allowed = (wanted.as_str().len() / LETTERS_A_SLIP).min(MOST_SLIPS);
+    let mut best: Option<(usize, &Id)> = None;
+    let mut alone = true;
+    for id in known.take(MOST_CANDIDATES) {
+        let Some(slips) = slips(wanted.as_str(), id.as_str()).filter(|n| *n <= allowed) else { continue };
+        match best {
+            Some((least, other)) if slips > least || id == other => {}
+            Some((least, _)) if slips == least => alone = false,
+            _ => (best, alone) = (Some((slips, id)), true),
+        }
+    }
+    best.filter(|_| alone).map(|(_, id)| id)
+}
+
+/// Letters to insert, remove or change (Levenshtein 1966); `None` if that is surely too many.
+fn slips(a: &str, b: &str) -> Option<usize> {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    if a.len().abs_diff(b.len()) > MOST_SLIPS || a.len().max(b.len()) > LONGEST {
+        return None;
+    }
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = i;
+        let mut left = i + 1;
+        for (y, above) in b.iter().zip(row.iter_mut().skip(1)) {
+            let here = (diagonal + usize::from(x != y)).min(left + 1).min(*above + 1);
+            diagonal = std::mem::replace(above, here);
+            left = here;
+        }
+        row.first_mut().into_iter().for_each(|first| *first = i + 1);
+    }
+    row.last().copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_only_near_spelling_is_meant() {
+        let known: Vec<Id> = ["COVE", "RIDGE1", "RIDGE2", "north-strip", "A"].map(Id::new).into();
+        let cases = [
+            ("COVA", Some("COVE")),
+            ("CAVA", None),
+            ("COVES", Some("COVE")),
+            ("norht-strip", Some("north-strip")),
+            ("RIDGE3", None),
+            ("RIDGE11", Some("RIDGE1")),
+            ("B", None),
+            ("", None),
+        ];
+        for (wanted, expected) in cases {
+            let found = meant(&wanted.into(), known.iter()).map(Id::as_str);
+            assert_eq!(found, expected, "{wanted}");
+        }
+    }
+
+    #[test]
+    fn slips_are_counted_as_everybody_counts_them() {
+        for (a, b, n) in [("kitten", "sitting", 3), ("", "ab", 2), ("ab", "ab", 0), ("ab", "ba", 2)] {
+            assert_eq!(slips(a, b), Some(n), "{a} {b}");
+        }
+        assert_eq!(slips("a", "abcd"), None);
+    }
+}

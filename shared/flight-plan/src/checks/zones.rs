@@ -1,0 +1,129 @@
+//! `bad-zone`: an outline that is no simple polygon or no circle, or limits that are expressions; `zone-altitudes`: a floor
+//! that is not below the ceiling; `zone-times`: a time that ends before it begins.
+
+use super::Inspection;
+use super::scans::not_simple;
+use crate::{Altitude, Edit, Problem, Value, Zone, ZoneShape};
+
+/// Greatest radius of a zone, metres.
+const LARGEST_M: f64 = 200_000.0;
+
+pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
+    for zone in &view.plan.zones {
+        outline(zone, problems);
+        limits(view, zone, problems);
+        times(zone, problems);
+    }
+}
+
+fn outline(zone: &Zone, problems: &mut Vec<Problem>) {
+    let wrong = match &zone.shape {
+        ZoneShape::Circle { centre, radius_m } => {
+            let possible = centre.is_valid() && *radius_m > 0.0 && *radius_m <= LARGEST_M;
+            let message = || {
+                format!(
+                    "give the zone a centre on Earth and a radius of more than 0 m, at most {LARGEST_M:.0} m"
+                )
+            };
+            (!possible).then(message)
+        }
+        ZoneShape::Polygon(corners) => not_simple(corners, &[]),
+    };
+    problems.extend(wrong.map(|message| Problem::error("bad-zone", message).of(&zone.id)));
+}
+
+fn limits(view: &Inspection, zone: &Zone, problems: &mut Vec<Problem>) {
+    let both = || zone.floor.iter().chain(&zone.ceiling);
+    let constant = |a: &Altitude| matches!(a.metres, Value::Constant(x) if x.is_finite());
+    if !both().all(constant) {
+        let message = "write floor and ceiling of a zone as finite numbers";
+        problems.push(Problem::error("bad-zone", message).of(&zone.id));
+        return;
+    }
+    let Some((floor, ceiling)) = zone.floor.as_ref().zip(zone.ceiling.as_ref()) else { return };
+    // limits above different data depend on the ground: the review of the path sees them
+    let below = view.number(&floor.metres).zip(view.number(&ceiling.metres)).is_none_or(|(f, c)| f < c);
+    if floor.reference == ceiling.reference && !below {
+        let message = "make the zone's floor lower than its ceiling: as it is, it is nowhere";
+        let swapped = Zone { floor: Some(ceiling.clone()), ceiling: Some(floor.clone()), ..zone.clone() };
+        let fix = (floor.metres != ceiling.metres).then(|| replaced(zone, swapped));
+        problems.push(Problem::error("zone-altitudes", message).of(&zone.id).perhaps_fixed_by(fix));
+    }
+}
+
+fn times(zone: &Zone, problems: &mut Vec<Problem>) {
+    if zone.active.iter().any(|t| t.from_unix_s >= t.until_unix_s) {
+        let message = "make the zone's active times end after they begin";
+        let mut ordered = zone.clone();
+        ordered.active.retain(|t| t.from_unix_s != t.until_unix_s);
+        for time in &mut ordered.active {
+            let (a, b) = (time.from_unix_s, time.until_unix_s);
+            (time.from_unix_s, time.until_unix_s) = (a.min(b), a.max(b));
+        }
+        // a zone without times is always active
+        let fix = (!ordered.active.is_empty()).then(|| replaced(zone, ordered));
+        problems.push(Problem::error("zone-times", message).of(&zone.id).perhaps_fixed_by(fix));
+    }
+}
+
+fn replaced(zone: &Zone, with: Zone) -> Edit {
+    Edit::ReplaceZone { zone: zone.id.clone(), with: Box::new(with) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::{codes, fixed, plan_with};
+
+    fn with(zone: &str) -> String {
+        let plan = plan_with(r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>"#);
+        plan.replace("<mainPlan", &format!("<zones>{zone}</zones><mainPlan"))
+    }
+
+    fn circle(attributes: &str, inside: &str) -> String {
+        with(&format!(r#"<keepOut id="z" lat="36.5" lon="-84.5" {attributes}>{inside}</keepOut>"#))
+    }
+
+    fn polygon(corners: &[(f64, f64)]) -> String {
+        let corner = |(x, y): &(f64, f64)| format!(r#"<corner lat="{}" lon="{}"/>"#, 36.5 + y, -84.5 + x);
+        with(&format!(r#"<keepIn id="z">{}</keepIn>"#, corners.iter().map(corner).collect::<String>()))
+    }
+
+    #[test]
+    fn outlines_are_areas() {
+        let crossing = [(0.0, 0.0), (0.1, 0.1), (0.1, 0.0), (0.0, 0.1)];
+        assert_eq!(codes(&circle(r#"radius="500""#, "")), [""; 0]);
+        assert_eq!(codes(&circle(r#"radius="0""#, "")), ["bad-zone"]);
+        assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)])), [""; 0]);
+        assert_eq!(codes(&polygon(&crossing)), ["bad-zone"]);
+        assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0)])), ["bad-zone"]);
+    }
+
+    #[test]
+    fn a_floor_is_below_its_ceiling() {
+        let band = |floor: u32, reference: &str, ceiling: u32| {
+            circle(
+                &format!(
+                    r#"radius="500" floor="{floor}" floorReference="{reference}" ceiling="{ceiling}" ceilingReference="amsl""#
+                ),
+                "",
+            )
+        };
+        assert_eq!(codes(&band(300, "amsl", 900)), [""; 0]);
+        assert_eq!(codes(&band(900, "amsl", 300)), ["zone-altitudes"]);
+        assert_eq!(codes(&band(300, "amsl", 300)), ["zone-altitudes"]);
+        assert_eq!(codes(&band(900, "agl", 300)), [""; 0]);
+        fixed(&band(900, "amsl", 300), "zone-altitudes");
+    }
+
+    #[test]
+    fn times_end_after_they_begin() {
+        let active = |from: &str, until: &str| {
+            circle(r#"radius="500""#, &format!(r#"<active from="{from}" until="{until}"/>"#))
+        };
+        let (early, late) = ("2026-06-01T06:00:00Z", "2026-06-01T09:00:00Z");
+        assert_eq!(codes(&active(early, late)), [""; 0]);
+        assert_eq!(codes(&active(late, early)), ["zone-times"]);
+        assert_eq!(codes(&active(early, early)), ["zone-times"]);
+        fixed(&active(late, early), "zone-times");
+    }
+}
