@@ -23,7 +23,7 @@ pub use criss_cross::CrissCross;
 pub use expanding_square::{ExpandingSquare, SquareParameters};
 pub use figure_eight::{FigureEight, FigureEightParameters};
 pub use route::Route;
-pub use sector::{SectorParameters, SectorSearch};
+pub use sector::{PASS_TURN_DEG, SectorParameters, SectorSearch};
 pub use spiral::{Spiral, SpiralParameters};
 pub use track_line::{TrackLine, TrackLineParameters};
 

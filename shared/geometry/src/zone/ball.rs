@@ -56,8 +56,8 @@ impl Ball {
     #[inline]
     pub fn meets(&self, other: &Ball) -> bool {
         let reach_m = self.radius_m + other.radius_m;
-        // not written as ≤: NaN must not get lost here
-        !(squared_distance_m2(self.middle_m, other.middle_m) > reach_m * reach_m)
+        let apart_m2 = squared_distance_m2(self.middle_m, other.middle_m);
+        apart_m2 <= reach_m * reach_m || apart_m2.is_nan()
     }
 }
 

@@ -19,6 +19,7 @@ use ball::Ball;
 use circle::Circle;
 use outline::Outline;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// What a zone is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -104,7 +105,7 @@ pub struct Zone {
 #[derive(Debug, Clone)]
 enum Ground {
     Circle(Circle),
-    Outline(Outline),
+    Outline(Box<Outline>),
 }
 
 /// A piece of path; its altitude changes evenly along it.
@@ -177,7 +178,7 @@ impl Zone {
     /// # Errors
     /// A shape, band or margin that makes no sense, or a polygon larger than a local frame holds.
     pub fn new(shape: &Shape, band: Band, rule: Rule, margin_m: f64) -> Result<Self, ZoneError> {
-        if !(band.floor_m < band.ceiling_m) {
+        if band.floor_m.partial_cmp(&band.ceiling_m) != Some(Ordering::Less) {
             return Err(ZoneError::Band { floor_m: band.floor_m, ceiling_m: band.ceiling_m });
         }
         if !(margin_m >= 0.0 && margin_m.is_finite()) {
@@ -191,7 +192,7 @@ impl Zone {
             Shape::Polygon { outer, holes } => {
                 let outline = Outline::new(outer, holes)?;
                 let ball = outline.ball();
-                (Ground::Outline(outline), ball)
+                (Ground::Outline(Box::new(outline)), ball)
             }
         };
         Ok(Self { ground, band, rule, margin_m, ball: ball.grown(margin_m) })
