@@ -121,6 +121,16 @@ impl Feeder {
         self.waiting.is_none() && self.sent.is_none()
     }
 
+    /// A transaction was sent and not answered yet.
+    pub fn is_under_way(&self) -> bool {
+        self.sent.is_some()
+    }
+
+    /// The first waypoint that waits to be sent.
+    pub fn first_waiting(&self) -> Option<Token> {
+        self.waiting.as_ref()?.waypoints.first().map(|w| w.token)
+    }
+
     /// So many waypoints wait.
     pub fn waiting(&self) -> usize {
         self.waiting.as_ref().map_or(0, |f| f.waypoints.len())

@@ -138,7 +138,7 @@ impl Manager {
     fn order(&mut self, now: Time, command: Command, out: &mut Vec<Effect>) -> Result<(), Refusal> {
         let starts = command == Command::Start;
         let request = self.next_request();
-        let answer = self.step(now, Input::Command { request, command }, out);
+        let answer = self.step(now, Input::Command { request, by: OPERATOR.into(), command }, out);
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.liaison.want(GatewayRequest::Launch);
@@ -170,7 +170,9 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) -> Result<ProposalReport, Refusal> {
         let request = self.next_request();
-        match self.step(now, Input::Propose { request, program: Arc::new(program) }, out) {
+        let (program, objections) = (Arc::new(program), Vec::new());
+        let input = Input::Propose { request, program, based_on: None, objections };
+        match self.step(now, input, out) {
             Some(Ok(Answer::Proposal(report))) => Ok(*report),
             Some(Err(refusal)) => Err(refusal),
             Some(Ok(Answer::Done)) | None => Err(unanswered()),
@@ -295,17 +297,23 @@ impl Manager {
     /// After a join in flight: the gateway must have what we believe it has. Waypoints that it
     /// took and has no more, while the aircraft stands, have been flown: nothing is flown twice.
     fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
-        let ours = self.executor.ahead().last().map(|w| w.token);
         let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
         if self.liaison.is_on_ground() && answer.last.is_none() && taken {
             self.liaison.unwant_launch();
             self.step(now, Input::Progress { current: None }, out);
-        } else if self.liaison.take_controlled() || (ours != answer.last && self.feeder.is_idle()) {
+        } else if self.liaison.take_controlled() || self.has_gap(answer.last) {
             self.feeder.clear();
             // having given control back, the executor sends everything ahead anew
             self.step(now, Input::GatewayControls(true), out);
             self.step(now, Input::GatewayControls(false), out);
         }
+    }
+
+    /// What waits to be sent does not continue what the gateway has.
+    fn has_gap(&self, last: Option<Token>) -> bool {
+        let sent = self.executor.ahead().map(|w| w.token);
+        let first_waiting = self.feeder.first_waiting().unwrap_or(Token(u64::MAX));
+        !self.feeder.is_under_way() && last != sent.take_while(|token| *token < first_waiting).last()
     }
 
     /// The gateway was given waypoints by an earlier process that no record knows of (its disk had failed, or was too
@@ -360,6 +368,8 @@ impl Manager {
                 Output::Hold => self.liaison.want(GatewayRequest::Hold),
                 Output::Event(event) => self.happened(event, out),
                 Output::Answer { result, .. } => answer = Some(result),
+                // told by its event, which is published
+                Output::Act { .. } => {}
             }
         }
         answer
@@ -425,9 +435,12 @@ impl Manager {
 /// An input as it is recorded.
 fn recorded(input: &Input) -> Record {
     match input {
-        Input::Propose { request, program } => {
-            Record::Propose { request: *request, plan: program.hash.clone() }
-        }
+        Input::Propose { request, program, based_on, objections } => Record::Propose {
+            request: *request,
+            plan: program.hash.clone(),
+            based_on: *based_on,
+            forbidden: objections.iter().any(Problem::is_error),
+        },
         other => Record::Input(other.clone()),
     }
 }

@@ -138,9 +138,15 @@ fn replay<S: Storage>(manager: &mut Manager, turn: &[Entry], plans: &mut Plans<'
     let mut unheard = Vec::new();
     for entry in turn {
         let input = match &entry.what {
-            Record::Propose { request, plan } => {
-                Input::Propose { request: *request, program: plans.get(plan)? }
-            }
+            Record::Propose { request, plan, based_on, forbidden } => Input::Propose {
+                request: *request,
+                program: plans.get(plan)?,
+                based_on: *based_on,
+                objections: forbidden
+                    .then(|| Problem::error("recorded", "forbidden before the restart"))
+                    .into_iter()
+                    .collect(),
+            },
             Record::Input(input) => input.clone(),
             Record::NumberAfter(token) => {
                 manager.executor.number_after(*token);

@@ -28,6 +28,10 @@ pub enum Record {
         request: RequestId,
         /// Hash of the plan.
         plan: Arc<str>,
+        /// As in the input.
+        based_on: Option<u64>,
+        /// There was an objection that forbids flying it.
+        forbidden: bool,
     },
     /// The gateway has seen this token: the executor numbers on behind it.
     NumberAfter(Token),
