@@ -2,7 +2,7 @@
 
 use aircraft::Profile;
 use divan::{Bencher, black_box, counter::BytesCount};
-use flight_plan::{Env, FlightState, Variables};
+use flight_plan::{Edit, Env, FlightState, Variables};
 use geometry::LatLon;
 use quick_xml::{Reader, events::Event};
 use std::fmt::Write;
@@ -13,11 +13,11 @@ use terrain::Flat;
 const LEGS: usize = 50_000;
 
 /// A plan of many tracks of 1 km, to and fro.
-fn document() -> String {
+fn document(legs: usize) -> String {
     let mut text = String::from(
-        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Large" aircraft="trainer"><mainPlan><stage id="s" type="en-route" altitude="500" altitudeReference="amsl">"#,
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Large" aircraft="trainer"><fixes><fix id="A" lat="36.3" lon="-84.2"/></fixes><runways><runway id="R" lat="36.29" lon="-84.2" elevation="300" heading="0" length="600"/></runways><mainPlan emergency="home"><stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="home"/><stage id="s" type="en-route" altitude="500" altitudeReference="amsl">"#,
     );
-    for i in 0..LEGS {
+    for i in 0..legs {
         let lat = 36.3 + 0.005 * (i / 2 % 40) as f64;
         let lon = -84.2 + 0.011 * (i.div_ceil(2) % 2) as f64;
         let _ = writeln!(
@@ -25,7 +25,7 @@ fn document() -> String {
             r#"  <TF id="leg-{i}" name="Track {i}" lat="{lat:.6}" lon="{lon:.6}" speed="24"/>"#
         );
     }
-    text + "</stage></mainPlan></flightPlan>"
+    text + r#"</stage><stage id="l" type="land" runway="R"/></mainPlan><emergencyPlans><emergencyPlan id="home" runway="R"><stage id="h" type="arrival"><DF id="d" fix="A" altitude="450" altitudeReference="amsl"/></stage><stage id="hl" type="land" runway="R"/></emergencyPlan></emergencyPlans></flightPlan>"#
 }
 
 /// Every event, and every attribute of every element.
@@ -45,26 +45,62 @@ fn bare_pass(text: &str) -> usize {
 
 #[divan::bench]
 fn bare_quick_xml(bencher: Bencher) {
-    let text = document();
+    let text = document(LEGS);
     bencher.counter(BytesCount::of_str(&text)).bench_local(|| bare_pass(black_box(&text)));
 }
 
 #[divan::bench]
 fn read(bencher: Bencher) {
-    let text = document();
+    let text = document(LEGS);
     bencher.counter(BytesCount::of_str(&text)).bench_local(|| flight_plan::read(black_box(&text)));
 }
 
 #[divan::bench]
 fn write(bencher: Bencher) {
-    let plan = flight_plan::read(document()).plan;
-    bencher.counter(BytesCount::of_str(&document())).bench_local(|| flight_plan::write(black_box(&plan)));
+    let plan = flight_plan::read(document(LEGS)).plan;
+    bencher.counter(BytesCount::of_str(&document(LEGS))).bench_local(|| flight_plan::write(black_box(&plan)));
 }
 
 #[divan::bench(sample_count = 5)]
 fn check_50_000_legs(bencher: Bencher) {
-    let plan = flight_plan::read(document()).plan;
+    let plan = flight_plan::read(document(LEGS)).plan;
     bencher.bench_local(|| flight_plan::check(black_box(&plan), &Profile::default(), &Flat(300.0)));
+}
+
+/// The limit is a second.
+#[divan::bench(sample_count = 5)]
+fn read_check_and_compile_100_000_legs(bencher: Bencher) {
+    let text = document(100_000);
+    bencher.bench_local(|| {
+        flight_plan::compile_document(black_box(text.as_bytes()), &Profile::default(), &Flat(300.0)).is_ok()
+    });
+}
+
+/// What an edit costs in a plan of this size, step by step.
+const EDITED_LEGS: usize = 10_000;
+
+fn an_edit() -> Edit {
+    Edit::MoveWaypoint { leg: "leg-5000".into(), to: LatLon::new(36.41, -84.21) }
+}
+
+#[divan::bench]
+fn edit_one_of_10_000_legs(bencher: Bencher) {
+    let plan = flight_plan::read(document(EDITED_LEGS)).plan;
+    bencher.bench_local(|| an_edit().apply(black_box(&plan)));
+}
+
+#[divan::bench]
+fn check_10_000_legs(bencher: Bencher) {
+    let plan = flight_plan::read(document(EDITED_LEGS)).plan;
+    bencher.bench_local(|| flight_plan::check(black_box(&plan), &Profile::default(), &Flat(300.0)));
+}
+
+#[divan::bench]
+fn compile_10_000_legs(bencher: Bencher) {
+    let plan = flight_plan::read(document(EDITED_LEGS)).plan;
+    bencher
+        .with_inputs(|| plan.clone())
+        .bench_local_values(|plan| flight_plan::compile(plan, &Profile::default(), &Flat(300.0)).is_ok());
 }
 
 #[divan::bench]
@@ -81,7 +117,7 @@ fn evaluate_a_condition(bencher: Bencher) {
 #[allow(clippy::disallowed_methods)] // a bench reads the clock
 /// Both over the same bytes, one after the other: the ratio in one line.
 fn print_ratio() {
-    let text = document();
+    let text = document(LEGS);
     let time = |pass: &dyn Fn()| -> Duration {
         let timed = (0..9).map(|_| {
             let start = Instant::now();

@@ -1,13 +1,16 @@
 //! Edits as values: what a person did to a plan, to be applied, undone, or offered as a remedy.
 
+mod lists;
+mod number;
 mod repair;
+mod shape;
+mod things;
 
 use crate::{
-    Altitude, Area, Cause, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Place, PlanWaypoint,
-    Runway, Stage, Value, Variable, VariableError, VariableValue, Zone,
+    Altitude, Area, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegAction, LegKind,
+    PlanWaypoint, Procedure, Runway, Stage, Value, Variable, VariableError, VariableValue, Zone,
 };
 use geometry::LatLon;
-use std::sync::Arc;
 
 /// A change of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,38 +22,76 @@ pub enum Edit {
         /// Where to.
         to: LatLon,
     },
-    /// Moves what a leg goes to, holds at or is about: its waypoint, its centre, or the whole of a polygon (by its first corner).
-    /// A place that names a fix becomes a position of the leg's own; one that is bound to a variable moves the variable's initial value.
+    /// Moves what a leg or zone goes to, holds at or is about: its waypoint, its centre, or the whole of a polygon or route (by its
+    /// first point). A place that names a fix becomes a position of the leg's own; one that is bound to a variable moves
+    /// the variable's initial value.
     MoveWaypoint {
-        /// The leg.
+        /// The leg or zone.
         leg: Id,
         /// Where to.
         to: LatLon,
     },
-    /// Moves a corner of a scan's polygon.
+    /// Moves a corner of a leg's or zone's polygon, or a point of a route.
     MoveCorner {
-        /// The scan.
+        /// The leg or zone.
         leg: Id,
-        /// `None`: the outer ring, else which hole.
+        /// `None`: the outer ring or the route, else which hole.
         hole: Option<usize>,
         /// Which corner.
         corner: usize,
         /// Where to.
         to: LatLon,
     },
-    /// Resizes a circular scan or an orbit. A radius that is bound to a variable alone changes the variable's initial value.
+    /// Puts a corner into a leg's or zone's polygon, or a point into a route.
+    InsertCorner {
+        /// The leg or zone.
+        leg: Id,
+        /// `None`: the outer ring or the route, else which hole.
+        hole: Option<usize>,
+        /// Before which corner; their number: at the end.
+        before: usize,
+        /// Where.
+        at: LatLon,
+    },
+    /// Removes a corner of a leg's or zone's polygon, or a point of a route.
+    RemoveCorner {
+        /// The leg or zone.
+        leg: Id,
+        /// `None`: the outer ring or the route, else which hole.
+        hole: Option<usize>,
+        /// Which corner.
+        corner: usize,
+    },
+    /// Resizes a circular area or zone, or a pattern that has a radius (a spiral's outer one). A radius that is bound to a
+    /// variable alone changes the variable's initial value.
     SetRadius {
-        /// The leg.
+        /// The leg or zone.
         leg: Id,
         /// Metres.
         radius_m: f64,
     },
-    /// Gives a scan another area.
+    /// Gives a scan or contour another area.
     SetArea {
-        /// The scan.
+        /// The scan or contour.
         leg: Id,
         /// The area.
         area: Area,
+    },
+    /// Sets any number of a leg by its name in the document: see [`Leg::numbers`].
+    SetNumber {
+        /// The leg.
+        leg: Id,
+        /// Its attribute: `course`, `spacing`, `turns`, …
+        name: String,
+        /// `None`: leave it out, where that is possible.
+        value: Option<Value<f64>>,
+    },
+    /// What is done on a leg.
+    SetActions {
+        /// The leg.
+        leg: Id,
+        /// All of its actions.
+        actions: Vec<LegAction>,
     },
     /// Sets or removes the altitude of a leg or stage.
     SetAltitude {
@@ -87,7 +128,7 @@ pub enum Edit {
         /// The branch.
         branch: Option<Id>,
     },
-    /// Renames a leg, stage, fix or emergency plan for people; its identifier stays.
+    /// Renames a leg, stage, fix, zone, procedure or emergency plan for people; its identifier stays.
     Rename {
         /// Which.
         id: Id,
@@ -161,26 +202,20 @@ pub enum Edit {
         /// The runway.
         runway: Id,
     },
-    /// Puts another runway in the place of one.
-    ReplaceRunway {
-        /// The old runway.
-        runway: Id,
+    /// Adds something at the end of its list.
+    Add(Box<Thing>),
+    /// Puts another thing of the same sort in the place of one.
+    Replace {
+        /// The old one.
+        id: Id,
         /// The new one.
-        with: Box<Runway>,
+        with: Box<Thing>,
     },
-    /// Puts another variable in the place of one.
-    ReplaceVariable {
-        /// The old variable.
-        name: Id,
-        /// The new one.
-        with: Box<Variable>,
-    },
-    /// Puts another zone in the place of one.
-    ReplaceZone {
-        /// The old zone.
-        zone: Id,
-        /// The new one.
-        with: Box<Zone>,
+    /// Removes a fix, runway, variable, zone, procedure, stage or emergency plan, with what is in it. (Of a variable and a thing
+    /// with one name: the thing.)
+    Remove {
+        /// Its identifier.
+        id: Id,
     },
     /// Adds a stage at the end.
     AppendStage {
@@ -189,13 +224,46 @@ pub enum Edit {
         /// The stage.
         stage: Box<Stage>,
     },
-    /// Removes a procedure and what is in it.
-    DeleteProcedure {
-        /// The procedure.
-        procedure: Id,
+    /// Puts a new stage before another one.
+    InsertStage {
+        /// The stage.
+        stage: Box<Stage>,
+        /// Before which.
+        before: Id,
+    },
+    /// Takes a stage elsewhere.
+    MoveStage {
+        /// The stage.
+        stage: Id,
+        /// Before which.
+        before: Id,
+    },
+    /// Puts a copy of a leg into a list. It and the legs in it get new identifiers where theirs are taken.
+    PasteLeg {
+        /// The leg.
+        leg: Box<Leg>,
+        /// Where.
+        at: Spot,
     },
     /// Several edits as one.
     All(Vec<Edit>),
+}
+
+/// A part of a plan that has a list of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Thing {
+    /// A named position.
+    Fix(Fix),
+    /// A runway.
+    Runway(Runway),
+    /// A variable.
+    Variable(Variable),
+    /// A zone.
+    Zone(Zone),
+    /// A procedure.
+    Procedure(Procedure),
+    /// An emergency plan.
+    EmergencyPlan(EmergencyPlan),
 }
 
 /// A place in a list of legs.
@@ -205,7 +273,7 @@ pub enum Spot {
     Before(Id),
     /// After a leg.
     After(Id),
-    /// At the end of a stage or loop.
+    /// At the end of a stage, procedure or loop.
     EndOf(Id),
 }
 
@@ -245,13 +313,25 @@ impl Edit {
             Edit::MoveFix { fix, to } => {
                 found(plan.fixes.iter_mut().find(|f| f.id == *fix), fix)?.position = *to
             }
-            Edit::MoveWaypoint { leg, to } => return move_waypoint(plan, leg, *to),
-            Edit::MoveCorner { leg, hole, corner, to } => *corner_mut(plan, leg, *hole, *corner)? = *to,
-            Edit::SetRadius { leg, radius_m } => return set_radius(plan, leg, *radius_m),
-            Edit::SetArea { leg, area } => match &mut leg_mut(plan, leg)?.kind {
-                LegKind::Scan(scan) => scan.area = area.clone(),
-                _ => return Err(not_applicable(leg, "is no scan: it has no area")),
+            Edit::MoveWaypoint { leg, to } => return shape::move_waypoint(plan, leg, *to),
+            Edit::MoveCorner { leg, hole, corner, to } => {
+                return shape::corner(plan, leg, *hole, |points| points.set(*corner, *to));
+            }
+            Edit::InsertCorner { leg, hole, before, at } => {
+                return shape::corner(plan, leg, *hole, |points| points.insert(*before, *at));
+            }
+            Edit::RemoveCorner { leg, hole, corner } => {
+                return shape::corner(plan, leg, *hole, |points| points.remove(*corner));
+            }
+            Edit::SetRadius { leg, radius_m } => return shape::set_radius(plan, leg, *radius_m),
+            Edit::SetArea { leg, area } => match shape::area_mut(leg_mut(plan, leg)?) {
+                Some(old) => old.clone_from(area),
+                None => return Err(not_applicable(leg, "has no area: choose a scan or contour")),
             },
+            Edit::SetNumber { leg, name, value } => {
+                return number::set(leg_mut(plan, leg)?, name, value.as_ref());
+            }
+            Edit::SetActions { leg, actions } => leg_mut(plan, leg)?.actions.clone_from(actions),
             Edit::SetAltitude { of, altitude } => {
                 *at_leg_or_stage(plan, of, |l| &mut l.altitude, |s| &mut s.altitude)? = altitude.clone()
             }
@@ -272,22 +352,29 @@ impl Edit {
             Edit::SetEmergency { of, cause, plan: to } => {
                 associate(emergency_mut(plan, of.as_ref())?, *cause, to.as_ref())
             }
-            Edit::InsertLeg { leg, at } => return insert(plan, leg.as_ref().clone(), at),
-            Edit::DeleteLeg { leg } => drop(remove(plan, leg)?),
+            Edit::InsertLeg { leg, at } => return lists::insert(plan, leg.as_ref().clone(), at),
+            Edit::PasteLeg { leg, at } => return lists::paste(plan, leg.as_ref().clone(), at),
+            Edit::DeleteLeg { leg } => drop(lists::remove(plan, leg)?),
             Edit::MoveLeg { leg, at } => {
-                let moved = remove(plan, leg)?;
-                return insert(plan, moved, at);
+                let moved = lists::remove(plan, leg)?;
+                return lists::insert(plan, moved, at);
             }
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
             Edit::SetAircraft(name) => plan.aircraft.clone_from(name),
             Edit::SetRunway { of, runway } => return repair::set_runway(plan, of, runway),
-            Edit::ReplaceRunway { runway, with } => return repair::replace_runway(plan, runway, with),
-            Edit::ReplaceVariable { name, with } => return repair::replace_variable(plan, name, with),
-            Edit::ReplaceZone { zone, with } => return repair::replace_zone(plan, zone, with),
-            Edit::AppendStage { to, stage } => return repair::append_stage(plan, to.as_ref(), stage),
-            Edit::DeleteProcedure { procedure } => return repair::delete_procedure(plan, procedure),
+            Edit::Add(thing) => things::add(plan, thing),
+            Edit::Replace { id, with } => return things::replace(plan, id, with),
+            Edit::Remove { id } => return things::remove(plan, id),
+            Edit::AppendStage { to, stage } => return lists::append_stage(plan, to.as_ref(), stage),
+            Edit::InsertStage { stage, before } => {
+                return lists::insert_stage(plan, stage.as_ref().clone(), before);
+            }
+            Edit::MoveStage { stage, before } => {
+                let moved = lists::remove_stage(plan, stage)?;
+                return lists::insert_stage(plan, moved, before);
+            }
             Edit::All(edits) => return edits.iter().try_for_each(|edit| edit.change(plan)),
         }
         Ok(())
@@ -306,23 +393,8 @@ fn stages_mut(plan: &mut FlightPlan) -> impl Iterator<Item = &mut crate::Stage> 
     plan.stages.iter_mut().chain(plan.emergency_plans.iter_mut().flat_map(|e| e.stages.iter_mut()))
 }
 
-/// The list that holds a leg, and the leg's index in it.
-fn list_of<'a>(legs: &'a mut Vec<Leg>, id: &Id) -> Option<(&'a mut Vec<Leg>, usize)> {
-    if let Some(index) = legs.iter().position(|l| l.id == *id) {
-        return Some((legs, index));
-    }
-    legs.iter_mut().find_map(|leg| match &mut leg.kind {
-        LegKind::Iterative { body, .. } => list_of(body, id),
-        _ => None,
-    })
-}
-
-fn list_in_plan<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<(&'a mut Vec<Leg>, usize), EditError> {
-    found(stages_mut(plan).find_map(|s| list_of(&mut s.legs, id)), id)
-}
-
 fn leg_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Leg, EditError> {
-    let (list, index) = list_in_plan(plan, id)?;
+    let (list, index) = lists::list_in_plan(plan, id)?;
     found(list.get_mut(index), id)
 }
 
@@ -345,6 +417,12 @@ fn name_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut String, Edi
     }
     if plan.emergency_plan(id).is_some() {
         return found(plan.emergency_plans.iter_mut().find(|e| e.id == *id).map(|e| &mut e.name), id);
+    }
+    if plan.procedure(id).is_some() {
+        return found(plan.procedures.iter_mut().find(|p| p.id == *id).map(|p| &mut p.name), id);
+    }
+    if plan.zones.iter().any(|z| z.id == *id) {
+        return found(plan.zones.iter_mut().find(|z| z.id == *id).map(|z| &mut z.name), id);
     }
     at_leg_or_stage(plan, id, |l| &mut l.name, |s| &mut s.name)
 }
@@ -380,137 +458,6 @@ fn set_variable(plan: &mut FlightPlan, name: &Id, value: VariableValue) -> Resul
     variable.accepts(&value)?;
     variable.initial = value;
     Ok(())
-}
-
-fn move_waypoint(plan: &mut FlightPlan, id: &Id, to: LatLon) -> Result<(), EditError> {
-    if let LegKind::Scan(scan) = &mut leg_mut(plan, id)?.kind
-        && let Area::Polygon { corners, holes } = &mut scan.area
-    {
-        shift(corners, holes, to);
-        return Ok(());
-    }
-    match place_mut(leg_mut(plan, id)?) {
-        None => Err(not_applicable(id, "goes nowhere itself: move the legs in it")),
-        Some(Place::Position(Value::Expression(source))) => {
-            let variable = bound_to(id, source)?;
-            set_variable(plan, &variable, VariableValue::Position(to))
-        }
-        Some(place) => {
-            *place = Place::Position(Value::Constant(to));
-            Ok(())
-        }
-    }
-}
-
-/// The variable that an expression consists of.
-fn bound_to(id: &Id, source: &Arc<str>) -> Result<Id, EditError> {
-    let word = source.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    if word {
-        Ok(Id(source.clone()))
-    } else {
-        Err(not_applicable(id, "is computed by an expression: edit the variables in it"))
-    }
-}
-
-fn place_mut(leg: &mut Leg) -> Option<&mut Place> {
-    match &mut leg.kind {
-        LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
-            Some(&mut to.place)
-        }
-        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Some(&mut to.place),
-        LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&mut h.fix.place),
-        LegKind::Orbit { centre, .. } => Some(centre),
-        LegKind::Scan(scan) => centre_mut(&mut scan.area),
-        LegKind::Pattern(pattern) => match pattern {
-            Pattern::Spiral { centre, .. }
-            | Pattern::ExpandingSquare { centre, .. }
-            | Pattern::Sector { centre, .. }
-            | Pattern::FigureEight { centre, .. } => Some(centre),
-            Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => route.first_mut(),
-            Pattern::Contour { area, .. } => centre_mut(area),
-        },
-        LegKind::Call(call) => call.anchor.as_mut(),
-        LegKind::Iterative { .. } | LegKind::Intersection { .. } => None,
-    }
-}
-
-fn centre_mut(area: &mut Area) -> Option<&mut Place> {
-    match area {
-        Area::Circle { centre, .. } => Some(centre),
-        Area::Polygon { .. } | Area::Expression(_) => None,
-    }
-}
-
-/// Moves a polygon so that its first corner comes to `to`; distances and bearings from there stay.
-fn shift(corners: &mut [LatLon], holes: &mut [Vec<LatLon>], to: LatLon) {
-    let Some(from) = corners.first().copied().filter(|p| p.is_valid()) else { return };
-    for corner in corners.iter_mut().chain(holes.iter_mut().flatten()).filter(|p| p.is_valid()) {
-        let way = from.inverse(*corner);
-        *corner = to.destination(way.bearing_start_deg, way.distance_m);
-    }
-}
-
-fn corner_mut<'a>(
-    plan: &'a mut FlightPlan,
-    id: &Id,
-    hole: Option<usize>,
-    corner: usize,
-) -> Result<&'a mut LatLon, EditError> {
-    let missing = not_applicable(id, "has no such corner: choose a corner of its polygon");
-    let LegKind::Scan(scan) = &mut leg_mut(plan, id)?.kind else { return Err(missing) };
-    let Area::Polygon { corners, holes } = &mut scan.area else { return Err(missing) };
-    let ring = match hole {
-        None => Some(corners),
-        Some(hole) => holes.get_mut(hole),
-    };
-    ring.and_then(|ring| ring.get_mut(corner)).ok_or(missing)
-}
-
-fn set_radius(plan: &mut FlightPlan, id: &Id, radius_m: f64) -> Result<(), EditError> {
-    let radius = match &mut leg_mut(plan, id)?.kind {
-        LegKind::Scan(crate::Scan { area: Area::Circle { radius_m, .. }, .. })
-        | LegKind::Orbit { radius_m, .. } => radius_m,
-        _ => return Err(not_applicable(id, "has no radius: choose a circular scan or an orbit")),
-    };
-    match radius {
-        Value::Constant(old) => *old = radius_m,
-        Value::Expression(source) => {
-            let variable = bound_to(id, source)?;
-            return set_variable(plan, &variable, VariableValue::Number(radius_m));
-        }
-    }
-    Ok(())
-}
-
-fn remove(plan: &mut FlightPlan, id: &Id) -> Result<Leg, EditError> {
-    let (list, index) = list_in_plan(plan, id)?;
-    Ok(list.remove(index))
-}
-
-fn insert(plan: &mut FlightPlan, leg: Leg, at: &Spot) -> Result<(), EditError> {
-    match at {
-        Spot::Before(id) => {
-            let (list, index) = list_in_plan(plan, id)?;
-            list.insert(index, leg);
-        }
-        Spot::After(id) => {
-            let (list, index) = list_in_plan(plan, id)?;
-            list.insert(index + 1, leg);
-        }
-        Spot::EndOf(id) => list_inside(plan, id)?.push(leg),
-    }
-    Ok(())
-}
-
-/// The list that a stage or loop has inside.
-fn list_inside<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Vec<Leg>, EditError> {
-    if plan.stage(id).is_some() {
-        return found(stages_mut(plan).find(|s| s.id == *id).map(|s| &mut s.legs), id);
-    }
-    match &mut leg_mut(plan, id)?.kind {
-        LegKind::Iterative { body, .. } => Ok(body),
-        _ => Err(not_applicable(id, "has no legs inside: choose a stage or an iterative leg")),
-    }
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub mod xml;
 
 pub use checks::check;
 pub use diff::Difference;
-pub use edit::{Edit, EditError, Spot};
+pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};
 pub use history::History;
 pub use model::*;

@@ -103,6 +103,11 @@ impl Leg {
         numbers
     }
 
+    /// Every number of [`Leg::numbers`], to be changed (and other values).
+    pub(crate) fn for_each_number_mut(&mut self, visit: &mut dyn FnMut(SlotMut)) {
+        slots::exclusive::geometry(self, visit);
+    }
+
     /// Every value in the leg itself, to be changed.
     pub(crate) fn for_each_slot_mut(&mut self, visit: &mut dyn FnMut(SlotMut)) {
         slots::exclusive::leg(self, visit);

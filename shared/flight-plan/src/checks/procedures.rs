@@ -9,7 +9,7 @@ pub(super) fn check(plan: &FlightPlan, problems: &mut Vec<Problem>) {
     plan.all_stages().for_each(|(_, stage)| calls(&stage.legs, &mut called));
     plan.procedures.iter().for_each(|procedure| calls(&procedure.legs, &mut called));
     for procedure in &plan.procedures {
-        let removed = || Edit::DeleteProcedure { procedure: procedure.id.clone() };
+        let removed = || Edit::Remove { id: procedure.id.clone() };
         if procedure.legs.is_empty() {
             let problem = Problem::error("empty-procedure", "put legs into this procedure or remove it");
             let fix = (!called.contains(&procedure.id)).then(removed);

@@ -2,7 +2,7 @@
 
 use super::Inspection;
 use super::remedy::normal_deg;
-use crate::{Edit, Problem, Runway};
+use crate::{Edit, Problem, Runway, Thing};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for runway in &view.plan.runways {
@@ -24,7 +24,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 
 fn normalised(runway: &Runway) -> Option<Edit> {
     let with = Runway { heading_deg: normal_deg(runway.heading_deg)?, ..runway.clone() };
-    Some(Edit::ReplaceRunway { runway: runway.id.clone(), with: Box::new(with) })
+    Some(Edit::Replace { id: runway.id.clone(), with: Box::new(Thing::Runway(with)) })
 }
 
 #[cfg(test)]

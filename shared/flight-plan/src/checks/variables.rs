@@ -2,7 +2,7 @@
 //! write it has a name that no service can have.
 
 use super::Inspection;
-use crate::{Edit, Problem, Variable, VariableValue};
+use crate::{Edit, Problem, Variable, VariableValue, Thing};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for variable in &view.plan.variables {
@@ -54,7 +54,7 @@ fn within(variable: &Variable) -> Option<Edit> {
 fn replaced(variable: &Variable, change: impl FnOnce(&mut Variable)) -> Edit {
     let mut with = variable.clone();
     change(&mut with);
-    Edit::ReplaceVariable { name: variable.name.clone(), with: Box::new(with) }
+    Edit::Replace { id: variable.name.clone(), with: Box::new(Thing::Variable(with)) }
 }
 
 /// A name that is one word of a key of the contract.

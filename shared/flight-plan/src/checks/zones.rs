@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::scans::not_simple;
-use crate::{Altitude, Edit, Problem, Value, Zone, ZoneShape};
+use crate::{Altitude, Edit, Problem, Value, Zone, ZoneShape, Thing};
 
 /// Greatest radius of a zone, metres.
 const LARGEST_M: f64 = 200_000.0;
@@ -67,7 +67,7 @@ fn times(zone: &Zone, problems: &mut Vec<Problem>) {
 }
 
 fn replaced(zone: &Zone, with: Zone) -> Edit {
-    Edit::ReplaceZone { zone: zone.id.clone(), with: Box::new(with) }
+    Edit::Replace { id: zone.id.clone(), with: Box::new(Thing::Zone(with)) }
 }
 
 #[cfg(test)]

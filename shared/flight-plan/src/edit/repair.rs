@@ -1,8 +1,8 @@
-//! Edits that remedies are made of: identifiers, references, and parts that are replaced whole.
+//! Edits that remedies are made of: identifiers and references.
 
 use super::{EditError, found, not_applicable, stages_mut};
 use crate::uses::SlotMut;
-use crate::{Act, FlightPlan, Id, Leg, LegKind, Place, Procedure, Runway, Stage, Variable, Zone};
+use crate::{Act, FlightPlan, Id, Leg, LegKind, Place, Stage};
 use std::collections::HashMap;
 
 /// Gives the last thing that is called `id` another identifier; what refers to `id` goes on meaning the first.
@@ -140,36 +140,5 @@ pub(super) fn set_runway(plan: &mut FlightPlan, of: &Id, runway: &Id) -> Result<
         Some(stage) => stage.runway = Some(runway.clone()),
         None => return Err(not_applicable(of, "has no runway: choose a stage or an emergency plan")),
     }
-    Ok(())
-}
-
-pub(super) fn replace_runway(plan: &mut FlightPlan, id: &Id, with: &Runway) -> Result<(), EditError> {
-    *found(plan.runways.iter_mut().find(|r| r.id == *id), id)? = with.clone();
-    Ok(())
-}
-
-pub(super) fn replace_variable(plan: &mut FlightPlan, id: &Id, with: &Variable) -> Result<(), EditError> {
-    *found(plan.variables.iter_mut().find(|v| v.name == *id), id)? = with.clone();
-    Ok(())
-}
-
-pub(super) fn replace_zone(plan: &mut FlightPlan, id: &Id, with: &Zone) -> Result<(), EditError> {
-    *found(plan.zones.iter_mut().find(|z| z.id == *id), id)? = with.clone();
-    Ok(())
-}
-
-/// A stage at the end of the main plan or of an emergency plan.
-pub(super) fn append_stage(plan: &mut FlightPlan, to: Option<&Id>, stage: &Stage) -> Result<(), EditError> {
-    let stages = match to {
-        None => &mut plan.stages,
-        Some(id) => &mut found(plan.emergency_plans.iter_mut().find(|e| e.id == *id), id)?.stages,
-    };
-    stages.push(stage.clone());
-    Ok(())
-}
-
-pub(super) fn delete_procedure(plan: &mut FlightPlan, id: &Id) -> Result<(), EditError> {
-    let at = found(plan.procedures.iter().position(|p: &Procedure| p.id == *id), id)?;
-    plan.procedures.remove(at);
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Every kind of edit on the fire watch.
 
 use super::*;
-use crate::{AltitudeReference, read};
+use crate::{AltitudeReference, Place, read};
 
 const FIRE_WATCH: &str = include_str!("../../../../assets/plans/fire-watch.xml");
 
@@ -133,4 +133,174 @@ fn an_edit_of_something_that_is_gone() {
     for edit in edits {
         assert_eq!(edit.apply(&plan()), Err(EditError::Unknown(gone.clone())), "{edit:?}");
     }
+}
+
+const LANGUAGE: &str = include_str!("../../tests/data/language.xml");
+
+fn language() -> FlightPlan {
+    read(LANGUAGE).plan
+}
+
+/// The document after an edit of the one with everything in it.
+fn written(edit: Edit) -> String {
+    crate::write(&edit.apply(&language()).unwrap())
+}
+
+#[test]
+fn corners_of_areas_zones_routes_and_bound_polygons() {
+    let insert = |leg: &str, hole, before| Edit::InsertCorner { leg: leg.into(), hole, before, at: TO };
+    let remove = |leg: &str, hole, corner| Edit::RemoveCorner { leg: leg.into(), hole, corner };
+    let moved = |leg: &str, hole, corner| Edit::MoveCorner { leg: leg.into(), hole, corner, to: TO };
+    let new = r#"lat="36.26" lon="-84.25"/>"#;
+    let changed = [
+        // scan, its hole, a zone, a route: the corner is there
+        (insert("scan", None, 0), format!("<area>\n          <corner {new}")),
+        (insert("scan", Some(0), 3), format!("<corner {new}\n          </hole>")),
+        (moved("range", None, 3), format!("<corner {new}\n    </keepIn>")),
+        (insert("range", None, 4), format!("<corner {new}\n    </keepIn>")),
+        (moved("line", None, 0), format!("<route>\n          <point {new}")),
+        (insert("corridor", None, 2), format!("<point {new}\n        </route>")),
+        // what is bound to a variable changes the variable
+        (moved("creeping", None, 0), r#"initial="36.26 -84.25, 36.7 -84.3, 36.7 -84.2""#.to_owned()),
+        (insert("creeping", None, 3), r#"36.7 -84.2, 36.26 -84.25""#.to_owned()),
+    ];
+    for (edit, expected) in changed {
+        let document = written(edit.clone());
+        assert!(document.contains(&expected) && !LANGUAGE.contains(&expected), "{edit:?}: {document}");
+    }
+    let lines = |edit: Edit| LANGUAGE.lines().count() - written(edit).lines().count();
+    assert_eq!(
+        [lines(remove("scan", Some(0), 0)), lines(remove("range", None, 0)), lines(remove("line", None, 1))],
+        [1; 3]
+    );
+    let refused = [
+        insert("scan", None, 4),
+        remove("scan", Some(1), 0),
+        moved("range", Some(0), 0),
+        insert("line", None, 3),
+        moved("corridor", None, 1),
+        moved("criss", None, 0),
+        remove("village", None, 0),
+        moved("orbit", None, 0),
+        // a polygon of two corners is no value of the variable
+        remove("creeping", None, 0),
+    ];
+    for edit in refused {
+        assert!(edit.apply(&language()).is_err(), "{edit:?}");
+    }
+}
+
+#[test]
+fn zones_and_patterns_move_and_are_resized() {
+    let moved = |leg: &str| written(Edit::MoveWaypoint { leg: leg.into(), to: TO });
+    let here = r#"lat="36.26" lon="-84.25""#;
+    for leg in ["village", "range", "scan", "square", "eight", "spiral", "call", "line", "contour"] {
+        let (document, variable) = (moved(leg), r#"type="position" initial="36.26 -84.25""#);
+        assert!(document.contains(here) || document.contains(variable), "{leg}: {document}");
+    }
+    assert!(moved("creeping").contains(r#"initial="36.26 -84.25, "#));
+    let resized = |leg: &str| written(Edit::SetRadius { leg: leg.into(), radius_m: 321.0 });
+    for leg in ["village", "criss", "square", "eight", "spiral", "sector", "contour", "orbit"] {
+        let document = resized(leg);
+        let found = [r#"radius="321""#, r#"outerRadius="321""#, r#"initial="321""#]
+            .iter()
+            .any(|r| document.contains(r));
+        assert!(found, "{leg}: {document}");
+    }
+    assert!(Edit::SetRadius { leg: "range".into(), radius_m: 1.0 }.apply(&language()).is_err());
+}
+
+/// Each number of each leg is set under the name by which it is listed, and no other changes.
+#[test]
+fn every_number_can_be_set_by_its_name() {
+    let plan = language();
+    for context in plan.all_legs() {
+        let leg = context.leg;
+        for (name, _) in leg.numbers() {
+            let value = Some(Value::Constant(12.5));
+            let edit = Edit::SetNumber { leg: leg.id.clone(), name: name.into(), value: value.clone() };
+            let after = edit.apply(&plan).unwrap();
+            let after = after.leg(&leg.id).unwrap().leg.clone();
+            let expected: Vec<_> = leg
+                .numbers()
+                .into_iter()
+                .map(|(n, v)| (n, if n == name { value.as_ref() } else { v }))
+                .collect();
+            assert_eq!(after.numbers(), expected, "{} {name}", leg.id);
+        }
+    }
+    let unset = |leg: &str, name: &str| {
+        Edit::SetNumber { leg: leg.into(), name: name.into(), value: None }.apply(&plan)
+    };
+    assert!(
+        unset("scan", "heading").is_ok()
+            && unset("scan", "overshoot").is_err()
+            && unset("scan", "turns").is_err()
+    );
+    // an action's number is the action's
+    let every = Edit::SetNumber { leg: "tf".into(), name: "every".into(), value: Some(Value::Constant(1.0)) };
+    assert!(every.apply(&plan).is_err());
+}
+
+#[test]
+fn things_are_added_replaced_and_removed() {
+    let plan = language();
+    let renamed = |edit: &Edit| edit.apply(&plan).unwrap();
+    let things = [
+        Thing::Fix(plan.fixes[0].clone()),
+        Thing::Runway(plan.runways[0].clone()),
+        Thing::Variable(plan.variables[0].clone()),
+        Thing::Zone(plan.zones[0].clone()),
+        Thing::Procedure(plan.procedures[0].clone()),
+        Thing::EmergencyPlan(plan.emergency_plans[0].clone()),
+    ];
+    let ids = ["COVE", "R05", "done", "range", "gate", "return"];
+    for (thing, id) in things.into_iter().zip(ids) {
+        let twice = Edit::Add(Box::new(thing.clone())).apply(&plan).unwrap();
+        assert_ne!(twice, plan);
+        let once = Edit::Remove { id: id.into() }.apply(&twice).unwrap();
+        let back = Edit::Replace { id: id.into(), with: Box::new(thing) };
+        assert_eq!(back.apply(&plan), Ok(plan.clone()), "{id}");
+        let none = Edit::Remove { id: id.into() }.apply(&once).unwrap();
+        assert!(back.apply(&none).is_err(), "{id}");
+    }
+    let without = renamed(&Edit::Remove { id: "patterns".into() });
+    assert!(without.stage(&"patterns".into()).is_none());
+    let before = |plan: &FlightPlan| plan.stages.iter().map(|s| s.id.to_string()).collect::<Vec<_>>();
+    let moved = Edit::MoveStage { stage: "patterns".into(), before: "basic".into() };
+    assert_eq!(before(&renamed(&moved)), ["to", "patterns", "basic", "land"]);
+    let stage = Box::new(plan.stages[0].clone());
+    assert_eq!(before(&renamed(&Edit::InsertStage { stage, before: "r2".into() })), before(&plan));
+    assert!(Edit::Remove { id: "tf".into() }.apply(&plan).is_err(), "a leg is deleted");
+}
+
+#[test]
+fn legs_of_procedures_are_edited_too() {
+    let plan = Edit::MoveWaypoint { leg: "in".into(), to: TO }.apply(&language()).unwrap();
+    assert_eq!(plan.procedures[0].legs[0].place(), Some(&Place::Position(Value::Constant(TO))));
+    let leg = Box::new(plan.procedures[0].legs[0].clone());
+    let more = Edit::PasteLeg { leg, at: Spot::EndOf("gate".into()) }.apply(&plan).unwrap();
+    assert_eq!(ids(&more.procedures[0].legs), ["in", "out", "in2"]);
+}
+
+#[test]
+fn what_is_pasted_gets_fresh_identifiers_throughout() {
+    let plan = language();
+    let mut copied = plan.leg(&"loop".into()).unwrap().leg.clone();
+    copied.next = Some("call".into());
+    let edit = Edit::PasteLeg { leg: Box::new(copied), at: Spot::After("loop".into()) };
+    let once = edit.apply(&plan).unwrap();
+    let twice = edit.apply(&once).unwrap();
+    assert_eq!(ids(once.leg(&"loop2".into()).unwrap().leg.body()), ["l3", "fork2", "l4"]);
+    assert_eq!(ids(twice.leg(&"loop3".into()).unwrap().leg.body()), ["l5", "fork3", "l6"]);
+    let fork = once.leg(&"fork2".into()).unwrap();
+    let LegKind::Intersection { branches, default, .. } = &fork.leg.kind else { panic!() };
+    assert_eq!((branches[1].next.clone(), default.clone()), (Some("l4".into()), Some("on".into())));
+    assert_eq!(once.leg(&"loop2".into()).unwrap().leg.next, None);
+    let gone = Edit::PasteLeg {
+        leg: Box::new(plan.leg(&"tf".into()).unwrap().leg.clone()),
+        at: Spot::EndOf("basic".into()),
+    };
+    let cut = Edit::DeleteLeg { leg: "tf".into() }.apply(&plan).unwrap();
+    assert!(gone.apply(&cut).unwrap().leg(&"tf".into()).is_some(), "a free identifier stays");
 }

@@ -21,6 +21,7 @@ macro_rules! walk {
             /// A position that can only be a constant.
             Corner(&'a $($mutable)? LatLon),
             /// An expression that can't be a constant, with what it is used as.
+            #[allow(dead_code, reason = "who writes an expression need not ask what it is for")]
             Source(&'a $($mutable)? Arc<str>, Use),
         }
 
