@@ -5,7 +5,7 @@ use crate::command::Queue;
 use crate::theme;
 use crate::units;
 use egui::{Key, RichText, Ui};
-use flight_exec::{Command, DecisionRequest};
+use flight_exec::{BranchOption, Command, DecisionRequest};
 
 /// Keys of the first nine branches.
 const KEYS: [Key; 9] =
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'
     let share = (left_s / request.time_left_s.max(1.0)).clamp(0.0, 1.0) as f32;
     ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(p.active));
     let typing = ui.ctx().text_edit_focused();
-    for (i, (branch, label)) in request.options.iter().enumerate() {
+    for (i, BranchOption { branch, label, .. }) in request.options.iter().enumerate() {
         let key = KEYS.get(i);
         let pressed = key
             .is_some_and(|k| !typing && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, *k)));

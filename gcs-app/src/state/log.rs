@@ -94,7 +94,16 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
         PlanEvent::DecisionTaken { leg, branch, by } => {
             info(format!("{leg}: branch {branch}, decided by {by}"))
         }
-        PlanEvent::VariableChanged { name, value } => info(format!("{name} is now {}", variable(value))),
+        PlanEvent::VariableChanged { name, value, by } => {
+            info(format!("{name} is now {}, written by {by}", variable(value)))
+        }
+        PlanEvent::ActionDone { leg, act, .. } => info(format!("{leg}: {act}")),
+        PlanEvent::ActionRefused { leg, reason, .. } => {
+            (Level::Caution, format!("{leg}: an action was not done: {reason}"))
+        }
+        PlanEvent::ExpressionFailed { leg, reason } => {
+            (Level::Caution, format!("{leg}: an expression has no value: {reason}"))
+        }
         PlanEvent::PatternRefused { leg, reason } => {
             (Level::Caution, format!("{leg} keeps its old pattern: {reason}"))
         }

@@ -18,6 +18,11 @@ fn report(hash: &str, acceptable: bool) -> ProposalReport {
         changed: vec!["side2".into()],
         next_leg: Some("side2".into()),
         next_position: None,
+        unchanged: 3,
+        next_in_m: None,
+        next_in_s: None,
+        differs_in_m: None,
+        differs_in_s: None,
         entry_needed: false,
     }
 }

@@ -1,7 +1,7 @@
 //! The vehicle that a test plays at the far end of the link.
 
 use super::Window;
-use flight_exec::{DecisionRequest, Phase, PlacePointer, Status};
+use flight_exec::{BranchOption, DecisionRequest, Phase, PlacePointer, Status};
 use gcs_app::link::{Call, Heard, LinkState, News, Order, Reply};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
@@ -18,6 +18,7 @@ pub fn status(phase: Phase) -> Status {
         outstanding: 0,
         decision: None,
         proposed: None,
+        wait_left_s: None,
     }
 }
 
@@ -32,10 +33,14 @@ pub fn place(stage: &str, leg: &str) -> PlacePointer {
     }
 }
 
+fn option(branch: &str, label: &str) -> BranchOption {
+    BranchOption { branch: branch.into(), label: label.into(), preview: Vec::new() }
+}
+
 pub fn decision(default: Option<&str>) -> DecisionRequest {
     DecisionRequest {
         leg: "ask".into(),
-        options: vec![("again".into(), "Sweep again".into()), ("close".into(), "Close look".into())],
+        options: vec![option("again", "Sweep again"), option("close", "Close look")],
         default: default.map(Into::into),
         distance_left_m: 900.0,
         time_left_s: 36.0,

@@ -11,7 +11,7 @@ use super::runways::safe_runways;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
-use flight_plan::Program;
+use flight_plan::{Problem, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use usal::contract::*;
@@ -35,6 +35,8 @@ pub enum Effect {
     Sync,
 }
 
+/// Who asks for a command that comes without a name.
+const OPERATOR: &str = "operator";
 /// Answers remembered, should a request be repeated after a restart.
 const REPLIES: usize = 64;
 /// Longer names of requests are not remembered, bytes.

@@ -7,7 +7,7 @@ use super::manager::Manager;
 use super::{alarms::Alarms, compile, listed};
 use crate::clock::Time;
 use flight_exec::{Executor, Input};
-use flight_plan::Program;
+use flight_plan::{Problem, Program};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;

@@ -47,10 +47,18 @@ impl Flying {
         let mut flying = Self { executor, now: Time::ZERO, out: Vec::new(), at };
         let program = program(legs);
         let hash = program.hash.clone();
-        flying.step(Input::Propose { request: RequestId(1), program });
-        flying.step(Input::Command { request: RequestId(2), command: Command::Commit { hash, entry: None } });
-        flying.step(Input::Command { request: RequestId(3), command: Command::Start });
+        flying.step(Input::Propose {
+            request: RequestId(1),
+            program,
+            based_on: None,
+            objections: Vec::new(),
+        });
+        flying.command(2, Command::Commit { hash, entry: None });
+        flying.command(3, Command::Start);
         flying
+    }
+    fn command(&mut self, request: u64, command: Command) {
+        self.step(Input::Command { request: RequestId(request), by: "operator".into(), command });
     }
     fn step(&mut self, input: Input) {
         self.out.clear();

@@ -187,6 +187,8 @@ pub struct Status {
     pub decision: Option<DecisionRequest>,
     /// A hash that was proposed and may be committed.
     pub proposed: Option<Arc<str>>,
+    /// Seconds left to be circled at the end of the leg, while an action lets the aircraft wait there.
+    pub wait_left_s: Option<f64>,
 }
 
 /// What an intersection asks.
@@ -194,14 +196,25 @@ pub struct Status {
 pub struct DecisionRequest {
     /// The intersection leg.
     pub leg: Id,
-    /// `(branch id, label)`.
-    pub options: Vec<(Id, String)>,
+    /// The branches.
+    pub options: Vec<BranchOption>,
     /// Taken at the deadline.
     pub default: Option<Id>,
     /// Metres of path left until the decision is due.
     pub distance_left_m: f64,
     /// Estimated seconds left until then.
     pub time_left_s: f64,
+}
+
+/// One way on from an intersection.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct BranchOption {
+    /// Its identifier.
+    pub branch: Id,
+    /// What the operator reads.
+    pub label: String,
+    /// The first positions of the path, from the last one before the intersection on: 2 km of it, at most twenty.
+    pub preview: Vec<LatLon>,
 }
 
 /// What people and services may ask of the executor.
@@ -214,7 +227,8 @@ pub enum Command {
     Hold,
     /// Go on from the place where `Hold` was given.
     Resume,
-    /// Leave the current leg at once for the next.
+    /// Leave the current leg at once for the next. A holding until released is left at the next crossing of its fix (asked
+    /// once more: at once); a wait at the end of a leg is over.
     SkipLeg,
     /// Go to the start of a leg of the plan being flown.
     GoTo {
@@ -288,10 +302,21 @@ pub struct ProposalReport {
     pub removed: Vec<Id>,
     /// Legs that differ.
     pub changed: Vec<Id>,
+    /// How many legs and stages stay as they are.
+    pub unchanged: usize,
     /// The leg the aircraft would fly next.
     pub next_leg: Option<Id>,
     /// The position it would fly to next.
     pub next_position: Option<LatLon>,
+    /// Metres to that position.
+    pub next_in_m: Option<f64>,
+    /// Seconds to that position.
+    pub next_in_s: Option<f64>,
+    /// Metres of the present path that would still be flown before the first waypoint that is another one; `None`: none is, as far
+    /// ahead as waypoints are handed out.
+    pub differs_in_m: Option<f64>,
+    /// The same in seconds.
+    pub differs_in_s: Option<f64>,
     /// The current leg is gone: the commit must name an entry leg.
     pub entry_needed: bool,
 }
@@ -316,11 +341,18 @@ pub enum Input {
         request: RequestId,
         /// The compiled plan.
         program: Arc<flight_plan::Program>,
+        /// The revision that the proposer has seen; refused if that has moved on since. `None`: don't care.
+        based_on: Option<u64>,
+        /// What the shell found besides (zones along the whole path, for instance): reported, and with an error among them the plan
+        /// can't be committed.
+        objections: Vec<flight_plan::Problem>,
     },
     /// A command.
     Command {
         /// For the answer.
         request: RequestId,
+        /// Who asks: a service's name, `operator` for people.
+        by: Arc<str>,
         /// What is asked.
         command: Command,
     },
@@ -364,8 +396,72 @@ pub enum Output {
         /// How it went.
         result: Result<Answer, Refusal>,
     },
+    /// An action of the plan is due: somebody else does it.
+    Act {
+        /// The leg it belongs to.
+        leg: Id,
+        /// Which passage of it; of a loop: which activation. With the leg unique in a flight.
+        passage: u64,
+        /// What is to be done.
+        act: ResolvedAct,
+    },
     /// Something that services and people want to know.
     Event(Event),
+}
+
+/// What an action does, its numbers and values computed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "act", rename_all = "kebab-case")]
+pub enum ResolvedAct {
+    /// Takes one picture.
+    Photo,
+    /// Starts a series of pictures.
+    PhotoSeries {
+        /// Metres of ground track between pictures.
+        every_m: f64,
+    },
+    /// Ends the series of pictures.
+    PhotoStop,
+    /// Starts recording video.
+    VideoStart,
+    /// Stops recording video.
+    VideoStop,
+    /// Has written a variable (the executor has done it).
+    Set {
+        /// Its name.
+        variable: Id,
+        /// Its value.
+        value: VariableValue,
+    },
+    /// Calls a service; nobody waits for the answer.
+    Invoke {
+        /// The service.
+        service: String,
+        /// Its operation.
+        operation: String,
+        /// JSON text of the request; empty: `null`.
+        argument: String,
+    },
+    /// Circles at the end of the leg (the executor does it; only told as an event).
+    Wait {
+        /// Seconds.
+        seconds: f64,
+    },
+}
+
+impl std::fmt::Display for ResolvedAct {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            ResolvedAct::Photo => write!(f, "photo"),
+            ResolvedAct::PhotoSeries { every_m } => write!(f, "photos every {every_m} m"),
+            ResolvedAct::PhotoStop => write!(f, "end of the photos"),
+            ResolvedAct::VideoStart => write!(f, "video on"),
+            ResolvedAct::VideoStop => write!(f, "video off"),
+            ResolvedAct::Set { variable, .. } => write!(f, "{variable} set"),
+            ResolvedAct::Invoke { service, operation, .. } => write!(f, "{service}/{operation} called"),
+            ResolvedAct::Wait { seconds } => write!(f, "waiting for {seconds} s"),
+        }
+    }
 }
 
 /// A good answer.
@@ -404,7 +500,7 @@ pub enum Event {
         leg: Id,
         /// The branch.
         branch: Id,
-        /// `operator`, `condition` or `default`.
+        /// Name of the person or service that decided, `condition` or `default`.
         by: String,
     },
     /// A variable has a new value.
@@ -413,6 +509,26 @@ pub enum Event {
         name: Id,
         /// Its value.
         value: VariableValue,
+        /// Who wrote it: a service's name, `operator`, or `plan` for an action of the plan.
+        by: Arc<str>,
+    },
+    /// An action of the plan was begun.
+    ActionDone {
+        /// The leg it belongs to.
+        leg: Id,
+        /// Which passage of it; of a loop: which activation.
+        passage: u64,
+        /// What is done.
+        act: ResolvedAct,
+    },
+    /// An action of the plan was due and could not be done; it isn't tried again on this passage.
+    ActionRefused {
+        /// The leg it belongs to.
+        leg: Id,
+        /// Which passage of it; of a loop: which activation.
+        passage: u64,
+        /// Why.
+        reason: String,
     },
     /// A pattern could not be regenerated; the old one goes on.
     PatternRefused {

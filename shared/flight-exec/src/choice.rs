@@ -2,13 +2,14 @@
 
 use flight_plan::Id;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Who decided at an intersection.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum By {
-    /// An explicit decision, of a person or a service.
-    Operator,
+    /// An explicit decision of a person or a service, by name.
+    Somebody(Arc<str>),
     /// The first branch whose condition holds.
     Condition,
     /// The declared default.
@@ -17,9 +18,9 @@ pub enum By {
 
 impl By {
     /// As events tell it.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &str {
         match self {
-            By::Operator => "operator",
+            By::Somebody(name) => name,
             By::Condition => "condition",
             By::Default => "default",
         }

@@ -10,7 +10,12 @@ use flight_plan::{Id, LegKind, VariableValue};
 const MOST_COUNTS: usize = 64;
 
 impl Executor {
-    pub(crate) fn command(&mut self, command: Command, out: &mut Vec<Output>) -> Result<(), Refusal> {
+    pub(crate) fn command(
+        &mut self,
+        command: Command,
+        by: &str,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
         match command {
             Command::Start => self.start(out),
             Command::Hold => self.hold_by_command(out),
@@ -18,8 +23,8 @@ impl Executor {
             Command::SkipLeg => self.skip_leg(out),
             Command::GoTo { leg } => self.go_to(&leg, out),
             Command::SetCount { leg, count } => self.set_count(leg, count, out),
-            Command::Decide { leg, branch } => self.decide(&leg, &branch, out),
-            Command::SetVariable { name, value } => self.set_variable(name, value, out),
+            Command::Decide { leg, branch } => self.decide(&leg, &branch, by, out),
+            Command::SetVariable { name, value } => self.set_variable(&name, value, by, out),
             Command::Emergency { cause, plan } => self.emergency(cause, plan, out),
             Command::ReturnToMain { leg } => self.return_to_main(&leg, out),
             Command::Commit { hash, entry } => self.commit(&hash, entry.as_ref(), out),
@@ -44,6 +49,7 @@ impl Executor {
         self.state.decisions.clear();
         self.state.requested.clear();
         self.state.counts.clear();
+        self.state.passages.clear();
         self.state.tail = None;
         let cursor = Cursor::start(None, self.here(), self.state.last_passage);
         self.enter_phase(Phase::Flying, out);
@@ -87,8 +93,7 @@ impl Executor {
         let left_m = crate::path::distance_m(held_at, front.waypoint.position);
         let stop_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
         let straight = matches!(front.waypoint.action, crate::api::Action::Fly);
-        let under_way = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == front.passage);
-        if left_m < stop_m || !straight || !under_way {
+        if left_m < stop_m || !straight || !self.is_announced(front) {
             return None;
         }
         let mut rejoin = front.clone();
@@ -103,6 +108,15 @@ impl Executor {
 
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
+        if self.state.wait.is_some() {
+            self.end_wait(out);
+            return Ok(());
+        }
+        if let Some(passage) = self.holding_to_release() {
+            self.state.released = Some(passage);
+            self.replan(out);
+            return Ok(());
+        }
         // after a resume the leg's first waypoint is the place where the hold was given
         let passage = self.state.handed.front().map(|h| h.passage);
         let of_leg = self.state.handed.iter().take_while(|h| Some(h.passage) == passage).count();
@@ -122,6 +136,13 @@ impl Executor {
         }
         self.jump(cursor, out);
         Ok(())
+    }
+
+    /// The passage being flown, if it is a holding until released that was not released yet.
+    fn holding_to_release(&self) -> Option<u64> {
+        let front = self.state.handed.front().filter(|h| self.state.released != Some(h.passage))?;
+        let leg = self.program.as_ref()?.leg(&front.place.leg)?;
+        matches!(leg.kind, LegKind::Hm { .. }).then_some(front.passage)
     }
 
     /// The aircraft's place, with the altitude and speed that legs without their own inherit.
@@ -176,16 +197,42 @@ impl Executor {
         Ok(())
     }
 
-    fn set_variable(&mut self, name: Id, value: VariableValue, out: &mut Vec<Output>) -> Result<(), Refusal> {
+    fn set_variable(
+        &mut self,
+        name: &Id,
+        value: VariableValue,
+        by: &str,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
+        let variable = self.program.as_ref().and_then(|p| p.plan.variable(name));
+        if let Some(variable) = variable.filter(|v| !v.may_be_written_by(by)) {
+            let writers: Vec<_> = variable.writers.iter().map(Id::as_str).collect();
+            let writers = writers.join(", ");
+            let reason = format!(
+                "variable `{name}` is written by {writers}, not by {by}: ask them, or change its writers in the plan"
+            );
+            return Err(refusal("not-a-writer", reason));
+        }
+        self.write_variable(name, value, by, out)
+    }
+
+    /// Writes a variable for somebody who may; the way is changed after the debouncing time.
+    pub(crate) fn write_variable(
+        &mut self,
+        name: &Id,
+        value: VariableValue,
+        by: &str,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
         let Some(program) = self.program.clone() else {
             return Err(refusal(
                 "no-plan",
                 "there is no plan, so there are no variables: commit a plan first",
             ));
         };
-        let set = self.state.variables.set(&program.plan, &name, value.clone());
+        let set = self.state.variables.set(&program.plan, name, value.clone());
         set.map_err(|e| refusal("bad-variable", e.to_string()))?;
-        out.push(Output::Event(Event::VariableChanged { name, value }));
+        out.push(Output::Event(Event::VariableChanged { name: name.clone(), value, by: by.into() }));
         let earliest_s = self.state.last_refresh_s.map_or(0.0, |last| last + self.config.debounce_s);
         self.state.refresh_due_s = Some(self.state.clock_s.max(earliest_s));
         Ok(())

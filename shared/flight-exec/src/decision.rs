@@ -1,13 +1,19 @@
 //! Intersections: who is asked, until when, and what was decided.
 
-use crate::api::{Command, DecisionRequest, Event, Output, Refusal};
+use crate::api::{BranchOption, Command, DecisionRequest, Event, Output, Refusal};
 use crate::choice::{By, Choice};
+use crate::cursor::Step;
 use crate::executor::{Executor, refusal};
-use flight_plan::{Branch, DecideBefore, Id, LegKind};
+use crate::world::World;
+use flight_plan::{Branch, DecideBefore, Id, Leg, LegKind, LegPath, Program};
+use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
 /// Most decisions kept for intersections ahead.
 const MOST_DECISIONS: usize = 64;
+/// A branch is shown so far, metres, and so many positions of it.
+const PREVIEW_M: f64 = 2000.0;
+const PREVIEW_POSITIONS: usize = 20;
 
 /// A decision for one passing of an intersection.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,16 +42,16 @@ impl Executor {
     /// Asks for decisions that came into the horizon, and makes those final whose deadline has passed.
     pub(crate) fn attend_decisions(&mut self, out: &mut Vec<Output>) {
         for pending in self.pending() {
-            let Some(request) = self.request_for(&pending) else { continue };
+            let Some((_, time_left_s)) = self.left_for(&pending) else { continue };
             let key = (pending.leg.clone(), pending.crossing);
-            let soon = request.time_left_s <= self.config.ask_ahead_s;
+            let soon = time_left_s <= self.config.ask_ahead_s;
             if soon && !self.state.requested.contains(&key) {
                 self.state.requested.push(key);
-                if !self.is_decided(&pending) {
-                    out.push(Output::Event(Event::DecisionRequested(request.clone())));
+                if let Some(request) = self.request_for(&pending).filter(|_| !self.is_decided(&pending)) {
+                    out.push(Output::Event(Event::DecisionRequested(request)));
                 }
             }
-            let due = request.time_left_s <= 0.0;
+            let due = time_left_s <= 0.0;
             if let Some(branch) = pending.branch.clone().filter(|_| due && !self.is_decided(&pending)) {
                 let Pending { leg, crossing, by, .. } = pending;
                 self.record(Decision { leg, crossing, branch, by }, out);
@@ -59,19 +65,31 @@ impl Executor {
         self.request_for(&open)
     }
 
-    pub(crate) fn decide(&mut self, leg: &Id, branch: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
+    /// A decision is good for the passing of the intersection that is ahead, asked for or not; else for the next one, as long
+    /// as the way may still lead there.
+    pub(crate) fn decide(
+        &mut self,
+        leg: &Id,
+        branch: &Id,
+        by: &str,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
         self.check_branch(leg, branch)?;
         let pending = self.pending().into_iter().find(|p| p.leg == *leg);
         let crossing = match &pending {
             Some(p) => p.crossing,
-            None => self.state.tail.as_ref().map_or(0, |t| t.crossings_of(leg)) + 1,
+            None => {
+                self.check_ahead(leg)?;
+                self.state.tail.as_ref().map_or(0, |t| t.crossings_of(leg)) + 1
+            }
         };
         let changes = pending.as_ref().is_some_and(|p| p.branch.as_ref() != Some(branch));
         if pending.as_ref().is_some_and(|p| changes && self.is_too_close(p)) {
             let advice = "it is too close to change the way now; decide earlier or use go-to";
             return Err(refusal("too-late", format!("intersection `{leg}`: {advice}")));
         }
-        let decision = Decision { leg: leg.clone(), crossing, branch: branch.clone(), by: By::Operator };
+        let by = By::Somebody(by.into());
+        let decision = Decision { leg: leg.clone(), crossing, branch: branch.clone(), by };
         self.record(decision, out);
         if changes {
             self.replan(out);
@@ -101,7 +119,7 @@ impl Executor {
         let surplus = (self.state.decisions.len() + 1).saturating_sub(MOST_DECISIONS);
         self.state.decisions.drain(..surplus);
         self.state.decisions.push(decision);
-        let by = by.name().into();
+        let by = by.name().to_owned();
         out.push(Output::Event(Event::DecisionTaken { leg, branch, by }));
     }
 
@@ -124,7 +142,7 @@ impl Executor {
                     leg: leg.clone(),
                     crossing: *crossing,
                     branch: branch.clone(),
-                    by: *by,
+                    by: by.clone(),
                 }),
                 _ => None,
             })
@@ -133,24 +151,67 @@ impl Executor {
 
     fn request_for(&self, pending: &Pending) -> Option<DecisionRequest> {
         let program = self.program.as_ref()?;
-        let LegKind::Intersection { branches, default, decide_before } = &program.leg(&pending.leg)?.kind
-        else {
+        let LegKind::Intersection { branches, default, .. } = &program.leg(&pending.leg)?.kind else {
             return None;
         };
-        let handed = self.state.handed.get(pending.index)?;
-        let path_m = self.path_left_m(handed.before.path.distance_m);
-        let speed_mps = handed.waypoint.airspeed_mps.max(1.0);
-        let distance_left_m = match decide_before {
-            DecideBefore::Distance(metres) => path_m - metres,
-            DecideBefore::Time(seconds) => path_m - seconds * speed_mps,
+        let (distance_left_m, time_left_s) = self.left_for(pending)?;
+        let option = |branch: &Branch| BranchOption {
+            branch: branch.id.clone(),
+            label: branch.label.clone(),
+            preview: self.preview_of(pending, &branch.id).unwrap_or_default(),
         };
         Some(DecisionRequest {
             leg: pending.leg.clone(),
-            options: branches.iter().map(|b| (b.id.clone(), b.label.clone())).collect(),
+            options: branches.iter().map(option).collect(),
             default: default.clone(),
-            distance_left_m: distance_left_m.max(0.0),
-            time_left_s: distance_left_m.max(0.0) / speed_mps,
+            distance_left_m,
+            time_left_s,
         })
+    }
+
+    /// Metres of path and seconds left until a decision is due.
+    fn left_for(&self, pending: &Pending) -> Option<(f64, f64)> {
+        let leg = self.program.as_ref()?.leg(&pending.leg)?;
+        let LegKind::Intersection { decide_before, .. } = &leg.kind else { return None };
+        let handed = self.state.handed.get(pending.index)?;
+        let path_m = self.path_left_m(handed.before.path.distance_m);
+        let speed_mps = handed.waypoint.airspeed_mps.max(1.0);
+        let left_m = match decide_before {
+            DecideBefore::Distance(metres) => path_m - metres,
+            DecideBefore::Time(seconds) => path_m - seconds * speed_mps,
+        };
+        Some((left_m.max(0.0), left_m.max(0.0) / speed_mps))
+    }
+
+    /// The beginning of the path that a branch would give, laid out by the cursor that stands before the intersection.
+    fn preview_of(&self, pending: &Pending, branch: &Id) -> Option<Vec<LatLon>> {
+        let mut cursor = self.state.handed.get(pending.index)?.before.clone();
+        let Pending { leg, crossing, .. } = pending;
+        let by = By::Somebody("preview".into());
+        let mut decisions =
+            vec![Decision { leg: leg.clone(), crossing: *crossing, branch: branch.clone(), by }];
+        decisions.extend(
+            self.state.decisions.iter().filter(|d| d.leg != *leg || d.crossing != *crossing).cloned(),
+        );
+        let world = World { decisions: &decisions, ..self.world()? };
+        let begin_m = cursor.path.distance_m;
+        let mut positions = vec![cursor.path.last.position];
+        while positions.len() < PREVIEW_POSITIONS && cursor.path.distance_m - begin_m < PREVIEW_M {
+            let Step::Waypoint(emission) = cursor.next(&world) else { break };
+            positions.push(emission.position);
+        }
+        Some(positions)
+    }
+
+    /// The way may still lead to an intersection.
+    fn check_ahead(&self, leg: &Id) -> Result<(), Refusal> {
+        let program = self.flying_program()?;
+        let now = self.state.handed.front().and_then(|h| program.path(&h.place.leg));
+        if now.zip(program.path(leg)).is_none_or(|(now, target)| may_lead(&program, now, target)) {
+            return Ok(());
+        }
+        let advice = "it is behind the flight, or in another plan, and isn't passed again; use go-to";
+        Err(refusal("not-ahead", format!("intersection `{leg}`: {advice}")))
     }
 
     fn check_branch(&self, leg: &Id, branch: &Id) -> Result<(), Refusal> {
@@ -166,6 +227,38 @@ impl Executor {
         let reason = format!("`{leg}` has no branch `{branch}`: take one of {}", names.join(", "));
         Err(refusal("unknown-branch", reason))
     }
+}
+
+/// From one leg or stage the flight may still come to another one: in a later stage, further on in the same list, or anywhere
+/// in a loop around both.
+fn may_lead(program: &Program, from: &LegPath, to: &LegPath) -> bool {
+    if from.emergency_plan != to.emergency_plan || from.stage != to.stage {
+        return from.emergency_plan == to.emergency_plan && from.stage < to.stage;
+    }
+    let (Some(here), Some(there)) = (from.indices.first(), to.indices.first()) else { return true };
+    // the same one: a loop around both, or the leg itself, waited at
+    here == there || program.stage(from).is_some_and(|stage| leads(&stage.legs, *here, *there))
+}
+
+/// In a list, by its successors, jumps and branches included.
+fn leads(list: &[Leg], from: usize, to: usize) -> bool {
+    let index_of = |id: &Id| list.iter().position(|l| l.id == *id);
+    let mut reached = vec![false; list.len()];
+    let mut open = vec![from];
+    while let Some(leg) = open.pop().and_then(|i| list.get(i).map(|leg| (i, leg))) {
+        let (index, leg) = leg;
+        let mut next = vec![leg.next.as_ref().and_then(index_of).unwrap_or(index + 1)];
+        if let LegKind::Intersection { branches, .. } = &leg.kind {
+            next.extend(branches.iter().filter_map(|b| b.next.as_ref()).filter_map(index_of));
+        }
+        for index in next {
+            if let Some(seen) = reached.get_mut(index).filter(|seen| !**seen) {
+                *seen = true;
+                open.push(index);
+            }
+        }
+    }
+    reached.get(to) == Some(&true)
 }
 
 impl Command {

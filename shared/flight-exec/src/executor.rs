@@ -1,5 +1,6 @@
 //! The virtual machine: inputs in, outputs out, time as an argument.
 
+use crate::actions::{Passage, Wait};
 use crate::api::{AircraftState, Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
 use crate::config::Config;
 use crate::cursor::{Cursor, Trouble};
@@ -52,6 +53,11 @@ pub(crate) struct State {
     pub released: Option<u64>,
     /// See [`World::waited`].
     pub waited: Option<u64>,
+    /// Passages under way that have actions, outermost first.
+    pub passages: Vec<Passage>,
+    /// When actions were looked after last, by the executor's clock.
+    pub acted_s: f64,
+    pub wait: Option<Wait>,
     pub emergency: Option<Emergency>,
     /// Where the aircraft was when it was told to hold.
     pub held_at: Option<LatLon>,
@@ -94,6 +100,9 @@ impl Default for State {
             counts: Vec::new(),
             released: None,
             waited: None,
+            passages: Vec::new(),
+            acted_s: 0.0,
+            wait: None,
             emergency: None,
             held_at: None,
             gateway_controls: false,
@@ -129,9 +138,12 @@ impl Executor {
             Input::Aircraft(state) if state.is_sound() => self.state.aircraft = Some(state),
             // numbers that are none: the last sound report counts on
             Input::Aircraft(_) => {}
-            Input::Propose { request, program } => self.propose(request, program, out),
-            Input::Command { request, command } => {
-                let result = self.command(command, out);
+            Input::Propose { request, program, based_on, objections } => {
+                let result = self.propose(&program, based_on, objections);
+                out.push(Output::Answer { request, result });
+            }
+            Input::Command { request, by, command } => {
+                let result = self.command(command, &by, out);
                 self.answer(request, result, out);
             }
             Input::Progress { current } => self.progress(current, out),
@@ -145,7 +157,9 @@ impl Executor {
     pub fn deadline(&self) -> Option<Time> {
         let review = (self.is_flying() && self.has_provisional_choices()).then_some(self.state.review_due_s);
         let refresh = self.state.refresh_due_s.filter(|_| self.is_flying());
-        let due_s = review.into_iter().chain(refresh).fold(f64::INFINITY, f64::min);
+        let wait = self.state.wait.filter(|_| self.is_flying()).map(|w| w.due_s);
+        let action = if self.is_flying() { self.next_action_s() } else { None };
+        let due_s = [review, refresh, wait, action].into_iter().flatten().fold(f64::INFINITY, f64::min);
         let wait_s = (due_s - self.state.clock_s).max(0.0);
         let last = self.last_step?;
         wait_s.is_finite().then(|| last + Time::from_secs_f64(wait_s.min(3600.0)))
@@ -204,6 +218,10 @@ impl Executor {
         }
         // a deadline rounded to nanoseconds is not to be missed by one
         let by_now_s = self.state.clock_s + 1e-6;
+        self.act_on_the_way(out);
+        if self.state.wait.is_some_and(|wait| wait.due_s <= by_now_s) {
+            self.end_wait(out);
+        }
         if self.state.refresh_due_s.is_some_and(|due| due <= by_now_s) {
             self.refresh(out);
         }

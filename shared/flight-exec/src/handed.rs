@@ -222,7 +222,8 @@ impl Handed {
         let Some(open) = self.choices.pop() else { return Default::default() };
         if let Some(waiting) = self.sealed.as_deref() {
             let passage = waiting.passage.saturating_sub(1);
-            self.before = Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting.clone() };
+            self.before =
+                Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting.clone() };
         }
         (std::mem::replace(&mut self.choices, vec![open]), std::mem::take(&mut self.marks))
     }

@@ -9,6 +9,7 @@
 //! feed what differs as one transaction. Choices made ahead (loops, intersections, holdings) are provisional: they are read again
 //! while the aircraft approaches, and for the last time when it is there.
 
+mod actions;
 pub mod api;
 pub mod choice;
 mod commands;
@@ -22,6 +23,7 @@ mod handed;
 pub mod path;
 pub mod preview;
 mod progress;
+mod proposal;
 mod replan;
 mod snapshot;
 mod status;

@@ -2,7 +2,7 @@
 
 use crate::api::{Event, Output, Phase, PlacePointer, Token};
 use crate::choice::Choice;
-use crate::cursor::Step;
+use crate::cursor::{Mark, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::handed::{Handed, Onward};
@@ -31,6 +31,7 @@ impl Executor {
         for _ in 0..count {
             if let Some(mut flown) = self.state.handed.pop_front() {
                 self.announce(&mut flown, out);
+                self.act_up_to(&flown, out);
             }
         }
     }
@@ -58,7 +59,7 @@ impl Executor {
 
     /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
     fn announce(&mut self, handed: &mut Handed, out: &mut Vec<Output>) {
-        let (choices, _) =
+        let (choices, marks) =
             if handed.waits_for_decision() { handed.seal_before_wait() } else { handed.seal() };
         for choice in choices {
             match choice {
@@ -78,37 +79,44 @@ impl Executor {
                 Choice::Hold { .. } => {}
             }
         }
-        self.announce_leg(handed, out);
+        self.announce_leg(handed, marks, out);
+        self.begin_wait(handed, out);
     }
 
-    fn announce_leg(&mut self, handed: &Handed, out: &mut Vec<Output>) {
+    fn announce_leg(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
         let passage = Some((handed.passage, handed.place.leg.clone()));
         if self.state.announced != passage {
             self.state.announced = passage;
-            out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
+            self.change_passage(handed, marks, out);
         }
     }
 
+    /// The leg of a waypoint has been entered.
+    pub(crate) fn is_announced(&self, handed: &Handed) -> bool {
+        let announced = self.state.announced.as_ref();
+        announced.is_some_and(|(passage, leg)| *passage == handed.passage && *leg == handed.place.leg)
+    }
+
     fn everything_flown(&mut self, out: &mut Vec<Output>) {
-        let finished = self.state.handed.back().is_some_and(|h| h.waypoint.end_of_plan);
+        let last = self.state.handed.back().filter(|h| h.waypoint.end_of_plan).cloned();
         let count = self.state.handed.len();
         self.fly_past(count, out);
-        if finished {
-            self.announce_end(out);
+        if let Some(last) = last {
+            self.announce_end(&last, out);
             self.state.emergency = None;
             self.enter_phase(Phase::Finished, out);
         }
     }
 
-    /// Loops that ended together with the plan.
-    fn announce_end(&mut self, out: &mut Vec<Output>) {
-        let (Some(tail), Some(world)) = (self.state.tail.clone(), self.world()) else { return };
-        let mut tail = tail;
-        if let Step::Ended { notes } = tail.next(&world) {
-            for choice in notes.choices {
-                if let Choice::Loop { leg, arrival, of, .. } = choice {
-                    out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
-                }
+    /// Loops that ended together with the plan, and actions at its end.
+    fn announce_end(&mut self, last: &Handed, out: &mut Vec<Output>) {
+        let (Some(mut tail), Some(world)) = (self.state.tail.clone(), self.world()) else { return };
+        let Step::Ended { notes } = tail.next(&world) else { return };
+        self.end_passages(|_| true, out);
+        self.pass_silently(notes.marks, last, out);
+        for choice in notes.choices {
+            if let Choice::Loop { leg, arrival, of, .. } = choice {
+                out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
             }
         }
     }

@@ -188,12 +188,19 @@ impl Executor {
     /// Goes from here to wherever `cursor` is: everything not flown is cancelled.
     pub(crate) fn jump(&mut self, mut cursor: Cursor, out: &mut Vec<Output>) {
         cursor.passage = self.state.last_passage;
+        // a count belongs to an activation: that of a loop which is left is forgotten
+        let around = self.world().map_or_else(Vec::new, |w| cursor.loop_ids(&w));
+        self.state.counts.retain(|(id, _)| around.contains(id));
+        if cursor.section.is_none() {
+            self.state.emergency = None;
+        }
         self.state.handed.clear();
         self.state.held_at = None;
         let Some(world) = self.world() else { return };
         let more = self.horizon(0, cursor.path.time_s);
         let stretch = lay_out(&cursor, &world, false, false, more);
         self.append(stretch, out);
+        self.abandon_passages();
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);
     }

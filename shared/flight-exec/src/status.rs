@@ -21,6 +21,7 @@ impl Executor {
             outstanding: self.state.handed.len(),
             decision: self.open_decision(),
             proposed: self.proposed.as_ref().map(|p| p.hash.clone()),
+            wait_left_s: self.state.wait.map(|w| (w.due_s - self.state.clock_s).max(0.0)),
         }
     }
 }

@@ -1,64 +1,13 @@
-//! A plan update in flight: proposed, reported on, committed by hash, taken over at the place where the aircraft is.
+//! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
 
-use crate::api::{Answer, Event, Output, Phase, ProposalReport, Refusal, RequestId};
+use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing, LoopFrame, Trouble, Visit};
 use crate::executor::{Executor, refusal};
-use flight_plan::{FlightPlan, Id, Leg, LegKind, Program, Stage, Variables};
-use std::collections::BTreeMap;
+use crate::world::World;
+use flight_plan::{Id, Leg, Program, Variables};
 use std::sync::Arc;
 
 impl Executor {
-    /// Keeps the proposal and tells what it would do.
-    pub(crate) fn propose(&mut self, request: RequestId, program: Arc<Program>, out: &mut Vec<Output>) {
-        self.proposed = Some(program.clone());
-        let report = self.report(&program);
-        out.push(Output::Answer { request, result: Ok(Answer::Proposal(Box::new(report))) });
-    }
-
-    fn report(&self, program: &Arc<Program>) -> ProposalReport {
-        let empty = FlightPlan::default();
-        let old = self.program.as_ref().map_or(&empty, |p| &p.plan);
-        let (added, removed, changed) = differences(old, &program.plan);
-        let (mut next_leg, mut next_position) = (None, None);
-        let mut problems: Vec<String> = program.warnings.iter().map(|w| w.message.clone()).collect();
-        let mut entry_needed = false;
-        match self.outcome(program) {
-            Ok(after) => {
-                let next = after.state.handed.front();
-                next_leg = next.map(|h| h.place.leg.clone());
-                next_position = next.map(|h| h.waypoint.position);
-            }
-            Err(refused) => {
-                entry_needed = refused.code == "entry-needed";
-                problems.push(refused.reason);
-            }
-        }
-        let acceptable = !program.plan.stages.is_empty();
-        let hash = program.hash.clone();
-        ProposalReport {
-            hash,
-            acceptable,
-            problems,
-            added,
-            removed,
-            changed,
-            next_leg,
-            next_position,
-            entry_needed,
-        }
-    }
-
-    /// What a commit now would lead to: tried on a copy.
-    fn outcome(&self, program: &Arc<Program>) -> Result<Executor, Refusal> {
-        let mut copy = self.clone();
-        let mut unheard = Vec::new();
-        copy.commit(&program.hash, None, &mut unheard)?;
-        if !copy.is_flying() {
-            copy.command(crate::api::Command::Start, &mut unheard)?;
-        }
-        Ok(copy)
-    }
-
     /// Makes the proposal the active plan.
     pub(crate) fn commit(
         &mut self,
@@ -67,7 +16,8 @@ impl Executor {
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
         let proposed = self.proposed.clone().filter(|p| *p.hash == *hash).ok_or_else(|| {
-            refusal("not-proposed", format!("plan {hash} was not the last one proposed: propose it first"))
+            let advice = "was not the last acceptable one proposed: propose it first";
+            refusal("not-proposed", format!("plan {hash} {advice}"))
         })?;
         if proposed.plan.stages.is_empty() {
             return Err(refusal("empty-plan", "the main plan has no stage: add one"));
@@ -96,8 +46,13 @@ impl Executor {
         };
         self.state.revision += 1;
         let event = Event::PlanActivated { hash: program.hash.clone(), revision: self.state.revision };
-        self.program = Some(program);
+        let before = self.program.replace(program);
         self.proposed = None;
+        // what couldn't be flown in the old plan may come to be told again in the new one
+        self.state.told.clear();
+        if let Some(before) = before {
+            self.carry_passages_over(&before);
+        }
         out.push(Output::Event(event));
     }
 
@@ -128,9 +83,11 @@ impl Executor {
             let current = &front.place.leg;
             if new.path(current).is_some() && entry.is_none_or(|e| e == current) {
                 let keep = self.alterable_from();
+                let begun = self.at_the_leg_begun(&world);
                 let translate = |i: usize| {
                     let leg = i.checked_sub(1).and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
-                    self.bookmark(i).map(|c| translated(c, leg, current, old, new, &world))
+                    let bookmark = begun.as_ref().filter(|_| i == 0).or(self.bookmark(i));
+                    bookmark.map(|c| translated(c, leg, current, old, new, &world))
                 };
                 return Ok(Carried::On((0..=keep).filter_map(translate).collect()));
             }
@@ -146,11 +103,37 @@ impl Executor {
             .bookmark(1)
             .or(self.state.tail.as_ref())
             .ok_or_else(|| refusal("no-place", "wait for the first leg"))?;
+        let flown = self.state.emergency.as_ref().map(|e| &e.plan);
+        let entered = target.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
+        if entered.is_some() && entered != flown {
+            let reason =
+                format!("leg `{entry}` is of an emergency plan that is not being flown: name another leg");
+            return Err(refusal("unknown-leg", reason));
+        }
         let mut cursor = now.placed_at(target, &now.loop_ids(&world), new);
         let mut here = self.here();
         here.last.level = now.path.last.level;
         cursor.move_path_to(here);
         Ok(Carried::Enter(Box::new(cursor)))
+    }
+}
+
+impl Executor {
+    /// At the beginning of the leg being flown, when its first waypoint is still ahead: that waypoint's bookmark is at the end of
+    /// the leg before it, and a leg that a new plan puts in between belongs to the past.
+    fn at_the_leg_begun(&self, world: &World) -> Option<Cursor> {
+        let front = self.state.handed.front()?;
+        let before = self.bookmark(0).filter(|c| c.passage != front.passage)?;
+        let mut begun = before.clone();
+        self.is_announced(front).then(|| begun.next(world))?;
+        begun.path = before.path;
+        begun.given = 0;
+        if begun.doing != Doing::Turning {
+            begun.doing = Doing::Arriving;
+            begun.expansion = None;
+            begun.passage = front.passage.saturating_sub(1);
+        }
+        Some(begun)
     }
 }
 
@@ -236,45 +219,4 @@ fn remap(trail: &[Visit], old: &Leg, new: &Leg) -> Vec<Visit> {
 
 fn kind_of(program: &Program, id: &Id) -> Option<&'static str> {
     program.leg(id).map(Leg::kind_name).or(program.path(id).map(|_| "stage"))
-}
-
-/// Legs and stages only in the new plan, only in the old one, and those that differ (a loop's body counts for itself).
-fn differences(old: &FlightPlan, new: &FlightPlan) -> (Vec<Id>, Vec<Id>, Vec<Id>) {
-    let (old_parts, new_parts) = (parts(old), parts(new));
-    let only = |a: &BTreeMap<Id, Part>, b: &BTreeMap<Id, Part>| -> Vec<Id> {
-        a.keys().filter(|id| !b.contains_key(*id)).cloned().collect()
-    };
-    let changed = new_parts.iter().filter(|(id, part)| old_parts.get(*id).is_some_and(|o| o != *part));
-    let changed = changed.map(|(id, _)| id.clone()).collect();
-    (only(&new_parts, &old_parts), only(&old_parts, &new_parts), changed)
-}
-
-/// A leg or stage without what is inside it, in its list.
-#[derive(PartialEq)]
-enum Part {
-    Leg(Box<Leg>, usize),
-    Stage(Box<Stage>),
-}
-
-fn parts(plan: &FlightPlan) -> BTreeMap<Id, Part> {
-    let stages = plan
-        .all_stages()
-        .map(|(_, s)| (s.id.clone(), Part::Stage(Box::new(Stage { legs: Vec::new(), ..s.clone() }))));
-    let legs = plan.all_legs();
-    let legs = legs.iter().map(|c| (c.leg.id.clone(), Part::Leg(Box::new(without_body(c.leg)), c.index)));
-    stages.chain(legs).collect()
-}
-
-fn without_body(leg: &Leg) -> Leg {
-    let kind = match &leg.kind {
-        LegKind::Iterative { form, count, until, turn, .. } => LegKind::Iterative {
-            form: *form,
-            count: count.clone(),
-            until: until.clone(),
-            turn: *turn,
-            body: Vec::new(),
-        },
-        other => other.clone(),
-    };
-    Leg { kind, ..leg.clone() }
 }

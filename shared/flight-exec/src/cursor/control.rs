@@ -20,8 +20,8 @@ impl Cursor {
         let Some(leg) = list.get(self.index).filter(|_| !self.is_performed_stage(world)) else {
             return self.next_stage(world);
         };
-        if flown.is_some() && self.given == 0 && !leg.actions.is_empty() {
-            notes.marks.push(Mark { leg: leg.id.clone(), passage: self.passage });
+        if flown.is_some() && self.given == 0 {
+            self.mark(leg, notes);
         }
         if self.is_reverse() {
             self.step_back();
@@ -30,6 +30,13 @@ impl Cursor {
             self.remember(world, flown.filter(|_| pattern), None);
             self.index = successor(list, leg, self.index);
             self.doing = Doing::Arriving;
+        }
+    }
+
+    /// A leg is passed without a waypoint of its own.
+    fn mark(&self, leg: &Leg, notes: &mut Notes) {
+        if !leg.actions.is_empty() {
+            notes.marks.push(Mark { leg: leg.id.clone(), passage: self.passage });
         }
     }
 
@@ -168,6 +175,7 @@ impl Cursor {
         self.remember(world, None, None);
         let list = self.list(world);
         if branches.len() < 2 {
+            self.mark(leg, notes);
             let target = branches.first().and_then(|b| b.next.as_ref());
             self.index = target.and_then(|id| index_of(list, id)).unwrap_or(self.index + 1);
             return;
@@ -180,6 +188,7 @@ impl Cursor {
         match branch {
             Some(branch) => {
                 self.count_crossing(&leg.id);
+                self.mark(leg, notes);
                 let target = branch.next.as_ref().and_then(|id| index_of(list, id));
                 self.index = target.unwrap_or(self.index + 1);
             }
@@ -263,7 +272,7 @@ fn choose<'a>(
 ) -> Option<(&'a Branch, By)> {
     let named = |id: &Id| branches.iter().find(|b| b.id == *id);
     let taken = world.decisions.iter().find(|d| d.leg == *leg && d.crossing == crossing);
-    if let Some(found) = taken.and_then(|d| Some((named(&d.branch)?, d.by))) {
+    if let Some(found) = taken.and_then(|d| Some((named(&d.branch)?, d.by.clone()))) {
         return Some(found);
     }
     let mut holds = |condition: &str| notes.value(leg, world.condition(condition)) == Some(true);

@@ -161,7 +161,8 @@ impl Cursor {
             Expansion::Orbit(_) => {
                 // seen from where it was entered, so that the same values give the same circle
                 let start = Cursor { path: self.leg_start, ..self.clone() };
-                let approach = Approach { onward: start.onward(leg, world), ..self.approach(&self.leg_start) };
+                let approach =
+                    Approach { onward: start.onward(leg, world), ..self.approach(&self.leg_start) };
                 Some(expand(leg, &approach, &inside)?)
             }
             _ => None,

@@ -188,7 +188,8 @@ impl<'a> Flight<'a> {
             Output::Answer { result: Err(refusal), .. } => {
                 self.result.refusals.push((self.moment.time_s, refusal));
             }
-            Output::Answer { .. } => {}
+            // an action is told by its event as well
+            Output::Answer { .. } | Output::Act { .. } => {}
             Output::Event(event) => {
                 if let Event::LegEntered { place } = &event {
                     self.enter(place.clone());
@@ -296,14 +297,19 @@ impl<'a> Flight<'a> {
     fn update(&mut self, program: &Arc<Program>, entry: Option<Id>) {
         self.requests += 1;
         let request = RequestId(self.requests);
-        self.tell(Input::Propose { request, program: program.clone() });
+        self.tell(Input::Propose {
+            request,
+            program: program.clone(),
+            based_on: None,
+            objections: Vec::new(),
+        });
         self.command(Command::Commit { hash: program.hash.clone(), entry });
     }
 
     fn command(&mut self, command: Command) {
         self.requests += 1;
         let request = RequestId(self.requests);
-        self.tell(Input::Command { request, command });
+        self.tell(Input::Command { request, by: "operator".into(), command });
     }
 
     fn check_limits(&mut self, since_s: f64) -> Result<(), PreviewError> {

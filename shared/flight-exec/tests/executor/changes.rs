@@ -209,7 +209,7 @@ fn a_decision_inside_the_stopping_distance_is_too_late() {
     assert!(decide(&mut rig, "left").is_ok(), "what is being done anyway may be confirmed");
     assert_eq!(rig.buffer[1].leg.as_str(), "l");
     rig.fly_to("l");
-    assert!(decide(&mut rig, "right").is_ok(), "kept for the next crossing");
+    assert_eq!(decide(&mut rig, "right").unwrap_err().code, "not-ahead", "it isn't passed again");
     assert_eq!(rig.buffer[0].leg.as_str(), "l");
     assert_eq!(
         rig.command(Command::Decide { leg: "x".into(), branch: "up".into() }).unwrap_err().code,

@@ -3,7 +3,7 @@
 use aircraft::Profile;
 use flight_exec::{
     Action, AircraftState, Answer, Command, Config, Event, Executor, Input, Output, Phase, Refusal,
-    RequestId, Time, Token, Waypoint,
+    RequestId, ResolvedAct, Time, Token, Waypoint,
 };
 use flight_plan::{Program, VariableValue};
 use geometry::LatLon;
@@ -27,6 +27,8 @@ pub struct Rig {
     /// Waypoints steered to, in order.
     pub flown: Vec<Waypoint>,
     pub events: Vec<Event>,
+    /// Actions, with leg and passage.
+    pub acts: Vec<(String, u64, ResolvedAct)>,
     pub holds: usize,
     pub feeds: usize,
     pub battery: f64,
@@ -45,6 +47,7 @@ impl Rig {
             buffer: VecDeque::new(),
             flown: Vec::new(),
             events: Vec::new(),
+            acts: Vec::new(),
             holds: 0,
             feeds: 0,
             battery: 1.0,
@@ -69,7 +72,12 @@ impl Rig {
     pub fn propose(&mut self, program: &Arc<Program>) -> flight_exec::ProposalReport {
         self.requests += 1;
         let request = RequestId(self.requests);
-        match self.step(Input::Propose { request, program: program.clone() }) {
+        match self.step(Input::Propose {
+            request,
+            program: program.clone(),
+            based_on: None,
+            objections: Vec::new(),
+        }) {
             Some(Ok(Answer::Proposal(report))) => *report,
             other => panic!("{other:?}"),
         }
@@ -83,7 +91,7 @@ impl Rig {
     pub fn command(&mut self, command: Command) -> Result<(), Refusal> {
         self.requests += 1;
         let request = RequestId(self.requests);
-        match self.step(Input::Command { request, command }) {
+        match self.step(Input::Command { request, by: "operator".into(), command }) {
             Some(Ok(Answer::Done)) => Ok(()),
             Some(Err(refusal)) => Err(refusal),
             other => panic!("{other:?}"),
@@ -108,6 +116,7 @@ impl Rig {
                 Output::Feed { cancel_after, waypoints } => self.take(cancel_after, waypoints),
                 Output::Hold => self.holds += 1,
                 Output::Answer { request, result } => answers.push((request, result)),
+                Output::Act { leg, passage, act } => self.acts.push((leg.to_string(), passage, act)),
                 Output::Event(event) => self.events.push(event),
             }
         }

@@ -72,7 +72,7 @@ fn plans_options(trace: &Trace, found: &mut Findings) {
         let DecisionRequest { leg, options, default, .. } = request;
         let right = seen_fork(step.after, leg).is_some_and(|(branches, own)| {
             let names = branches.iter().map(|b| &b.id);
-            names.eq(options.iter().map(|(id, _)| id)) && own == default.as_ref()
+            names.eq(options.iter().map(|o| &o.branch)) && own == default.as_ref()
         });
         found.expect(step, right, || format!("{request:?}"));
     }

@@ -221,7 +221,12 @@ impl Flight {
         let program = self.plans[which].clone();
         let request = self.request();
         self.settle();
-        self.input(Input::Propose { request, program: program.clone() });
+        self.input(Input::Propose {
+            request,
+            program: program.clone(),
+            based_on: None,
+            objections: Vec::new(),
+        });
         program
     }
 
@@ -362,7 +367,7 @@ impl Flight {
                 (Phase::Idle | Phase::Finished, _) => return,
                 (Phase::Holding, _) => self.command(Command::Resume),
                 (Phase::AwaitingDecision, Some(asked)) => {
-                    let branch = asked.options[0].0.clone();
+                    let branch = asked.options[0].branch.clone();
                     self.command(Command::Decide { leg: asked.leg, branch });
                 }
                 _ => {
@@ -454,7 +459,7 @@ impl Flight {
     fn command(&mut self, command: Command) {
         self.settle();
         let request = self.request();
-        self.input(Input::Command { request, command });
+        self.input(Input::Command { request, by: "operator".into(), command });
     }
 
     fn settle(&mut self) {

@@ -1,0 +1,231 @@
+//! Actions: what is done on the way, once per passage.
+//!
+//! A passage whose leg has actions is followed from its first waypoint on: [`Passage`] keeps how often each of them was done, and
+//! is part of the snapshot. Nothing is done while the aircraft holds or the gateway flies, and nothing of a leg that is skipped.
+
+mod resolve;
+mod trigger;
+
+use crate::api::{Event, Output, ResolvedAct};
+use crate::cursor::Mark;
+use crate::executor::Executor;
+use crate::handed::Handed;
+use flight_plan::{Act, Id, Leg, LegKind, Trigger};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+pub(crate) use trigger::Moment;
+
+/// A passage of a leg, or an activation of a loop, whose actions are looked after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Passage {
+    leg: Id,
+    /// Of the passage; of a loop: of its activation.
+    number: u64,
+    /// Pass of the innermost loop when it began: what `iteration` is in its expressions.
+    iteration: u64,
+    /// Path length when it began, metres.
+    began_m: f64,
+    /// Seconds flown on it.
+    flown_s: f64,
+    /// As many as the leg has actions.
+    done: Vec<Done>,
+}
+
+/// What became of an action on this passage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+struct Done {
+    times: u64,
+    /// Of one that is due abeam of a position: it lay beyond the end of the last piece of the path.
+    ahead: bool,
+}
+
+/// Circling at the end of a leg for a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Wait {
+    passage: u64,
+    /// By the executor's clock.
+    pub due_s: f64,
+}
+
+impl Executor {
+    /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
+    pub(crate) fn change_passage(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
+        let stays = |p: &Passage| p.is_of(handed);
+        self.end_passages(|p| !stays(p), out);
+        self.pass_silently(marks, handed, out);
+        out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
+        let loops: Vec<_> = loops_of(handed).map(|(leg, number)| (leg.clone(), number)).collect();
+        for (leg, number) in loops {
+            self.begin_passage(&leg, number, handed, out);
+        }
+        if !self.is_control_leg(&handed.place.leg) {
+            self.begin_passage(&handed.place.leg, handed.passage, handed, out);
+        }
+    }
+
+    /// Legs passed before a waypoint without one of their own.
+    pub(crate) fn pass_silently(&mut self, marks: Vec<Mark>, handed: &Handed, out: &mut Vec<Output>) {
+        for mark in marks {
+            self.begin_passage(&mark.leg, mark.passage, handed, out);
+            self.end_passages(|p| (&p.leg, p.number) == (&mark.leg, mark.passage), out);
+        }
+    }
+
+    /// Loops are begun with the first leg inside them; at an intersection nothing is flown.
+    fn is_control_leg(&self, id: &Id) -> bool {
+        let leg = self.program.as_ref().and_then(|p| p.leg(id));
+        leg.is_none_or(|l| matches!(l.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. }))
+    }
+
+    fn begin_passage(&mut self, leg: &Id, number: u64, handed: &Handed, out: &mut Vec<Output>) {
+        let actions = self.program.as_ref().and_then(|p| p.leg(leg)).map_or(0, |l| l.actions.len());
+        if actions == 0 || self.state.passages.iter().any(|p| (&p.leg, p.number) == (leg, number)) {
+            return;
+        }
+        self.state.acted_s = self.state.clock_s;
+        self.state.passages.push(Passage {
+            leg: leg.clone(),
+            number,
+            iteration: handed.place.iterations.last().map_or(0, |i| i.iteration),
+            began_m: handed.leg_start_m,
+            flown_s: 0.0,
+            done: vec![Done::default(); actions],
+        });
+        let index = self.state.passages.len() - 1;
+        self.act_on(index, &Moment::begun(handed), out);
+    }
+
+    /// Ends passages as they should, the innermost first.
+    pub(crate) fn end_passages(&mut self, over: impl Fn(&Passage) -> bool, out: &mut Vec<Output>) {
+        for index in (0..self.state.passages.len()).rev() {
+            if self.state.passages.get(index).is_some_and(&over) {
+                self.act_at_the_end(index, out);
+                self.state.passages.remove(index);
+            }
+        }
+    }
+
+    /// The flight goes on elsewhere: only loops around that place go on, and nothing is done at the end of the others.
+    pub(crate) fn abandon_passages(&mut self) {
+        let front = self.state.handed.front();
+        let around = |p: &Passage| front.is_some_and(|h| loops_of(h).any(|l| l == (&p.leg, p.number)));
+        let kept = self.state.passages.iter().filter(|p| around(p)).cloned().collect();
+        self.state.passages = kept;
+        self.state.wait = None;
+    }
+
+    /// A waypoint has been reached: everything up to it is due.
+    pub(crate) fn act_up_to(&mut self, flown: &Handed, out: &mut Vec<Output>) {
+        self.act_on_all(&Moment::reached(flown), out);
+    }
+
+    /// Between waypoints: what is due where the aircraft is now.
+    pub(crate) fn act_on_the_way(&mut self, out: &mut Vec<Output>) {
+        let since_s = self.state.clock_s - self.state.acted_s;
+        self.state.acted_s = self.state.clock_s;
+        if self.is_muted() || self.state.passages.is_empty() {
+            return;
+        }
+        for passage in &mut self.state.passages {
+            passage.flown_s += since_s;
+        }
+        let aircraft = self.state.aircraft.as_ref().map(|a| a.position);
+        let moment = self.state.handed.front().map(|h| Moment::on_the_way(h, aircraft, self.to_current_m()));
+        if let Some(moment) = moment {
+            self.act_on_all(&moment, out);
+        }
+    }
+
+    fn act_on_all(&mut self, moment: &Moment, out: &mut Vec<Output>) {
+        for index in 0..self.state.passages.len() {
+            self.act_on(index, moment, out);
+        }
+    }
+
+    /// When the next action is due by time, in seconds of the executor's clock.
+    pub(crate) fn next_action_s(&self) -> Option<f64> {
+        let (Some(world), false) = (self.world(), self.is_muted()) else { return None };
+        let open = self.state.passages.iter().filter_map(|p| Some((p, world.program.leg(&p.leg)?)));
+        let due_s = open.flat_map(|(p, leg)| {
+            let left = leg.actions.iter().zip(&p.done).filter(|(_, done)| done.times == 0);
+            left.filter_map(|(action, _)| match &action.trigger {
+                Trigger::Time(seconds) => world.in_iteration(p.iteration).number(seconds).ok(),
+                _ => None,
+            })
+            .map(|seconds| self.state.acted_s + seconds - p.flown_s)
+        });
+        due_s.min_by(f64::total_cmp)
+    }
+
+    /// The actions of legs in another plan: what was done stays done, found again by the action itself.
+    pub(crate) fn carry_passages_over(&mut self, old: &flight_plan::Program) {
+        let Some(program) = self.program.clone() else { return };
+        for passage in &mut self.state.passages {
+            let (before, after) = (old.leg(&passage.leg), program.leg(&passage.leg));
+            passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg));
+        }
+        self.state.passages.retain(|p| !p.done.is_empty());
+    }
+
+    /// Begins to circle for a time, when the aircraft steers to such a waypoint. The leg's other actions at its end are done
+    /// before.
+    pub(crate) fn begin_wait(&mut self, handed: &Handed, out: &mut Vec<Output>) {
+        let Some(seconds) = handed.wait_s.filter(|_| !self.is_waiting_at(handed.passage)) else { return };
+        let own = |p: &Passage| (&p.leg, p.number) == (&handed.place.leg, handed.passage);
+        if let Some(index) = self.state.passages.iter().position(own) {
+            self.act_at_the_end(index, out);
+        }
+        self.state.wait = Some(Wait { passage: handed.passage, due_s: self.state.clock_s + seconds });
+        let (leg, passage) = (handed.place.leg.clone(), handed.passage);
+        out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
+    }
+
+    fn is_waiting_at(&self, passage: u64) -> bool {
+        self.state.wait.is_some_and(|w| w.passage == passage)
+    }
+
+    /// Goes on from a circle that was flown long enough, or is not to be flown any longer.
+    pub(crate) fn end_wait(&mut self, out: &mut Vec<Output>) {
+        let Some(wait) = self.state.wait.take() else { return };
+        self.state.waited = Some(wait.passage);
+        if let Some(cursor) = self.bookmark(0).cloned() {
+            self.replan_with(0, cursor, true, out);
+        }
+    }
+}
+
+impl Passage {
+    /// The waypoint belongs to it.
+    fn is_of(&self, handed: &Handed) -> bool {
+        (&self.leg, self.number) == (&handed.place.leg, handed.passage)
+            || loops_of(handed).any(|l| l == (&self.leg, self.number))
+    }
+}
+
+/// Activations of the loops around a waypoint, outermost first.
+fn loops_of(handed: &Handed) -> impl Iterator<Item = (&Id, u64)> {
+    let loops = handed.place.iterations.iter().map(|i| &i.leg);
+    loops.zip(handed.activations.iter().copied())
+}
+
+fn remapped(done: &[Done], old: Option<&Leg>, new: &Leg) -> Vec<Done> {
+    let before = old.map_or(&[][..], |l| &l.actions);
+    let of = |(index, action)| {
+        let same = before.get(index).filter(|a| *a == action).map(|_| index);
+        let index = same.or_else(|| before.iter().position(|a| a == action));
+        index.and_then(|i| done.get(i)).copied().unwrap_or_default()
+    };
+    new.actions.iter().enumerate().map(of).collect()
+}
+
+/// A piece of the path, between two waypoints.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece {
+    from: LatLon,
+    to: LatLon,
+}
+
+/// Circling is the executor's own business, everything else is somebody's.
+fn is_wait(act: &Act) -> bool {
+    matches!(act, Act::Wait { .. })
+}

@@ -1,0 +1,177 @@
+//! When actions are due.
+
+use super::{Done, Passage, Piece, is_wait};
+use crate::api::Output;
+use crate::cursor::Trouble;
+use crate::executor::Executor;
+use crate::handed::Handed;
+use crate::world::World;
+use flight_plan::{EvalError, LegAction, Trigger};
+use geometry::{LatLon, LocalFrame};
+
+/// So near to a piece's ends a position counts as beside it, metres.
+const NEAR_M: f64 = 1.0;
+/// Repeated actions nearer to each other than this are refused, metres.
+const LEAST_EVERY_M: f64 = 1.0;
+/// Most repetitions caught up with at once; those still missing follow in the next steps.
+const MOST_AT_ONCE: u64 = 64;
+
+/// How far the flight is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment {
+    /// Path length, metres.
+    way_m: f64,
+    /// The piece of the path being flown, where the aircraft is beside it, and whether all of it is flown.
+    piece: Piece,
+    at: LatLon,
+    complete: bool,
+}
+
+impl Moment {
+    fn new(handed: &Handed, at: LatLon, way_m: f64, complete: bool) -> Self {
+        let piece = Piece { from: handed.before.path.last.position, to: handed.waypoint.position };
+        Self { way_m, piece, at, complete }
+    }
+
+    /// At the beginning of a passage.
+    pub fn begun(handed: &Handed) -> Self {
+        Self::new(handed, handed.before.path.last.position, handed.leg_start_m, false)
+    }
+
+    /// At a waypoint.
+    pub fn reached(handed: &Handed) -> Self {
+        Self::new(handed, handed.waypoint.position, handed.end_m, true)
+    }
+
+    /// So far before the waypoint it steers to, metres.
+    pub fn on_the_way(handed: &Handed, aircraft: Option<LatLon>, left_m: f64) -> Self {
+        let begin = handed.before.path.last.position;
+        Self::new(handed, aircraft.unwrap_or(begin), handed.end_m - left_m, false)
+    }
+}
+
+impl Executor {
+    /// Does what is due on a passage, in the order of its path.
+    pub(super) fn act_on(&mut self, index: usize, moment: &Moment, out: &mut Vec<Output>) {
+        let Some(program) = self.program.clone() else { return };
+        let Some(passage) = self.state.passages.get(index) else { return };
+        let Some(leg) = program.leg(&passage.leg) else { return };
+        let (mut due, mut troubles) = (Vec::new(), Vec::new());
+        for (number, action) in leg.actions.iter().enumerate() {
+            match self.due(passage, number, action, moment) {
+                Ok(ways_m) => due.extend(ways_m.into_iter().map(|way_m| (way_m, number))),
+                Err(reason) => troubles.push(Trouble::Expression { leg: leg.id.clone(), reason }),
+            }
+        }
+        let beyond = self.beyond(passage, &leg.actions, moment);
+        if let Some(passage) = self.state.passages.get_mut(index) {
+            for (done, ahead) in passage.done.iter_mut().zip(beyond) {
+                done.ahead = ahead.unwrap_or(done.ahead);
+            }
+        }
+        troubles.into_iter().for_each(|trouble| self.tell_trouble(trouble, out));
+        due.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, number) in due {
+            self.fulfil(index, number, &leg.actions, out);
+        }
+    }
+
+    /// Does what is due at the end of a passage.
+    pub(super) fn act_at_the_end(&mut self, index: usize, out: &mut Vec<Output>) {
+        let Some(program) = self.program.clone() else { return };
+        let leg = self.state.passages.get(index).and_then(|p| program.leg(&p.leg));
+        let Some(leg) = leg else { return };
+        for (number, action) in leg.actions.iter().enumerate() {
+            let done = self.state.passages.get(index).and_then(|p| p.done.get(number));
+            let due = action.trigger == Trigger::End && done.is_some_and(|d| d.times == 0);
+            if due && !is_wait(&action.act) {
+                self.fulfil(index, number, &leg.actions, out);
+            }
+        }
+    }
+
+    fn fulfil(&mut self, index: usize, number: usize, actions: &[LegAction], out: &mut Vec<Output>) {
+        let (Some(passage), Some(action)) = (self.state.passages.get_mut(index), actions.get(number)) else {
+            return;
+        };
+        if let Some(done) = passage.done.get_mut(number) {
+            done.times += 1;
+        }
+        let (leg, passage, iteration) = (passage.leg.clone(), passage.number, passage.iteration);
+        self.perform(leg, passage, iteration, &action.act, out);
+    }
+
+    /// Path lengths at which an action is due by now, one for each time.
+    fn due(
+        &self,
+        passage: &Passage,
+        number: usize,
+        action: &LegAction,
+        moment: &Moment,
+    ) -> Result<Vec<f64>, String> {
+        let (Some(done), Some(world)) = (passage.done.get(number), self.world()) else {
+            return Ok(Vec::new());
+        };
+        let world = world.in_iteration(passage.iteration);
+        let way_m = moment.way_m - passage.began_m;
+        if let Trigger::Every(every) = &action.trigger {
+            let every_m = world.number(every).map_err(|why| why.to_string())?;
+            return multiples(every_m, way_m, done.times);
+        }
+        if done.times > 0 {
+            return Ok(Vec::new());
+        }
+        let once = |due: bool, at_m: f64| if due { vec![at_m] } else { Vec::new() };
+        let number = |value| world.number(value).map_err(|why: EvalError| why.to_string());
+        Ok(match &action.trigger {
+            Trigger::Start => once(true, f64::NEG_INFINITY),
+            Trigger::Distance(metres) => number(metres).map(|m| once(way_m >= m, m))?,
+            Trigger::Time(seconds) => once(passage.flown_s >= number(seconds)?, way_m),
+            Trigger::Abeam(_) => once(is_abeam(action, *done, moment, &world)?, way_m),
+            Trigger::End | Trigger::Every(_) => Vec::new(),
+        })
+    }
+
+    /// Which positions lie beyond the end of a piece that is complete; `None`: nothing new is known.
+    fn beyond(&self, passage: &Passage, actions: &[LegAction], moment: &Moment) -> Vec<Option<bool>> {
+        let Some(world) = self.world().map(|w| w.in_iteration(passage.iteration)) else { return Vec::new() };
+        let of = |action: &LegAction| {
+            let Trigger::Abeam(place) = &action.trigger else { return None };
+            let beside = world.place(place).ok().and_then(|p| moment.piece.beside(p));
+            beside.filter(|_| moment.complete).map(|(along_m, length_m)| along_m > length_m)
+        };
+        actions.iter().map(of).collect()
+    }
+}
+
+/// The aircraft has passed the position of an action on this piece of the path, or on the corner before it.
+fn is_abeam(action: &LegAction, done: Done, moment: &Moment, world: &World) -> Result<bool, String> {
+    let Trigger::Abeam(place) = &action.trigger else { return Ok(false) };
+    let place = world.place(place).map_err(|why| why.to_string())?;
+    let Some((along_m, length_m)) = moment.piece.beside(place) else { return Ok(false) };
+    let on_corner = done.ahead && along_m < 0.0;
+    let on_piece = (-NEAR_M..=length_m + NEAR_M).contains(&along_m);
+    let flown_m = moment.piece.beside(moment.at).map_or(0.0, |(flown_m, _)| flown_m);
+    Ok(on_corner || (on_piece && (moment.complete || flown_m >= along_m)))
+}
+
+impl Piece {
+    /// How far along it a position is abeam, and how long it is, metres; `None` for a piece that is none.
+    fn beside(&self, position: LatLon) -> Option<(f64, f64)> {
+        let frame = LocalFrame::new(self.from);
+        let way = frame.to_local(self.to);
+        let length_m = way.length();
+        (length_m > NEAR_M).then(|| (frame.to_local(position).dot(way) / length_m, length_m))
+    }
+}
+
+/// Multiples of a distance on the way that have not been done.
+fn multiples(every_m: f64, way_m: f64, times: u64) -> Result<Vec<f64>, String> {
+    if every_m < LEAST_EVERY_M {
+        return Err(format!("an action every {every_m} m can't be done: give it {LEAST_EVERY_M} m or more"));
+    }
+    // a cast of a negative number gives 0
+    let passed = (way_m / every_m).floor() as u64;
+    let until = passed.min(times.saturating_add(MOST_AT_ONCE));
+    Ok((times + 1..=until).map(|n| n as f64 * every_m).collect())
+}

@@ -1,0 +1,146 @@
+//! A plan put forward: whether it may be committed, what it changes, and where the aircraft would go.
+
+use crate::api::{Answer, Command, ProposalReport, Refusal};
+use crate::executor::{Executor, refusal};
+use flight_plan::{FlightPlan, Id, Leg, LegKind, Problem, Program, Stage};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Who asks when it is only tried what a proposal would do.
+const NOBODY: &str = "trial";
+
+impl Executor {
+    /// Keeps a proposal that may be committed, and tells what it would do. One that may not takes the place of an earlier
+    /// one as well: what is committed is what was reported on last.
+    pub(crate) fn propose(
+        &mut self,
+        program: &Arc<Program>,
+        based_on: Option<u64>,
+        objections: Vec<Problem>,
+    ) -> Result<Answer, Refusal> {
+        let revision = self.state.revision;
+        if let Some(seen) = based_on.filter(|seen| *seen != revision) {
+            let advice = "another plan was committed meanwhile; look at it and propose again";
+            let reason =
+                format!("the proposal is based on revision {seen}, the flight is at {revision}: {advice}");
+            return Err(refusal("stale-revision", reason));
+        }
+        self.proposed = Some(program.clone());
+        let report = self.report(program, &objections);
+        if !report.acceptable {
+            self.proposed = None;
+        }
+        Ok(Answer::Proposal(Box::new(report)))
+    }
+
+    fn report(&self, program: &Arc<Program>, objections: &[Problem]) -> ProposalReport {
+        let empty = FlightPlan::default();
+        let old = self.program.as_ref().map_or(&empty, |p| &p.plan);
+        let problems = program.warnings.iter().chain(objections).map(|w| w.message.clone()).collect();
+        let forbidden = objections.iter().any(Problem::is_error);
+        let mut report = ProposalReport {
+            hash: program.hash.clone(),
+            acceptable: !program.stages(None).is_empty() && !forbidden,
+            problems,
+            entry_needed: false,
+            ..differences(old, &program.plan)
+        };
+        match self.outcome(program) {
+            Ok(after) => self.tell_outcome(&after, &mut report),
+            Err(refused) => {
+                report.entry_needed = refused.code == "entry-needed";
+                report.problems.push(refused.reason);
+            }
+        }
+        report
+    }
+
+    /// What a commit now would lead to: tried on a copy.
+    fn outcome(&self, program: &Arc<Program>) -> Result<Executor, Refusal> {
+        let mut copy = self.clone();
+        let mut unheard = Vec::new();
+        copy.commit(&program.hash, None, &mut unheard)?;
+        if !copy.is_flying() {
+            copy.command(Command::Start, NOBODY, &mut unheard)?;
+        }
+        Ok(copy)
+    }
+
+    fn tell_outcome(&self, after: &Executor, report: &mut ProposalReport) {
+        let aircraft = self.state.aircraft.as_ref();
+        let speed_mps = aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.profile.min_airspeed_mps);
+        let next = after.state.handed.front();
+        report.next_leg = next.map(|h| h.place.leg.clone());
+        report.next_position = next.map(|h| h.waypoint.position);
+        report.next_in_m = next.map(|_| after.to_current_m());
+        report.next_in_s = report.next_in_m.map(|metres| metres / speed_mps);
+        report.differs_in_m = self.differs_in_m(after);
+        report.differs_in_s = report.differs_in_m.map(|metres| metres / speed_mps);
+    }
+
+    /// How much of the present path would still be flown.
+    fn differs_in_m(&self, after: &Executor) -> Option<f64> {
+        let token = |e: &Executor, i: usize| e.state.handed.get(i).map(|h| h.waypoint.token);
+        let both = self.state.handed.len().max(after.state.handed.len());
+        let first = (0..both).find(|i| token(self, *i) != token(after, *i))?;
+        let kept = first.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        Some(kept.map_or(0.0, |h| self.path_left_m(h.end_m)))
+    }
+}
+
+/// A report that knows only which legs and stages differ: those only in the new plan, only in the old one, and those that are not the
+/// same (a loop's body counts for itself).
+fn differences(old: &FlightPlan, new: &FlightPlan) -> ProposalReport {
+    let (old_parts, new_parts) = (parts(old), parts(new));
+    let only = |a: &BTreeMap<Id, Part>, b: &BTreeMap<Id, Part>| -> Vec<Id> {
+        a.keys().filter(|id| !b.contains_key(*id)).cloned().collect()
+    };
+    let both = new_parts.iter().filter_map(|(id, part)| Some((id, *part == *old_parts.get(id)?)));
+    let (same, changed): (Vec<_>, Vec<_>) = both.partition(|(_, same)| *same);
+    ProposalReport {
+        hash: "".into(),
+        acceptable: false,
+        problems: Vec::new(),
+        added: only(&new_parts, &old_parts),
+        removed: only(&old_parts, &new_parts),
+        changed: changed.into_iter().map(|(id, _)| id.clone()).collect(),
+        unchanged: same.len(),
+        next_leg: None,
+        next_position: None,
+        next_in_m: None,
+        next_in_s: None,
+        differs_in_m: None,
+        differs_in_s: None,
+        entry_needed: false,
+    }
+}
+
+/// A leg or stage without what is inside it, in its list.
+#[derive(PartialEq)]
+enum Part {
+    Leg(Box<Leg>, usize),
+    Stage(Box<Stage>),
+}
+
+fn parts(plan: &FlightPlan) -> BTreeMap<Id, Part> {
+    let stages = plan
+        .all_stages()
+        .map(|(_, s)| (s.id.clone(), Part::Stage(Box::new(Stage { legs: Vec::new(), ..s.clone() }))));
+    let legs = plan.all_legs();
+    let legs = legs.iter().map(|c| (c.leg.id.clone(), Part::Leg(Box::new(without_body(c.leg)), c.index)));
+    stages.chain(legs).collect()
+}
+
+fn without_body(leg: &Leg) -> Leg {
+    let kind = match &leg.kind {
+        LegKind::Iterative { form, count, until, turn, .. } => LegKind::Iterative {
+            form: *form,
+            count: count.clone(),
+            until: until.clone(),
+            turn: *turn,
+            body: Vec::new(),
+        },
+        other => other.clone(),
+    };
+    Leg { kind, ..leg.clone() }
+}
