@@ -5,7 +5,6 @@ mod changes;
 mod commands;
 #[path = "../common/grid.rs"]
 mod grid;
-mod invariants;
 mod legs;
 mod loops;
 mod rig;

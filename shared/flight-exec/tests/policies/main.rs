@@ -32,6 +32,8 @@ use trace::Trace;
 
 /// Sequences in a plain `cargo test`.
 const SEQUENCES: u64 = 300;
+/// Moments told before the one that is wrong.
+const TOLD: usize = 60;
 const EVERY_HAPPENING: usize = usize::MAX;
 
 fn number(variable: &str, default: u64) -> u64 {
@@ -62,7 +64,7 @@ fn complain(policy: &Policy, seed: u64, sequences: u64) -> String {
         policy.name, policy.says
     );
     if std::env::var_os("LEGWORK_SEED").is_some() {
-        for moment in &trace.moments[at.saturating_sub(12)..=at] {
+        for moment in &trace.moments[at.saturating_sub(TOLD)..=at] {
             text += &format!("    {:?} {:?}\n", moment.now, moment.deed);
             moment.outputs.iter().for_each(|o| text += &format!("        {o:?}\n"));
         }

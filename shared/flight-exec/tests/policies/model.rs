@@ -7,7 +7,7 @@
 use crate::policy::{Findings, Policy, policy};
 use crate::tape::{Jump, Sight, record};
 use crate::trace::{Step, Trace};
-use flight_exec::PlacePointer;
+use flight_exec::{IterationPlace, PlacePointer};
 use flight_plan::{Id, IterativeForm, Leg, LegKind, LegPath, Program, Stage, StageKind, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -98,9 +98,20 @@ impl<'a> Model<'a, '_> {
             self.at += 1;
             match sight {
                 Sight::Jump(jump) => return Some(jump),
+                Sight::Entered(place) => self.listen(place),
                 other => self.note(&other),
             }
         }
+    }
+
+    /// Lost until the next jump: the place is what is told, what was visited in its loops isn't known.
+    fn listen(&mut self, place: &PlacePointer) {
+        let frame = |i: &IterationPlace| {
+            let id = Some(i.leg.clone());
+            Frame { id, iteration: i.iteration, reverse: i.reverse, visited: Vec::new() }
+        };
+        self.stack = place.iterations.iter().map(frame).collect();
+        self.here = Some(place.leg.clone()).filter(|_| self.stack.is_empty());
     }
 
     /// Things that are not part of the way.

@@ -1,6 +1,6 @@
 //! Random plans: every kind of control leg, nested; small enough that a flight meets all of it.
 
-use crate::grid::document_with;
+use crate::grid::{HOME, document_with};
 use crate::random::Random;
 
 /// `r` shapes the scans, `stop` ends loops, `n` counts passes.
@@ -9,14 +9,13 @@ const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="1
     <variable name="n" type="number" initial="2" min="1" max="4"/>
     <variable name="note" type="text" initial="" maxLength="8"/>"#;
 
-const FIXES: [&str; 7] = ["A2", "B3", "C2", "D4", "B5", "A3", "C4"];
-
 /// A leg without a name; lists give them theirs.
 #[derive(Debug, Clone)]
 pub enum Kind {
-    Track(&'static str),
-    Direct(&'static str),
-    Start(&'static str),
+    /// Variants of a leg are at other places.
+    Track(usize),
+    Direct,
+    Start,
     Lap,
     Climb,
     Scan,
@@ -79,9 +78,9 @@ impl Draft {
 
     fn kind(&mut self, depth: usize, random: &mut Random) -> Kind {
         match random.below(if depth > 0 { 16 } else { 11 }) {
-            0..3 => Kind::Track(random.pick(&FIXES)),
-            3 => Kind::Direct(random.pick(&FIXES)),
-            4 => Kind::Start("B1"),
+            0..3 => Kind::Track(0),
+            3 => Kind::Direct,
+            4 => Kind::Start,
             5 => Kind::Lap,
             6 => Kind::Climb,
             7 => Kind::Scan,
@@ -134,7 +133,7 @@ fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
     {
         return edit(body, new_id, random);
     }
-    let kind = Kind::Track(random.pick(&FIXES));
+    let kind = Kind::Track(1 + random.below(9));
     match random.below(3) {
         0 if list.len() > 1 => drop(list.remove(spot)),
         1 => list[spot].kind = kind,
@@ -145,18 +144,31 @@ fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
 /// A track at each end: every body flies something.
 fn write(legs: &[Leg], prefix: &str) -> String {
     let body: String = legs.iter().map(one).collect();
-    format!(r#"<TF id="{prefix}s" fix="B1"/>{body}<TF id="{prefix}z" fix="D3"/>"#)
+    format!("{}{body}{}", track(&format!("{prefix}s"), ""), track(&format!("{prefix}z"), ""))
+}
+
+fn track(id: &str, attributes: &str) -> String {
+    format!(r#"<TF id="{id}" {}{attributes}/>"#, spot(id))
+}
+
+/// A place of its own for each name, within ten kilometres (FNV-1a of the name).
+fn spot(name: &str) -> String {
+    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let metres = |bits: u64| 10_000.0 * (bits % 1009) as f64 / 1009.0;
+    let at = HOME.destination(90.0, metres(hash >> 40)).destination(0.0, metres(hash >> 20));
+    format!(r#"lat="{:.6}" lon="{:.6}""#, at.lat_deg, at.lon_deg)
 }
 
 fn one(leg: &Leg) -> String {
     let Leg { id, emergency, .. } = leg;
+    let here = spot(id);
     match &leg.kind {
-        Kind::Track(fix) => format!(r#"<TF id="{id}" fix="{fix}"{emergency}/>"#),
-        Kind::Direct(fix) => format!(r#"<DF id="{id}" fix="{fix}"{emergency}/>"#),
-        Kind::Start(fix) => format!(r#"<IF id="{id}" fix="{fix}"/>"#),
-        Kind::Lap => format!(r#"<HF id="{id}" fix="B2" course="0" turn="left" length="600"{emergency}/>"#),
+        Kind::Track(variant) => format!(r#"<TF id="{id}" {}{emergency}/>"#, spot(&format!("{id}{variant}"))),
+        Kind::Direct => format!(r#"<DF id="{id}" {here}{emergency}/>"#),
+        Kind::Start => format!(r#"<IF id="{id}" {here}/>"#),
+        Kind::Lap => format!(r#"<HF id="{id}" {here} course="0" turn="left" length="600"{emergency}/>"#),
         Kind::Climb => format!(
-            r#"<HA id="{id}" fix="C3" course="90" turn="right" length="600" altitude="600" altitudeReference="amsl"/>"#
+            r#"<HA id="{id}" {here} course="90" turn="right" length="600" altitude="600" altitudeReference="amsl"/>"#
         ),
         Kind::Scan => format!(
             r#"<scan id="{id}" spacing="= r * 0.5" heading="0" overshoot="50"{emergency}><area fix="C3" radius="= r"/></scan>"#
@@ -164,9 +176,10 @@ fn one(leg: &Leg) -> String {
         Kind::Orbit => format!(
             r#"<orbit id="{id}" radius="= 200.0 + r * 0.2" turns="1" turn="left"><centre fix="D2"/></orbit>"#
         ),
-        Kind::Jump => format!(
-            r#"<TF id="{id}" fix="A4" next="{id}-y"/><TF id="{id}-x" fix="E3"/><TF id="{id}-y" fix="E4"/>"#
-        ),
+        Kind::Jump => {
+            let (over, to) = (format!("{id}-x"), format!("{id}-y"));
+            track(id, &format!(r#" next="{to}""#)) + &track(&over, "") + &track(&to, "")
+        }
         Kind::Loop { reverse, count, until, body } => {
             let form = if *reverse { "reverse" } else { "forward" };
             let until = until.map_or(String::new(), |u| format!(r#" until="{u}""#));
@@ -178,10 +191,13 @@ fn one(leg: &Leg) -> String {
         }
         Kind::Fork { default, due } => {
             let default = if *default { format!(r#" default="{id}-s""#) } else { String::new() };
+            let (long, both) = (format!("{id}-d"), format!("{id}-e"));
             format!(
                 r#"<intersection id="{id}"{default} decideBefore="{due}">
-                   <branch id="{id}-s" label="s" next="{id}-e"/><branch id="{id}-l" label="l" next="{id}-d" when="r &gt; 900.0"/></intersection>
-                   <TF id="{id}-d" fix="E2"/><TF id="{id}-e" fix="A4"/>"#
+                   <branch id="{id}-s" label="s" next="{both}"/><branch id="{id}-l" label="l" next="{long}" when="r &gt; 900.0"/></intersection>
+                   {}{}"#,
+                track(&long, ""),
+                track(&both, "")
             )
         }
     }

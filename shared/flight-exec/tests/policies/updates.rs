@@ -41,7 +41,7 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "the-place-survives-an-update",
-        "Where the leg being flown is in the new plan too, the flight goes on there: leg, direction, iterations.",
+        "Where the leg being flown is one of the new plan too, the flight goes on there: leg, direction, iterations.",
         place_survives,
     ),
     policy(
@@ -182,14 +182,13 @@ fn revisions(trace: &Trace, found: &mut Findings) {
 }
 
 fn place_survives(trace: &Trace, found: &mut Findings) {
-    for step in trace.steps() {
-        let (Some((_, new)), Some(Command::Commit { entry: None, .. })) = (step.update(), step.accepted())
-        else {
-            continue;
-        };
+    for (step, command) in trace.accepted() {
+        let (Some((old, new)), Command::Commit { entry: None, .. }) = (step.update(), command) else { continue };
         let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
         let entered = trace.entered().take_while(|(s, _)| s.at < step.at).last();
-        if !knows(new, &before.leg) || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
+        let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
+        let is_there = knows(new, &before.leg) && kind(old) == kind(new);
+        if !is_there || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
             continue;
         }
         let (old, now) = (iterations(before), iterations(after));
