@@ -1,7 +1,7 @@
 //! A leg: what every leg has, then what its kind has.
 
 use super::super::Scene;
-use super::super::field::{self, Change};
+use super::super::field;
 use super::{altitude_row, emergency_row, heading, name_row, position_row, send, speed_row};
 use crate::command::Queue;
 use crate::theme;
@@ -9,13 +9,14 @@ use crate::units::{Unit, Units};
 use egui::{RichText, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{
-    Area, DecideBefore, Edit, Holding, HoldingLength, Id, Leg, LegContext, LegKind, Place, PlanWaypoint,
-    Scan, Spacing, TurnDirection, Value,
+    Act, Area, Call, DecideBefore, Edit, Id, Leg, LegAction, LegContext, LegKind, Pattern, Place,
+    PlanWaypoint, Scan, Trigger, TurnDirection, Value,
 };
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
 const SECONDS: Unit = Unit { symbol: "s", per_si: 1.0, decimals: 0 };
 const TIMES: Unit = Unit { symbol: "×", per_si: 1.0, decimals: 0 };
+const SHARE: Unit = Unit { symbol: "%", per_si: 100.0, decimals: 0 };
 
 /// Draws a leg's properties.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, context: &LegContext<'_>, queue: &mut Queue) {
@@ -26,6 +27,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, context: &LegContext<'_>, queue: &mu
     altitude_row(ui, scene.units(), &leg.id, leg.altitude.as_ref(), queue);
     speed_row(ui, scene.units(), &leg.id, leg.speed_mps.as_ref(), queue);
     kind_rows(ui, scene, leg, queue);
+    number_rows(ui, scene.units(), leg, queue);
+    action_rows(ui, leg);
     emergency_row(ui, scene.document.plan(), &leg.id, &leg.emergency, queue);
     ui.add_space(2.0);
     if ui.button("Delete this leg").clicked() {
@@ -70,34 +73,32 @@ fn with_kind(leg: &Leg, kind: LegKind) -> Edit {
     Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(Leg { kind, ..leg.clone() }) }
 }
 
+/// What is particular to a kind and no number.
 fn kind_rows(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
-    let u = scene.units();
     match &leg.kind {
         LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } => waypoint_rows(ui, leg, to, queue),
-        LegKind::Rf { to, centre, turn } => {
+        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => waypoint_rows(ui, leg, to, queue),
+        LegKind::Rf { to, centre, .. } => {
             waypoint_rows(ui, leg, to, queue);
             field::row(ui, "Centre", |ui| ui.label(crate::units::position(*centre)));
-            field::row(ui, "Turn", |ui| ui.label(turn_text(*turn)));
         }
-        LegKind::Hf(h) => holding_rows(ui, u, leg, h, LegKind::Hf, queue),
-        LegKind::Ha(h) => holding_rows(ui, u, leg, h, LegKind::Ha, queue),
-        LegKind::Hm { holding, until, max_laps } => {
-            let kind = |holding| LegKind::Hm { holding, until: until.clone(), max_laps: max_laps.clone() };
-            holding_rows(ui, u, leg, holding, kind, queue);
+        LegKind::Hf(h) | LegKind::Ha(h) => waypoint_rows(ui, leg, &h.fix, queue),
+        LegKind::Hm { holding, until, .. } => {
+            waypoint_rows(ui, leg, &holding.fix, queue);
+            until_row(ui, leg, until.as_deref(), queue);
         }
-        LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => waypoint_rows(ui, leg, to, queue),
-        LegKind::Pattern(_) | LegKind::Call(_) => {}
-        LegKind::Iterative { count, until, .. } => {
-            loop_rows(ui, leg, count.as_ref(), until.as_deref(), queue)
-        }
+        LegKind::Iterative { until, .. } => until_row(ui, leg, until.as_deref(), queue),
         LegKind::Intersection { default, decide_before, .. } => {
-            fork_rows(ui, u, leg, default.as_ref(), decide_before, queue)
+            fork_rows(ui, scene.units(), leg, default.as_ref(), decide_before, queue)
         }
-        LegKind::Scan(scan) => scan_rows(ui, u, leg, scan, queue),
-        LegKind::Orbit { radius_m, turns, centre, turn } => {
-            orbit_rows(ui, u, leg, (centre, radius_m, turns, *turn), queue)
+        LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {
+            area_row(ui, area)
         }
+        LegKind::Pattern(pattern) => pattern_rows(ui, pattern),
+        LegKind::Orbit { centre, .. } => centre_row(ui, centre),
+        LegKind::Call(call) => call_rows(ui, call),
     }
+    turn_row(ui, leg, queue);
 }
 
 fn place_text(place: &Place) -> String {
@@ -123,80 +124,163 @@ fn waypoint_rows(ui: &mut Ui, leg: &Leg, to: &PlanWaypoint, queue: &mut Queue) {
     }
 }
 
-fn turn_text(turn: TurnDirection) -> &'static str {
-    match turn {
-        TurnDirection::Left => "left",
-        TurnDirection::Right => "right",
+fn centre_row(ui: &mut Ui, centre: &Place) {
+    field::row(ui, "Centre", |ui| ui.label(place_text(centre)));
+}
+
+fn area_row(ui: &mut Ui, area: &Area) {
+    let text = match area {
+        Area::Circle { centre, .. } => return centre_row(ui, centre),
+        Area::Polygon { corners, holes } => format!("{} corners, {} holes", corners.len(), holes.len()),
+        Area::Expression(source) => format!("= {source}"),
+    };
+    field::row(ui, "Area", |ui| ui.label(text));
+}
+
+fn pattern_rows(ui: &mut Ui, pattern: &Pattern) {
+    match pattern {
+        Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. } => {
+            field::row(ui, "Route", |ui| ui.label(format!("{} points", route.len())));
+        }
+        _ => pattern.centre().into_iter().for_each(|centre| centre_row(ui, centre)),
+    }
+}
+
+fn call_rows(ui: &mut Ui, call: &Call) {
+    field::row(ui, "Procedure", |ui| ui.label(call.procedure.as_str()));
+    if let Some(anchor) = &call.anchor {
+        field::row(ui, "Anchor", |ui| ui.label(place_text(anchor)));
+    }
+    for (name, source) in &call.arguments {
+        field::row(ui, name.as_str(), |ui| ui.label(format!("= {source}")));
+    }
+}
+
+/// The side of a leg's turns, where it has one.
+fn turn_of(kind: &mut LegKind) -> Option<&mut TurnDirection> {
+    match kind {
+        LegKind::Rf { turn, .. } | LegKind::Iterative { turn, .. } | LegKind::Orbit { turn, .. } => {
+            Some(turn)
+        }
+        LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Some(&mut h.turn),
+        LegKind::Pattern(
+            Pattern::Spiral { turn, .. }
+            | Pattern::ExpandingSquare { turn, .. }
+            | Pattern::Sector { turn, .. }
+            | Pattern::Contour { turn, .. }
+            | Pattern::FigureEight { turn, .. },
+        ) => Some(turn),
+        _ => None,
     }
 }
 
 /// A choice between left and right.
-fn turn_row(ui: &mut Ui, turn: TurnDirection) -> Change<TurnDirection> {
+fn turn_row(ui: &mut Ui, leg: &Leg, queue: &mut Queue) {
+    let mut kind = leg.kind.clone();
+    let Some(turn) = turn_of(&mut kind) else { return };
+    let before = *turn;
     field::row(ui, "Turn", |ui| {
-        let mut new = turn;
-        ui.selectable_value(&mut new, TurnDirection::Left, "left");
-        ui.selectable_value(&mut new, TurnDirection::Right, "right");
-        if new == turn { Change::None } else { Change::Set(new) }
-    })
-}
-
-fn value_row(
-    ui: &mut Ui,
-    name: &str,
-    value: &Value<f64>,
-    unit: Unit,
-    least: f64,
-    edit: impl FnOnce(Value<f64>) -> Edit,
-    queue: &mut Queue,
-) {
-    let change = field::row(ui, name, |ui| field::number_value(ui, name, value, unit, least));
-    send(change.map(edit), queue);
-}
-
-fn holding_rows(
-    ui: &mut Ui,
-    u: Units,
-    leg: &Leg,
-    h: &Holding,
-    kind: impl Fn(Holding) -> LegKind,
-    queue: &mut Queue,
-) {
-    waypoint_rows(ui, leg, &h.fix, queue);
-    send(turn_row(ui, h.turn).map(|turn| with_kind(leg, kind(Holding { turn, ..h.clone() }))), queue);
-    if let Some(course) = &h.inbound_course_deg {
-        let edit = |v| with_kind(leg, kind(Holding { inbound_course_deg: Some(v), ..h.clone() }));
-        value_row(ui, "Inbound", course, DEGREES, 0.0, edit, queue);
-    }
-    match &h.leg {
-        HoldingLength::Distance(d) => {
-            let edit = |v| with_kind(leg, kind(Holding { leg: HoldingLength::Distance(v), ..h.clone() }));
-            value_row(ui, "Leg length", d, u.length(), 1.0, edit, queue);
-        }
-        HoldingLength::Time(t) => {
-            let edit = |v| with_kind(leg, kind(Holding { leg: HoldingLength::Time(v), ..h.clone() }));
-            value_row(ui, "Leg time", t, SECONDS, 1.0, edit, queue);
-        }
+        ui.selectable_value(turn, TurnDirection::Left, "left");
+        ui.selectable_value(turn, TurnDirection::Right, "right");
+    });
+    if *turn != before {
+        queue.edit(with_kind(leg, kind));
     }
 }
 
-fn loop_rows(ui: &mut Ui, leg: &Leg, count: Option<&Value<f64>>, until: Option<&str>, queue: &mut Queue) {
-    let set = |count| Edit::SetCount { leg: leg.id.clone(), count };
-    match count {
-        Some(count) => value_row(ui, "Count", count, TIMES, 1.0, |v| set(Some(v)), queue),
-        None => field::row(ui, "Count", |ui| {
-            if ui.button("no limit").clicked() {
-                queue.edit(set(Some(Value::Constant(1.0))));
+/// What people call a number of the document, its unit, the least it can be, and what it is when it is first given.
+fn meaning(name: &'static str, u: Units) -> (&'static str, Unit, f64, f64) {
+    match name {
+        "course" => ("Course", DEGREES, 0.0, 0.0),
+        "heading" => ("Heading", DEGREES, 0.0, 0.0),
+        "bearing" => ("Bearing", DEGREES, 0.0, 0.0),
+        "length" => ("Leg length", u.length(), 1.0, 1000.0),
+        "time" => ("Leg time", SECONDS, 1.0, 60.0),
+        "count" => ("Count", TIMES, 1.0, 1.0),
+        "maxLaps" => ("Most laps", TIMES, 1.0, 10.0),
+        "turns" => ("Turns", TIMES, 0.25, 1.0),
+        "passes" => ("Passes", TIMES, 1.0, 1.0),
+        "loops" => ("Loops", TIMES, 1.0, 3.0),
+        "sectors" => ("Sectors", TIMES, 3.0, 3.0),
+        "spacing" => ("Spacing", u.length(), 1.0, 100.0),
+        "overshoot" => ("Overshoot", u.length(), 0.0, 0.0),
+        "radius" => ("Radius", u.length(), 1.0, 300.0),
+        "innerRadius" => ("Inner radius", u.length(), 0.0, 0.0),
+        "outerRadius" => ("Outer radius", u.length(), 1.0, 500.0),
+        "width" => ("Width", u.length(), 1.0, 200.0),
+        "height" => ("Height", u.altitude(), 1.0, 100.0),
+        "fieldOfView" => ("View angle", DEGREES, 1.0, 60.0),
+        "overlap" => ("Overlap", SHARE, 0.0, 0.6),
+        other => (other, Unit { symbol: "", per_si: 1.0, decimals: 2 }, f64::MIN, 0.0),
+    }
+}
+
+/// Every number of the leg's kind.
+fn number_rows(ui: &mut Ui, u: Units, leg: &Leg, queue: &mut Queue) {
+    // altitude and airspeed have rows of their own
+    let own = leg.numbers().into_iter().filter(|(name, _)| !matches!(*name, "altitude" | "speed"));
+    for (name, value) in own {
+        let (shown, unit, least, first) = meaning(name, u);
+        let set = |value| Edit::SetNumber { leg: leg.id.clone(), name: name.into(), value };
+        field::row(ui, shown, |ui| match value {
+            Some(value) => {
+                let change = field::number_value(ui, shown, value, unit, least);
+                send(change.map(|value| set(Some(value))), queue);
             }
-        }),
+            None => {
+                if ui.button("not given").on_hover_text("Give it a value").clicked() {
+                    queue.edit(set(Some(Value::Constant(first))));
+                }
+            }
+        });
     }
+}
+
+fn until_row(ui: &mut Ui, leg: &Leg, until: Option<&str>, queue: &mut Queue) {
     field::row(ui, "Until", |ui| {
-        if let Some(new) = field::text(ui, "Until", until.unwrap_or_default(), true)
-            && let LegKind::Iterative { form, count, turn, body, .. } = leg.kind.clone()
-        {
-            let until = (!new.trim().is_empty()).then(|| new.trim().into());
-            queue.edit(with_kind(leg, LegKind::Iterative { form, count, until, turn, body }));
+        let Some(new) = field::text(ui, "Until", until.unwrap_or_default(), true) else { return };
+        let condition = (!new.trim().is_empty()).then(|| new.trim().into());
+        let mut kind = leg.kind.clone();
+        if let LegKind::Iterative { until, .. } | LegKind::Hm { until, .. } = &mut kind {
+            *until = condition;
+            queue.edit(with_kind(leg, kind));
         }
     });
+}
+
+/// What is done on the leg.
+fn action_rows(ui: &mut Ui, leg: &Leg) {
+    for LegAction { trigger, act } in &leg.actions {
+        ui.label(RichText::new(format!("◉ {}: {}", when(trigger), what(act))).size(12.0));
+    }
+}
+
+fn when(trigger: &Trigger) -> String {
+    let number = |value: &Value<f64>| match value {
+        Value::Constant(x) => x.to_string(),
+        Value::Expression(source) => format!("({source})"),
+    };
+    match trigger {
+        Trigger::Start => "at its start".into(),
+        Trigger::End => "at its end".into(),
+        Trigger::Distance(metres) => format!("after {} m", number(metres)),
+        Trigger::Every(metres) => format!("every {} m", number(metres)),
+        Trigger::Time(seconds) => format!("after {} s", number(seconds)),
+        Trigger::Abeam(place) => format!("abeam {}", place_text(place)),
+    }
+}
+
+fn what(act: &Act) -> String {
+    match act {
+        Act::Photo => "a picture".into(),
+        Act::PhotoSeries { .. } => "begin a series of pictures".into(),
+        Act::PhotoStop => "end the pictures".into(),
+        Act::VideoStart => "record video".into(),
+        Act::VideoStop => "end the video".into(),
+        Act::Set { variable, to } => format!("{variable} = {to}"),
+        Act::Invoke { service, operation, .. } => format!("call {service}/{operation}"),
+        Act::Wait { .. } => "circle for a while".into(),
+    }
 }
 
 fn fork_rows(
@@ -233,73 +317,4 @@ fn fork_rows(
         let when = branch.when.as_ref().map(|w| format!(", when {w}")).unwrap_or_default();
         ui.label(format!("▸ {}: to {to}{when}", branch.label));
     }
-}
-
-fn scan_rows(ui: &mut Ui, u: Units, leg: &Leg, scan: &Scan, queue: &mut Queue) {
-    let with = |scan: Scan| with_kind(leg, LegKind::Scan(scan));
-    match &scan.area {
-        Area::Circle { centre, radius_m } => {
-            field::row(ui, "Centre", |ui| ui.label(place_text(centre)));
-            let edit = |radius_m| Edit::SetArea {
-                leg: leg.id.clone(),
-                area: Area::Circle { centre: centre.clone(), radius_m },
-            };
-            value_row(ui, "Radius", radius_m, u.length(), 1.0, edit, queue);
-        }
-        Area::Polygon { corners, holes } => {
-            field::row(ui, "Area", |ui| {
-                ui.label(format!("{} corners, {} holes", corners.len(), holes.len()))
-            });
-        }
-        Area::Expression(source) => {
-            field::row(ui, "Area", |ui| ui.label(format!("= {source}")));
-        }
-    }
-    if let Spacing::Metres(spacing_m) = &scan.spacing {
-        let edit = |v| with(Scan { spacing: Spacing::Metres(v), ..scan.clone() });
-        value_row(ui, "Spacing", spacing_m, u.length(), 1.0, edit, queue);
-    }
-    value_row(
-        ui,
-        "Overshoot",
-        &scan.overshoot_m,
-        u.length(),
-        0.0,
-        |v| with(Scan { overshoot_m: v, ..scan.clone() }),
-        queue,
-    );
-    match &scan.heading_deg {
-        Some(heading) => value_row(
-            ui,
-            "Tracks",
-            heading,
-            DEGREES,
-            0.0,
-            |v| with(Scan { heading_deg: Some(v), ..scan.clone() }),
-            queue,
-        ),
-        None => field::row(ui, "Tracks", |ui| {
-            if ui.button("fewest turns").on_hover_text("Give the tracks a direction").clicked() {
-                queue.edit(with(Scan { heading_deg: Some(Value::Constant(0.0)), ..scan.clone() }));
-            }
-        }),
-    }
-}
-
-type OrbitParts<'a> = (&'a Place, &'a Value<f64>, &'a Value<f64>, TurnDirection);
-
-fn orbit_rows(
-    ui: &mut Ui,
-    u: Units,
-    leg: &Leg,
-    (centre, radius_m, turns, turn): OrbitParts<'_>,
-    queue: &mut Queue,
-) {
-    let orbit = |radius_m: Value<f64>, turns: Value<f64>, turn| {
-        with_kind(leg, LegKind::Orbit { centre: centre.clone(), radius_m, turns, turn })
-    };
-    field::row(ui, "Centre", |ui| ui.label(place_text(centre)));
-    value_row(ui, "Radius", radius_m, u.length(), 1.0, |v| orbit(v, turns.clone(), turn), queue);
-    value_row(ui, "Turns", turns, TIMES, 0.25, |v| orbit(radius_m.clone(), v, turn), queue);
-    send(turn_row(ui, turn).map(|turn| orbit(radius_m.clone(), turns.clone(), turn)), queue);
 }
