@@ -1,0 +1,205 @@
+//! Loops along a polygon's edge, at growing distances inside or outside it.
+
+mod shapes;
+#[cfg(test)]
+mod tests;
+
+use super::{PatternError, Stored, Vertex, counted, finite, not_negative, positive};
+use crate::turn::Turn;
+use crate::{Polygon, Vec2};
+use serde::{Deserialize, Serialize};
+use shapes::{Shape, area_m2, contains, grown, minus, rings_of};
+
+/// Distances from the edge at which loops may be flown.
+const MOST_LEVELS: u64 = 10_000;
+/// Share of a strip along loops that their sharp corners may leave unseen.
+const MOST_UNSEEN: f64 = 0.0015;
+/// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing.
+const FLOWN_ROUND: f64 = 0.25;
+/// Strips are taken to be so much wider, metres: between exact ones films would be left.
+const FILM_M: f64 = 0.01;
+
+/// Which side of the edge the loops are on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// In the area, round its holes too, until no room is left.
+    Inward,
+    /// Around the area; its holes do not count.
+    Outward,
+}
+
+/// What makes contours, besides their area.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ContourParameters {
+    /// Distance between neighbouring loops, metres.
+    pub spacing_m: f64,
+    /// Distance of the first loop from the edge, metres: 0 is the perimeter, half the spacing the first track of a search.
+    pub first_m: f64,
+    /// Which side of the edge.
+    pub side: Side,
+    /// At how many distances; inward, fewer where the area ends.
+    pub levels: u64,
+    /// How loops along the outer edge are flown; those round holes go the other way.
+    pub turn: Turn,
+    /// Where the aircraft comes from: each loop begins at its corner nearest to the end of the one before.
+    pub entry: Vec2,
+    /// How far straight lines may cut a loop's rounded corners, metres.
+    pub tolerance_m: f64,
+}
+
+/// Closed loops; each is a track, ending where it begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contours {
+    stored: Stored,
+}
+
+impl Contours {
+    /// Lays them out, from the edge on.
+    ///
+    /// Inward, an area whose middle is farther than half the spacing from its last loop gets one loop more, half a spacing
+    /// farther in.
+    ///
+    /// # Errors
+    /// A parameter that makes no sense; more waypoints than can be stored; no room for a loop.
+    pub fn new(area: &Polygon, p: &ContourParameters) -> Result<Self, PatternError> {
+        lay_out(area, p, false)
+    }
+
+    /// As [`Contours::new`], with the spacing as the width of the strip that is seen, so that next to nothing of the area is
+    /// missed: where loops have sharp corners, outside of which each of them leaves something unseen, the next one is nearer,
+    /// down to half the spacing, and so is the first one to the edge; what is still left between two is flown round.
+    ///
+    /// # Errors
+    /// As [`Contours::new`].
+    pub fn covering(area: &Polygon, p: &ContourParameters) -> Result<Self, PatternError> {
+        positive("spacing", p.spacing_m)?;
+        let first_m = p.first_m.min(reach_m(&[rings_of(area)], p.spacing_m));
+        lay_out(area, &ContourParameters { first_m, ..*p }, true)
+    }
+
+    /// See [`super::Pattern::count`].
+    pub fn count(&self) -> u64 {
+        self.stored.count()
+    }
+
+    /// See [`super::Pattern::vertex`].
+    pub fn vertex(&self, index: u64) -> Option<Vertex> {
+        self.stored.vertex(index)
+    }
+}
+
+impl ContourParameters {
+    fn check(&self) -> Result<(), PatternError> {
+        positive("spacing", self.spacing_m)?;
+        not_negative("distance from the edge", self.first_m)?;
+        counted("distances from the edge", self.levels, MOST_LEVELS)?;
+        finite("entry", self.entry.length())?;
+        positive("tolerance", self.tolerance_m)
+    }
+
+    /// The areas whose edges lie a distance from the polygon's edge.
+    fn level(&self, area: &Polygon, offset_m: f64) -> Result<Vec<Shape>, PatternError> {
+        match self.side {
+            Side::Inward => grown(&[rings_of(area)], -offset_m, self.tolerance_m),
+            Side::Outward => grown(&[rings_of(&area.without_holes())], offset_m, self.tolerance_m),
+        }
+    }
+}
+
+fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Contours, PatternError> {
+    p.check()?;
+    let mut stored = Stored::default();
+    let (mut at, mut offset_m) = (p.entry, p.first_m);
+    let mut level = p.level(area, offset_m)?;
+    if covering && p.side == Side::Inward {
+        // arms too narrow for any loop
+        let outside = unseen(&[rings_of(area)], &level, p)?;
+        at = fly(&mut stored, outside, p.turn, at)?;
+    }
+    for number in 1..=p.levels {
+        let half_m = p.spacing_m / 2.0;
+        let next_m = offset_m + half_m + if covering { reach_m(&level, p.spacing_m) } else { half_m };
+        let last = number == p.levels;
+        let next = if last { Vec::new() } else { p.level(area, next_m)? };
+        let between = if p.side == Side::Inward && !last {
+            // what the loops of this level do not see
+            let inner = p.level(area, offset_m + half_m)?;
+            if covering { unseen(&inner, &next, p)? } else { without_loops_inside(inner, &next) }
+        } else {
+            Vec::new()
+        };
+        for areas in [level, between] {
+            at = fly(&mut stored, areas, p.turn, at)?;
+        }
+        if next.is_empty() {
+            break;
+        }
+        (level, offset_m) = (next, next_m);
+    }
+    if stored.count() == 0 {
+        let width_m = area.width_m(area.narrowest_heading_deg());
+        return Err(PatternError::TooNarrow { width_m, spacing_m: 2.0 * p.first_m });
+    }
+    Ok(Contours { stored })
+}
+
+/// How far beyond the strip that one loop sees the next loop's strip may begin, up to half the spacing, metres.
+///
+/// At that distance q a corner turned by τ leaves (tan(τ/2) − τ/2) · q² unseen outside it: the kite between its edges and
+/// theirs, less a sector. All corners together may leave a share of the strip along the loops.
+fn reach_m(level: &[Shape], spacing_m: f64) -> f64 {
+    let (mut length_m, mut unseen) = (0.0, 0.0);
+    for ring in level.iter().flatten() {
+        let next = || ring.iter().cycle();
+        for ((a, b), c) in ring.iter().zip(next().skip(1)).zip(next().skip(2)) {
+            let (before, after) = (*b - *a, *c - *b);
+            length_m += before.length();
+            // the area is on the left: there, corners to the left are its own
+            let turn_rad = before.cross(after).atan2(before.dot(after)).max(0.0);
+            unseen += (turn_rad / 2.0).tan() - turn_rad / 2.0;
+        }
+    }
+    (MOST_UNSEEN * length_m * spacing_m / unseen).sqrt().min(spacing_m / 2.0)
+}
+
+/// What the loops round areas do not see of others, without what is too small to be flown round.
+fn unseen(of: &[Shape], round: &[Shape], p: &ContourParameters) -> Result<Vec<Shape>, PatternError> {
+    let seen = grown(round, p.spacing_m / 2.0 + FILM_M, p.tolerance_m)?;
+    let least_m = FLOWN_ROUND * p.spacing_m;
+    let mut left = minus(of, &seen)?;
+    left.retain(|shape| area_m2(shape) > least_m * least_m);
+    Ok(left)
+}
+
+/// Those areas that contain none of the others.
+fn without_loops_inside(mut areas: Vec<Shape>, others: &[Shape]) -> Vec<Shape> {
+    areas.retain(|area| !others.iter().any(|other| contains(area, other)));
+    areas
+}
+
+/// Adds the loops of areas, always the one nearest to where the last ended; gives where that is.
+fn fly(stored: &mut Stored, areas: Vec<Shape>, turn: Turn, mut at: Vec2) -> Result<Vec2, PatternError> {
+    let mut loops: Vec<Vec<Vec2>> = areas.into_iter().flatten().collect();
+    while let Some((ring, corner)) = nearest(&loops, at) {
+        let mut flown = loops.swap_remove(ring);
+        flown.rotate_left(corner);
+        at = flown.first().copied().unwrap_or(at);
+        flown.push(at);
+        if turn == Turn::Right {
+            flown.reverse();
+        }
+        stored.push(flown)?;
+    }
+    Ok(at)
+}
+
+/// The ring, and its corner, that is nearest to a point.
+fn nearest(rings: &[Vec<Vec2>], point: Vec2) -> Option<(usize, usize)> {
+    let places = rings.iter().enumerate().flat_map(|(i, ring)| (0..ring.len()).map(move |j| (i, j)));
+    let distance_m = |&(i, j): &(usize, usize)| {
+        let corner = rings.get(i).and_then(|ring| ring.get(j));
+        corner.map_or(f64::INFINITY, |&c| (c - point).length())
+    };
+    places.min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))
+}

@@ -1,0 +1,152 @@
+#![allow(clippy::unwrap_used)]
+use super::*;
+use crate::polygon::signed_area_m2;
+use crate::polygon::tests::any_area;
+use proptest::prelude::*;
+
+fn parameters() -> ContourParameters {
+    ContourParameters {
+        spacing_m: 100.0,
+        first_m: 50.0,
+        side: Side::Inward,
+        levels: 100,
+        turn: Turn::Right,
+        entry: Vec2::new(-10.0, -10.0),
+        tolerance_m: 1.0,
+    }
+}
+
+fn square(e: f64, n: f64, side: f64) -> Vec<Vec2> {
+    [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(x, y)| Vec2::new(e + x, n + y)).to_vec()
+}
+
+fn loops(area: &Polygon, p: &ContourParameters) -> Vec<Vec<Vec2>> {
+    rings_flown(&Contours::new(area, p).unwrap())
+}
+
+fn rings_flown(contours: &Contours) -> Vec<Vec<Vec2>> {
+    let vertices: Vec<Vertex> = (0..contours.count()).map(|i| contours.vertex(i).unwrap()).collect();
+    vertices.chunk_by(|a, b| a.track == b.track).map(|c| c.iter().map(|v| v.at).collect()).collect()
+}
+
+#[test]
+fn a_square_shrinks_to_its_middle() {
+    let area = Polygon::new(square(0.0, 0.0, 600.0), vec![]).unwrap();
+    let loops = loops(&area, &parameters());
+    let sides: Vec<f64> = loops.iter().map(|l| (l[1] - l[0]).length().round()).collect();
+    assert_eq!(sides, [500.0, 300.0, 100.0]);
+    for ring in &loops {
+        assert_eq!((ring.len(), ring.first()), (5, ring.last()));
+        // clockwise, from the corner nearest to the entry
+        assert!(signed_area_m2(ring) < 0.0 && ring[0].e < 300.0 && ring[0].n < 300.0);
+    }
+}
+
+#[test]
+fn a_middle_too_wide_for_the_last_loop_gets_one_more() {
+    let area = Polygon::new(square(0.0, 0.0, 680.0), vec![]).unwrap();
+    let loops = loops(&area, &parameters());
+    let sides: Vec<f64> = loops.iter().map(|l| (l[1] - l[0]).length().round()).collect();
+    assert_eq!(sides, [580.0, 380.0, 180.0, 80.0]);
+}
+
+#[test]
+fn holes_are_gone_round_the_other_way() {
+    let area = Polygon::new(square(0.0, 0.0, 1000.0), vec![square(400.0, 400.0, 200.0)]).unwrap();
+    let p = ContourParameters { levels: 1, ..parameters() };
+    let loops = loops(&area, &p);
+    assert_eq!(loops.len(), 2);
+    assert!(signed_area_m2(&loops[0]) < 0.0 && signed_area_m2(&loops[1]) > 0.0);
+    assert!(loops.iter().flatten().all(|&c| (area.distance_to_edge_m(c) - 50.0).abs() < 21.0));
+    assert!(loops[1].iter().all(|&c| (area.distance_to_edge_m(c) - 50.0).abs() < 1e-3));
+}
+
+#[test]
+fn outward_loops_keep_their_distance() {
+    let area = Polygon::new(square(0.0, 0.0, 300.0), vec![square(100.0, 100.0, 50.0)]).unwrap();
+    let p = ContourParameters { side: Side::Outward, levels: 3, turn: Turn::Left, ..parameters() };
+    let loops = loops(&area, &p);
+    assert_eq!(loops.len(), 3);
+    for (ring, expected_m) in loops.iter().zip([50.0, 150.0, 250.0]) {
+        assert!(signed_area_m2(ring) > 0.0);
+        for pair in ring.windows(2) {
+            for point in [pair[0], (pair[0] + pair[1]) * 0.5] {
+                let outside_m = area.distance_outside_m(point);
+                assert!((-1.001..1e-3).contains(&(outside_m - expected_m)), "{outside_m}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_perimeter_is_the_edge_itself() {
+    let area = Polygon::new(square(0.0, 0.0, 300.0), vec![]).unwrap();
+    let p = ContourParameters { first_m: 0.0, levels: 1, ..parameters() };
+    assert_eq!(loops(&area, &p)[0][..2], [Vec2::default(), Vec2::new(0.0, 300.0)]);
+}
+
+#[test]
+fn no_room_and_no_sense_are_refused() {
+    let area = Polygon::new(square(0.0, 0.0, 90.0), vec![]).unwrap();
+    let refused = |p: ContourParameters| Contours::new(&area, &p).unwrap_err();
+    assert!(matches!(refused(parameters()), PatternError::TooNarrow { .. }));
+    let p = parameters();
+    for bad in [f64::NAN, f64::INFINITY, -1.0] {
+        assert!(matches!(
+            refused(ContourParameters { spacing_m: bad, ..p }),
+            PatternError::NotPositive { .. }
+        ));
+        assert!(matches!(refused(ContourParameters { first_m: bad, ..p }), PatternError::Negative { .. }));
+        assert!(matches!(
+            refused(ContourParameters { tolerance_m: bad, ..p }),
+            PatternError::NotPositive { .. }
+        ));
+    }
+    assert!(matches!(refused(ContourParameters { levels: 0, ..p }), PatternError::OutOfRange { .. }));
+    assert!(matches!(refused(ContourParameters { levels: u64::MAX, ..p }), PatternError::OutOfRange { .. }));
+    let nowhere = Vec2::new(f64::NAN, 0.0);
+    assert!(matches!(refused(ContourParameters { entry: nowhere, ..p }), PatternError::NotANumber { .. }));
+    let huge = ContourParameters { side: Side::Outward, first_m: 1e300, ..p };
+    assert_eq!(refused(huge), PatternError::Offset);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// At the spacing's distance nothing is missed; at half of it, every sharp corner of a loop leaves something outside it.
+    #[test]
+    fn no_point_of_the_area_is_farther_than_the_spacing_from_a_loop(
+        area in any_area(), spacing_m in 30.0..300.0, left in any::<bool>(),
+    ) {
+        let turn = if left { Turn::Left } else { Turn::Right };
+        let p = ContourParameters { spacing_m, first_m: 0.0, levels: 1000, turn, ..parameters() };
+        let loops = loops(&area, &p);
+        for ring in &loops {
+            prop_assert_eq!(ring.first(), ring.last());
+            for pair in ring.windows(2) {
+                let outside_m = area.distance_outside_m((pair[0] + pair[1]) * 0.5);
+                prop_assert!(outside_m < 1e-3, "{}", outside_m);
+            }
+        }
+        let ways = loops.iter().flat_map(|ring| ring.windows(2).map(|w| (w[0], w[1])));
+        // loops may cut a corner by the tolerance
+        let share = crate::scan::coverage(&area, ways, spacing_m + p.tolerance_m);
+        prop_assert!(share > 0.999_999, "{}", share);
+    }
+
+    #[test]
+    fn covering_loops_miss_next_to_nothing_and_stay_in_the_area(
+        area in any_area(), spacing_m in 60.0..300.0, tolerance_m in 0.5..2.0,
+    ) {
+        let p = ContourParameters { spacing_m, levels: 1000, tolerance_m, ..parameters() };
+        let contours = Contours::covering(&area, &p).unwrap();
+        let loops = rings_flown(&contours);
+        for pair in loops.iter().flat_map(|ring| ring.windows(2)) {
+            let outside_m = area.distance_outside_m((pair[0] + pair[1]) * 0.5);
+            prop_assert!(outside_m < 1e-3, "{}", outside_m);
+        }
+        let ways = loops.iter().flat_map(|ring| ring.windows(2).map(|w| (w[0], w[1])));
+        let share = crate::scan::coverage(&area, ways, spacing_m / 2.0);
+        prop_assert!(share >= 0.995, "{}", share);
+    }
+}
