@@ -5,7 +5,8 @@ use super::{
     Advance, FlownWaypoint, LegPassage, Options, Preview, PreviewError, Scenario, Start, TrackPoint,
 };
 use crate::api::{
-    Action, AircraftState, Command, Event, Input, Output, Phase, PlacePointer, RequestId, Time, Waypoint,
+    Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, RequestId, Time,
+    Waypoint,
 };
 use crate::executor::Executor;
 use aircraft::{Aircraft, Guidance, Profile, Target, Wind};
@@ -35,6 +36,8 @@ pub(super) struct Flight<'a> {
     steps: u64,
     waiting_s: f64,
     requests: u64,
+    /// The scenario says so.
+    ended: bool,
     result: Preview,
 }
 
@@ -63,6 +66,7 @@ impl<'a> Flight<'a> {
             steps: 0,
             waiting_s: 0.0,
             requests: 0,
+            ended: false,
             result: empty(),
         };
         flight.start(program)?;
@@ -84,7 +88,7 @@ impl<'a> Flight<'a> {
         let every = |seconds: f64| ((seconds / step_s).round() as u64).max(1);
         let (report, track) = (every(REPORT_EVERY_S), every(self.options.track_every_s));
         let advance = every(ADVANCE_EVERY_S);
-        while self.executor.status_phase() != Phase::Finished {
+        while self.executor.status_phase() != Phase::Finished && !self.ended {
             if self.steps.is_multiple_of(track) {
                 self.record();
             }
@@ -188,6 +192,9 @@ impl<'a> Flight<'a> {
             Output::Answer { result: Err(refusal), .. } => {
                 self.result.refusals.push((self.moment.time_s, refusal));
             }
+            Output::Answer { result: Ok(Answer::Proposal(report)), .. } => {
+                self.result.proposals.push((self.moment.time_s, *report));
+            }
             // an action is told by its event as well
             Output::Answer { .. } | Output::Act { .. } => {}
             Output::Event(event) => {
@@ -289,12 +296,19 @@ impl<'a> Flight<'a> {
                 match act {
                     Act::Command(command) => self.command(command.clone()),
                     Act::Update { program, entry } => self.update(program, entry.clone()),
+                    Act::Propose { program } => self.propose(program),
+                    Act::End => self.ended = true,
                 }
             }
         }
     }
 
     fn update(&mut self, program: &Arc<Program>, entry: Option<Id>) {
+        self.propose(program);
+        self.command(Command::Commit { hash: program.hash.clone(), entry });
+    }
+
+    fn propose(&mut self, program: &Arc<Program>) {
         self.requests += 1;
         let request = RequestId(self.requests);
         self.tell(Input::Propose {
@@ -303,7 +317,6 @@ impl<'a> Flight<'a> {
             based_on: None,
             objections: Vec::new(),
         });
-        self.command(Command::Commit { hash: program.hash.clone(), entry });
     }
 
     fn command(&mut self, command: Command) {
@@ -350,6 +363,7 @@ fn empty() -> Preview {
         waypoints: Vec::new(),
         events: Vec::new(),
         refusals: Vec::new(),
+        proposals: Vec::new(),
         legs: Vec::new(),
         not_fired: Vec::new(),
         time_s: 0.0,

@@ -8,7 +8,7 @@ mod scenario;
 
 pub use scenario::{Act, Scenario, Trigger, When};
 
-use crate::api::{Event, PlacePointer, Refusal, Waypoint};
+use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::config::Config;
 use aircraft::{Profile, Wind};
 use flight_plan::{Id, Program};
@@ -118,6 +118,8 @@ pub struct Preview {
     pub events: Vec<(f64, Event)>,
     /// Commands of the scenario that were refused, with seconds since the start.
     pub refusals: Vec<(f64, Refusal)>,
+    /// What the plans that the scenario put forward would have done, with seconds since the start.
+    pub proposals: Vec<(f64, ProposalReport)>,
     /// Passages of legs, in order.
     pub legs: Vec<LegPassage>,
     /// Triggers of the scenario that never fired, by index.

@@ -58,6 +58,13 @@ pub enum Act {
         /// Where to enter it, if the current leg is gone.
         entry: Option<Id>,
     },
+    /// A new plan is put forward, and not committed: what it would do is in [`super::Preview::proposals`].
+    Propose {
+        /// The new plan.
+        program: Arc<Program>,
+    },
+    /// The preview ends here.
+    End,
 }
 
 /// Where a flight is, as triggers see it.
