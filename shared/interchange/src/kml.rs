@@ -158,9 +158,7 @@ impl Reader {
                 }
             }
         }
-        for child in element.children.iter().chain(&geometry.children) {
-            self.lost(child);
-        }
+        element.children.iter().for_each(|child| self.lost(child));
         Ok(vertices)
     }
 

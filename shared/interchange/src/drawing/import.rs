@@ -148,7 +148,8 @@ impl Importer<'_> {
             (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
             _ => ZoneShape::Polygon(outer.to_vec()),
         };
-        let (id, name) = (self.names.take(&feature.name, "zone"), feature.name.clone());
+        // zones are drawn by us alone: with the identifier as name, and the name as description
+        let (id, name) = (self.names.take(&feature.name, "zone"), feature.description.clone());
         let (floor, ceiling) = (None, None);
         self.plan.zones.push(Zone { id, name, kind, shape, floor, ceiling, active: Vec::new() });
     }

@@ -5,8 +5,6 @@
 
 mod import;
 mod of_plan;
-#[cfg(test)]
-mod tests;
 
 pub use import::read;
 pub use of_plan::of;

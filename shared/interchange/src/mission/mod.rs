@@ -10,8 +10,6 @@ mod jumps;
 pub mod placed;
 mod rally;
 mod runways;
-#[cfg(test)]
-mod tests;
 
 pub use export::{Flown, home, items};
 pub use import::read;

@@ -8,6 +8,8 @@ use geometry::LatLon;
 
 /// Two points nearer than this are one runway, and give it no direction, metres.
 const SAME_M: f64 = 1.0;
+/// Directions nearer than this are the same, degrees.
+const SAME_DEG: f64 = 1.0;
 
 /// Makes runways up, or takes the one that was given.
 pub struct Runways<'a> {
@@ -39,7 +41,7 @@ impl<'a> Runways<'a> {
         }
         let heading_deg = direction.heading_deg(point.0);
         if let Some(same) = self.list.iter().find(|r| {
-            r.threshold.distance_m(point.0) < SAME_M && (r.heading_deg - heading_deg).abs() < SAME_M
+            r.threshold.distance_m(point.0) < SAME_M && (r.heading_deg - heading_deg).abs() < SAME_DEG
         }) {
             return same.id.clone();
         }

@@ -1,0 +1,283 @@
+//! Files of other programs, and what becomes of them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod outline;
+
+use flight_plan::{AltitudeReference, Runway, Severity, Value};
+use geometry::LatLon;
+use interchange::{Assumptions, Format, Import, read};
+use outline::outline;
+
+fn import(format: Format, bytes: &[u8]) -> Import {
+    read(format, bytes, &Assumptions::default()).unwrap()
+}
+
+fn codes(import: &Import) -> Vec<(&str, &str)> {
+    import.notes.iter().map(|n| (n.code, n.place.as_str())).collect()
+}
+
+#[test]
+fn a_qgc_plan() {
+    let import = import(Format::Plan, include_bytes!("fixtures/survey.plan"));
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "take-off on runway at 60 home",
+            "mission",
+            "  item3: TF 36.327 -84.16, 120 home, 22 m/s",
+            "  item4: TF 36.328 -84.15, 80 agl, 22 m/s",
+            "  survey: scan of 4 corners, 36.25 m, heading 30, overshoot 30, StartLeft, 100 home, 22 m/s, start series 25, end stop",
+            "  corridor: along 3 points, 90 m wide, 30 m, 90 agl, 22 m/s",
+            "  approach: HA 36.315 -84.18 Left, 45 home, 22 m/s",
+            "land on landing",
+            "keep-in keep-in of 4 corners",
+            "keep-out keep-out around 36.32 -84.15, 250.5 m",
+            "emergency rally on runway",
+        ]
+    );
+    let runway = &import.plan.runways[0];
+    assert_eq!((runway.threshold, runway.elevation_amsl_m), (LatLon::new(36.319, -84.173), 349.0));
+    // north-east, towards the take-off item; approached from the loiter in the south-west
+    assert!((53.0..54.0).contains(&runway.heading_deg), "{}", runway.heading_deg);
+    assert_eq!(
+        codes(&import),
+        [
+            ("cruise-speed", "mission"),
+            ("pattern-setting", "item 5"),
+            ("pattern-setting", "item 5"),
+            ("entry-point", "item 6"),
+            ("pattern-not-carried", "item 7"),
+            ("pattern-setting", "item 8"),
+            ("runway-made-up", "item 1"),
+            ("runway-made-up", "item 8"),
+            ("rally-as-emergency", "rally point 1"),
+            ("rally-without-runway", "rally point 2"),
+        ]
+    );
+}
+
+#[test]
+fn a_waypoint_list() {
+    let import = import(Format::Waypoints, include_bytes!("fixtures/patrol.waypoints"));
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "take-off on runway at 60 home",
+            "mission",
+            "  loop2: 1000 times",
+            "    item2: TF 36.327 -84.16, 100 home",
+            "    loop4: 3 times",
+            "      item4: TF 36.33 -84.15 over, 90 agl, 20 m/s",
+            "      item6: TF 36.335 -84.15, 500 amsl, 20 m/s, start series 25, end photo",
+            "    item9: orbit 36.336 -84.15, 120 m, 3 times Left, 110 home, 20 m/s",
+            "    item10: TF 36.337 -84.15, 110 home, 20 m/s, end wait 45",
+            "    item11: HA 36.337 -84.16 Right, 200 home, 20 m/s",
+            "    item12: HM 36.338 -84.16 Right, 200 home, 20 m/s",
+            "  item17: TF 36.315 -84.18, 50 home, 20 m/s",
+            "land on runway",
+        ]
+    );
+    assert_eq!(
+        codes(&import),
+        [
+            ("runway-made-up", "line 3"),
+            ("ground-speed", "line 5"),
+            ("loiter-as-racetrack", "line 13"),
+            ("loiter-as-racetrack", "line 14"),
+            ("command-not-carried", "line 15"),
+            ("command-not-carried", "line 16"),
+            ("endless-jump", "line 17"),
+            ("land-start", "line 18"),
+            ("after-landing", "line 21"),
+        ]
+    );
+    assert!(import.notes[4].message.contains("183 (DO_SET_SERVO)"), "{}", import.notes[4]);
+}
+
+#[test]
+fn jumps_that_make_no_loop_are_noted() {
+    let list = |jumps: &str| {
+        format!(
+            "QGC WPL 110\n0 1 0 16 0 0 0 0 36 -84 300 1\n1 0 3 22 0 0 0 0 0 0 60 1\n2 0 3 16 0 0 0 0 36.1 -84 100 1\n\
+             3 0 3 16 0 0 0 0 36.2 -84 100 1\n{jumps}"
+        )
+    };
+    let nest: String = (4..20).map(|n| format!("{n} 0 0 177 2 1 0 0 0 0 0 1\n")).collect();
+    for (jumps, expected) in [
+        ("4 0 0 177 9 1 0 0 0 0 0 1\n", "leads to no leg before it"),
+        ("4 0 0 177 3 1 0 0 0 0 0 1\n5 0 3 16 0 0 0 0 36.3 -84 100 1\n6 0 0 177 3 1 0 0 0 0 0 1\n", ""),
+        (
+            "4 0 0 177 2 1 0 0 0 0 0 1\n5 0 3 16 0 0 0 0 36.3 -84 100 1\n6 0 0 177 3 1 0 0 0 0 0 1\n",
+            "middle of another loop",
+        ),
+        ("4 0 0 177 nan 1 0 0 0 0 0 1\n", "leads to no leg before it"),
+        ("4 0 0 177 2 0 0 0 0 0 0 1\n", ""),
+        (&nest, "would nest 9 loops"),
+    ] {
+        let import = import(Format::Waypoints, list(jumps).as_bytes());
+        let said: String =
+            import.notes.iter().filter(|n| n.code == "jump").map(|n| n.message.as_str()).collect();
+        assert_eq!(said.is_empty(), expected.is_empty(), "{said}");
+        assert!(said.contains(expected), "{jumps}: {said}");
+    }
+}
+
+#[test]
+fn without_a_home_heights_are_above_ground() {
+    let import = import(
+        Format::Waypoints,
+        b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.1 -84 100 1\n2 0 3 16 0 0 0 0 36.2 -84 100 1\n",
+    );
+    let legs = &import.plan.stages[0].legs;
+    assert!(legs.iter().all(|l| l.altitude.as_ref().unwrap().reference == AltitudeReference::Agl));
+    assert_eq!(outline(&import.plan)[1], "  item1: DF 36.1 -84, 100 agl");
+    assert_eq!(codes(&import), [("no-home", "line 2")]);
+}
+
+#[test]
+fn a_kml_file_packed_or_not() {
+    let kml = include_bytes!("fixtures/places.kml");
+    let import = import(Format::Kml, kml);
+    assert_eq!(import.plan.name, "Fire & water");
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "fix Tower 36.33 -84.15 <b>Lookout</b>",
+            "Road",
+            "  Road.1: DF 36.32 -84.16, 120 agl",
+            "  Road.2: TF 36.33 -84.15, 130 agl",
+            "  Road.3: TF 36.335 -84.14, 140 agl",
+            "Lake-stage",
+            "  Lake: scan of 4 corners, 100 m, overshoot 0, Nearest, 1 holes, 100 agl",
+        ]
+    );
+    assert_eq!(
+        codes(&import),
+        [
+            ("looks-not-carried", "line 5"),
+            ("no-geometry", "line 33 (Nothing)"),
+            ("element-not-carried", "line 34"),
+            ("no-geometry", "line 34 (Ride)"),
+            ("element-not-carried", "line 35"),
+            ("area-as-scan", "line 26 (Lake)"),
+            ("no-altitude", "line 26 (Lake)"),
+        ]
+    );
+    assert!(import.notes[0].message.contains("4 times"), "{}", import.notes[0]);
+}
+
+#[test]
+fn a_geojson_file() {
+    let import = import(Format::GeoJson, include_bytes!("fixtures/places.geojson"));
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "fix Tower 36.33 -84.15 ",
+            "fix Both 36.1 -84.1 ",
+            "route",
+            "  route.1: DF 36.32 -84.16, 450 amsl",
+            "  route.2: TF 36.33 -84.15, 460 amsl",
+            "Lake-stage",
+            "  Lake: scan of 3 corners, 100 m, overshoot 0, Nearest, 100 agl",
+            "Both-2",
+            "  Both-2.1: DF 36.1 -84.1, 100 agl",
+            "  Both-2.2: TF 36.2 -84.2, 100 agl",
+            "Both-3",
+            "  Both-3.1: DF 36.3 -84.3, 100 agl",
+            "  Both-3.2: TF 36.4 -84.4, 100 agl",
+        ]
+    );
+    assert_eq!(
+        codes(&import),
+        [
+            ("property-not-carried", "feature 1 (Tower)"),
+            ("ellipsoid", "feature 2"),
+            ("no-position", "feature 4 (Both)"),
+            ("no-geometry", "feature 4 (Both)"),
+            ("no-geometry", "feature 5"),
+            ("area-as-scan", "feature 3 (Lake)"),
+            ("no-altitude", "feature 3 (Lake)"),
+        ]
+    );
+}
+
+#[test]
+fn a_gpx_file() {
+    let import = import(Format::Gpx, include_bytes!("fixtures/tour.gpx"));
+    assert_eq!(import.plan.name, "Tour");
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "fix TOWER 36.33 -84.15 ",
+            "There",
+            "  A: DF 36.32 -84.16, 450 amsl",
+            "  B: TF 36.33 -84.15, 100 agl",
+            "Back",
+            "  Back.1: DF 36.33 -84.15, 460 amsl",
+            "  Back.2: TF 36.32 -84.16, 100 agl",
+        ]
+    );
+    assert_eq!(
+        codes(&import),
+        [
+            ("element-not-carried", "line 4"),
+            ("element-not-carried", "line 4"),
+            ("no-position", "line 9"),
+            ("element-not-carried", "line 14"),
+            ("element-not-carried", "line 14"),
+            ("bad-altitude", "line 15"),
+            ("no-altitude", "line 5"),
+        ]
+    );
+}
+
+#[test]
+fn with_a_runway_a_drawing_can_be_flown() {
+    let runway = Runway {
+        id: "R05".into(),
+        threshold: LatLon::new(36.319, -84.173),
+        elevation_amsl_m: 349.0,
+        heading_deg: 52.0,
+        length_m: 600.0,
+        priority: 1,
+        approach_entry: None,
+    };
+    let assumptions = Assumptions { runway: Some(runway), ..Assumptions::default() };
+    let plan = read(Format::Gpx, include_bytes!("fixtures/tour.gpx"), &assumptions).unwrap().plan;
+    let stages: Vec<_> = plan.stages.iter().map(|s| s.id.as_str()).collect();
+    assert_eq!(stages, ["take-off", "There", "Back", "land"]);
+    let plan = read(Format::Plan, include_bytes!("fixtures/survey.plan"), &assumptions).unwrap().plan;
+    assert_eq!(plan.runways.len(), 1);
+    assert!(plan.stages.iter().all(|s| s.runway.as_ref().is_none_or(|r| r.as_str() == "R05")));
+}
+
+/// What is read is a document of ours: written and read again it is the same, without an error.
+#[test]
+fn imports_are_good_documents() {
+    let files: [(Format, &[u8]); 5] = [
+        (Format::Plan, include_bytes!("fixtures/survey.plan")),
+        (Format::Waypoints, include_bytes!("fixtures/patrol.waypoints")),
+        (Format::Kml, include_bytes!("fixtures/places.kml")),
+        (Format::GeoJson, include_bytes!("fixtures/places.geojson")),
+        (Format::Gpx, include_bytes!("fixtures/tour.gpx")),
+    ];
+    for (format, bytes) in files {
+        assert_eq!(Format::by_content(bytes), Some(format));
+        let plan = import(format, bytes).plan;
+        let again = flight_plan::read(flight_plan::write(&plan));
+        let errors: Vec<_> = again.problems.iter().filter(|p| p.severity == Severity::Error).collect();
+        assert!(errors.is_empty(), "{format:?}: {errors:?}");
+        assert_eq!(again.plan, plan, "{format:?}");
+    }
+}
+
+#[test]
+fn a_camera_that_does_not_fit_its_footprint_gives_way() {
+    let plan = include_str!("fixtures/survey.plan")
+        .replace("\"AdjustedFootprintSide\": 36.25", "\"AdjustedFootprintSide\": 50");
+    let import = import(Format::Plan, plan.as_bytes());
+    assert!(import.notes.iter().any(|n| n.code == "camera"));
+    let survey = import.plan.leg(&"survey".into()).unwrap().leg;
+    let flight_plan::LegKind::Scan(scan) = &survey.kind else { panic!("{survey:?}") };
+    assert_eq!(scan.spacing, flight_plan::Spacing::Metres(Value::Constant(50.0)));
+}

@@ -1,0 +1,337 @@
+//! What is written is read again: the same waypoints, within 1e-7 degrees and 0.1 m.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use flight_exec::{Action, Token, Waypoint};
+use flight_plan::{
+    Act, Altitude, AltitudeReference, Area, FlightPlan, Leg, LegAction, LegKind, Pattern, Place,
+    PlanWaypoint, Runway, Scan, ScanEntry, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone,
+    ZoneKind, ZoneShape,
+};
+use geometry::LatLon;
+use interchange::{Assumptions, Export, Format, Import, Step, read, write};
+use proptest::prelude::*;
+
+/// Formats that hold a path.
+const PATHS: [Format; 6] =
+    [Format::Plan, Format::Waypoints, Format::Kml, Format::Kmz, Format::GeoJson, Format::Gpx];
+const RUNWAY: LatLon = LatLon::new(36.319, -84.173);
+
+fn leg(id: &str, kind: LegKind) -> Leg {
+    Leg {
+        id: id.into(),
+        name: String::new(),
+        emergency: Default::default(),
+        altitude: None,
+        speed_mps: None,
+        next: None,
+        actions: Vec::new(),
+        kind,
+    }
+}
+
+fn to(position: LatLon) -> PlanWaypoint {
+    PlanWaypoint { place: Place::Position(Value::Constant(position)), fly_over: false }
+}
+
+fn plan(legs: Vec<Leg>) -> FlightPlan {
+    let stage = |id: &str, kind, legs| Stage {
+        id: id.into(),
+        name: String::new(),
+        kind,
+        emergency: Default::default(),
+        runway: (kind != StageKind::Mission).then(|| "R05".into()),
+        altitude: None,
+        speed_mps: None,
+        legs,
+    };
+    FlightPlan {
+        name: "There & back <again>".into(),
+        aircraft: "trainer".into(),
+        runways: vec![Runway {
+            id: "R05".into(),
+            threshold: RUNWAY,
+            elevation_amsl_m: 349.0,
+            heading_deg: 52.0,
+            length_m: 600.0,
+            priority: 1,
+            approach_entry: None,
+        }],
+        stages: vec![
+            stage("to", StageKind::TakeOff, vec![]),
+            stage("m", StageKind::Mission, legs),
+            stage("l", StageKind::Land, vec![]),
+        ],
+        ..FlightPlan::default()
+    }
+}
+
+fn step(
+    leg: &str,
+    passage: usize,
+    position: LatLon,
+    altitude_amsl_m: f64,
+    airspeed_mps: f64,
+    action: Action,
+) -> Step {
+    let waypoint = Waypoint {
+        token: Token(1),
+        position,
+        altitude_amsl_m,
+        airspeed_mps,
+        action,
+        fly_over: false,
+        leg: leg.into(),
+        end_of_plan: false,
+    };
+    Step { waypoint, passage }
+}
+
+/// Waypoints of the legs that were read: position, metres AMSL and speed.
+fn flown(import: &Import) -> Vec<(LatLon, f64, Option<f64>)> {
+    fn walk(legs: &[Leg], into: &mut Vec<(LatLon, f64, Option<f64>)>) {
+        for leg in legs {
+            let (LegKind::Tf(to) | LegKind::Df { to, .. }) = &leg.kind else { panic!("{leg:?}") };
+            let Place::Position(Value::Constant(position)) = &to.place else { panic!("{to:?}") };
+            let Some(Altitude { metres: Value::Constant(metres), reference }) = &leg.altitude else {
+                panic!("{leg:?}")
+            };
+            assert_eq!(*reference, AltitudeReference::Amsl);
+            let speed =
+                leg.speed_mps.as_ref().map(|s| if let Value::Constant(s) = s { *s } else { panic!("{s:?}") });
+            into.push((*position, *metres, speed));
+        }
+    }
+    let mut all = Vec::new();
+    import.plan.stages.iter().for_each(|s| walk(&s.legs, &mut all));
+    all
+}
+
+fn again(format: Format, plan: &FlightPlan, steps: &[Step]) -> Import {
+    let written = write(format, &Export { plan, steps }).unwrap();
+    read(format, &written.bytes, &Assumptions::default()).unwrap()
+}
+
+fn near(a: LatLon, b: LatLon) -> bool {
+    let lon_deg = (a.lon_deg - b.lon_deg).abs();
+    (a.lat_deg - b.lat_deg).abs() <= 1e-7 && lon_deg.min(360.0 - lon_deg) <= 1e-7
+}
+
+fn position() -> impl Strategy<Value = LatLon> {
+    // anywhere but 0/0, which means "here" in a mission
+    (-89.9..=89.9f64, prop_oneof![-180.0..=180.0f64, Just(180.0), Just(-180.0)])
+        .prop_map(|(lat, lon)| LatLon::new(lat, lon))
+        .prop_filter("here", |p| p.lat_deg != 0.0 || p.lon_deg != 0.0)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #[test]
+    fn waypoints_come_back(points in prop::collection::vec((position(), -400.0..9000.0f64, 5.0..60.0f64), 2..20)) {
+        let legs: Vec<Leg> = points.iter().enumerate().map(|(i, p)| leg(&format!("w{i}"), LegKind::Tf(to(p.0)))).collect();
+        let steps: Vec<Step> = points
+            .iter()
+            .enumerate()
+            .map(|(i, (at, altitude_m, speed_mps))| step(&format!("w{i}"), i, *at, *altitude_m, *speed_mps, Action::Fly))
+            .collect();
+        let plan = plan(legs);
+        for format in PATHS {
+            let import = again(format, &plan, &steps);
+            let found = flown(&import);
+            prop_assert_eq!(found.len(), points.len(), "{:?}", format);
+            for (found, (at, altitude_m, speed_mps)) in found.iter().zip(&points) {
+                prop_assert!(near(found.0, *at), "{:?}: {:?} {:?}", format, found, at);
+                prop_assert!((found.1 - altitude_m).abs() < 0.1, "{:?}: {:?} {}", format, found, altitude_m);
+                if matches!(format, Format::Plan | Format::Waypoints) {
+                    // what differs by less is not worth an item
+                    prop_assert!((found.2.unwrap() - speed_mps).abs() < 0.051, "{:?}: {:?} {}", format, found, speed_mps);
+                }
+            }
+            let document = flight_plan::read(flight_plan::write(&import.plan));
+            prop_assert_eq!(&document.plan, &import.plan, "{:?}", format);
+        }
+    }
+}
+
+#[test]
+fn take_off_and_landing_come_back_as_stages() {
+    let way = LatLon::new(36.33, -84.16);
+    let steps = [
+        step("to", 0, RUNWAY.destination(52.0, 800.0), 429.0, 25.0, Action::TakeOff { heading_deg: 52.0 }),
+        step("w", 1, way, 500.0, 25.0, Action::Fly),
+        step("l", 2, RUNWAY, 349.0, 25.0, Action::Land { heading_deg: 52.0 }),
+    ];
+    let plan = plan(vec![leg("w", LegKind::Tf(to(way)))]);
+    for format in [Format::Plan, Format::Waypoints] {
+        let import = again(format, &plan, &steps);
+        let kinds: Vec<_> = import.plan.stages.iter().map(|s| s.kind).collect();
+        assert_eq!(kinds, [StageKind::TakeOff, StageKind::Mission, StageKind::Land], "{format:?}");
+        assert_eq!(import.plan.runways.len(), 1, "{format:?}");
+        let runway = &import.plan.runways[0];
+        assert!(near(runway.threshold, RUNWAY) && runway.heading_deg == 52.0, "{format:?}: {runway:?}");
+        assert_eq!(runway.elevation_amsl_m, 349.0);
+    }
+}
+
+#[test]
+fn runways_fixes_and_zones_come_back_from_drawings() {
+    let mut plan = plan(vec![]);
+    plan.fixes.push(flight_plan::Fix {
+        id: "GAP".into(),
+        position: LatLon::new(36.4, -84.2),
+        name: String::new(),
+        description: "gate".into(),
+    });
+    let zone = |id: &str, kind, shape| Zone {
+        id: id.into(),
+        name: String::new(),
+        kind,
+        shape,
+        floor: None,
+        ceiling: None,
+        active: Vec::new(),
+    };
+    let square =
+        [(36.2, -84.4), (36.2, -84.0), (36.5, -84.0), (36.5, -84.4)].map(|(lat, lon)| LatLon::new(lat, lon));
+    plan.zones.push(zone("field", ZoneKind::KeepIn, ZoneShape::Polygon(square.to_vec())));
+    let centre = LatLon::new(36.35, -84.1);
+    plan.zones.push(zone("town", ZoneKind::KeepOut, ZoneShape::Circle { centre, radius_m: 1234.5 }));
+    for format in [Format::Kml, Format::Kmz, Format::GeoJson] {
+        let found = again(format, &plan, &[]).plan;
+        assert_eq!((&found.runways, &found.zones), (&plan.runways, &plan.zones), "{format:?}");
+        assert_eq!(
+            (found.fixes[0].position, &found.fixes[0].description),
+            (plan.fixes[0].position, &plan.fixes[0].description)
+        );
+    }
+    let found = again(Format::Plan, &plan, &[]).plan;
+    let shapes = |plan: &FlightPlan| plan.zones.iter().map(|z| (z.kind, z.shape.clone())).collect::<Vec<_>>();
+    assert_eq!(shapes(&found), shapes(&plan));
+}
+
+#[test]
+fn surveys_and_corridors_come_back_as_patterns() {
+    let corners =
+        [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon));
+    let series = |every_m| LegAction {
+        trigger: Trigger::Start,
+        act: Act::PhotoSeries { every_m: Value::Constant(every_m) },
+    };
+    let stop = LegAction { trigger: Trigger::End, act: Act::PhotoStop };
+    let altitude = Some(Altitude { metres: Value::Constant(120.0), reference: AltitudeReference::Agl });
+    let scan = Scan {
+        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
+        style: ScanStyle::CrissCross,
+        spacing: Spacing::Metres(Value::Constant(40.0)),
+        heading_deg: Some(Value::Constant(75.0)),
+        overshoot_m: Value::Constant(30.0),
+        entry: ScanEntry::StartRight,
+    };
+    let corridor = Pattern::Corridor {
+        route: corners.iter().map(|c| Place::Position(Value::Constant(*c))).collect(),
+        width_m: Value::Constant(90.0),
+        spacing: Spacing::Metres(Value::Constant(30.0)),
+    };
+    let mut legs = vec![leg("survey", LegKind::Scan(scan)), leg("corridor", LegKind::Pattern(corridor))];
+    legs[0].altitude = altitude.clone();
+    legs[1].altitude = altitude;
+    legs[0].actions = vec![series(25.0), stop.clone()];
+    let steps: Vec<Step> = ["survey", "survey", "corridor", "corridor"]
+        .iter()
+        .enumerate()
+        .map(|(i, id)| step(id, i / 2, corners[i % 3], 500.0, 25.0, Action::Fly))
+        .collect();
+    let plan = plan(legs.clone());
+    let written = write(Format::Plan, &Export { plan: &plan, steps: &steps }).unwrap();
+    assert!(written.notes.iter().all(|n| n.code != "flattened"), "{:?}", written.notes);
+    let found = read(Format::Plan, &written.bytes, &Assumptions::default()).unwrap().plan;
+    for (wanted, found) in legs.iter().zip(&found.stages[0].legs) {
+        assert_eq!(
+            (&wanted.kind, &wanted.altitude, &wanted.actions),
+            (&found.kind, &found.altitude, &found.actions)
+        );
+    }
+    // the items that fly them are in the file, numbered on
+    let json: serde_json::Value = serde_json::from_slice(&written.bytes).unwrap();
+    let items = json["mission"]["items"].as_array().unwrap();
+    let inside = items[0]["TransectStyleComplexItem"]["Items"].as_array().unwrap();
+    let commands: Vec<_> = inside.iter().map(|i| i["command"].as_u64().unwrap()).collect();
+    assert_eq!(commands, [206, 178, 16, 16, 206]);
+    assert_eq!(items[1]["TransectStyleComplexItem"]["Items"][0]["doJumpId"], 6);
+}
+
+#[test]
+fn actions_and_waits_are_items() {
+    let at = LatLon::new(36.33, -84.15);
+    let mut way = leg("w", LegKind::Tf(to(at)));
+    let action = |trigger, act| LegAction { trigger, act };
+    way.actions = vec![
+        action(Trigger::Every(Value::Constant(30.0)), Act::Photo),
+        action(Trigger::Start, Act::VideoStart),
+        action(Trigger::End, Act::Wait { seconds: Value::Constant(20.0) }),
+        action(Trigger::End, Act::Photo),
+        action(Trigger::Distance(Value::Constant(5.0)), Act::Photo),
+    ];
+    let plan = plan(vec![way]);
+    let steps = [step("w", 0, at, 500.0, 25.0, Action::Fly), step("w", 1, at, 500.0, 25.0, Action::Fly)];
+    let written = write(Format::Waypoints, &Export { plan: &plan, steps: &steps }).unwrap();
+    let commands: Vec<_> = std::str::from_utf8(&written.bytes)
+        .unwrap()
+        .lines()
+        .skip(2)
+        .map(|l| l.split('\t').nth(3).unwrap().to_owned())
+        .collect();
+    // once for each passage; the speed is commanded when it changes
+    assert_eq!(commands, ["206", "2500", "178", "19", "206", "203", "206", "2500", "19", "206", "203"]);
+    let lost: Vec<_> = written.notes.iter().filter(|n| n.code == "action-not-carried").collect();
+    assert_eq!(lost.len(), 1);
+    assert!(lost[0].place == "w" && lost[0].message.starts_with('1'), "{lost:?}");
+}
+
+#[test]
+fn what_is_lost_is_told() {
+    let at = LatLon::new(36.33, -84.15);
+    let mut plan = plan(vec![leg(
+        "orbit",
+        LegKind::Orbit {
+            centre: Place::Position(Value::Constant(at)),
+            radius_m: Value::Constant(200.0),
+            turns: Value::Constant(1.0),
+            turn: flight_plan::TurnDirection::Left,
+        },
+    )]);
+    plan.variables.push(flight_plan::Variable {
+        name: "fire".into(),
+        initial: flight_plan::VariableValue::Bool(false),
+        unit: String::new(),
+        min: None,
+        max: None,
+        max_length: None,
+        writers: Vec::new(),
+    });
+    let steps = [step("orbit", 0, at, 500.0, 25.0, Action::Fly)];
+    let codes = |format| {
+        let written = write(format, &Export { plan: &plan, steps: &steps }).unwrap();
+        written.notes.iter().map(|n| format!("{} {}", n.place, n.code)).collect::<Vec<_>>()
+    };
+    let always = ["orbit flattened", "fire variable-not-carried"];
+    for (format, more) in [
+        (Format::Plan, &["R05 runway-not-carried"][..]),
+        (Format::Waypoints, &["R05 runway-not-carried"]),
+        (Format::Kml, &["waypoints speeds-not-carried"]),
+        (Format::Gpx, &["R05 runway-not-carried", "waypoints speeds-not-carried"]),
+        (Format::Csv, &["R05 runway-not-carried"]),
+    ] {
+        let expected: Vec<_> = always.iter().chain(more).map(|s| (*s).to_owned()).collect();
+        assert_eq!(codes(format), expected, "{format:?}");
+    }
+}
+
+#[test]
+fn csv_has_a_line_for_each_waypoint() {
+    let at = LatLon::new(36.33, -84.15);
+    let steps = [step("w", 3, at, 500.0, 25.0, Action::Land { heading_deg: 0.0 })];
+    let written = write(Format::Csv, &Export { plan: &plan(vec![]), steps: &steps }).unwrap();
+    let text = String::from_utf8(written.bytes).unwrap();
+    assert_eq!(text.lines().nth(1), Some("1,w,3,36.330000000,-84.150000000,500.0000,25.000,land,false"));
+    assert_eq!(text.lines().count(), 2);
+}
