@@ -86,6 +86,18 @@ fn the_perimeter_is_the_edge_itself() {
 }
 
 #[test]
+fn sharp_corners_bring_covering_loops_nearer_instead_of_being_flown_round() {
+    let corner = |deg: f64| Vec2::from_bearing_rad(deg.to_radians()) * 1500.0;
+    let area = Polygon::new(vec![corner(0.0), corner(120.0), corner(240.0)], vec![]).unwrap();
+    let p = ContourParameters { tolerance_m: 0.5, ..parameters() };
+    let loops = rings_flown(&Contours::covering(&area, &p).unwrap());
+    // triangles all, each in the one before
+    assert!(loops.iter().all(|ring| ring.len() == 4), "{loops:?}");
+    let sizes: Vec<f64> = loops.iter().map(|ring| signed_area_m2(ring).abs()).collect();
+    assert!(sizes.is_sorted_by(|a, b| a > b) && sizes.len() > 750 / 100, "{sizes:?}");
+}
+
+#[test]
 fn no_room_and_no_sense_are_refused() {
     let area = Polygon::new(square(0.0, 0.0, 90.0), vec![]).unwrap();
     let refused = |p: ContourParameters| Contours::new(&area, &p).unwrap_err();
