@@ -106,8 +106,32 @@ impl Path {
         }
     }
 
+    /// Positions along the way from `start`: `steps` steps of one length, each with its share (0..=1) of the way.
+    ///
+    /// A line is followed as a geodesic from kilometre to kilometre; in between, latitude and longitude are
+    /// interpolated, which is much quicker. That is off by d²·tan φ / 8R at the most: 0.2 m at 85°, beyond which every
+    /// position is computed.
+    pub fn along(&self, start: LatLon, steps: u32) -> impl Iterator<Item = (f64, LatLon)> + '_ {
+        const CHUNK_M: f64 = 1_000.0;
+        let share = move |i: u32| f64::from(i) / f64::from(steps.max(1));
+        let straight = matches!(self, Path::Line { .. }) && start.lat_deg.abs() < 85.0;
+        let step_m = self.length_m() / f64::from(steps.max(1));
+        let chunk = if straight { (CHUNK_M / step_m).clamp(1.0, f64::from(steps.max(1))) as u32 } else { 1 };
+        let (mut from, mut to, mut begins) = (start, start, None);
+        (0..=steps).map(move |i| {
+            let first = i - i % chunk;
+            if begins.replace(first) != Some(first) {
+                from = if first == 0 { start } else { to };
+                to = self.at(start, share((first + chunk).min(steps)));
+            }
+            let last = (first + chunk).min(steps);
+            let inside = f64::from(i - first) / f64::from((last - first).max(1));
+            (share(i), between(from, to, inside))
+        })
+    }
+
     /// The position a share (0..1) of the way along, from `start`.
-    pub fn at(&self, start: LatLon, share: f64) -> LatLon {
+    fn at(&self, start: LatLon, share: f64) -> LatLon {
         match self {
             Path::Line { length_m, course_start_deg, .. } => {
                 start.destination(*course_start_deg, length_m * share)
@@ -117,6 +141,12 @@ impl Path {
             }
         }
     }
+}
+
+/// The position a share (0..1) of the way between two that are near each other, by latitude and longitude.
+fn between(from: LatLon, to: LatLon, share: f64) -> LatLon {
+    let lon_deg = from.lon_deg + normalise_180(to.lon_deg - from.lon_deg) * share;
+    LatLon::new(from.lat_deg + (to.lat_deg - from.lat_deg) * share, normalise_180(lon_deg))
 }
 
 /// Angle between two courses, degrees in 0..=180.
@@ -360,4 +390,29 @@ fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Result<Expression, Expressio
     plan.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut add));
     plan.all_legs().iter().for_each(|c| c.leg.for_each_expression(&mut add));
     compiled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Beside the geodesic itself.
+        #[test]
+        fn positions_along_a_path_are_on_it(
+            lat in -89.0..89.0, lon in -180.0..180.0, course in 0.0..360.0, length_m in 10.0..50_000.0, steps in 1..200_u32,
+        ) {
+            let start = LatLon::new(lat, lon);
+            let path = Path::line(start, start.destination(course, length_m));
+            let along: Vec<_> = path.along(start, steps).collect();
+            prop_assert_eq!(along.len(), steps as usize + 1);
+            for (share, position) in along {
+                // see `along`; a path that goes on beyond 85° from below: 1 km² · tan 85.5° / 8R
+                prop_assert!(position.distance_m(path.at(start, share)) < 0.3);
+            }
+        }
+    }
 }

@@ -53,13 +53,13 @@ fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
     let along = step.start.zip(step.path).and_then(|(start, path)| {
         let from_m = start.altitude_amsl_m?;
         let looks = (path.length_m() / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
-        let look = |i: u32| {
-            let share = f64::from(i) / looks;
-            let position = path.at(start.position, share);
-            let altitude_m = from_m + (end.altitude_amsl_m? - from_m) * share;
+        let to_m = end.altitude_amsl_m?;
+        let look = |(share, position)| {
+            let altitude_m = from_m + (to_m - from_m) * share;
             clearance_m(view, Point { position, altitude_amsl_m: None }, altitude_m)
         };
-        (0..=looks as u32).filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0))
+        let looks = path.along(start.position, looks as u32);
+        looks.filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     at_end.into_iter().chain(along).min_by(|a, b| a.0.total_cmp(&b.0))
 }

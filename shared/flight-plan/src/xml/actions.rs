@@ -76,7 +76,7 @@ impl<'a> Document<'a> {
         let every = self.value(element, "every").map(Trigger::Every);
         let time = self.value(element, "afterTime").map(Trigger::Time);
         const WAYS: [&str; 4] = ["on", "afterDistance", "afterTime", "every"];
-        if WAYS.iter().filter(|way| element.attributes.location(way).is_some()).count() != 1 {
+        if WAYS.iter().filter(|way| element.attributes.has(way)).count() != 1 {
             let message = "say when in exactly one way: `on`, `afterDistance`, `afterTime` or `every`";
             self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
         }

@@ -10,8 +10,10 @@ use std::cell::Cell;
 /// The attributes of one element.
 pub(super) struct Attributes<'a> {
     list: Vec<Entry<'a>>,
-    /// Just behind the element's name.
+    /// The element's.
     place: Place<'a>,
+    /// Which names may be there (see [`bit`]): most that are asked for are not.
+    names: u64,
 }
 
 struct Entry<'a> {
@@ -23,6 +25,13 @@ struct Entry<'a> {
 impl<'a> Attributes<'a> {
     /// Reads what stands behind an element's name.
     pub fn parse(text: &'a str, place: Place<'a>, problems: &mut Vec<Problem>) -> Self {
+        let list = plain(text).unwrap_or_else(|| Self::any(text, place, problems));
+        let names = list.iter().fold(0, |names, entry| names | bit(entry.name));
+        Self { list, place, names }
+    }
+
+    /// Whatever XML allows.
+    fn any(text: &'a str, place: Place<'a>, problems: &mut Vec<Problem>) -> Vec<Entry<'a>> {
         let mut list: Vec<Entry<'a>> = Vec::new();
         let mut raw = RawAttributes::new(text, 0);
         for attribute in raw.with_checks(false) {
@@ -41,19 +50,31 @@ impl<'a> Attributes<'a> {
                 }
             }
         }
-        Self { list, place }
+        list
     }
 
     /// The value of an attribute, if it is there.
     pub fn take(&self, name: &str) -> Option<&Cow<'a, str>> {
-        let entry = self.list.iter().find(|e| e.name == name)?;
+        let entry = self.find(name)?;
         entry.taken.set(true);
         Some(&entry.value)
     }
 
+    fn find(&self, name: &str) -> Option<&Entry<'a>> {
+        if self.names & bit(name) == 0 {
+            return None;
+        }
+        self.list.iter().find(|e| e.name == name)
+    }
+
+    /// It is there (and still to be taken).
+    pub fn has(&self, name: &str) -> bool {
+        self.find(name).is_some()
+    }
+
     /// Where an attribute stands.
     pub fn location(&self, name: &str) -> Option<Location> {
-        self.list.iter().find(|e| e.name == name).map(|e| self.place.of(e.name))
+        self.find(name).map(|e| self.place.of(e.name))
     }
 
     /// Attributes that were not taken; namespace declarations and schema hints need not be.
@@ -64,13 +85,47 @@ impl<'a> Attributes<'a> {
     }
 }
 
+/// A bit for a name, by its length and first letter.
+fn bit(name: &str) -> u64 {
+    let first = name.as_bytes().first().map_or(0, |b| usize::from(*b));
+    1 << ((first + 7 * name.len()) % 64)
+}
+
+/// Attributes as nearly every document has them: `name="value"`, no references, no line breaks, no name twice.
+/// `None`: something else.
+fn plain(text: &str) -> Option<Vec<Entry<'_>>> {
+    let mut list: Vec<Entry> = Vec::with_capacity(8);
+    let mut rest = text;
+    loop {
+        rest = rest.trim_ascii_start();
+        if rest.is_empty() {
+            return Some(list);
+        }
+        let letters =
+            rest.bytes().take_while(|b| b.is_ascii_alphanumeric() || matches!(b, b':' | b'_' | b'-')).count();
+        let (name, behind) = rest.split_at_checked(letters)?;
+        let behind = behind.strip_prefix("=\"")?;
+        let length = behind.bytes().position(|b| matches!(b, b'"' | b'&' | b'<' | b'\t' | b'\n' | b'\r'))?;
+        let (value, behind) = behind.split_at_checked(length)?;
+        rest = behind.strip_prefix('"')?;
+        let separate = rest.is_empty() || rest.starts_with(|c: char| c.is_ascii_whitespace());
+        if name.is_empty() || !separate || list.len() >= MAX_ATTRIBUTES || list.iter().any(|e| e.name == name)
+        {
+            return None;
+        }
+        list.push(Entry { name, value: Cow::Borrowed(value), taken: Cell::new(false) });
+    }
+}
+
 fn entry<'a>(attribute: &Attribute<'a>, list: &[Entry<'a>]) -> Result<Entry<'a>, (&'static str, String)> {
     let name = attribute.key.0;
     if list.iter().any(|e| e.name == name) {
         return Err(("duplicate-attribute", format!("`{}` is there twice", shown(name))));
     }
     let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| ("entity", e.to_string()))?;
-    match value.chars().find(|c| !allowed(*c)) {
+    // what stands there as it is has been looked at with the whole document
+    let made = matches!(value, Cow::Owned(_)).then(|| value.chars().find(|c| !allowed(*c)));
+    match made.flatten() {
         Some(_) => {
             Err(("bad-character", format!("`{}` contains a character that XML does not allow", shown(name))))
         }

@@ -190,10 +190,8 @@ impl<'a> Cursor<'a> {
         // between `<` and `>` or `/>`
         let inside = self.text.get(start + 1..end - if empty { 2 } else { 1 }).unwrap_or("");
         let (name, list) = inside.split_at_checked(tag.name().0.len()).unwrap_or((inside, ""));
-        let here = Place { offset: start + 1 + name.len(), ..self.place };
-        let here = Place { column: here.column + 1 + name.chars().count(), ..here };
         let mut problems = Vec::new();
-        let attributes = Attributes::parse(list, here, &mut problems);
+        let attributes = Attributes::parse(list, self.place, &mut problems);
         problems.into_iter().for_each(|p| self.report(p));
         Some(Element { name, attributes, location, empty })
     }
@@ -246,17 +244,16 @@ impl Place<'_> {
     /// Moves on to a byte offset (an earlier one is answered with the present place).
     pub fn advance(&mut self, offset: usize) -> Location {
         let between = self.text.as_bytes().get(self.offset..offset).unwrap_or(b"");
-        for byte in between {
-            match byte {
-                b'\n' => {
-                    self.line += 1;
-                    self.column = 1;
-                }
-                // continuation bytes are part of the character before
-                0x80..=0xbf => {}
-                _ => self.column += 1,
+        let last_line = match between.iter().rposition(|b| *b == b'\n') {
+            Some(end) => {
+                self.line += between.iter().filter(|b| **b == b'\n').count();
+                self.column = 1;
+                between.get(end + 1..).unwrap_or(b"")
             }
-        }
+            None => between,
+        };
+        // continuation bytes are part of the character before
+        self.column += last_line.iter().filter(|b| !matches!(b, 0x80..=0xbf)).count();
         self.offset = self.offset.max(offset);
         Location { line: self.line, column: self.column }
     }

@@ -227,7 +227,7 @@ impl<'a> Document<'a> {
     ) -> LegKind {
         let procedure =
             self.reference(element, "procedure").unwrap_or_else(|| self.missing(element, "procedure"));
-        let anchored = ["fix", "lat", "lon", "at"].iter().any(|n| element.attributes.location(n).is_some());
+        let anchored = ["fix", "lat", "lon", "at"].iter().any(|n| element.attributes.has(n));
         let anchor = anchored.then(|| self.place(element, "at"));
         let bearing_deg = self.value(element, "bearing");
         let mut arguments = Vec::new();
@@ -251,7 +251,13 @@ impl<'a> Document<'a> {
 
 /// A leg's element.
 fn is_leg(name: &str) -> bool {
-    LEGS.split(", ").any(|leg| leg == name) && !matches!(name, "action" | "emergency")
+    match name {
+        "IF" | "TF" | "DF" | "RF" | "CF" | "FA" | "HF" | "HA" | "HM" | "iterative" | "intersection"
+        | "call" => true,
+        "scan" | "creepingLine" | "crissCross" | "spiral" | "expandingSquare" | "sector" => true,
+        "trackLine" | "corridor" | "contour" | "orbit" | "figureEight" => true,
+        _ => false,
+    }
 }
 
 /// `30s` or `800m`.

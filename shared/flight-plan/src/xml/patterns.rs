@@ -235,7 +235,7 @@ impl<'a> Document<'a> {
 
     /// `spacing`, or what a camera sees.
     fn spacing(&mut self, element: &Element<'a>) -> Spacing {
-        if element.attributes.location("fieldOfView").is_none() {
+        if !element.attributes.has("fieldOfView") {
             return Spacing::Metres(self.required_value(element, "spacing"));
         }
         Spacing::Camera {
@@ -296,7 +296,7 @@ impl<'a> Document<'a> {
 
     /// A circle when it has a radius, an expression when it has a polygon, else corners.
     fn area(&mut self, element: Element<'a>) -> Area {
-        if element.attributes.location("radius").is_some() {
+        if element.attributes.has("radius") {
             let area = Area::Circle {
                 centre: self.place(&element, "centre"),
                 radius_m: self.required_value(&element, "radius"),
@@ -304,7 +304,7 @@ impl<'a> Document<'a> {
             self.cursor.close(element);
             return area;
         }
-        if element.attributes.location("polygon").is_some() {
+        if element.attributes.has("polygon") {
             let source = self.source(&element, "polygon").unwrap_or_else(|| "".into());
             self.cursor.close(element);
             return Area::Expression(source);

@@ -24,26 +24,42 @@ pub struct Reading {
 
 /// Where the elements with identifiers stand in a document.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Places(HashMap<Id, Location>);
+pub struct Places(
+    /// In the order of the document; most plans have no problems, and nobody asks.
+    Vec<(Id, Location)>,
+);
 
 impl Places {
     /// Where a leg, stage, fix, runway, variable, zone, procedure or emergency plan stands (the last one, if the identifier
     /// is there twice); of a leg that a call makes (`call.leg`): where the call stands.
     pub fn get(&self, id: &Id) -> Option<Location> {
-        let calls = std::iter::successors(Some(id.as_str()), |id| id.rsplit_once('.').map(|(call, _)| call));
-        calls.into_iter().find_map(|id| self.0.get(id)).copied()
+        around(id)
+            .find_map(|id| self.0.iter().rev().find(|(known, _)| known.as_str() == id))
+            .map(|(_, at)| *at)
     }
 
     pub(super) fn insert(&mut self, id: &Id, location: Location) {
-        self.0.insert(id.clone(), location);
+        self.0.push((id.clone(), location));
     }
 
     /// Adds places to problems that have a subject and no place.
     pub fn locate(&self, problems: &mut [Problem]) {
-        for problem in problems.iter_mut().filter(|p| p.location.is_none()) {
-            problem.location = problem.subject.as_ref().and_then(|id| self.get(id));
+        let mut nowhere =
+            problems.iter_mut().filter(|p| p.location.is_none() && p.subject.is_some()).peekable();
+        if nowhere.peek().is_none() {
+            return;
+        }
+        let places: HashMap<&str, Location> = self.0.iter().map(|(id, at)| (id.as_str(), *at)).collect();
+        for problem in nowhere {
+            let mut ids = problem.subject.iter().flat_map(around);
+            problem.location = ids.find_map(|id| places.get(id).copied());
         }
     }
+}
+
+/// An identifier, and those of the calls that it may be made by: `a.b.c`, `a.b`, `a`.
+fn around(id: &Id) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(id.as_str()), |id| id.rsplit_once('.').map(|(call, _)| call))
 }
 
 impl Reading {
@@ -81,6 +97,11 @@ fn encoding_problem(bytes: &[u8]) -> Option<Problem> {
 }
 
 fn character_problem(text: &str) -> Option<Problem> {
+    // of ASCII, only control characters are not allowed: a quick look at all bytes at once
+    let harmless = |b: &u8| (b' '..0x80).contains(b) || matches!(b, b'\t' | b'\n' | b'\r');
+    if text.as_bytes().chunks(1024).all(|chunk| chunk.iter().filter(|b| harmless(b)).count() == chunk.len()) {
+        return None;
+    }
     let (offset, character) = text.char_indices().find(|(_, c)| !attributes::allowed(*c))?;
     let message = format!("remove this character (U+{:04X}): XML does not allow it", u32::from(character));
     Some(Problem::error("bad-character", message).at(location_of(text.get(..offset)?)))

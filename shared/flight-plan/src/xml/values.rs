@@ -31,7 +31,7 @@ impl<'a> Document<'a> {
     }
 
     pub fn require(&mut self, element: &Element<'a>, name: &str) {
-        if element.attributes.location(name).is_none() {
+        if !element.attributes.has(name) {
             let message = format!("give <{}> the attribute `{name}`", element.name);
             self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
         }

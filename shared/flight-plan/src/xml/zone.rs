@@ -56,7 +56,7 @@ impl<'a> Document<'a> {
         let name = self.text(&element, "name");
         let floor = self.limit(&element, "floor", "floorReference");
         let ceiling = self.limit(&element, "ceiling", "ceilingReference");
-        let circle = element.attributes.location("radius").is_some().then(|| ZoneShape::Circle {
+        let circle = element.attributes.has("radius").then(|| ZoneShape::Circle {
             centre: self.lat_lon(&element, "lat", "lon").unwrap_or(LatLon::new(f64::NAN, f64::NAN)),
             radius_m: self.required_number(&element, "radius"),
         });
