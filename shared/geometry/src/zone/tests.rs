@@ -2,6 +2,7 @@
 use super::*;
 use crate::geodesy::normalise_180;
 use crate::testing::HERE;
+use crate::{LocalFrame, Vec2};
 use proptest::prelude::*;
 
 const LOW: Band = Band { floor_m: 0.0, ceiling_m: 120.0 };
@@ -156,6 +157,45 @@ fn a_hole_belongs_to_the_other_side() {
     let stay = Zone::new(&shape, LOW, Rule::KeepIn, 0.0).unwrap();
     let breach = stay.breach(&in_hole).unwrap();
     assert!((breach.horizontal_m - 1000.0 / 2.0_f64.sqrt()).abs() < 0.2, "{breach:?}");
+}
+
+#[test]
+fn a_long_edge_is_a_geodesic() {
+    // 134 km, whose straight line in a frame around here passes 2.5 m beside its middle
+    let corners = [45.0, 135.0, 225.0, 315.0].map(|bearing| (bearing, 95_000.0));
+    let zone = polygon(&corners, Rule::KeepOut, 0.0);
+    let edge =
+        PathElement::Line { from: HERE.destination(45.0, 95_000.0), to: HERE.destination(135.0, 95_000.0) };
+    let middle = edge.pose_at(edge.length_m() / 2.0);
+    for (inside_m, free) in [(1.0, false), (-1.0, true)] {
+        let beside = middle.position.destination(middle.bearing_end_deg + 90.0, inside_m);
+        let short = line(beside, beside.destination(middle.bearing_end_deg, 200.0), (60.0, 60.0));
+        assert_eq!(zone.breach(&short).is_none(), free, "{inside_m}");
+    }
+}
+
+#[test]
+fn far_corners_of_a_zone_and_far_ends_of_a_line_are_looked_at() {
+    // a bar in the north with a foot in the east: only its foot stands on the line, far from the middle of both
+    let frame = LocalFrame::new(HERE);
+    let corners = [(38, -5), (42, -5), (42, 40), (-40, 40), (-40, 36), (38, 36)];
+    let outer = corners.map(|(e, n)| frame.to_geo(Vec2::new(f64::from(e), f64::from(n)) * 1000.0)).to_vec();
+    let foot = Zone::new(&Shape::Polygon { outer, holes: vec![] }, LOW, Rule::KeepOut, 0.0).unwrap();
+    let (from, to) = (HERE.destination(270.0, 150_000.0), HERE.destination(90.0, 150_000.0));
+    let eastward = line(from, to, (60.0, 60.0));
+    let breach = foot.breach(&eastward).unwrap();
+    assert!(
+        (breach.horizontal_m - 2000.0).abs() < 1.0 && (breach.distance_m - 190_000.0).abs() < 1.0,
+        "{breach:?}"
+    );
+    for along_m in [2_000.0, 150_000.0, 298_000.0] {
+        let small = circle(eastward.element.point_at(along_m), 500.0, Rule::KeepOut);
+        let breach = small.breach(&eastward).unwrap();
+        assert!(
+            (breach.horizontal_m - 500.0).abs() < 0.01 && (breach.distance_m - along_m).abs() < 0.01,
+            "{breach:?}"
+        );
+    }
 }
 
 #[test]
