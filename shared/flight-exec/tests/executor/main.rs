@@ -6,5 +6,8 @@ mod commands;
 #[path = "../common/grid.rs"]
 mod grid;
 mod legs;
+mod legs_actions;
+mod legs_courses;
+mod legs_patterns;
 mod loops;
 mod rig;

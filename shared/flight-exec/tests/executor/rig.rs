@@ -11,7 +11,11 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use terrain::Flat;
 
-pub use crate::grid::{GROUND_M, HOME, document_with, fix, program};
+pub use crate::grid::{GROUND_M, HOME, document_with, fix};
+
+pub fn program(document: &str) -> Arc<Program> {
+    crate::grid::compiled(document).unwrap_or_else(|why| panic!("the test's plan has problems:\n{why}"))
+}
 
 /// A whole document around some legs of a mission stage.
 pub fn document(legs: &str) -> String {
@@ -32,6 +36,7 @@ pub struct Rig {
     pub holds: usize,
     pub feeds: usize,
     pub battery: f64,
+    pub wind_east_mps: f64,
     /// Reported instead of the waypoint's altitude.
     pub altitude_amsl_m: Option<f64>,
     pub position: LatLon,
@@ -51,6 +56,7 @@ impl Rig {
             holds: 0,
             feeds: 0,
             battery: 1.0,
+            wind_east_mps: 0.0,
             altitude_amsl_m: None,
             position: HOME,
             requests: 0,
@@ -151,7 +157,7 @@ impl Rig {
             track_deg: 90.0,
             ground_speed_mps: 25.0,
             airspeed_mps: 25.0,
-            wind_east_mps: 0.0,
+            wind_east_mps: self.wind_east_mps,
             wind_north_mps: 0.0,
             battery: self.battery,
             on_ground: self.flown.is_empty(),
