@@ -7,6 +7,7 @@ mod commands;
 mod grid;
 mod legs;
 mod legs_actions;
+mod legs_changes;
 mod legs_courses;
 mod legs_patterns;
 mod loops;
