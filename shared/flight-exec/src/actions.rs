@@ -74,7 +74,7 @@ impl Executor {
     /// Loops are begun with the first leg inside them; at an intersection nothing is flown.
     fn is_control_leg(&self, id: &Id) -> bool {
         let leg = self.program.as_ref().and_then(|p| p.leg(id));
-        leg.is_none_or(|l| matches!(l.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. }))
+        leg.is_none_or(is_control)
     }
 
     fn begin_passage(&mut self, leg: &Id, number: u64, handed: &Handed, out: &mut Vec<Output>) {
@@ -223,6 +223,11 @@ fn remapped(done: &[Done], old: Option<&Leg>, new: &Leg) -> Vec<Done> {
 pub(crate) struct Piece {
     from: LatLon,
     to: LatLon,
+}
+
+/// It flies nothing itself.
+fn is_control(leg: &Leg) -> bool {
+    matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. })
 }
 
 /// Circling is the executor's own business, everything else is somebody's.

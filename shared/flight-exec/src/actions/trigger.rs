@@ -1,7 +1,7 @@
 //! When actions are due.
 
-use super::{Done, Passage, Piece, is_wait};
-use crate::api::Output;
+use super::{Done, Passage, Piece, is_control, is_wait};
+use crate::api::{Event, Output};
 use crate::cursor::Trouble;
 use crate::executor::Executor;
 use crate::handed::Handed;
@@ -86,8 +86,21 @@ impl Executor {
             let due = action.trigger == Trigger::End && done.is_some_and(|d| d.times == 0);
             if due && !is_wait(&action.act) {
                 self.fulfil(index, number, &leg.actions, out);
+            } else if due && is_control(leg) {
+                self.refuse_wait(index, number, out);
             }
         }
+    }
+
+    /// A loop, a call or an intersection has no end of its own to circle at.
+    fn refuse_wait(&mut self, index: usize, number: usize, out: &mut Vec<Output>) {
+        let Some(passage) = self.state.passages.get_mut(index) else { return };
+        if let Some(done) = passage.done.get_mut(number) {
+            done.times += 1;
+        }
+        let reason = "a wait is flown at the end of a leg: put it on the last leg inside this one".into();
+        let (leg, passage) = (passage.leg.clone(), passage.number);
+        out.push(Output::Event(Event::ActionRefused { leg, passage, reason }));
     }
 
     fn fulfil(&mut self, index: usize, number: usize, actions: &[LegAction], out: &mut Vec<Output>) {

@@ -319,3 +319,16 @@ fn a_wait_at_the_end_of_the_plan_ends_it() {
     rig.report();
     rig.fly_to_the_end();
 }
+
+#[test]
+fn a_wait_of_a_loop_is_refused_with_advice() {
+    let legs = format!(
+        r#"<TF id="s" fix="A1"/><iterative id="l" form="forward" count="2">{WAIT}<TF id="a" fix="B1"/></iterative>
+           <TF id="z" fix="A3"/>"#
+    );
+    let mut rig = flying(&legs);
+    rig.fly_to_the_end();
+    assert_eq!(done(&rig), ["l:photo"]);
+    assert_eq!(refusals(&rig).len(), 1);
+    assert!(refusals(&rig)[0].contains("last leg inside"));
+}
