@@ -15,14 +15,14 @@ pub mod walk;
 pub mod xml;
 
 pub use checks::check;
-pub use diff::Difference;
+pub use diff::{Change, Difference, Fate};
 pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};
 pub use history::History;
 pub use model::*;
 pub use problem::{Location, Problem, Severity};
 pub use procedure::instantiate;
-pub use program::{LegPath, Program, compile, compile_document};
+pub use program::{LegPath, Program, compile, compile_document, compile_reading};
 pub use uses::{Part, Use};
 pub use variables::{VariableError, Variables};
 pub use walk::{LegContext, Section};

@@ -2,7 +2,10 @@
 
 use crate::checks::checked;
 use crate::expression::{self, Env, EvalError, Expression, Names};
-use crate::{Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Problem, Stage, Value, xml};
+use crate::{
+    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage, Value,
+    xml,
+};
 use aircraft::Profile;
 use geometry::LatLon;
 use std::borrow::Cow;
@@ -73,7 +76,18 @@ pub fn compile_document(
     profile: &Profile,
     terrain: &dyn Terrain,
 ) -> Result<Program, Vec<Problem>> {
-    let reading = xml::read(document);
+    compile_reading(xml::read(document), profile, terrain).map(|(program, _)| program)
+}
+
+/// Checks and compiles a document that has been read; gives the places of its parts for problems to come.
+///
+/// # Errors
+/// As [`compile_document`].
+pub fn compile_reading(
+    reading: Reading,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+) -> Result<(Program, Places), Vec<Problem>> {
     if reading.has_errors() {
         return Err(reading.problems);
     }
@@ -84,7 +98,7 @@ pub fn compile_document(
     })?;
     places.locate(&mut program.warnings);
     program.warnings.splice(0..0, reading.problems);
-    Ok(program)
+    Ok((program, places))
 }
 
 impl Program {

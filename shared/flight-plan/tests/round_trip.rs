@@ -419,6 +419,8 @@ proptest! {
     #[test]
     fn different_plans_have_different_hashes(a in plan(), b in plan()) {
         prop_assert_eq!(hash(&a) == hash(&b), a == b);
+        let told = flight_plan::diff::changes(&a, &b);
+        prop_assert!(told.is_empty() == (a == b) || has_duplicates(&a) || has_duplicates(&b), "{:?}", told);
     }
 
     #[test]
@@ -428,7 +430,18 @@ proptest! {
 }
 
 fn has_duplicates(plan: &FlightPlan) -> bool {
-    let legs = plan.all_legs();
-    let ids: std::collections::HashSet<&Id> = legs.iter().map(|c| &c.leg.id).collect();
-    ids.len() < legs.len()
+    fn add<'a>(legs: &'a [Leg], ids: &mut Vec<&'a Id>) {
+        for leg in legs {
+            ids.push(&leg.id);
+            add(leg.body(), ids);
+        }
+    }
+    let mut ids: Vec<&Id> = plan.procedures.iter().map(|p| &p.id).collect();
+    plan.procedures.iter().for_each(|p| add(&p.legs, &mut ids));
+    for (_, stage) in plan.all_stages() {
+        ids.push(&stage.id);
+        add(&stage.legs, &mut ids);
+    }
+    let different: std::collections::HashSet<&Id> = ids.iter().copied().collect();
+    different.len() < ids.len()
 }

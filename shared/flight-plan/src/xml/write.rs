@@ -1,11 +1,11 @@
 //! From a plan to its canonical document: fixed order, two spaces, shortest numbers.
 
 use super::attributes::allowed;
-use super::write_legs::leg;
+use super::write_legs::{alone, leg};
 use super::{NAMESPACE, zone};
 use crate::{
     Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure,
-    Runway, Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
+    Runway, Stage, StageKind, TurnDirection, Value, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};
@@ -29,6 +29,40 @@ pub fn write(plan: &FlightPlan) -> String {
         });
         out.list("emergencyPlans", &plan.emergency_plans, emergency_plan);
     });
+    out.text
+}
+
+/// A part of a plan by itself, without what has identifiers of its own in it.
+pub(crate) enum Piece<'p> {
+    /// The plan's own properties.
+    Head(&'p FlightPlan),
+    Fix(&'p Fix),
+    Runway(&'p Runway),
+    Variable(&'p Variable),
+    Zone(&'p Zone),
+    Procedure(&'p Procedure),
+    Stage(&'p Stage),
+    Leg(&'p Leg),
+    EmergencyPlan(&'p EmergencyPlan),
+}
+
+/// The canonical text of a part.
+pub(crate) fn text(piece: &Piece) -> String {
+    let mut out = Writer { text: String::new(), depth: 0 };
+    match piece {
+        Piece::Head(plan) => {
+            let tag = Tag::new("flightPlan").text("name", &plan.name).text("aircraft", &plan.aircraft);
+            out.element(fallback(tag, &plan.emergency), |out| out.emergencies(&plan.emergency));
+        }
+        Piece::Fix(x) => fix(&mut out, x),
+        Piece::Runway(x) => runway(&mut out, x),
+        Piece::Variable(x) => variable(&mut out, x),
+        Piece::Zone(x) => zone::write(&mut out, x),
+        Piece::Procedure(x) => out.element(procedure_tag(x), |out| parameters(out, x)),
+        Piece::Stage(x) => out.element(stage_tag(x), |out| out.emergencies(&x.emergency)),
+        Piece::Leg(x) => alone(&mut out, x),
+        Piece::EmergencyPlan(x) => out.leaf(emergency_plan_tag(x)),
+    }
     out.text
 }
 
@@ -246,13 +280,15 @@ fn variable(out: &mut Writer, variable: &Variable) {
     out.leaf(tag);
 }
 
-fn emergency_plan(out: &mut Writer, plan: &EmergencyPlan) {
-    let tag =
-        Tag::new("emergencyPlan").with("id", &plan.id).text("name", &plan.name).with("runway", &plan.runway);
-    out.element(tag, |out| plan.stages.iter().for_each(|s| stage(out, s)));
+fn emergency_plan_tag(plan: &EmergencyPlan) -> Tag {
+    Tag::new("emergencyPlan").with("id", &plan.id).text("name", &plan.name).with("runway", &plan.runway)
 }
 
-fn stage(out: &mut Writer, stage: &Stage) {
+fn emergency_plan(out: &mut Writer, plan: &EmergencyPlan) {
+    out.element(emergency_plan_tag(plan), |out| plan.stages.iter().for_each(|s| stage(out, s)));
+}
+
+fn stage_tag(stage: &Stage) -> Tag {
     let kind = match stage.kind {
         StageKind::TakeOff => "take-off",
         StageKind::Departure => "departure",
@@ -264,25 +300,35 @@ fn stage(out: &mut Writer, stage: &Stage) {
     };
     let tag = Tag::new("stage").with("id", &stage.id).text("name", &stage.name).with("type", kind);
     let tag = fallback(tag, &stage.emergency).maybe("runway", stage.runway.as_ref());
-    let tag = tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref());
-    out.element(tag, |out| {
+    tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref())
+}
+
+fn stage(out: &mut Writer, stage: &Stage) {
+    out.element(stage_tag(stage), |out| {
         out.emergencies(&stage.emergency);
         stage.legs.iter().for_each(|l| leg(out, l));
     });
 }
 
-fn procedure(out: &mut Writer, procedure: &Procedure) {
+fn procedure_tag(procedure: &Procedure) -> Tag {
     let bearing = Some(procedure.bearing_deg).filter(|bearing| *bearing != 0.0);
     let tag = Tag::new("procedure").with("id", &procedure.id).text("name", &procedure.name);
-    let tag = tag.maybe("reference", procedure.reference.map(lat_lon)).maybe("bearing", bearing);
-    out.element(tag, |out| {
-        for parameter in &procedure.parameters {
-            let tag = Tag::new("parameter").with("name", &parameter.name);
-            out.leaf(match &parameter.default {
-                Some(source) => tag.source("default", source),
-                None => tag,
-            });
-        }
+    tag.maybe("reference", procedure.reference.map(lat_lon)).maybe("bearing", bearing)
+}
+
+fn parameters(out: &mut Writer, procedure: &Procedure) {
+    for parameter in &procedure.parameters {
+        let tag = Tag::new("parameter").with("name", &parameter.name);
+        out.leaf(match &parameter.default {
+            Some(source) => tag.source("default", source),
+            None => tag,
+        });
+    }
+}
+
+fn procedure(out: &mut Writer, procedure: &Procedure) {
+    out.element(procedure_tag(procedure), |out| {
+        parameters(out, procedure);
         procedure.legs.iter().for_each(|l| leg(out, l));
     });
 }

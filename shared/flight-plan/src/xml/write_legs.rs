@@ -5,7 +5,19 @@ use super::{actions, patterns};
 use crate::{Branch, DecideBefore, Holding, HoldingLength, IterativeForm, Leg, LegKind};
 
 /// A leg with everything in it.
-pub(super) fn leg(out: &mut Writer, leg: &Leg) {
+pub(super) fn leg(out: &mut Writer, l: &Leg) {
+    write(out, l, |out| match &l.kind {
+        LegKind::Iterative { body, .. } => body.iter().for_each(|inner| leg(out, inner)),
+        kind => kind_children(out, kind),
+    });
+}
+
+/// A leg without the legs inside it.
+pub(super) fn alone(out: &mut Writer, leg: &Leg) {
+    write(out, leg, |out| kind_children(out, &leg.kind));
+}
+
+fn write(out: &mut Writer, leg: &Leg, children: impl FnOnce(&mut Writer)) {
     let tag = Tag::new(leg.kind_name()).with("id", &leg.id).text("name", &leg.name);
     let tag = fallback(kind_attributes(tag, &leg.kind), &leg.emergency)
         .altitude(leg.altitude.as_ref())
@@ -14,7 +26,7 @@ pub(super) fn leg(out: &mut Writer, leg: &Leg) {
     out.element(tag, |out| {
         out.emergencies(&leg.emergency);
         leg.actions.iter().for_each(|a| actions::write(out, a));
-        kind_children(out, &leg.kind);
+        children(out);
     });
 }
 
@@ -74,7 +86,6 @@ fn holding(tag: Tag, holding: &Holding) -> Tag {
 
 fn kind_children(out: &mut Writer, kind: &LegKind) {
     match kind {
-        LegKind::Iterative { body, .. } => body.iter().for_each(|l| leg(out, l)),
         LegKind::Intersection { branches, .. } => branches.iter().for_each(|b| branch(out, b)),
         LegKind::Scan(scan) => patterns::area(out, &scan.area),
         LegKind::Pattern(pattern) => patterns::children(out, pattern),
@@ -84,7 +95,9 @@ fn kind_children(out: &mut Writer, kind: &LegKind) {
             }
         }
         LegKind::Orbit { centre, .. } => out.leaf(Tag::new("centre").place(centre, "at")),
-        LegKind::If(_)
+        // the legs of a loop are not its own
+        LegKind::Iterative { .. }
+        | LegKind::If(_)
         | LegKind::Tf(_)
         | LegKind::Df { .. }
         | LegKind::Rf { .. }
