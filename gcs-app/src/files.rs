@@ -132,7 +132,7 @@ fn save(path: PathBuf, text: &str, version: u64) -> FileNews {
 }
 
 /// Temporary file, fsync, rename, fsync of the folder: the old file or the new one, never half of it.
-fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let name = path.file_name().ok_or_else(|| std::io::Error::other("that is no file name"))?;
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let temporary = folder.join(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));

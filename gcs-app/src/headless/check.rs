@@ -1,7 +1,8 @@
 //! `legwork check`: everything that is wrong with a plan.
 
-use super::Source;
+use super::{Source, foreign};
 use flight_plan::Problem;
+use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -14,8 +15,9 @@ pub fn run(source: &Source, json: bool) -> anyhow::Result<ExitCode> {
     let loaded = source.load()?;
     let problems = loaded.problems();
     if json {
-        say!("{:#}", document(&source.file, &problems));
+        say!("{:#}", document(&source.file, &problems, &loaded.notes));
     } else {
+        foreign::tell(&source.file, &loaded.notes);
         print(&source.file, &problems);
     }
     Ok(status(&problems))
@@ -41,7 +43,7 @@ pub fn status(problems: &[Problem]) -> ExitCode {
     ExitCode::from(u8::from(problems.iter().any(Problem::is_error)))
 }
 
-fn document(file: &Path, problems: &[Problem]) -> serde_json::Value {
+fn document(file: &Path, problems: &[Problem], notes: &[Note]) -> serde_json::Value {
     let rows: Vec<_> = problems
         .iter()
         .map(|p| {
@@ -56,7 +58,7 @@ fn document(file: &Path, problems: &[Problem]) -> serde_json::Value {
         })
         .collect();
     let good = !problems.iter().any(Problem::is_error);
-    serde_json::json!({"file": file.display().to_string(), "good": good, "problems": rows})
+    serde_json::json!({"file": file.display().to_string(), "good": good, "problems": rows, "notes": notes})
 }
 
 #[cfg(test)]
@@ -70,7 +72,7 @@ mod tests {
         let (_file, source) = source(b"<flightPlan xmlns=\"urn:legwork:flight-plan:1\" name=\"x\" aircraft=\"trainer\">\n<oops/>\n</flightPlan>");
         let problems = source.load().unwrap().problems();
         assert_eq!(format!("{:?}", status(&problems)), format!("{:?}", ExitCode::from(1)));
-        let json = document(&source.file, &problems);
+        let json = document(&source.file, &problems, &[]);
         assert_eq!(json["good"], false);
         assert!(json["problems"].as_array().unwrap().iter().any(|p| p["line"] == 2), "{json:#}");
         assert_eq!(format!("{:?}", run(&source, true).unwrap()), format!("{:?}", ExitCode::from(1)));

@@ -1,47 +1,131 @@
 //! `legwork expand`: the waypoints that would be sent.
 
-use super::{Source, check, forecast};
+use super::foreign::FileFormat;
+use super::output::{Output, or_stdout};
+use super::select::Selection;
+use super::{Source, check, forecast, foreign};
 use aircraft::Wind;
-use flight_exec::preview::{FlownWaypoint, Scenario};
+use flight_exec::preview::Preview;
 use flight_exec::{Action, Waypoint};
+use flight_plan::{Problem, Program};
+use interchange::{Export, Note};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
 const HEAD: &str =
     "token,leg,latitude_deg,longitude_deg,altitude_amsl_m,airspeed_mps,action,fly_over,steered_to_from_s";
 
-/// Prints the waypoints in the order in which they would be steered to, as CSV or as one JSON document.
-/// Intersections take their defaults, variables keep their initial values.
+/// Where and how the waypoints are written.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Written {
+    /// One JSON document instead of CSV.
+    #[arg(long, conflicts_with = "to")]
+    pub json: bool,
+    /// CSV (what comes without options, too).
+    #[arg(long, conflicts_with_all = ["json", "to"])]
+    pub csv: bool,
+    /// Another program's format: plan, waypoints, kml, kmz, geojson or gpx.
+    #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]
+    pub to: Option<FileFormat>,
+    /// A file instead of standard output; its extension is the format.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Overwriting.
+    #[command(flatten)]
+    pub overwriting: Output,
+}
+
+/// Writes the waypoints in the order in which they are steered to. Intersections take what is selected, else their defaults.
 ///
 /// # Errors
-/// A file can't be read.
-pub fn run(source: &Source, wind: Wind, json: bool) -> anyhow::Result<ExitCode> {
-    let loaded = source.load()?;
-    let (program, profile) = match loaded.compile() {
-        Ok(compiled) => compiled,
-        Err(problems) => {
-            problems.iter().for_each(|p| eprintln!("{}:{p}", source.file.display()));
-            return Ok(check::status(&problems));
-        }
+/// A file can't be read or written.
+pub fn run(
+    source: &Source,
+    wind: Wind,
+    selection: &Selection,
+    written: &Written,
+) -> anyhow::Result<ExitCode> {
+    let Flown { program, preview, notes } = match fly(source, wind, selection)? {
+        Ok(flown) => flown,
+        Err(status) => return Ok(status),
     };
-    match forecast::fly(&Arc::new(program), &profile, &loaded.terrain, wind, &Scenario::default()) {
-        Ok(preview) if json => say!("{:#}", document(&preview.waypoints)),
-        Ok(preview) => say!("{}", csv(&preview.waypoints).trim_end()),
-        Err(error) => {
-            eprintln!("{}: {error}", source.file.display());
-            return Ok(ExitCode::from(1));
+    foreign::tell(&source.file, &notes);
+    let by_name = written.output.as_deref().and_then(FileFormat::by_path);
+    let file = or_stdout(written.output.as_ref());
+    let bytes = match written.to.or(by_name.filter(|_| !written.json && !written.csv)) {
+        Some(FileFormat::Other(format)) => {
+            let export = Export { plan: program.flown(), steps: &selection.steps(&preview) };
+            let made = interchange::write(format, &export)?;
+            foreign::tell(&source.file, &made.notes);
+            made.bytes
         }
-    }
+        Some(FileFormat::Legwork) => {
+            anyhow::bail!("a flight plan holds legs, not waypoints: use `legwork convert`")
+        }
+        None if written.json => format!("{:#}\n", document(&preview, selection)).into_bytes(),
+        None => csv(&preview, selection).into_bytes(),
+    };
+    written.overwriting.write(&file, &bytes)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn document(waypoints: &[FlownWaypoint]) -> serde_json::Value {
-    serde_json::json!({"waypoints": waypoints})
+/// A flight ahead of time, and where it came from.
+pub struct Flown {
+    /// What was flown.
+    pub program: Arc<Program>,
+    /// How.
+    pub preview: Preview,
+    /// What was assumed or left out of a plan of another program.
+    pub notes: Vec<Note>,
 }
 
-fn csv(waypoints: &[FlownWaypoint]) -> String {
+/// The flight of the way selected; or, when it can't be flown, the exit status, after everything was said.
+///
+/// # Errors
+/// A file can't be read, or there is no such way.
+pub fn fly(source: &Source, wind: Wind, selection: &Selection) -> anyhow::Result<Result<Flown, ExitCode>> {
+    let mut loaded = source.load()?;
+    selection.prepare(&mut loaded)?;
+    let scenario = selection.scenario(&loaded.reading.plan)?;
+    let (program, profile) = match loaded.compile() {
+        Ok(compiled) => compiled,
+        Err(problems) => return Ok(Err(refused(&source.file, &problems))),
+    };
+    let program = Arc::new(program);
+    let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
+        Ok(preview) => preview,
+        Err(error) => {
+            eprintln!("{}: {error}", source.file.display());
+            return Ok(Err(ExitCode::from(1)));
+        }
+    };
+    match (preview.refusals.first(), preview.not_fired.is_empty()) {
+        (Some((seconds, refusal)), _) => {
+            eprintln!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
+            Ok(Err(ExitCode::from(1)))
+        }
+        (None, false) => {
+            eprintln!("{}: the flight never comes to the leg named", source.file.display());
+            Ok(Err(ExitCode::from(1)))
+        }
+        (None, true) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
+    }
+}
+
+fn refused(file: &Path, problems: &[Problem]) -> ExitCode {
+    problems.iter().for_each(|p| eprintln!("{}:{p}", file.display()));
+    check::status(problems)
+}
+
+fn document(preview: &Preview, selection: &Selection) -> serde_json::Value {
+    let selected: Vec<_> = preview.waypoints.iter().filter(|w| selection.takes(w.passage, preview)).collect();
+    serde_json::json!({"waypoints": selected})
+}
+
+fn csv(preview: &Preview, selection: &Selection) -> String {
     let mut text = format!("{HEAD}\n");
-    for flown in waypoints {
+    for flown in preview.waypoints.iter().filter(|w| selection.takes(w.passage, preview)) {
         let w = &flown.waypoint;
         text += &format!(
             "{},{},{:.7},{:.7},{:.1},{:.1},{},{},{:.1}\n",

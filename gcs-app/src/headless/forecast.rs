@@ -4,14 +4,20 @@ use super::source::Loaded;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
 use aircraft::{Profile, Wind};
 use flight_exec::preview::{Options, Preview, PreviewError, Scenario, Start, preview_with};
-use flight_plan::{FlightPlan, Program};
-use indicatif::ProgressBar;
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Place, Program, Value};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
 
 /// Seconds between points of the track: a turn of the smallest aircraft is still round.
 const TRACK_EVERY_S: f64 = 0.2;
+
+/// How the progress is shown: by legs of the plan, since nobody knows how often a loop will be flown.
+const PROGRESS: &str = "preview {bar:30} leg {pos} of {len}, {msg}";
+/// A plan without a take-off begins so far south of its first place, metres.
+const BEFORE_FIRST_M: f64 = 1000.0;
 
 /// Flies a program; the progress shows time and leg.
 ///
@@ -24,17 +30,51 @@ pub fn fly(
     wind: Wind,
     scenario: &Scenario,
 ) -> Result<Preview, PreviewError> {
-    let spinner = ProgressBar::new_spinner();
-    spinner.enable_steady_tick(Duration::from_millis(120));
+    let legs: HashMap<Id, u64> = program
+        .flown()
+        .all_legs()
+        .iter()
+        .zip(1..)
+        .map(|(context, number)| (context.leg.id.clone(), number))
+        .collect();
+    let bar = ProgressBar::new(legs.len() as u64);
+    // without its style the bar is plain
+    bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(120));
     let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
-    let result =
-        preview_with(program, profile, terrain, wind, Start::Runway, scenario, &options, &mut |advance| {
-            let leg = advance.place.as_ref().map_or(String::new(), |p| p.leg.to_string());
-            spinner.set_message(format!("preview: {:.0} min, {leg}", advance.time_s / 60.0));
-            true
-        });
-    spinner.finish_and_clear();
+    let start = start(program, terrain.as_ref());
+    let result = preview_with(program, profile, terrain, wind, start, scenario, &options, &mut |advance| {
+        let leg = advance.place.as_ref().map(|p| &p.leg);
+        bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
+        bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
+        true
+    });
+    bar.finish_and_clear();
     result
+}
+
+/// On the runway, or before the first place of a plan that doesn't take off.
+fn start(program: &Program, terrain: &dyn Terrain) -> Start {
+    let plan = program.flown();
+    let first = plan.stages.iter().flat_map(|s| &s.legs).next();
+    let place = first.and_then(|leg| match leg.place()? {
+        Place::Fix(id) => plan.fix(id).map(|f| f.position),
+        Place::Position(Value::Constant(position)) => Some(*position),
+        Place::Position(Value::Expression(_)) => None,
+    });
+    match (plan.home(), place) {
+        (None, Some(place)) => {
+            let position = place.destination(180.0, BEFORE_FIRST_M);
+            let ground_m = terrain.elevation_m(position).unwrap_or(0.0);
+            let altitude_amsl_m = match first.and_then(|l| l.altitude.as_ref()) {
+                Some(Altitude { metres: Value::Constant(m), reference: AltitudeReference::Amsl }) => *m,
+                Some(Altitude { metres: Value::Constant(m), .. }) => ground_m + m,
+                _ => ground_m + 100.0,
+            };
+            Start::InFlight { position, altitude_amsl_m, heading_deg: 0.0 }
+        }
+        _ => Start::Runway,
+    }
 }
 
 /// The previewed track, cut into passages. `plans`: the plan and its updates.

@@ -1,11 +1,18 @@
-//! What works without a window: check, expand and preview a plan. For scripts and continuous checks.
+//! What works without a window: check, expand, convert, preview and compare plans. For scripts and continuous checks.
 //!
-//! Exit status: 0 the plan is good (warnings allowed), 1 it has errors or can't be flown, 2 wrong usage or files.
+//! Exit status: 0 all is well (warnings and notes allowed), 1 the plan has errors, can't be flown, or plans differ,
+//! 2 wrong usage, or a file that can't be read or written.
 
 mod check;
+mod convert;
+mod diff;
 mod expand;
 pub mod forecast;
+mod foreign;
+mod help;
+mod output;
 mod preview;
+mod select;
 mod source;
 pub mod wind;
 
@@ -19,40 +26,88 @@ use std::process::ExitCode;
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum Command {
     /// Say what is wrong with a plan.
+    ///
+    /// Prints a line for each problem: file:line:column: severity [code] subject: message.
+    #[command(after_help = help::CHECK)]
     Check {
         /// The plan and its surroundings.
         #[command(flatten)]
-        source: Source,
+        source: Box<Source>,
         /// One JSON document instead of lines.
         #[arg(long)]
         json: bool,
     },
     /// Draw what would be flown: map, profile and leg table.
+    #[command(after_help = help::PREVIEW)]
     Preview {
         /// The plan and its surroundings.
         #[command(flatten)]
-        source: Source,
-        /// Where the pictures and tables go.
-        #[arg(long, value_name = "DIR", default_value = "legwork-preview")]
-        out: PathBuf,
+        source: Box<Source>,
+        /// Which way is flown.
+        #[command(flatten)]
+        selection: select::Selection,
+        /// Where the report goes.
+        #[command(flatten)]
+        target: preview::Target,
         /// Where the wind comes from (degrees true) and its speed (m/s).
         #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
         wind: Wind,
     },
     /// List the waypoints that would be sent.
+    ///
+    /// The executor flies the plan against the simulated aircraft: these are the waypoints that the autopilot would be given.
+    #[command(after_help = help::EXPAND)]
     Expand {
         /// The plan and its surroundings.
         #[command(flatten)]
-        source: Source,
-        /// One JSON document instead of CSV.
-        #[arg(long)]
-        json: bool,
-        /// CSV (what comes without options, too).
-        #[arg(long, conflicts_with = "json")]
-        csv: bool,
+        source: Box<Source>,
+        /// Which way is flown.
+        #[command(flatten)]
+        selection: select::Selection,
+        /// Where and how they are written.
+        #[command(flatten)]
+        written: expand::Written,
         /// Where the wind comes from (degrees true) and its speed (m/s).
         #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
         wind: Wind,
+    },
+    /// Convert a plan from and to other programs' formats.
+    ///
+    /// To XML, the plan is written; to any other format, the waypoints that are flown, with what else the format holds. What is
+    /// assumed or can't be carried over is listed on standard error.
+    #[command(after_help = help::CONVERT)]
+    Convert {
+        /// The plan and its surroundings.
+        #[command(flatten)]
+        source: Box<Source>,
+        /// What is written where.
+        #[command(flatten)]
+        target: convert::Target,
+        /// Which way is flown.
+        #[command(flatten)]
+        selection: select::Selection,
+        /// Where the wind comes from (degrees true) and its speed (m/s).
+        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
+        wind: Wind,
+    },
+    /// Say what differs between two plans, and where an aircraft would go.
+    #[command(after_help = help::DIFF)]
+    Diff {
+        /// The old plan and its surroundings.
+        #[command(flatten)]
+        old: Box<Source>,
+        /// The new plan.
+        #[arg(value_name = "NEW")]
+        new: PathBuf,
+        /// Where the aircraft is.
+        #[command(flatten)]
+        moment: diff::Moment,
+        /// Where the wind comes from (degrees true) and its speed (m/s).
+        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
+        wind: Wind,
+        /// One JSON document instead of lines.
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -63,7 +118,15 @@ pub enum Command {
 pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Check { source, json } => check::run(source, *json),
-        Command::Preview { source, out, wind } => preview::run(source, *wind, out),
-        Command::Expand { source, json, csv: _, wind } => expand::run(source, *wind, *json),
+        Command::Preview { source, selection, target, wind } => {
+            preview::run(source, *wind, selection, target)
+        }
+        Command::Expand { source, selection, written, wind } => {
+            expand::run(source, *wind, selection, written)
+        }
+        Command::Convert { source, target, selection, wind } => {
+            convert::run(source, *wind, selection, target)
+        }
+        Command::Diff { old, new, moment, wind, json } => diff::run(old, new, moment, *wind, *json),
     }
 }

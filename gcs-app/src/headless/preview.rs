@@ -1,19 +1,39 @@
 //! `legwork preview`: pictures and tables of what would be flown.
 
-use super::{Source, check, forecast};
+use super::output::Output;
+use super::select::Selection;
+use super::{Source, check, forecast, foreign};
 use crate::report;
 use aircraft::Wind;
-use flight_exec::preview::Scenario;
-use std::path::Path;
+use flight_exec::preview::Preview;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Flies the plan ahead of time and writes the report of it into `out`.
+/// Where the report goes.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Target {
+    /// Folder for pictures and tables.
+    #[arg(long, value_name = "DIR", default_value = "legwork-preview")]
+    pub out: PathBuf,
+    /// The outcome as one JSON document instead of a line.
+    #[arg(long)]
+    pub json: bool,
+    /// Overwriting.
+    #[command(flatten)]
+    pub overwriting: Output,
+}
+
+/// Flies the plan ahead of time and writes the report of it.
 ///
 /// # Errors
 /// A file can't be read or written.
-pub fn run(source: &Source, wind: Wind, out: &Path) -> anyhow::Result<ExitCode> {
-    let loaded = source.load()?;
+pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
+    target.overwriting.allow(&target.out.join("map.png"))?;
+    let mut loaded = source.load()?;
+    foreign::tell(&source.file, &loaded.notes);
+    selection.prepare(&mut loaded)?;
+    let scenario = selection.scenario(&loaded.reading.plan)?;
     let (program, profile) = match loaded.compile() {
         Ok(compiled) => compiled,
         Err(problems) => {
@@ -22,22 +42,46 @@ pub fn run(source: &Source, wind: Wind, out: &Path) -> anyhow::Result<ExitCode> 
         }
     };
     let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &Scenario::default()) {
+    let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
             say!("{}: {error}", source.file.display());
             return Ok(ExitCode::from(1));
         }
     };
-    report::write(&forecast::record(&loaded, &program, &preview, &wind), out)?;
-    say!(
+    if let Some((seconds, refusal)) = preview.refusals.first() {
+        say!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
+        return Ok(ExitCode::from(1));
+    }
+    report::write(&forecast::record(&loaded, &program, &preview, &wind), &target.out)?;
+    match target.json {
+        true => say!("{:#}", document(&source.file, &preview, &target.out)),
+        false => say!("{}", line(&source.file, &preview, &target.out)),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn line(file: &Path, preview: &Preview, out: &Path) -> String {
+    format!(
         "{}: {:.0} min, {:.1} km, {} waypoints, {:.0} % of the energy left; pictures in {}",
-        source.file.display(),
+        file.display(),
         preview.time_s / 60.0,
         preview.distance_m / 1000.0,
         preview.waypoints.len(),
         preview.battery_left * 100.0,
         out.display()
-    );
-    Ok(ExitCode::SUCCESS)
+    )
+}
+
+fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
+    serde_json::json!({
+        "file": file.display().to_string(),
+        "out": out.display().to_string(),
+        "time_s": preview.time_s,
+        "distance_m": preview.distance_m,
+        "waypoints": preview.waypoints.len(),
+        "battery_left": preview.battery_left,
+        "landed": preview.landed,
+        "legs": preview.legs,
+    })
 }

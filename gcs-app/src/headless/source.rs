@@ -1,9 +1,12 @@
 //! A plan from a file, with the aircraft and the terrain it is meant for.
 
+use super::foreign::Foreign;
+use super::output::DASH;
 use crate::assets;
 use aircraft::Profile;
 use anyhow::Context;
 use flight_plan::{Problem, Program, Reading};
+use interchange::Note;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -16,7 +19,7 @@ const MAX_TILE_BYTES: u64 = 26_000_000;
 /// Where a plan and its surroundings come from.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Source {
-    /// The plan (XML).
+    /// The plan: ours (XML), or one of another program; `-` reads standard input.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Elevation tiles (SRTM .hgt, named after their corner) instead of the bundled one.
@@ -25,12 +28,17 @@ pub struct Source {
     /// Performance profile of the aircraft (JSON) instead of the one the plan names.
     #[arg(long, value_name = "JSON")]
     pub aircraft: Option<PathBuf>,
+    /// How other formats are read.
+    #[command(flatten)]
+    pub foreign: Foreign,
 }
 
 /// A plan that was read, whatever it is worth.
 pub struct Loaded {
     /// The plan and what is wrong with its document.
     pub reading: Reading,
+    /// What was assumed or left out, if it came from another program.
+    pub notes: Vec<Note>,
     /// The aircraft, or why there is none.
     pub profile: Result<Profile, String>,
     /// The ground.
@@ -44,7 +52,9 @@ impl Source {
     /// A file can't be read, or an elevation tile or profile is none.
     pub fn load(&self) -> anyhow::Result<Loaded> {
         // one byte more than is allowed: the reader then says that it is too long
-        self.surround(&read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?)
+        let bytes = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
+        let (document, notes) = self.foreign.document(&self.file, bytes)?;
+        Ok(Loaded { notes, ..self.surround(&document)? })
     }
 
     /// A document that is here already, with the surroundings of this source.
@@ -57,7 +67,7 @@ impl Source {
             Some(path) => Ok(profile_from(path)?),
             None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),
         };
-        Ok(Loaded { reading, profile, terrain: self.load_terrain()? })
+        Ok(Loaded { reading, notes: Vec::new(), profile, terrain: self.load_terrain()? })
     }
 
     fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
@@ -114,12 +124,14 @@ fn profile_from(path: &Path) -> anyhow::Result<Profile> {
     Profile::from_json(&json).with_context(|| path.display().to_string())
 }
 
-/// The file's first `limit` bytes at most.
+/// The first `limit` bytes at most, of a file or of standard input.
 fn read_at_most(path: &Path, limit: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
-        .with_context(|| format!("can't read {}", path.display()))?;
+    let read = match path.as_os_str() == DASH {
+        true => std::io::stdin().lock().take(limit).read_to_end(&mut bytes),
+        false => File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes)),
+    };
+    read.with_context(|| format!("can't read {}", path.display()))?;
     Ok(bytes)
 }
 

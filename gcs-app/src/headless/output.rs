@@ -1,0 +1,69 @@
+//! Where a command's result goes: a file that isn't there yet, or standard output.
+
+use crate::files::write_whole;
+use anyhow::{Context, bail};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Standard input or output on the command line.
+pub const DASH: &str = "-";
+
+/// Where a result goes.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Output {
+    /// Overwrite what is there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl Output {
+    /// Writes a whole file, or to standard output (`-`).
+    ///
+    /// # Errors
+    /// The file is there already and `--force` was not given, or it can't be written.
+    pub fn write(&self, to: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+        if to.as_os_str() == DASH {
+            // a reader that has gone away is no failure
+            let _ = std::io::stdout().lock().write_all(bytes);
+            return Ok(());
+        }
+        self.allow(to)?;
+        write_whole(to, bytes).with_context(|| format!("can't write {}", to.display()))
+    }
+
+    /// Says no to overwriting.
+    ///
+    /// # Errors
+    /// The file is there already and `--force` was not given.
+    pub fn allow(&self, to: &Path) -> anyhow::Result<()> {
+        if !self.force && to.exists() {
+            bail!("{} is there already: choose another name, or give --force to overwrite it", to.display());
+        }
+        Ok(())
+    }
+}
+
+/// The file named, else standard output.
+pub fn or_stdout(file: Option<&PathBuf>) -> PathBuf {
+    file.cloned().unwrap_or_else(|| DASH.into())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn nothing_is_overwritten_without_force() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("plan.xml");
+        Output::default().write(&file, b"one").unwrap();
+        let error = Output::default().write(&file, b"two").unwrap_err();
+        assert!(error.to_string().contains("--force"), "{error}");
+        assert_eq!(std::fs::read(&file).unwrap(), b"one");
+        Output { force: true }.write(&file, b"two").unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"two");
+        let nowhere = folder.path().join("missing").join("plan.xml");
+        assert!(Output::default().write(&nowhere, b"x").is_err());
+    }
+}

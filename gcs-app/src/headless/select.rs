@@ -1,0 +1,154 @@
+//! Which of a plan's ways are flown: variables, branches, an emergency plan.
+
+use super::source::Loaded;
+use anyhow::{anyhow, bail};
+use flight_exec::preview::{Act, Preview, Scenario, Trigger, When};
+use flight_exec::{Branching, Command};
+use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
+use geometry::LatLon;
+use interchange::Step;
+
+/// What is decided ahead.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Which way is flown")]
+pub struct Selection {
+    /// Let a variable begin with this value (a position: LAT LON; a polygon: LAT LON, LAT LON, …).
+    #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
+    pub set: Vec<(String, String)>,
+    /// Take this branch when the intersection is reached for the first time; otherwise conditions and defaults decide.
+    #[arg(long, value_name = "LEG=BRANCH", value_parser = pair)]
+    pub decide: Vec<(String, String)>,
+    /// The way of this emergency plan.
+    #[arg(long, value_name = "PLAN")]
+    pub emergency: Option<String>,
+    /// The leg on which the emergency is raised; the first one if there is none named.
+    #[arg(long, value_name = "LEG", requires = "emergency")]
+    pub at: Option<String>,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+impl Selection {
+    /// Lets variables begin with the values given.
+    ///
+    /// # Errors
+    /// No such variable, or a value it can't have.
+    pub fn prepare(&self, loaded: &mut Loaded) -> anyhow::Result<()> {
+        for (name, text) in &self.set {
+            let plan = &mut loaded.reading.plan;
+            let names = || plan.variables.iter().map(|v| v.name.to_string()).collect::<Vec<_>>().join(", ");
+            let known = names();
+            let variable = plan.variables.iter_mut().find(|v| v.name.as_str() == name);
+            let variable =
+                variable.ok_or_else(|| anyhow!("there is no variable `{name}`: there are {known}"))?;
+            let value = value(variable, text)?;
+            variable.accepts(&value).map_err(|e| anyhow!("{name}: {e}"))?;
+            variable.initial = value;
+        }
+        Ok(())
+    }
+
+    /// What is done on the way.
+    ///
+    /// # Errors
+    /// No such intersection, branch, emergency plan or leg.
+    pub fn scenario(&self, plan: &FlightPlan) -> anyhow::Result<Scenario> {
+        let mut triggers = Vec::new();
+        for (leg, branch) in &self.decide {
+            let (leg, branch) = branch_of(plan, leg, branch)?;
+            let then = vec![Act::Command(Command::Decide { leg, branch })];
+            triggers.push(Trigger { at: When::After { seconds: 0.0 }, then });
+        }
+        if let Some(name) = &self.emergency {
+            let emergency = plan.emergency_plans.iter().find(|e| e.id.as_str() == name);
+            let Some(emergency) = emergency else {
+                let names: Vec<_> = plan.emergency_plans.iter().map(|e| e.id.to_string()).collect();
+                bail!("there is no emergency plan `{name}`: there are {}", names.join(", "));
+            };
+            let leg = self.raised_at(plan)?;
+            let command = Command::Emergency { cause: Cause::Operator, plan: Some(emergency.id.clone()) };
+            let at = When::Entering { leg, iteration: None };
+            triggers.push(Trigger { at, then: vec![Act::Command(command)] });
+        }
+        Ok(Scenario { triggers })
+    }
+
+    fn raised_at(&self, plan: &FlightPlan) -> anyhow::Result<Id> {
+        match &self.at {
+            Some(name) => Ok(known_leg(plan, name)?),
+            None => {
+                let first = plan.stages.iter().flat_map(|s| &s.legs).next();
+                first.map(|l| innermost(l).clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
+            }
+        }
+    }
+
+    /// A passage belongs to the way selected.
+    pub fn takes(&self, passage: Option<usize>, preview: &Preview) -> bool {
+        let Some(name) = &self.emergency else { return true };
+        let leg = passage.and_then(|p| preview.legs.get(p));
+        leg.is_some_and(|l| matches!(&l.place.plan, Branching::Emergency(id) if id.as_str() == name))
+    }
+
+    /// The waypoints of the way selected, in the order in which they are flown; those replaced before they were reached are none.
+    pub fn steps(&self, preview: &Preview) -> Vec<Step> {
+        let flown = preview.waypoints.iter().filter(|w| !w.replaced && self.takes(w.passage, preview));
+        flown.map(|w| Step { waypoint: w.waypoint.clone(), passage: w.passage.unwrap_or(0) }).collect()
+    }
+}
+
+/// Where a loop is entered.
+fn innermost(leg: &flight_plan::Leg) -> &Id {
+    leg.body().first().map_or(&leg.id, innermost)
+}
+
+/// A leg's identifier, if there is such a leg.
+///
+/// # Errors
+/// There is none.
+pub fn known_leg(plan: &FlightPlan, name: &str) -> anyhow::Result<Id> {
+    match plan.leg(&Id::new(name)) {
+        Some(context) => Ok(innermost(context.leg).clone()),
+        None => match plan.stage(&Id::new(name)) {
+            Some(stage) => Ok(stage.id.clone()),
+            None => bail!("there is no leg `{name}` in the plan"),
+        },
+    }
+}
+
+fn branch_of(plan: &FlightPlan, leg: &str, branch: &str) -> anyhow::Result<(Id, Id)> {
+    let context = plan.leg(&Id::new(leg)).ok_or_else(|| anyhow!("there is no leg `{leg}` in the plan"))?;
+    let LegKind::Intersection { branches, .. } = &context.leg.kind else {
+        bail!("`{leg}` is no intersection");
+    };
+    match branches.iter().find(|b| b.id.as_str() == branch) {
+        Some(found) => Ok((context.leg.id.clone(), found.id.clone())),
+        None => {
+            let names: Vec<_> = branches.iter().map(|b| b.id.to_string()).collect();
+            bail!("`{leg}` has no branch `{branch}`: it has {}", names.join(", "))
+        }
+    }
+}
+
+fn value(variable: &Variable, text: &str) -> anyhow::Result<VariableValue> {
+    let bad = || anyhow!("{}: `{text}` is no value of type {}", variable.name, variable.initial.type_name());
+    Ok(match &variable.initial {
+        VariableValue::Bool(_) => VariableValue::Bool(text.parse().map_err(|_| bad())?),
+        VariableValue::Number(_) => VariableValue::Number(text.parse().map_err(|_| bad())?),
+        VariableValue::Text(_) => VariableValue::Text(text.to_owned()),
+        VariableValue::Position(_) => VariableValue::Position(position(text).ok_or_else(bad)?),
+        VariableValue::Polygon(_) => {
+            let corners: Option<Vec<LatLon>> = text.split(',').map(position).collect();
+            VariableValue::Polygon(corners.ok_or_else(bad)?)
+        }
+    })
+}
+
+fn position(text: &str) -> Option<LatLon> {
+    let (lat, lon) = text.trim().split_once(char::is_whitespace)?;
+    let position = LatLon::new(lat.parse().ok()?, lon.trim().parse().ok()?);
+    position.is_valid().then_some(position)
+}
