@@ -67,6 +67,11 @@ impl Leg {
         Self { target, plane, end, anchor, along, length_m, start_altitude_m }
     }
 
+    /// It leads nowhere: its target lies where it begins, and no direction is its own.
+    pub(super) fn is_a_point(&self) -> bool {
+        self.length_m <= SHORTEST_M
+    }
+
     pub(super) fn place(&self, state: &State) -> Place {
         let (p, convergence_rad) = self.plane.project(state.position);
         let from_end = p - self.end;
@@ -82,7 +87,7 @@ impl Leg {
     /// Altitude on the straight slope of the leg, metres AMSL, and the slope (metres up per metre along).
     pub(super) fn altitude_at(&self, remaining_m: f64) -> (f64, f64) {
         let end_m = self.target.altitude_amsl_m;
-        if self.length_m <= SHORTEST_M {
+        if self.is_a_point() {
             return (end_m, 0.0);
         }
         let slope = (end_m - self.start_altitude_m) / self.length_m;

@@ -172,7 +172,7 @@ impl Guidance {
         let mut demand = self.demand(leg, state, altitude_m, slope * along_mps);
         demand.bank_rad = self.follow_line(leg, place);
         self.guided(leg, place, demand, altitude_m - state.altitude_amsl_m)
-            .reached_if(place.remaining_m <= early_m)
+            .reached_if(leg.is_a_point() || place.remaining_m <= early_m)
     }
 
     fn circle(&self, leg: &Leg, place: &Place, state: &State, radius_m: f64) -> Guided {

@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::{Aircraft, Wind};
+use geometry::geodesy::normalise_180;
 use proptest::prelude::*;
 
 const HOME: LatLon = LatLon::new(36.4905, -84.2710);
@@ -111,6 +112,15 @@ fn fly_by_cuts_the_corner_and_fly_over_does_not() {
             .fold(0.0, f64::max);
         assert!(fly_over || overshoot < 12.0, "{angle}: {overshoot}");
     }
+}
+
+#[test]
+fn a_target_given_twice_is_passed_without_a_turn() {
+    let [there, on] = [1500.0, 3000.0].map(|away_m| fly_to(HOME.destination(140.0, away_m)));
+    let samples = fly_list(cruising(140.0), &[there, there, on], Wind::CALM, 400.0);
+    assert_eq!(samples.last().map(|s| s.target), Some(2));
+    let course = samples.iter().map(|s| normalise_180(s.state.track_deg() - 140.0).abs());
+    assert!(course.fold(0.0, f64::max) < 2.0, "it turns where there is nothing to turn for");
 }
 
 #[test]
