@@ -106,7 +106,7 @@ pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<A
 pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> Variables {
     let mut variables = Variables::initial(&program.plan);
     for (_, event) in events.iter().filter(|(t, _)| *t < time_s) {
-        if let Event::VariableChanged { name, value } = event {
+        if let Event::VariableChanged { name, value, .. } = event {
             // the executor had accepted it, for this plan or the one before the update
             let _ = variables.set(&program.plan, name, value.clone());
         }
@@ -119,17 +119,21 @@ fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<La
     let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
     let Spacing::Metres(spacing) = &scan.spacing else { return None };
     let spacing_m = program.eval_number(spacing, &env).ok()?;
-    let corners = match &scan.area {
+    Some((corners(program, &scan.area, &env)?, spacing_m))
+}
+
+/// The outer ring of an area (of a circle: enough of its points); `None` if its values can't be computed.
+pub(super) fn corners(program: &Program, area: &flight_plan::Area, env: &Env) -> Option<Vec<LatLon>> {
+    Some(match area {
         flight_plan::Area::Polygon { corners, .. } => corners.clone(),
-        flight_plan::Area::Expression(source) => program.expression(source).ok()?.polygon(&env).ok()?,
+        flight_plan::Area::Expression(source) => program.expression(source).ok()?.polygon(env).ok()?,
         flight_plan::Area::Circle { centre, radius_m } => {
-            let centre = program.eval_place(centre, &env).ok()?;
-            let radius_m = program.eval_number(radius_m, &env).ok()?;
+            let centre = program.eval_place(centre, env).ok()?;
+            let radius_m = program.eval_number(radius_m, env).ok()?;
             let bearing = |i: u32| f64::from(i) * 360.0 / f64::from(CIRCLE_CORNERS);
             (0..CIRCLE_CORNERS).map(|i| centre.destination(bearing(i), radius_m)).collect()
         }
-    };
-    Some((corners, spacing_m))
+    })
 }
 
 /// An event for people: a sentence, and whether it deserves a number on the map.
@@ -150,7 +154,10 @@ fn sentence(event: &Event) -> (String, bool) {
             (format!("decision asked for at {}, {:.0} s ahead", request.leg, request.time_left_s), false)
         }
         Event::DecisionTaken { leg, branch, by } => (format!("decided at {leg}: {branch} (by {by})"), true),
-        Event::VariableChanged { name, value } => (format!("{name} = {}", shown(value)), true),
+        Event::VariableChanged { name, value, .. } => (format!("{name} = {}", shown(value)), true),
+        Event::ActionDone { leg, act, .. } => (format!("{act} at {leg}"), false),
+        Event::ActionRefused { leg, reason, .. } => (format!("action of {leg} not done: {reason}"), true),
+        Event::ExpressionFailed { leg, reason } => (format!("value of {leg} missing: {reason}"), true),
         Event::PatternRefused { leg, reason } => (format!("pattern of {leg} refused: {reason}"), true),
         Event::PlanActivated { hash, revision } => {
             (format!("plan {} active, revision {revision}", hash.get(..8).unwrap_or(hash)), *revision > 1)
@@ -241,7 +248,8 @@ mod tests {
 
     #[test]
     fn values_are_told_as_people_write_them() {
-        let changed = |value| sentence(&Event::VariableChanged { name: "v".into(), value }).0;
+        let by: std::sync::Arc<str> = "operator".into();
+        let changed = |value| sentence(&Event::VariableChanged { name: "v".into(), value, by: by.clone() }).0;
         assert_eq!(changed(VariableValue::Number(800.0)), "v = 800");
         assert_eq!(changed(VariableValue::Position(HOME)), "v = 36.3000 -84.2000");
     }

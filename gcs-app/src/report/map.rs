@@ -44,8 +44,8 @@ pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
         Some(frame) => draw_frame(&mut canvas, frame),
         None => label_areas(&mut canvas, record, &view),
     }
-    draw_scale(&mut canvas, &view);
-    draw_north(&mut canvas);
+    draw_scale(&mut canvas, &view, (26.0, HEIGHT - 30.0));
+    draw_north(&mut canvas, (MAP_WIDTH - 36.0, HEADER + 42.0));
     draw_header(&mut canvas, record);
     let bottom = if enlarged.is_some() { HEIGHT - INSET - 56.0 } else { HEIGHT };
     panel::draw(&mut canvas, record, findings, (MAP_WIDTH, HEADER, WIDTH, bottom));
@@ -122,7 +122,7 @@ fn place_inset(canvas: &mut Canvas, inset: &Canvas) {
 }
 
 /// Which part of the world is where on the picture.
-struct View {
+pub(super) struct View {
     frame: LocalFrame,
     metres_per_pixel: f64,
     /// Left, top, width, height, pixels.
@@ -131,7 +131,7 @@ struct View {
 
 impl View {
     /// All of `shown` with a margin, in a window `(left, top, width, height)`; `None` if nothing is shown.
-    fn around(shown: impl Iterator<Item = LatLon>, window: (f32, f32, f32, f32)) -> Option<Self> {
+    pub(super) fn around(shown: impl Iterator<Item = LatLon>, window: (f32, f32, f32, f32)) -> Option<Self> {
         let shown: Vec<LatLon> = shown.collect();
         let about = LocalFrame::new(*shown.first()?);
         let local: Vec<Vec2> = shown.iter().map(|p| about.to_local(*p)).collect();
@@ -148,14 +148,20 @@ impl View {
         })
     }
 
-    fn place(&self, p: LatLon) -> (f32, f32) {
+    /// Where a position is, pixels.
+    pub(super) fn place(&self, p: LatLon) -> (f32, f32) {
         let (left, top, width, height) = self.window;
         let v = self.frame.to_local(p) * (1.0 / self.metres_per_pixel);
         (left + width / 2.0 + v.e as f32, top + height / 2.0 - v.n as f32)
     }
 
+    /// Left, top, width, height, pixels.
+    pub(super) fn window(&self) -> (f32, f32, f32, f32) {
+        self.window
+    }
+
     /// Well inside the window.
-    fn shows(&self, (x, y): (f32, f32)) -> bool {
+    pub(super) fn shows(&self, (x, y): (f32, f32)) -> bool {
         let (left, top, width, height) = self.window;
         (left + 4.0..left + width - 4.0).contains(&x) && (top + 4.0..top + height - 4.0).contains(&y)
     }
@@ -226,7 +232,8 @@ fn draw_tracks(canvas: &mut Canvas, record: &Record, view: &View) {
     canvas.line(&view.line(&record.flown), Pen::solid(FLOWN, 1.9));
 }
 
-fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
+/// A fix or a runway, with its name.
+pub(super) fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
     let (x, y) = view.place(place.position);
     if !view.shows((x, y)) {
         return;
@@ -278,7 +285,7 @@ fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere:
 }
 
 /// A small arrow head in the direction of flight.
-fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32), ink: Ink) {
+pub(super) fn arrow(canvas: &mut Canvas, (x, y): (f32, f32), (dx, dy): (f32, f32), ink: Ink) {
     let (tip, back, half) = (9.0, 6.0, 6.0);
     let points = [
         (x + dx * tip, y + dy * tip),
@@ -313,10 +320,10 @@ pub fn numbered(canvas: &mut Canvas, at: (f32, f32), number: usize) {
     canvas.text(at, Anchor::Middle, &number.to_string(), Type::bold(14.0, PAPER));
 }
 
-fn draw_scale(canvas: &mut Canvas, view: &View) {
+/// A scale of round length, its left end at `(x, y)`.
+pub(super) fn draw_scale(canvas: &mut Canvas, view: &View, (x, y): (f32, f32)) {
     let length_m = round_length_m(view.metres_per_pixel * 260.0);
     let length = (length_m / view.metres_per_pixel) as f32;
-    let (x, y) = (26.0, HEIGHT - 30.0);
     canvas.rectangle(x - 14.0, y - 32.0, length + 28.0, 50.0, PAPER.faded(215));
     canvas.rectangle(x, y, length / 2.0, 6.0, TEXT);
     canvas.outline(&[(x, y), (x + length, y), (x + length, y + 6.0), (x, y + 6.0)], Pen::solid(TEXT, 1.2));
@@ -331,8 +338,8 @@ fn round_length_m(most: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|k| k * decade).find(|m| *m <= most).unwrap_or(decade)
 }
 
-fn draw_north(canvas: &mut Canvas) {
-    let (x, y) = (MAP_WIDTH - 36.0, HEADER + 42.0);
+/// A north arrow about `(x, y)`.
+pub(super) fn draw_north(canvas: &mut Canvas, (x, y): (f32, f32)) {
     canvas.disc((x, y), 25.0, PAPER.faded(215));
     canvas.polygon(&[(x, y - 19.0), (x + 7.0, y + 4.0), (x, y), (x - 7.0, y + 4.0)], TEXT);
     canvas.text((x, y + 13.0), Anchor::Middle, "N", Type::bold(14.0, TEXT));

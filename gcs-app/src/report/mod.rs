@@ -1,13 +1,15 @@
 //! The report of a flight: what was flown beside what was planned, as pictures and tables.
 //!
 //! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
-//! `deviation`, `authored` and `coverage` measure, `tables` writes. Nothing here needs a display.
+//! `deviation`, `authored` and `coverage` measure, `tables` writes;
+//! `diagram` draws a plan's geometry for documents. Nothing here needs a display.
 
 pub mod assemble;
 pub mod authored;
 mod canvas;
 mod coverage;
 mod deviation;
+pub mod diagram;
 mod hillshade;
 mod map;
 mod panel;
