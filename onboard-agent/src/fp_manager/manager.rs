@@ -36,7 +36,11 @@ pub enum Effect {
 }
 
 /// Who asks for a command that comes without a name.
-const OPERATOR: &str = "operator";
+pub const OPERATOR: &str = "operator";
+/// Who asks for what an alarm of the gateway leads to.
+const GATEWAY: &str = "gateway";
+/// Who asks for what the FP Manager does of itself.
+const FP_MANAGER: &str = "fp-manager";
 /// Answers remembered, should a request be repeated after a restart.
 const REPLIES: usize = 64;
 /// Longer names of requests are not remembered, bytes.
@@ -105,8 +109,8 @@ impl Manager {
         self.send(now, out);
     }
 
-    /// A command of a person or a service; `id` is the request's own name. One that was answered
-    /// already is answered again, and not executed.
+    /// A command of a person or a service; `by` is who asks, `id` the request's own name. One that was
+    /// answered already is answered again, and not executed.
     ///
     /// # Errors
     /// The executor's refusal.
@@ -114,6 +118,7 @@ impl Manager {
         &mut self,
         now: Time,
         command: Command,
+        by: &str,
         id: Option<&str>,
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
@@ -121,7 +126,7 @@ impl Manager {
         if let Some(reply) = id.and_then(|id| self.replies.iter().find(|reply| reply.id == id)) {
             return reply.result.clone();
         }
-        let result = self.order(now, command, out);
+        let result = self.order(now, command, by, out);
         if let Some(id) = id {
             let reply = Reply { id: id.to_owned(), result: result.clone() };
             self.record(now, Record::Answered(reply.clone()), out);
@@ -137,10 +142,10 @@ impl Manager {
         }
     }
 
-    fn order(&mut self, now: Time, command: Command, out: &mut Vec<Effect>) -> Result<(), Refusal> {
+    fn order(&mut self, now: Time, command: Command, by: &str, out: &mut Vec<Effect>) -> Result<(), Refusal> {
         let starts = command == Command::Start;
         let request = self.next_request();
-        let answer = self.step(now, Input::Command { request, by: OPERATOR.into(), command }, out);
+        let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.liaison.want(GatewayRequest::Launch);
@@ -161,7 +166,7 @@ impl Manager {
         }
     }
 
-    /// A plan is put forward.
+    /// A plan is put forward; `based_on` is the revision that the proposer has seen.
     ///
     /// # Errors
     /// The executor's refusal.
@@ -169,11 +174,12 @@ impl Manager {
         &mut self,
         now: Time,
         program: Program,
+        based_on: Option<u64>,
         out: &mut Vec<Effect>,
     ) -> Result<ProposalReport, Refusal> {
         let request = self.next_request();
         let (program, objections) = (Arc::new(program), Vec::new());
-        let input = Input::Propose { request, program, based_on: None, objections };
+        let input = Input::Propose { request, program, based_on, objections };
         match self.step(now, input, out) {
             Some(Ok(Answer::Proposal(report))) => Ok(*report),
             Some(Err(refusal)) => Err(refusal),
@@ -231,7 +237,7 @@ impl Manager {
     /// An alarm of the gateway asks for an emergency plan.
     fn emergency(&mut self, now: Time, cause: Cause, out: &mut Vec<Effect>) {
         tracing::warn!(?cause, "alarm of the gateway: emergency");
-        if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, out) {
+        if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {
             tracing::warn!(?cause, "no emergency plan flown: {refusal}");
         }
     }
@@ -326,7 +332,7 @@ impl Manager {
         tracing::error!("{reason}");
         out.push(Effect::Event(PlanEvent::NotJournalled { reason: reason.into() }));
         self.feeder.clear();
-        let held = self.order(now, Command::Hold, out);
+        let held = self.order(now, Command::Hold, FP_MANAGER, out);
         if held.is_err() {
             // it held before
             self.liaison.want(GatewayRequest::Hold);

@@ -1,7 +1,7 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
 use super::journal::{Clerk, Folder, Job, Keeper, Limits, Log, encode};
-use super::manager::{Effect, Manager};
+use super::manager::{Effect, Manager, OPERATOR};
 use super::publish::{self, Publishers};
 use super::restart::{Restart, restart};
 use super::{Config, compile, listed};
@@ -233,7 +233,7 @@ impl Shell {
             .await
             .map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
-        self.command(commit, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
+        self.command(commit, OPERATOR, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
     }
 
     /// Everything due at a beat of the clock.
@@ -324,8 +324,9 @@ impl Shell {
             }
             Call::Command(incoming) => {
                 let id = incoming.id().map(str::to_owned);
+                let by = incoming.from().unwrap_or(OPERATOR).to_owned();
                 let (command, reply) = incoming.split();
-                let answer = self.command(command, id.as_deref()).await;
+                let answer = self.command(command, &by, id.as_deref()).await;
                 reply(answer.map(|()| Empty {}));
             }
         }
@@ -344,14 +345,14 @@ impl Shell {
         let program =
             compile(propose.xml.as_bytes(), &self.config).map_err(|p| refusal("plan-errors", listed(&p)))?;
         let mut effects = Vec::new();
-        let report = self.manager.propose(self.clock.now(), program, &mut effects);
+        let report = self.manager.propose(self.clock.now(), program, propose.seen_revision, &mut effects);
         self.perform(effects).await;
         report
     }
 
-    async fn command(&mut self, command: Command, id: Option<&str>) -> Result<(), Refusal> {
+    async fn command(&mut self, command: Command, by: &str, id: Option<&str>) -> Result<(), Refusal> {
         let mut effects = Vec::new();
-        let answer = self.manager.command(self.clock.now(), command, id, &mut effects);
+        let answer = self.manager.command(self.clock.now(), command, by, id, &mut effects);
         self.perform(effects).await;
         answer
     }

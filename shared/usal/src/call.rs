@@ -118,9 +118,10 @@ impl Request {
         let (sender, receiver) = mpsc::channel(1);
         // what is executed should still be answered in time
         let execute_within = left - (left / 10).min(ANSWER_TIME);
+        let from = inner.name.as_ref().map(|name| format!(";from={name}")).unwrap_or_default();
         inner
             .zenoh
-            .get(format!("{}?id={};timeout_ms={}", self.name, self.id, execute_within.as_millis()))
+            .get(format!("{}?id={};timeout_ms={}{from}", self.name, self.id, execute_within.as_millis()))
             .payload(self.payload.clone())
             .encoding(Format::Cbor.encoding())
             .consolidation(ConsolidationMode::None)

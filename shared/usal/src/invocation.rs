@@ -1,15 +1,15 @@
 //! Serving invocations: one typed answer each, repeated requests executed once.
 //!
 //! A request may carry, as parameters of its selector, `id` (any text without `;`; the same id
-//! is executed once and answered again from memory) and `timeout_ms` (after which it is not
-//! executed any more). A refusal is an error reply of the form `{code, reason}`. Answers come in
+//! is executed once and answered again from memory), `timeout_ms` (after which it is not
+//! executed any more) and `from` (who asks: a service's name, a key segment; a claim, not a proof). A refusal is an error reply of the form `{code, reason}`. Answers come in
 //! the format of the request.
 
 use crate::SessionError;
 use crate::codec::{self, Format};
 use crate::contract::Refusal;
 use crate::health::Health;
-use crate::keys::Kind;
+use crate::keys::{Kind, is_segment};
 use crate::session::Session;
 use crate::topics::Invocation;
 use serde::Serialize;
@@ -79,6 +79,11 @@ impl<Q, A: Serialize> Incoming<Q, A> {
     /// The request's own name: the same for each repetition of it.
     pub fn id(&self) -> Option<&str> {
         self.reply.id.as_deref()
+    }
+
+    /// Who asks, if it says so: a service's name.
+    pub fn from(&self) -> Option<&str> {
+        self.reply.from.as_deref()
     }
 
     /// Answers it.
@@ -186,7 +191,9 @@ fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Opt
             None => memory.begin(id.clone()),
         }
     }
-    Some(Replier { query, format, id, memory: memory.clone(), health: health.clone(), answered: false })
+    let from = query.parameters().get("from").filter(|from| is_segment(from)).map(str::to_owned);
+    let (memory, health) = (memory.clone(), health.clone());
+    Some(Replier { query, format, id, from, memory, health, answered: false })
 }
 
 /// The duty to answer one request, and those that repeat it.
@@ -194,6 +201,7 @@ struct Replier {
     query: Query,
     format: Format,
     id: Option<String>,
+    from: Option<String>,
     memory: Arc<Mutex<Memory>>,
     health: Arc<Health>,
     answered: bool,

@@ -77,6 +77,11 @@ pub(crate) fn every_service(vehicle: &str, kind: Kind, name: &str) -> Result<Str
     Ok(format!("{ROOT}/{}/*/{}/{}", segment(vehicle)?, kind.as_str(), segment(name)?))
 }
 
+/// Could be a part of a key.
+pub(crate) fn is_segment(text: &str) -> bool {
+    segment(text).is_ok()
+}
+
 fn segment(text: &str) -> Result<String, KeyError> {
     let fits = (1..=SEGMENT_MAX).contains(&text.len());
     let clean = text.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.'));

@@ -44,6 +44,8 @@ pub struct Config {
     pub vehicle: String,
     /// Hub or client.
     pub role: Role,
+    /// Who asks, told with every request: a service's name. `None`: nobody in particular.
+    pub name: Option<String>,
     /// For windows: repaint.
     pub wake: Option<Wake>,
 }
@@ -51,12 +53,22 @@ pub struct Config {
 impl Config {
     /// The hub's.
     pub fn hub(vehicle: &str, listen: &str) -> Self {
-        Self { vehicle: vehicle.into(), role: Role::Hub { listen: listen.into() }, wake: None }
+        Self::new(vehicle, Role::Hub { listen: listen.into() })
     }
 
     /// Everybody else's.
     pub fn client(vehicle: &str, connect: &str) -> Self {
-        Self { vehicle: vehicle.into(), role: Role::Client { connect: connect.into() }, wake: None }
+        Self::new(vehicle, Role::Client { connect: connect.into() })
+    }
+
+    fn new(vehicle: &str, role: Role) -> Self {
+        Self { vehicle: vehicle.into(), role, name: None, wake: None }
+    }
+
+    /// With the name under which it asks: a key segment, like a service's.
+    pub fn named(mut self, name: &str) -> Self {
+        self.name = Some(name.into());
+        self
     }
 
     /// With a function that is called when something has been received.
@@ -71,6 +83,7 @@ impl fmt::Debug for Config {
         f.debug_struct("Config")
             .field("vehicle", &self.vehicle)
             .field("role", &self.role)
+            .field("name", &self.name)
             .finish_non_exhaustive()
     }
 }
@@ -85,6 +98,7 @@ pub struct Session {
 pub(crate) struct Inner {
     pub(crate) zenoh: zenoh::Session,
     pub(crate) vehicle: String,
+    pub(crate) name: Option<String>,
     pub(crate) health: Arc<Health>,
     pub(crate) runtime: Handle,
     pub(crate) wake: Wake,
@@ -103,10 +117,11 @@ impl Session {
     /// it comes.
     ///
     /// # Errors
-    /// [`SessionError`] if the vehicle's name or the endpoint is not usable, or outside of a
+    /// [`SessionError`] if the vehicle's name, its own or the endpoint is not usable, or outside of a
     /// multi-threaded tokio runtime.
     pub async fn open(config: Config) -> Result<Self, SessionError> {
-        Key::new(&config.vehicle, "session", Kind::Liveliness, "alive")?;
+        let name = config.name.as_deref().unwrap_or("session");
+        Key::new(&config.vehicle, name, Kind::Liveliness, "alive")?;
         let runtime = Handle::try_current().map_err(|_| SessionError::Runtime)?;
         if runtime.runtime_flavor() == RuntimeFlavor::CurrentThread {
             return Err(SessionError::Runtime);
@@ -117,6 +132,7 @@ impl Session {
             inner: Arc::new(Inner {
                 zenoh,
                 vehicle: config.vehicle,
+                name: config.name,
                 health: Arc::default(),
                 runtime,
                 wake: config.wake.unwrap_or_else(|| Arc::new(|| {})),

@@ -5,11 +5,12 @@ use super::faulty::{Death, Faulty, Operation, Random};
 use super::*;
 use crate::clock::Time;
 use crate::fp_manager::{Config, Manager, compile, restart};
-use flight_exec::{Executor, Token};
+use flight_exec::{Executor, RequestId, Token};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 use std::sync::Arc;
 use terrain::Flat;
+use usal::contract::PlanEvent;
 
 const LIMITS: Limits = Limits { turns: 10, bytes: 4096, bytes_max: 8192, plans: 3 };
 
@@ -219,6 +220,80 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
         assert!(past.troubles[0].contains(told), "{:?}", past.troubles);
         assert!(past.manager.executor().proposed().is_none());
     }
+}
+
+#[test]
+fn turn_that_cannot_be_replayed_stops_the_replay_before_it() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 2);
+    let missing =
+        Record::Propose { request: RequestId(1), plan: "0123".into(), based_on: None, forbidden: false };
+    let payload = encode(&vec![Entry { at: Time::from_secs(3), what: missing }]).unwrap();
+    clerk.perform(Time::ZERO, vec![Job::Turn { payload, sync: true }, job(4, true)]);
+    let (mut log, found) = Log::open(disk.clone(), LIMITS);
+    let past = restart(&mut log, &found.unwrap(), &config(), Time::ZERO);
+    assert_eq!(past.manager.executor().last_token(), Token(2));
+    assert!(
+        past.troubles[0].contains("turn 3 of 4") && past.troubles[0].contains("0123"),
+        "{:?}",
+        past.troubles
+    );
+}
+
+/// A disk that does nothing until it is let go.
+struct Stuck(std::sync::Arc<std::sync::Mutex<()>>);
+
+impl Storage for Stuck {
+    fn names(&mut self) -> std::io::Result<Vec<String>> {
+        Ok(Vec::new())
+    }
+    fn read(&mut self, _: &str, _: u64) -> std::io::Result<Vec<u8>> {
+        Err(ErrorKind::NotFound.into())
+    }
+    fn create(&mut self, _: &str) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn append(&mut self, _: &str, _: &[u8]) -> std::io::Result<()> {
+        drop(self.0.lock());
+        Ok(())
+    }
+    fn sync(&mut self, _: &str) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn rename(&mut self, _: &str, _: &str) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn sync_names(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn remove(&mut self, _: &str) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[tokio::test]
+async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
+    let lock = Arc::new(std::sync::Mutex::new(()));
+    let mut keeper = Keeper::start(Clerk::new(Log::open(Stuck(lock.clone()), LIMITS).0, None)).unwrap();
+    assert_eq!(keeper.news(), None);
+    let held = lock.lock();
+    keeper.give(state());
+    keeper.done().await;
+    assert!(matches!(keeper.news(), Some(PlanEvent::NotJournalled { reason }) if reason.contains("slow")));
+    for n in 0..50 {
+        // each would take the whole patience, if it waited
+        keeper.give(job(n, true));
+        keeper.done().await;
+        assert_eq!(keeper.news(), None, "told once");
+    }
+    drop(held);
+    let caught_up = async {
+        while keeper.news() != Some(PlanEvent::Journalled) {
+            tokio::task::yield_now().await;
+            keeper.done().await;
+        }
+    };
+    tokio::time::timeout(std::time::Duration::from_secs(30), caught_up).await.unwrap();
 }
 
 #[test]

@@ -300,7 +300,7 @@ impl Flight {
         let command = match what {
             What::Propose(xml) => {
                 let program = compile(xml.as_bytes(), &self.config).unwrap();
-                let report = manager.propose(now, program, &mut effects).unwrap();
+                let report = manager.propose(now, program, None, &mut effects).unwrap();
                 self.perform(effects)?;
                 self.proposed = Some(report.hash);
                 return Ok(());
@@ -319,10 +319,11 @@ impl Flight {
             What::Commit => Command::Commit { hash: self.proposed.clone().unwrap(), entry: None },
             What::Command(command) => command.clone(),
         };
-        let answer = manager.command(now, command, Some(id), &mut effects);
+        let answer = manager.command(now, command, "operator", Some(id), &mut effects);
         self.perform(effects)?;
         assert_eq!(answer, Ok(()), "{id}");
-        let repeated = self.process.manager.command(now, Command::Start, Some(id), &mut Vec::new());
+        let repeated =
+            self.process.manager.command(now, Command::Start, "operator", Some(id), &mut Vec::new());
         assert_eq!(self.answered.entry(id.to_owned()).or_insert(answer), &repeated);
         Ok(())
     }
@@ -397,6 +398,37 @@ fn a_thousand_deaths_change_nothing_of_a_flight() {
         flights += 1;
     }
     println!("{kills} deaths in {flights} flights, first seed {seed}");
+}
+
+#[test]
+fn killed_while_the_disk_was_full_it_holds_and_says_that_its_place_is_not_known() {
+    let mut flight = Flight::new(1, false, false);
+    while flight.gateway.flown.len() < 9 {
+        flight.step();
+    }
+    flight.disk.limit(flight.disk.size());
+    while flight.gateway.flown.len() < 20 {
+        flight.step();
+    }
+    flight.disk.repair();
+    flight.disk.reboot(Death::Kill, &mut Random(1));
+    let (process, troubles) = begin(&flight.disk, &flight.config);
+    assert_eq!(troubles.len(), 1, "{troubles:?}");
+    flight.process = process;
+    flight.heard.clear();
+    flight.hand_in_state();
+    flight.come_back().unwrap();
+    assert_eq!(flight.gateway.state, GatewayState::Hold);
+    let told =
+        |event: &PlanEvent| matches!(event, PlanEvent::NotJournalled { reason } if reason.contains("place"));
+    assert_eq!(flight.heard.iter().filter(|e| told(e)).count(), 1, "{:?}", flight.heard);
+    for _ in 0..5 {
+        flight.step();
+    }
+    assert_eq!(flight.gateway.flown.len(), 20);
+    flight.asks.clear();
+    flight.ask_once(&What::Command(Command::Resume), "resume").unwrap();
+    flight.fly();
 }
 
 #[test]
