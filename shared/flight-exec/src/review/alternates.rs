@@ -1,0 +1,100 @@
+//! Emergency plans as ways out: where they are entered, what they take from there, and what gets an aircraft there.
+
+use super::View;
+use super::flown::Flown;
+use aircraft::{Profile, Wind};
+use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway, Variables};
+use geometry::geodesy::normalise_180;
+use geometry::{LatLon, Vec2};
+
+/// Least speed over the ground with which a place is still reached, m/s.
+const LEAST_GROUND_MPS: f64 = 1.0;
+
+/// An emergency plan.
+pub(super) struct Alternate<'a> {
+    pub plan: &'a EmergencyPlan,
+    pub runway: &'a Runway,
+    /// Where it is entered, and how high, metres AMSL.
+    pub entry: LatLon,
+    pub entry_amsl_m: f64,
+    /// Where it leads from there to the threshold, without the laps of holdings.
+    pub route: Vec<LatLon>,
+    /// Energy from the entry to the landing, joules.
+    pub energy_j: f64,
+}
+
+/// A place of the flight from which a way out is looked for.
+#[derive(Debug, Clone)]
+pub(super) struct Origin {
+    pub leg: Id,
+    pub position: LatLon,
+    pub altitude_amsl_m: f64,
+    pub course_deg: f64,
+    /// Since the start of the main plan, seconds.
+    pub time_s: f64,
+    /// Energy used until here, joules.
+    pub used_j: f64,
+}
+
+impl std::fmt::Display for Origin {
+    /// Which leg and where.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let LatLon { lat_deg, lon_deg } = self.position;
+        write!(f, "leg `{}` at {lat_deg:.5}, {lon_deg:.5}, {:.0} m AMSL", self.leg, self.altitude_amsl_m)
+    }
+}
+
+/// The emergency plans that were flown, each with its index.
+pub(super) fn alternates<'a>(view: &'a View) -> impl Iterator<Item = (usize, Alternate<'a>)> {
+    view.flights
+        .emergencies
+        .iter()
+        .filter_map(|(index, flown)| Some((*index, alternate(view, *index, flown)?)))
+}
+
+fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternate<'a>> {
+    let plan = view.program.flown().emergency_plans.get(index)?;
+    let runway = view.program.plan.runway(&plan.runway)?;
+    let first = flown.waypoints.first()?.passage;
+    let at = flown.waypoints.iter().rposition(|w| w.passage == first)?;
+    let entry = flown.waypoints.get(at)?;
+    let (entered, landed) = (flown.reached.get(at)?, flown.points.last()?);
+    Some(Alternate {
+        plan,
+        runway,
+        entry: entry.waypoint.position,
+        entry_amsl_m: entry.wanted_amsl_m,
+        route: route(view, plan, runway),
+        energy_j: landed.used_j - entered.used_j,
+    })
+}
+
+/// The places of a plan's legs in document order, and the threshold.
+fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
+    let variables = Variables::initial(view.program.flown());
+    let env = Env { variables: &variables, flight: FlightState::on_ground(runway.threshold) };
+    let legs = plan.stages.iter().flat_map(|s| &s.legs);
+    let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
+    let mut route: Vec<LatLon> = places.chain([runway.threshold]).collect();
+    route.dedup_by(|a, b| crate::path::distance_m(*a, *b) < 1.0);
+    route
+}
+
+/// Speed over the ground on a track in a wind, m/s; `None` if the wind is too strong for it. (Wind triangle.)
+pub(super) fn ground_speed_mps(airspeed_mps: f64, track_deg: f64, wind: Wind) -> Option<f64> {
+    let along = Vec2::from_bearing_rad(track_deg.to_radians());
+    let (with_mps, across_mps) = (wind.vector().dot(along), wind.vector().cross(along));
+    let through_mps = (airspeed_mps * airspeed_mps - across_mps * across_mps).max(0.0).sqrt();
+    Some(through_mps + with_mps).filter(|v| *v > LEAST_GROUND_MPS && across_mps.abs() < airspeed_mps)
+}
+
+/// Seconds on the straight way from one place to another at the cruise speed; `None` if the wind doesn't let it.
+pub(super) fn flying_s(profile: &Profile, from: LatLon, to: LatLon, wind: Wind) -> Option<f64> {
+    let (distance_m, course_deg) = crate::path::distance_and_course(from, to);
+    Some(distance_m / ground_speed_mps(profile.cruise_airspeed_mps, course_deg, wind)?)
+}
+
+/// Angle between two courses, radians in 0..=π.
+pub(super) fn turn_rad(from_deg: f64, to_deg: f64) -> f64 {
+    normalise_180(to_deg - from_deg).abs().to_radians()
+}

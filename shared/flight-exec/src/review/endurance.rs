@@ -1,0 +1,50 @@
+//! `energy`: the energy does not last to the plan's end; `low-reserve`: it does, but hardly anything is left; `open-ended`: it
+//! does not, where only a person or a service ends a loop or a holding; `not-startable`, `endless-flight`: the flight
+//! ahead of time does not begin or end.
+
+use super::View;
+use crate::preview::PreviewError;
+use flight_plan::{Id, LegKind, Problem};
+
+pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    problems.extend(match &view.flights.planned {
+        Ok(planned) => low_reserve(view, planned.battery_left),
+        Err(PreviewError::OutOfEnergy { seconds, leg }) => Some(out_of_energy(view, *seconds, leg)),
+        // there is a default to be named: another rule says so
+        Err(PreviewError::Waiting { .. } | PreviewError::Cancelled) => None,
+        Err(error @ (PreviewError::NoStart | PreviewError::Refused(_))) => {
+            Some(Problem::error("not-startable", error.to_string()))
+        }
+        Err(error @ (PreviewError::TooLong { leg, .. } | PreviewError::TooManyWaypoints { leg, .. })) => {
+            Some(Problem::warning("endless-flight", error.to_string()).of(leg))
+        }
+    });
+}
+
+fn low_reserve(view: &View, left: f64) -> Option<Problem> {
+    let reserve = view.conditions.margins.energy_share;
+    let message = format!(
+        "shorten the plan or fly it slower: it lands with {:.0} % of the energy, {:.0} % is the reserve",
+        left * 100.0,
+        reserve * 100.0
+    );
+    (left < reserve).then(|| Problem::warning("low-reserve", message))
+}
+
+fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
+    let minutes = seconds / 60.0;
+    let open = view.program.path(leg).map(|path| view.program.chain(path)).unwrap_or_default();
+    if let Some(endless) = open.into_iter().find(|l| open_ended(&l.kind)) {
+        let message = format!(
+            "give `{}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min",
+            endless.id
+        );
+        return Problem::warning("open-ended", message).of(&endless.id);
+    }
+    let message = format!("shorten the plan: the energy is used up after {minutes:.0} min, on this leg");
+    Problem::error("energy", message).of(leg)
+}
+
+fn open_ended(kind: &LegKind) -> bool {
+    matches!(kind, LegKind::Iterative { count: None, .. } | LegKind::Hm { max_laps: None, .. })
+}

@@ -1,0 +1,167 @@
+//! Waypoints, flown by the simulated aircraft in the wind: the path as it will be.
+
+use super::layout::LaidOut;
+use crate::api::{Action, Waypoint};
+use aircraft::{Aircraft, Guidance, Profile, Target, Wind};
+use flight_plan::Id;
+use geometry::LatLon;
+use std::f64::consts::TAU;
+
+/// Time step of the dynamics, seconds.
+const STEP_S: f64 = 0.2;
+/// Steps between two points of the track: 25 m at 25 m/s.
+const STEPS_A_POINT: u64 = 5;
+/// Longest flight, seconds.
+const MOST_S: f64 = 8.0 * 3600.0;
+/// Energy that no flight uses up: how much it takes is another question than where it leads.
+const PLENTY: f64 = 1e3;
+
+/// A point of the track.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    /// Since the start of this flight, seconds.
+    pub time_s: f64,
+    pub position: LatLon,
+    pub altitude_amsl_m: f64,
+    /// Direction of travel, degrees true.
+    pub course_deg: f64,
+    /// Energy used since the start of this flight, joules.
+    pub used_j: f64,
+    /// Index of the waypoint (of [`Flown::waypoints`]) that is steered to.
+    pub waypoint: usize,
+}
+
+/// One flight.
+pub(super) struct Flown {
+    pub waypoints: Vec<LaidOut>,
+    pub points: Vec<Point>,
+    /// Where each waypoint was reached, as far as it was.
+    pub reached: Vec<Point>,
+    /// `None`: the main plan; else which emergency plan.
+    pub emergency: Option<usize>,
+    /// When it starts, seconds since the start of the main plan.
+    pub start_s: f64,
+}
+
+impl Flown {
+    /// On the way into an emergency plan, from where it was flown: the ways from everywhere are looked at by another rule.
+    pub fn enters(&self, point: &Point) -> bool {
+        let passage = |index: usize| self.waypoints.get(index).map(|w| w.passage);
+        self.emergency.is_some() && passage(point.waypoint) == passage(0)
+    }
+
+    /// The leg that is flown at a point.
+    pub fn leg(&self, point: &Point) -> Option<&Id> {
+        self.waypoints.get(point.waypoint).map(|w| &w.waypoint.leg)
+    }
+}
+
+impl From<&Waypoint> for Target {
+    fn from(waypoint: &Waypoint) -> Self {
+        Target {
+            position: waypoint.position,
+            altitude_amsl_m: waypoint.altitude_amsl_m,
+            airspeed_mps: waypoint.airspeed_mps,
+            action: match waypoint.action {
+                Action::TakeOff { heading_deg } => aircraft::Action::TakeOff { heading_deg },
+                Action::Fly => aircraft::Action::Fly,
+                Action::Loiter { radius_m } => aircraft::Action::Loiter { radius_m },
+                Action::Land { heading_deg } => aircraft::Action::Land { heading_deg },
+            },
+            fly_over: waypoint.fly_over,
+        }
+    }
+}
+
+/// The profile of an aircraft whose energy no flight uses up.
+pub(super) fn tireless(profile: &Profile) -> Profile {
+    Profile { energy_j: profile.energy_j * PLENTY, ..profile.clone() }
+}
+
+/// Flies waypoints from where the aircraft is to the last of them.
+pub(super) fn fly(
+    aircraft: Aircraft,
+    waypoints: Vec<LaidOut>,
+    wind: Wind,
+    emergency: Option<usize>,
+    start_s: f64,
+) -> Flown {
+    let flown = Flown { waypoints, points: Vec::new(), reached: Vec::new(), emergency, start_s };
+    let guidance = Guidance::new(aircraft.profile().clone());
+    Flight { aircraft, guidance, wind, steps: 0, steered_s: 0.0, flown }.flown()
+}
+
+struct Flight {
+    aircraft: Aircraft,
+    guidance: Guidance,
+    wind: Wind,
+    steps: u64,
+    /// When the present waypoint began to be steered to.
+    steered_s: f64,
+    flown: Flown,
+}
+
+impl Flight {
+    fn flown(mut self) -> Flown {
+        let mut current = 0;
+        let Some(first) = self.target(current) else { return self.flown };
+        self.guidance.direct(self.aircraft.state(), first);
+        while current < self.flown.waypoints.len() && self.time_s() < MOST_S {
+            if self.steps.is_multiple_of(STEPS_A_POINT) {
+                let point = self.point(current);
+                self.flown.points.push(point);
+            }
+            let next = self.target(current + 1);
+            let guided = self.guidance.step(self.aircraft.state(), next.as_ref());
+            if guided.reached || self.circled(current) {
+                let point = self.point(current);
+                self.flown.reached.push(point);
+                current += 1;
+                self.steered_s = self.time_s();
+                if let Some(next) = next {
+                    self.guidance.proceed(self.aircraft.state(), next);
+                }
+            } else {
+                self.aircraft.step(STEP_S, &guided.demand, &self.wind);
+                self.steps += 1;
+            }
+        }
+        let last = self.point(current.saturating_sub(1));
+        self.flown.points.push(last);
+        self.flown
+    }
+
+    fn target(&self, index: usize) -> Option<Target> {
+        self.flown.waypoints.get(index).map(|w| Target::from(&w.waypoint))
+    }
+
+    fn time_s(&self) -> f64 {
+        self.steps as f64 * STEP_S
+    }
+
+    fn point(&self, waypoint: usize) -> Point {
+        let state = self.aircraft.state();
+        let battery = self.aircraft.battery();
+        Point {
+            time_s: self.time_s(),
+            position: state.position,
+            altitude_amsl_m: state.altitude_amsl_m,
+            course_deg: state.track_deg(),
+            used_j: battery.capacity_j - battery.energy_left_j,
+            waypoint,
+        }
+    }
+
+    /// A loiter has no end of its own: the way there and one circle show where it leads.
+    fn circled(&self, current: usize) -> bool {
+        let Some(waypoint) = self.flown.waypoints.get(current).map(|w| &w.waypoint) else { return false };
+        let Action::Loiter { radius_m } = waypoint.action else { return false };
+        let speed_mps = waypoint.airspeed_mps.max(1.0);
+        let from = match current.checked_sub(1).and_then(|i| self.flown.waypoints.get(i)) {
+            Some(before) => before.waypoint.position,
+            None => waypoint.position,
+        };
+        let way_m = from.distance_m(waypoint.position) + 2.0 * TAU * radius_m.abs();
+        self.time_s() - self.steered_s > way_m / speed_mps
+    }
+}

@@ -1,0 +1,111 @@
+//! `glide-out-of-reach`: if the engine fails at some point, the glide along the emergency plan that is named there for that ends
+//! before its runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered.
+//!
+//! The glide: at the cruise speed with the best glide ratio, in the wind, with more sink in the turns from track to track, through
+//! the places of the emergency plan without the laps of its holdings. Legs of take-off, approach and landing are left out: there the
+//! runway is ahead, or not yet out of sight.
+
+use super::View;
+use super::alternates::{Alternate, Origin, alternates, ground_speed_mps, turn_rad};
+use aircraft::power::glide_sink_mps;
+use flight_plan::{Problem, StageKind};
+use geometry::{LatLon, PathElement};
+
+/// Distance between looks at the ground, metres.
+const SPACING_M: f64 = 150.0;
+/// Most looks on one way.
+const MOST_LOOKS: f64 = 500.0;
+
+pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    let origins: Vec<Origin> = view.origins(GLIDES_EVERY_S).filter(|from| counts(view, from)).collect();
+    for (index, alternate) in alternates(view) {
+        let applies = |from: &&Origin| view.in_force.engine(&from.leg) == Some(index);
+        let missing = || origins.iter().filter(applies).map(|from| (missing_m(view, &alternate, from), from));
+        let short = missing().filter(|(missing_m, _)| *missing_m > 0.0);
+        if let Some((missing_m, from)) = short.max_by(|(a, _), (b, _)| a.total_cmp(b)) {
+            problems.push(out_of_reach(view, &alternate, from, missing_m));
+            continue;
+        }
+        let hill =
+            origins.iter().filter(applies).step_by(LOOKS_EVERY).find_map(|from| hill(view, &alternate, from));
+        problems.extend(hill);
+    }
+}
+
+/// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one looks.
+const GLIDES_EVERY_S: f64 = 5.0;
+const LOOKS_EVERY: usize = 6;
+
+fn counts(view: &View, from: &Origin) -> bool {
+    let left_out = [StageKind::TakeOff, StageKind::Approach, StageKind::Land];
+    view.stage_kind(&from.leg).is_some_and(|kind| !left_out.contains(&kind))
+}
+
+/// Height that is lacking at a point to glide to the runway, metres; infinite if the wind does not let it.
+fn missing_m(view: &View, alternate: &Alternate, from: &Origin) -> f64 {
+    let available_m =
+        from.altitude_amsl_m - alternate.runway.elevation_amsl_m - view.conditions.margins.glide_m;
+    height_m(view, alternate, from).map_or(f64::INFINITY, |needed_m| needed_m - available_m)
+}
+
+/// Height that the glide through the plan's places takes.
+fn height_m(view: &View, alternate: &Alternate, from: &Origin) -> Option<f64> {
+    let profile = view.profile;
+    let speed_mps = profile.cruise_airspeed_mps;
+    let sink_mps = glide_sink_mps(profile, speed_mps, 1.0);
+    let load_factor = 1.0 / profile.planning_bank_deg.to_radians().cos();
+    let turning_mps = glide_sink_mps(profile, speed_mps, load_factor);
+    let turn_s_per_rad = profile.turn_radius_m(speed_mps) / speed_mps;
+    let (mut here, mut course_deg, mut height_m) = (from.position, from.course_deg, 0.0);
+    for place in &alternate.route {
+        let (distance_m, arrives_deg) = crate::path::distance_and_course(here, *place);
+        if distance_m < 1.0 {
+            continue;
+        }
+        let ground_mps = ground_speed_mps(speed_mps, arrives_deg, view.conditions.wind)?;
+        height_m += distance_m / ground_mps * sink_mps;
+        height_m += turn_rad(course_deg, arrives_deg) * turn_s_per_rad * turning_mps;
+        (here, course_deg) = (*place, arrives_deg);
+    }
+    let line_up_rad = turn_rad(course_deg, alternate.runway.heading_deg);
+    Some(height_m + line_up_rad * turn_s_per_rad * turning_mps)
+}
+
+fn out_of_reach(view: &View, alternate: &Alternate, from: &Origin, missing_m: f64) -> Problem {
+    let short_m = missing_m * view.profile.glide_ratio;
+    let what = if missing_m.is_finite() {
+        format!(
+            "ends {short_m:.0} m before the runway `{}`: fly {missing_m:.0} m higher there",
+            alternate.runway.id
+        )
+    } else {
+        format!("does not get to the runway `{}` against the wind: fly nearer to it", alternate.runway.id)
+    };
+    let message = format!(
+        "from {from}, a glide along `{}` {what}, or name a nearer emergency plan for an engine failure",
+        alternate.plan.id
+    );
+    Problem::warning("glide-out-of-reach", message).of(&from.leg)
+}
+
+/// A hill that the glide to the plan's entry runs into.
+fn hill(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
+    let speed_mps = view.profile.cruise_airspeed_mps;
+    let way = PathElement::Line { from: from.position, to: alternate.entry };
+    let (length_m, course_deg) = crate::path::distance_and_course(from.position, alternate.entry);
+    let slope = glide_sink_mps(view.profile, speed_mps, 1.0)
+        / ground_speed_mps(speed_mps, course_deg, view.conditions.wind)?;
+    let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
+    let along = (0..looks as u32).map(|i| length_m * f64::from(i) / looks);
+    let under = |along_m: f64| -> Option<LatLon> {
+        let position = way.point_at(along_m);
+        let ground_m = view.terrain.elevation_m(position)?;
+        (from.altitude_amsl_m - along_m * slope < ground_m).then_some(position)
+    };
+    let hit = along.into_iter().find_map(under)?;
+    let message = format!(
+        "fly higher there, or name another emergency plan for an engine failure: from {from}, the glide to `{}` runs into a hill at {:.5}, {:.5}",
+        alternate.plan.id, hit.lat_deg, hit.lon_deg
+    );
+    Some(Problem::warning("glide-into-terrain", message).of(&from.leg))
+}

@@ -1,0 +1,158 @@
+//! A plan laid out as waypoints, with the ways that are to be looked at chosen beforehand.
+
+use crate::api::{Action, Token, Waypoint};
+use crate::choice::{By, Choice};
+use crate::cursor::{Cursor, Step};
+use crate::decision::Decision;
+use crate::executor::Executor;
+use crate::path::PathState;
+use crate::world::World;
+use flight_plan::{Id, LegKind, Program};
+use std::collections::HashSet;
+
+/// Passes of each loop: the first is entered from outside, the second from the loop's own end.
+const PASSES: u64 = 2;
+/// Passings of each intersection for which a branch is chosen beforehand.
+const CROSSINGS: u64 = 8;
+/// Longest path, waypoints and seconds without wind.
+const MOST_WAYPOINTS: usize = 50_000;
+const MOST_S: f64 = 6.0 * 3600.0;
+/// Most steps that give no waypoint: waits and releases.
+const MOST_PAUSES: usize = 1000;
+
+/// A waypoint with what it was made for.
+pub(super) struct LaidOut {
+    pub waypoint: Waypoint,
+    /// Altitude that its leg asks for there, metres AMSL; the waypoint's may be short of it in a climb.
+    pub wanted_amsl_m: f64,
+    /// The passage of a leg that it belongs to.
+    pub passage: u64,
+}
+
+/// A way through the plan.
+#[derive(Default)]
+pub(super) struct Layout {
+    pub waypoints: Vec<LaidOut>,
+    /// Branches taken, with their intersections.
+    pub taken: HashSet<(Id, Id)>,
+    /// Legs that can't be flown, and why.
+    pub refused: Vec<(Id, String)>,
+    /// It came to the plan's end.
+    pub complete: bool,
+}
+
+/// Every leg of a program.
+fn legs(program: &Program) -> impl Iterator<Item = &flight_plan::Leg> {
+    program.flown().all_legs().into_iter().map(|context| context.leg)
+}
+
+/// Counts for every loop.
+pub(super) fn counts(program: &Program) -> Vec<(Id, u64)> {
+    let is_loop = |leg: &&flight_plan::Leg| matches!(leg.kind, LegKind::Iterative { .. });
+    let count = |leg: &flight_plan::Leg| {
+        let LegKind::Iterative { count: Some(flight_plan::Value::Constant(n)), .. } = &leg.kind else {
+            return PASSES;
+        };
+        PASSES.min(n.max(1.0) as u64)
+    };
+    legs(program).filter(is_loop).map(|leg| (leg.id.clone(), count(leg))).collect()
+}
+
+/// The branch for each of the first crossings of each intersection: number `variant` for the first one, the others in turn.
+pub(super) fn decisions(program: &Program, variant: u64) -> Vec<Decision> {
+    let mut decisions = Vec::new();
+    for leg in legs(program) {
+        let LegKind::Intersection { branches, .. } = &leg.kind else { continue };
+        for crossing in 1..=CROSSINGS {
+            let which = (variant + crossing - 1) % (branches.len() as u64).max(1);
+            let branch = branches.get(which as usize).map(|b| b.id.clone());
+            let decision = |branch| Decision {
+                leg: leg.id.clone(),
+                crossing,
+                branch,
+                by: By::Somebody("review".into()),
+            };
+            decisions.extend(branch.map(decision));
+        }
+    }
+    decisions
+}
+
+/// The waypoints of the main plan (`None`) or an emergency plan from a place.
+pub(super) fn lay_out(
+    executor: &Executor,
+    section: Option<usize>,
+    from: PathState,
+    counts: &[(Id, u64)],
+    decisions: &[Decision],
+) -> Layout {
+    let mut layout = Layout::default();
+    let Some(world) = executor.world() else { return layout };
+    let mut world = World { counts, decisions, ..world };
+    let mut cursor = Cursor::start(section, from, 0);
+    let mut pauses = 0;
+    while layout.waypoints.len() < MOST_WAYPOINTS
+        && cursor.path.time_s - from.time_s < MOST_S
+        && pauses < MOST_PAUSES
+    {
+        release(&mut world, &cursor);
+        match cursor.next(&world) {
+            Step::Waypoint(emission) => layout.take(*emission, &cursor, &world),
+            Step::Waiting => {
+                pauses += 1;
+                world.waited = Some(cursor.passage);
+            }
+            Step::Ended { notes } => {
+                layout.note(notes);
+                layout.complete = true;
+                break;
+            }
+            Step::Stalled => break,
+        }
+    }
+    layout
+}
+
+/// A holding that only its condition or a command ends is left after [`PASSES`] laps.
+fn release(world: &mut World, cursor: &Cursor) {
+    let open = cursor.leg(world).is_some_and(|leg| matches!(leg.kind, LegKind::Hm { .. }));
+    let lap = cursor.expansion.as_ref().filter(|_| open).and_then(|e| e.crossing(cursor.given));
+    if lap.is_some_and(|lap| lap >= PASSES) {
+        world.released = Some(cursor.passage);
+    }
+}
+
+impl Layout {
+    fn take(&mut self, emission: crate::cursor::Emission, cursor: &Cursor, world: &World) {
+        let leg = cursor.place(world).leg;
+        let last = &cursor.path.last;
+        let waypoint = Waypoint {
+            token: Token(self.waypoints.len() as u64 + 1),
+            position: emission.position,
+            altitude_amsl_m: emission.altitude_amsl_m,
+            airspeed_mps: emission.airspeed_mps,
+            action: emission.action,
+            fly_over: emission.fly_over,
+            leg,
+            end_of_plan: false,
+        };
+        let wanted_amsl_m = match emission.action {
+            Action::TakeOff { .. } | Action::Land { .. } => emission.altitude_amsl_m,
+            Action::Fly | Action::Loiter { .. } => world.amsl_m(last.level, last.position),
+        };
+        self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage: cursor.passage });
+        self.note(emission.notes);
+    }
+
+    fn note(&mut self, notes: crate::cursor::Notes) {
+        for choice in notes.choices {
+            if let Choice::Branch { leg, branch: Some(branch), .. } = choice {
+                self.taken.insert((leg, branch));
+            }
+        }
+        for trouble in notes.troubles {
+            let crate::cursor::Trouble::Leg { leg, reason } = trouble else { continue };
+            self.refused.push((leg, reason));
+        }
+    }
+}

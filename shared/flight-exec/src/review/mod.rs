@@ -1,0 +1,200 @@
+//! What must hold of the path as it is flown: turns, holdings, patterns and the wind included.
+//!
+//! `flight_plan::check` looks at a plan's text and legs; here the compiled plan is laid out by the executor's own cursor and flown by
+//! the simulated aircraft: every branch of every intersection, loops for two passes (the first from outside, the second from
+//! their own end), each emergency plan from the point that is worst for it, and the plan as it stands by the preview. Then
+//! each rule looks at those flights: one rule a file, each with the codes it gives.
+//!
+//! The work is bounded: [`flights`] says by what. What was not seen is told (`not-reviewed`).
+
+mod alternates;
+mod altitudes;
+mod ceiling;
+mod endurance;
+mod flights;
+mod flown;
+mod glide;
+mod layout;
+pub mod plausibility;
+mod powered;
+mod prepared;
+mod refused;
+mod terrain_clearance;
+mod unseen;
+mod waypoints;
+mod ways;
+mod zones;
+
+use aircraft::{Profile, Wind};
+use alternates::Origin;
+use flight_plan::{Id, LegKind, Problem, Program, StageKind};
+use flights::{Flights, InForce};
+use prepared::Zones;
+use std::collections::HashSet;
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// What a plan is reviewed for, besides the aircraft and the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Conditions {
+    /// The wind on the whole flight.
+    pub wind: Wind,
+    /// When it starts, seconds since 1970-01-01T00:00:00Z; `None`: not known, zones are taken as always active.
+    pub start_unix_s: Option<i64>,
+    /// What is kept in reserve.
+    pub margins: Margins,
+}
+
+/// What is kept in reserve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Margins {
+    /// Height above the ground away from runways, metres. A little less than what the check of the plan asks for, because what is
+    /// flown differs a little from what is written.
+    pub terrain_m: f64,
+    /// Distance from the edges of zones, metres.
+    pub zone_m: f64,
+    /// Share of the energy left when landed, 0..1.
+    pub energy_share: f64,
+    /// Height above the threshold with which a glide arrives, metres.
+    pub glide_m: f64,
+}
+
+impl Default for Margins {
+    fn default() -> Self {
+        Self { terrain_m: 40.0, zone_m: 10.0, energy_share: 0.05, glide_m: 15.0 }
+    }
+}
+
+/// What the rules look at.
+struct View<'a> {
+    program: &'a Program,
+    profile: &'a Profile,
+    terrain: &'a dyn Terrain,
+    conditions: Conditions,
+    flights: Flights,
+    zones: Zones,
+    in_force: InForce,
+}
+
+type Rule = fn(&View, &mut Vec<Problem>);
+
+/// Every rule; the order is that of the problems.
+const RULES: [Rule; 11] = [
+    refused::check,
+    unseen::check,
+    zones::check,
+    terrain_clearance::check,
+    ceiling::check,
+    altitudes::check,
+    waypoints::check,
+    endurance::check,
+    ways::check,
+    powered::check,
+    glide::check,
+];
+
+/// Every problem of the path that a compiled plan makes the aircraft fly, each once for a leg.
+///
+/// Variables have their initial values.
+pub fn review(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    conditions: Conditions,
+) -> Vec<Problem> {
+    let view = View {
+        program,
+        profile,
+        terrain: terrain.as_ref(),
+        conditions,
+        flights: Flights::of(program, profile, terrain, conditions.wind),
+        zones: Zones::of(program, conditions),
+        in_force: InForce::of(program),
+    };
+    let mut problems = Vec::new();
+    RULES.iter().for_each(|rule| rule(&view, &mut problems));
+    once(problems, &program.warnings)
+}
+
+impl View<'_> {
+    /// What the stage of a leg (or a stage itself) is for.
+    fn stage_kind(&self, leg: &Id) -> Option<StageKind> {
+        Some(self.program.stage(self.program.path(leg)?)?.kind)
+    }
+
+    /// A leg that the aircraft flies by waypoints: take-off and landing are low, and the autopilot performs them.
+    fn is_steered(&self, leg: &Id) -> bool {
+        let performed = [StageKind::TakeOff, StageKind::Land];
+        self.stage_kind(leg).is_some_and(|kind| !performed.contains(&kind))
+    }
+
+    /// A leg that loops: what is flown in its name is a turn.
+    fn is_loop(&self, leg: &Id) -> bool {
+        self.program.leg(leg).is_some_and(|leg| matches!(leg.kind, LegKind::Iterative { .. }))
+    }
+
+    /// Points of the flights of the main plan, so many seconds apart.
+    fn origins(&self, every_s: f64) -> impl Iterator<Item = Origin> + '_ {
+        self.flights.main.iter().flat_map(move |flown| {
+            let mut due_s = 0.0;
+            flown.points.iter().filter_map(move |point| {
+                if point.time_s < due_s {
+                    return None;
+                }
+                due_s = point.time_s + every_s;
+                Some(Origin {
+                    leg: flown.leg(point)?.clone(),
+                    position: point.position,
+                    altitude_amsl_m: point.altitude_amsl_m,
+                    course_deg: point.course_deg,
+                    time_s: point.time_s,
+                    used_j: point.used_j,
+                })
+            })
+        })
+    }
+
+    /// Points of the plan as it stands, with the energy used by then; where it does not end, those of the bounded flights.
+    fn origins_with_energy(&self) -> Vec<Origin> {
+        const EVERY_S: f64 = 5.0;
+        let mut points = match &self.flights.planned {
+            Ok(planned) => flights::points(planned, EVERY_S),
+            Err(_) => self.origins(EVERY_S).collect(),
+        };
+        points.retain(|point| self.is_steered(&point.leg));
+        points
+    }
+}
+
+/// Reads, checks, compiles and reviews a document: what a plan goes through before it is accepted anywhere.
+///
+/// # Errors
+/// Every problem of the document, with its place, if one of them forbids flying. Warnings are in the program.
+pub fn compile_and_review(
+    document: &[u8],
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    conditions: Conditions,
+) -> Result<Arc<Program>, Vec<Problem>> {
+    let (program, places) =
+        flight_plan::compile_reading(flight_plan::read(document), profile, terrain.as_ref())?;
+    let mut program = Arc::new(program);
+    let mut problems = review(&program, profile, terrain, conditions);
+    places.locate(&mut problems);
+    if problems.iter().any(Problem::is_error) {
+        problems.splice(0..0, program.warnings.iter().cloned());
+        return Err(problems);
+    }
+    // nobody else has it yet
+    if let Some(program) = Arc::get_mut(&mut program) {
+        program.warnings.append(&mut problems);
+    }
+    Ok(program)
+}
+
+/// The first problem of each code and subject, without those that are known already.
+fn once(problems: Vec<Problem>, known: &[Problem]) -> Vec<Problem> {
+    let mut seen: HashSet<(&'static str, Option<Id>)> =
+        known.iter().map(|p| (p.code, p.subject.clone())).collect();
+    problems.into_iter().filter(|p| seen.insert((p.code, p.subject.clone()))).collect()
+}

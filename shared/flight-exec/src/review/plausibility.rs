@@ -1,0 +1,169 @@
+//! Is a waypoint fit to be flown after another? What the gateway asks of every waypoint it takes, and the review of every
+//! waypoint a plan makes. One rule, one function.
+
+use crate::api::{Action, Waypoint};
+use aircraft::Profile;
+use geometry::LatLon;
+use geometry::geodesy::normalise_180;
+use terrain::Terrain;
+
+/// Farther apart than this, two waypoints are a mistake, metres.
+pub const FARTHEST_M: f64 = 50_000.0;
+/// Highest and lowest altitudes that make sense at all, metres AMSL.
+pub const ALTITUDES_M: std::ops::RangeInclusive<f64> = -500.0..=12_000.0;
+/// Height that an en-route waypoint keeps above the ground, metres.
+pub const TERRAIN_MARGIN_M: f64 = 20.0;
+/// Share by which a gradient may exceed the aircraft's: plans are checked to their own margins.
+pub const GRADIENT_SLACK: f64 = 1.5;
+/// Loiters smaller than this can't be flown by anything, metres.
+pub const SMALLEST_LOITER_M: f64 = 10.0;
+/// A corner sharper than this is flown as a loop, whatever the segments, degrees.
+const LOOPED_DEG: f64 = 135.0;
+
+/// Why a waypoint is not fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// For programs.
+    pub code: &'static str,
+    /// For people: what is wrong, and what would be right.
+    pub sentence: String,
+}
+
+/// What the rules know about the aircraft and the world.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The aircraft.
+    pub profile: &'a Profile,
+    /// The ground, if known.
+    pub terrain: Option<&'a dyn Terrain>,
+    /// Wind speed, m/s.
+    pub wind_mps: f64,
+}
+
+type Rule = fn(&Context, Option<&Waypoint>, &Waypoint) -> Option<Fault>;
+
+/// Rules without which the others make no sense.
+const NUMBERS: [Rule; 2] = [number, place];
+/// Rules on one waypoint and the one before it.
+const RULES: [Rule; 6] = [altitude, speed, loiter, distance, gradient, above_terrain];
+
+/// Everything that is wrong with a waypoint that follows on `previous`, whose own predecessor is at `before_previous`.
+/// Empty: it may be flown.
+pub fn faults(
+    context: &Context,
+    before_previous: Option<LatLon>,
+    previous: Option<&Waypoint>,
+    waypoint: &Waypoint,
+) -> Vec<Fault> {
+    // nothing else can be said about a place that is none
+    if let Some(nonsense) = NUMBERS.iter().find_map(|rule| rule(context, previous, waypoint)) {
+        return vec![nonsense];
+    }
+    let rules = RULES.iter().filter_map(|rule| rule(context, previous, waypoint));
+    rules.chain(turn(context, before_previous, previous, waypoint)).collect()
+}
+
+fn fault(code: &'static str, sentence: String) -> Fault {
+    Fault { code, sentence }
+}
+
+fn number(_: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let other = match w.action {
+        Action::TakeOff { heading_deg } | Action::Land { heading_deg } => heading_deg,
+        Action::Loiter { radius_m } => radius_m,
+        Action::Fly => 0.0,
+    };
+    let all = [w.position.lat_deg, w.position.lon_deg, w.altitude_amsl_m, w.airspeed_mps, other];
+    (!all.iter().all(|v| v.is_finite()))
+        .then(|| fault("not-a-number", "Every number of a waypoint has to be finite.".into()))
+}
+
+fn place(_: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let LatLon { lat_deg, lon_deg } = w.position;
+    let null_island = lat_deg == 0.0 && lon_deg == 0.0;
+    (!w.position.is_valid() || null_island).then(|| {
+        fault("no-such-place", format!("{lat_deg}, {lon_deg} is not a place to fly to; latitude is within ±90, longitude within ±180 degrees, and 0, 0 means that it was left out."))
+    })
+}
+
+fn altitude(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let (h, ceiling) = (w.altitude_amsl_m, c.profile.ceiling_amsl_m);
+    let bad = !ALTITUDES_M.contains(&h) || h > ceiling;
+    bad.then(|| fault("altitude", format!("{h:.0} m AMSL is out of range; the ceiling is {ceiling:.0} m.")))
+}
+
+fn speed(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let (low, high) = (c.profile.min_airspeed_mps, c.profile.max_airspeed_mps);
+    (!(low..=high).contains(&w.airspeed_mps))
+        .then(|| fault("speed", format!("{:.1} m/s is outside {low:.1} to {high:.1} m/s.", w.airspeed_mps)))
+}
+
+fn loiter(_: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let Action::Loiter { radius_m } = w.action else { return None };
+    (radius_m.abs() < SMALLEST_LOITER_M).then(|| {
+        fault(
+            "loiter-radius",
+            format!("A loiter of {radius_m:.0} m can't be flown; give at least {SMALLEST_LOITER_M:.0} m."),
+        )
+    })
+}
+
+fn distance(_: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let far_m = p?.position.distance_m(w.position);
+    (far_m > FARTHEST_M).then(|| {
+        fault(
+            "too-far",
+            format!("{:.0} km from the waypoint before it; at most {:.0} km.", far_m / 1e3, FARTHEST_M / 1e3),
+        )
+    })
+}
+
+/// Climb or descent along the segment against what the aircraft does at that ground speed.
+fn gradient(c: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let previous = p?;
+    if matches!(previous.action, Action::TakeOff { .. }) || matches!(w.action, Action::TakeOff { .. }) {
+        return None;
+    }
+    let length_m = previous.position.distance_m(w.position);
+    let rise_m = w.altitude_amsl_m - previous.altitude_amsl_m;
+    let rate = if rise_m > 0.0 { c.profile.max_climb_mps } else { c.profile.max_descent_mps };
+    let ground_mps = (w.airspeed_mps + c.wind_mps).max(1.0);
+    // ten metres of grace: corners are rounded, and short segments carry rounded altitudes
+    let most_m = GRADIENT_SLACK * rate * length_m / ground_mps + 10.0;
+    (rise_m.abs() > most_m).then(|| {
+        fault("gradient", format!("{rise_m:+.0} m over {length_m:.0} m is steeper than the aircraft can fly; at most {most_m:.0} m."))
+    })
+}
+
+fn above_terrain(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    if matches!(w.action, Action::Land { .. } | Action::TakeOff { .. }) {
+        return None;
+    }
+    let ground_m = c.terrain?.elevation_m(w.position)?;
+    let (h, least_m) = (w.altitude_amsl_m, ground_m + TERRAIN_MARGIN_M);
+    (h < least_m).then(|| {
+        let sentence =
+            format!("{h:.0} m AMSL is too low over ground of {ground_m:.0} m; fly at least {least_m:.0} m.");
+        fault("below-terrain", sentence)
+    })
+}
+
+/// The turn at the waypoint before: the tangent length r·tan(Δ/2) of the tightest turn has to fit
+/// into both segments together (steepest bank, wind added to the speed).
+fn turn(c: &Context, before: Option<LatLon>, previous: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let (a, b) = (before?, previous?);
+    if b.fly_over || !matches!(b.action, Action::Fly) || !matches!(w.action, Action::Fly) {
+        return None;
+    }
+    let (first, second) = (a.inverse(b.position), b.position.inverse(w.position));
+    let angle_deg = normalise_180(second.bearing_start_deg - first.bearing_end_deg).abs();
+    if angle_deg > LOOPED_DEG || second.distance_m < 1.0 || first.distance_m < 1.0 {
+        return None;
+    }
+    let radius_m = geometry::turn::radius_m(b.airspeed_mps + c.wind_mps, c.profile.max_bank_deg);
+    let need_m = geometry::turn::anticipation_m(radius_m, angle_deg);
+    let have_m = first.distance_m + second.distance_m;
+    (need_m > have_m).then(|| {
+        fault("turn", format!("Turning {angle_deg:.0}° needs {need_m:.0} m before and after the corner; there are {have_m:.0} m."))
+    })
+}

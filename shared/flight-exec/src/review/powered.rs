@@ -1,0 +1,41 @@
+//! `alternate-out-of-reach`: at some point the energy left, all of it, does not last for the emergency plan that answers there.
+
+use super::View;
+use super::alternates::{Alternate, Origin, alternates, flying_s};
+use aircraft::power::demanded_power_w;
+use flight_plan::Problem;
+
+pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    let origins = view.origins_with_energy();
+    for (index, alternate) in alternates(view) {
+        let applies = |from: &&Origin| view.in_force.powered(&from.leg).contains(&index);
+        let missing = origins.iter().filter(applies).map(|from| (missing_j(view, &alternate, from), from));
+        let worst = missing.max_by(|(a, _), (b, _)| a.total_cmp(b));
+        if let Some((missing_j, from)) = worst.filter(|(missing_j, _)| *missing_j > 0.0) {
+            problems.push(problem(&alternate, from, missing_j));
+        }
+    }
+}
+
+/// Energy that is lacking at a point, joules; infinite if the wind does not let the aircraft there.
+fn missing_j(view: &View, alternate: &Alternate, from: &Origin) -> f64 {
+    let profile = view.profile;
+    let Some(time_s) = flying_s(profile, from.position, alternate.entry, view.conditions.wind) else {
+        return f64::INFINITY;
+    };
+    let level_j = time_s * demanded_power_w(profile, profile.cruise_airspeed_mps, 0.0, 1.0);
+    let climb_m = (alternate.entry_amsl_m - from.altitude_amsl_m).max(0.0);
+    let needed_j = level_j + climb_m * profile.climb_power_w_per_mps + alternate.energy_j;
+    needed_j - (profile.energy_j - from.used_j)
+}
+
+fn problem(alternate: &Alternate, from: &Origin, missing_j: f64) -> Problem {
+    let message = format!(
+        "shorten the plan, or name a nearer emergency plan: from {from}, {:.0} min after the start, `{}` lacks {:.0} kJ to runway `{}`",
+        from.time_s / 60.0,
+        alternate.plan.id,
+        missing_j / 1e3,
+        alternate.runway.id
+    );
+    Problem::error("alternate-out-of-reach", message).of(&from.leg)
+}

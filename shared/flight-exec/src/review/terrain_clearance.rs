@@ -1,0 +1,57 @@
+//! `below-terrain`: the path goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
+
+use super::View;
+use super::flown::{Flown, Point};
+use flight_plan::{Id, Problem, StageKind};
+use std::collections::HashMap;
+
+pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    let mut lowest: HashMap<&Id, (f64, Point)> = HashMap::new();
+    let mut order = Vec::new();
+    for flown in view.flights.all() {
+        track(view, flown, &mut lowest, &mut order);
+    }
+    for leg in order {
+        let Some((clearance_m, point)) = lowest.get(leg) else { continue };
+        problems.extend(problem(view, leg, *clearance_m, point));
+    }
+}
+
+fn track<'a>(
+    view: &View,
+    flown: &'a Flown,
+    lowest: &mut HashMap<&'a Id, (f64, Point)>,
+    order: &mut Vec<&'a Id>,
+) {
+    for point in flown.points.iter().filter(|p| !flown.enters(p)) {
+        let Some(ground_m) = view.terrain.elevation_m(point.position) else { continue };
+        let Some(leg) = flown.leg(point) else { continue };
+        let clearance_m = point.altitude_amsl_m - ground_m;
+        if lowest.get(leg).is_none_or(|(least_m, _)| clearance_m < *least_m)
+            && lowest.insert(leg, (clearance_m, *point)).is_none()
+        {
+            order.push(leg);
+        }
+    }
+}
+
+fn problem(view: &View, leg: &Id, clearance_m: f64, point: &Point) -> Option<Problem> {
+    let kind = view.stage_kind(leg)?;
+    // the autopilot performs these, on the runway's elevation and not the terrain's
+    if matches!(kind, StageKind::TakeOff | StageKind::Land) {
+        return None;
+    }
+    let near_runway = matches!(kind, StageKind::Departure | StageKind::Approach);
+    let margin_m = view.conditions.margins.terrain_m;
+    let (lat, lon) = (point.position.lat_deg, point.position.lon_deg);
+    let raise_m = margin_m - clearance_m;
+    if clearance_m < 0.0 {
+        let message =
+            format!("raise this leg by {raise_m:.0} m: it goes into the ground at {lat:.5}, {lon:.5}");
+        return Some(Problem::error("below-terrain", message).of(leg));
+    }
+    let message = format!(
+        "raise this leg by {raise_m:.0} m: as flown, it passes {clearance_m:.0} m above the ground at {lat:.5}, {lon:.5}"
+    );
+    (clearance_m < margin_m && !near_runway).then(|| Problem::warning("low-clearance", message).of(leg))
+}
