@@ -94,6 +94,10 @@ fn bit(name: &str) -> u64 {
 /// Attributes as nearly every document has them: `name="value"`, no references, no line breaks, no name twice.
 /// `None`: something else.
 fn plain(text: &str) -> Option<Vec<Entry<'_>>> {
+    let special = |b: &&u8| matches!(b, b'&' | b'<' | b'\t' | b'\n' | b'\r');
+    if text.as_bytes().iter().filter(special).count() > 0 {
+        return None;
+    }
     let mut list: Vec<Entry> = Vec::with_capacity(8);
     let mut rest = text;
     loop {
@@ -105,10 +109,10 @@ fn plain(text: &str) -> Option<Vec<Entry<'_>>> {
             rest.bytes().take_while(|b| b.is_ascii_alphanumeric() || matches!(b, b':' | b'_' | b'-')).count();
         let (name, behind) = rest.split_at_checked(letters)?;
         let behind = behind.strip_prefix("=\"")?;
-        let length = behind.bytes().position(|b| matches!(b, b'"' | b'&' | b'<' | b'\t' | b'\n' | b'\r'))?;
+        let length = behind.bytes().position(|b| b == b'"')?;
         let (value, behind) = behind.split_at_checked(length)?;
         rest = behind.strip_prefix('"')?;
-        let separate = rest.is_empty() || rest.starts_with(|c: char| c.is_ascii_whitespace());
+        let separate = rest.is_empty() || rest.starts_with(' ');
         if name.is_empty() || !separate || list.len() >= MAX_ATTRIBUTES || list.iter().any(|e| e.name == name)
         {
             return None;

@@ -8,7 +8,9 @@ use crate::{
     Parameter, Problem, Procedure, Runway, Stage, StageKind, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::str::Utf8Error;
 
 /// What came out of a document.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -81,16 +83,17 @@ pub fn read(document: impl AsRef<[u8]>) -> Reading {
         return Reading { problems: vec![Problem::error("too-large", message)], ..Reading::default() };
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = String::from_utf8_lossy(bytes);
-    let encoding = encoding_problem(bytes).or_else(|| character_problem(&text));
+    let (text, encoding) = match std::str::from_utf8(bytes) {
+        Ok(text) => (Cow::Borrowed(text), character_problem(text)),
+        Err(error) => (String::from_utf8_lossy(bytes), encoding_problem(bytes, error)),
+    };
     let mut document = Document { cursor: Cursor::new(&text), places: Places::default() };
     encoding.into_iter().for_each(|p| document.cursor.report(p));
     let plan = document.flight_plan();
     Reading { plan, problems: document.cursor.into_problems(), places: document.places }
 }
 
-fn encoding_problem(bytes: &[u8]) -> Option<Problem> {
-    let error = std::str::from_utf8(bytes).err()?;
+fn encoding_problem(bytes: &[u8], error: Utf8Error) -> Option<Problem> {
     let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to())?);
     let message = "save the document as UTF-8: this byte does not belong to it";
     Some(Problem::error("not-utf8", message).at(location_of(&before)))

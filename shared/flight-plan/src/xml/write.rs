@@ -81,12 +81,17 @@ pub(super) struct Tag {
 
 impl Tag {
     pub(super) fn new(name: &'static str) -> Self {
-        Self { name, text: format!("<{name}") }
+        let mut text = String::with_capacity(120);
+        text.push('<');
+        text.push_str(name);
+        Self { name, text }
     }
 
     pub(super) fn with(mut self, name: &str, value: impl Display) -> Self {
-        let _ = write!(self.text, " {name}=\"");
-        escape_into(&value.to_string(), &mut self.text);
+        self.text.push(' ');
+        self.text.push_str(name);
+        self.text.push_str("=\"");
+        let _ = write!(Escaped(&mut self.text), "{value}");
         self.text.push('"');
         self
     }
@@ -151,19 +156,24 @@ impl Tag {
 }
 
 /// Attribute values: what reading would change is written as a reference; what XML can't say becomes U+FFFD.
-fn escape_into(value: &str, text: &mut String) {
-    for c in value.chars() {
-        match c {
-            '&' => text.push_str("&amp;"),
-            '<' => text.push_str("&lt;"),
-            '>' => text.push_str("&gt;"),
-            '"' => text.push_str("&quot;"),
-            '\t' | '\n' | '\r' => {
-                let _ = write!(text, "&#{};", u32::from(c));
-            }
-            c if allowed(c) => text.push(c),
-            _ => text.push('\u{fffd}'),
+struct Escaped<'a>(&'a mut String);
+
+impl Write for Escaped<'_> {
+    fn write_str(&mut self, value: &str) -> std::fmt::Result {
+        let plain = |b: u8| (b' '..=b'~').contains(&b) && !matches!(b, b'&' | b'<' | b'>' | b'"');
+        if value.bytes().all(plain) {
+            self.0.push_str(value);
+            return Ok(());
         }
+        value.chars().try_for_each(|c| match c {
+            '&' => self.0.write_str("&amp;"),
+            '<' => self.0.write_str("&lt;"),
+            '>' => self.0.write_str("&gt;"),
+            '"' => self.0.write_str("&quot;"),
+            '\t' | '\n' | '\r' => write!(self.0, "&#{};", u32::from(c)),
+            c if allowed(c) => self.0.write_char(c),
+            _ => self.0.write_char('\u{fffd}'),
+        })
     }
 }
 
@@ -174,20 +184,20 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    fn line(&mut self, line: &str) {
-        self.text.extend(std::iter::repeat_n("  ", self.depth));
-        self.text.push_str(line);
+    fn line(&mut self, parts: [&str; 3]) {
+        (0..self.depth).for_each(|_| self.text.push_str("  "));
+        parts.iter().for_each(|part| self.text.push_str(part));
         self.text.push('\n');
     }
 
     pub(super) fn leaf(&mut self, tag: Tag) {
-        self.line(&(tag.text + "/>"));
+        self.line([&tag.text, "/>", ""]);
     }
 
     /// An element with its children; without children it is a leaf.
     pub(super) fn element(&mut self, tag: Tag, children: impl FnOnce(&mut Self)) {
         let before = self.text.len();
-        self.line(&format!("{}>", tag.text));
+        self.line([&tag.text, ">", ""]);
         let opened = self.text.len();
         self.depth += 1;
         children(self);
@@ -196,7 +206,7 @@ impl Writer {
             self.text.truncate(before);
             self.leaf(tag);
         } else {
-            self.line(&format!("</{}>", tag.name));
+            self.line(["</", tag.name, ">"]);
         }
     }
 
