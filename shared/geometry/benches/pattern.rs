@@ -102,29 +102,29 @@ fn contours(polygon: &Polygon, spacing_m: f64) -> Contours {
         entry: CENTRE,
         tolerance_m: 1.0,
     };
-    Contours::new(polygon, &parameters).unwrap()
+    Contours::covering(polygon, &parameters).unwrap()
 }
 
-/// A hundred corners, every other one drawn in.
-fn concave() -> Polygon {
+/// Every other corner is drawn in.
+fn concave(corners: i32) -> Polygon {
     let corner = |i: i32| {
         let r = [5000.0, 3800.0, 4600.0, 3100.0][i as usize % 4];
-        Vec2::from_bearing_rad(f64::from(i) * std::f64::consts::TAU / 100.0) * r
+        Vec2::from_bearing_rad(f64::from(i) * std::f64::consts::TAU / f64::from(corners)) * r
     };
-    Polygon::new((0..100).map(corner).collect(), vec![]).unwrap()
+    Polygon::new((0..corners).map(corner).collect(), vec![]).unwrap()
 }
 
 fn print_contours() {
-    let polygon = concave();
-    for spacing_m in [200.0, 50.0] {
-        let run = fastest(|| contours(black_box(&polygon), spacing_m));
-        let count = contours(&polygon, spacing_m).count();
-        println!("contours of 100 corners every {spacing_m} m: {count} waypoints laid out in {run:.2?}");
+    for corners in [4, 10, 100] {
+        let polygon = concave(corners);
+        let run = fastest(|| contours(black_box(&polygon), 100.0));
+        let count = contours(&polygon, 100.0).count();
+        println!("contours of {corners} corners every 100 m: {count} waypoints laid out in {run:.2?}");
     }
 }
 
 #[divan::bench]
 fn contours_of_a_concave_polygon(bencher: divan::Bencher) {
-    let polygon = concave();
+    let polygon = concave(100);
     bencher.bench(|| contours(black_box(&polygon), 200.0));
 }

@@ -188,6 +188,16 @@ pub enum PatternError {
     /// The area is none.
     #[error(transparent)]
     Polygon(#[from] PolygonError),
+    /// Loops round so many corners would take too long to compute.
+    #[error(
+        "an area of {corners} corners is too intricate for {levels} loops round it: simplify it, or widen the spacing"
+    )]
+    TooIntricate {
+        /// Of the area.
+        corners: usize,
+        /// Distances from its edge.
+        levels: u64,
+    },
     /// The library for offsets refused the polygon.
     #[error("no loops can be laid along the edge of the area: simplify it")]
     Offset,

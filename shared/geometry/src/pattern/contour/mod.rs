@@ -12,6 +12,9 @@ use shapes::{Shape, area_m2, contains, grown, minus, rings_of};
 
 /// Distances from the edge at which loops may be flown.
 const MOST_LEVELS: u64 = 10_000;
+/// Most that (drawn-in corners² + corners) · levels may be: the library's time grows with that, for whatever lies
+/// beside drawn-in corners crosses itself. This takes a second or two.
+const MOST_WORK: f64 = 5e5;
 /// Share of a strip along loops that their sharp corners may leave unseen.
 const MOST_UNSEEN: f64 = 0.0015;
 /// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing.
@@ -98,6 +101,23 @@ impl ContourParameters {
         positive("tolerance", self.tolerance_m)
     }
 
+    /// Refuses what would take too long. Inward there are no more levels than half a spacing apart have room in the area.
+    fn check_work(&self, area: &Polygon) -> Result<(), PatternError> {
+        let room = match self.side {
+            Side::Inward => area.width_m(area.narrowest_heading_deg()) / self.spacing_m + 1.0,
+            Side::Outward => f64::INFINITY,
+        };
+        let (corners, levels) = (area.edges().count(), room.min(self.levels as f64).ceil());
+        let shape = rings_of(area);
+        let drawn_in =
+            shape.iter().map(|ring| corners_of(ring).filter(|&(_, turn_rad)| turn_rad < 0.0).count());
+        let drawn_in = drawn_in.sum::<usize>() as f64;
+        if (drawn_in * drawn_in + corners as f64) * levels <= MOST_WORK {
+            return Ok(());
+        }
+        Err(PatternError::TooIntricate { corners, levels: levels as u64 })
+    }
+
     /// The areas whose edges lie a distance from the polygon's edge.
     fn level(&self, area: &Polygon, offset_m: f64) -> Result<Vec<Shape>, PatternError> {
         match self.side {
@@ -109,6 +129,7 @@ impl ContourParameters {
 
 fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Contours, PatternError> {
     p.check()?;
+    p.check_work(area)?;
     let mut stored = Stored::default();
     let (mut at, mut offset_m) = (p.entry, p.first_m);
     let mut level = p.level(area, offset_m)?;
@@ -150,17 +171,22 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
 /// theirs, less a sector. All corners together may leave a share of the strip along the loops.
 fn reach_m(level: &[Shape], spacing_m: f64) -> f64 {
     let (mut length_m, mut unseen) = (0.0, 0.0);
-    for ring in level.iter().flatten() {
-        let next = || ring.iter().cycle();
-        for ((a, b), c) in ring.iter().zip(next().skip(1)).zip(next().skip(2)) {
-            let (before, after) = (*b - *a, *c - *b);
-            length_m += before.length();
-            // the area is on the left: there, corners to the left are its own
-            let turn_rad = before.cross(after).atan2(before.dot(after)).max(0.0);
-            unseen += (turn_rad / 2.0).tan() - turn_rad / 2.0;
-        }
+    for (edge_m, turn_rad) in level.iter().flatten().flat_map(|ring| corners_of(ring)) {
+        length_m += edge_m;
+        // the area is on the left: there, corners to the left are its own
+        let half_rad = turn_rad.max(0.0) / 2.0;
+        unseen += half_rad.tan() - half_rad;
     }
     (MOST_UNSEEN * length_m * spacing_m / unseen).sqrt().min(spacing_m / 2.0)
+}
+
+/// Length of each edge, metres, and the turn at its end, radians, positive to the left.
+fn corners_of(ring: &[Vec2]) -> impl Iterator<Item = (f64, f64)> + '_ {
+    let next = || ring.iter().cycle();
+    ring.iter().zip(next().skip(1)).zip(next().skip(2)).map(|((a, b), c)| {
+        let (before, after) = (*b - *a, *c - *b);
+        (before.length(), before.cross(after).atan2(before.dot(after)))
+    })
 }
 
 /// What the loops round areas do not see of others, without what is too small to be flown round.

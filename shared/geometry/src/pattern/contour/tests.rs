@@ -98,6 +98,25 @@ fn sharp_corners_bring_covering_loops_nearer_instead_of_being_flown_round() {
 }
 
 #[test]
+fn what_would_take_too_long_is_refused() {
+    let area = |drawn_in_m: f64| {
+        let corner = |i: i32| {
+            let out_m = if i % 2 == 0 { 5000.0 } else { 5000.0 - drawn_in_m };
+            Vec2::from_bearing_rad(f64::from(i) / 1000.0 * std::f64::consts::TAU) * out_m
+        };
+        Polygon::new((0..1000).map(corner).collect(), vec![]).unwrap()
+    };
+    let refused = Contours::new(&area(100.0), &parameters()).unwrap_err();
+    assert_eq!(refused, PatternError::TooIntricate { corners: 1000, levels: 100 });
+    let few = ContourParameters { levels: 2, ..parameters() };
+    assert!(Contours::new(&area(100.0), &ContourParameters { levels: 1, ..few }).is_ok());
+    // without drawn-in corners loops are simple
+    assert_eq!(Contours::new(&area(0.0), &few).unwrap().count(), 2002);
+    let fine = ContourParameters { spacing_m: 0.01, levels: 10_000, ..parameters() };
+    assert!(matches!(Contours::new(&area(0.0), &fine), Err(PatternError::TooIntricate { .. })));
+}
+
+#[test]
 fn no_room_and_no_sense_are_refused() {
     let area = Polygon::new(square(0.0, 0.0, 90.0), vec![]).unwrap();
     let refused = |p: ContourParameters| Contours::new(&area, &p).unwrap_err();
