@@ -1,6 +1,6 @@
 //! A corridor: parallel tracks along a route.
 
-use super::{MOST_STORED, PatternError, Route, Stored, Vertex, not_negative, positive};
+use super::{PatternError, Route, Stored, Vertex, not_negative, positive};
 use crate::Vec2;
 use crate::scan::{Corner, Entry, Lines, Order};
 use serde::{Deserialize, Serialize};
@@ -37,9 +37,7 @@ impl Corridor {
         not_negative("overshoot", p.overshoot_m)?;
         not_negative("turn radius", p.turn_radius_m)?;
         let lines = Lines::new((-p.width_m / 2.0, p.width_m / 2.0), p.spacing_m)?;
-        if lines.count() > MOST_STORED as u64 / 2 {
-            return Err(PatternError::TooMany { most: MOST_STORED as u64 });
-        }
+        route.check_paths(lines.count())?;
         let order =
             Order::interleaved(lines.count(), p.turn_radius_m, p.spacing_m, corner(route, p, &lines)?);
         let mut stored = Stored::default();

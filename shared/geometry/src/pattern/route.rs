@@ -1,6 +1,6 @@
 //! A route in the plane, and the paths beside it.
 
-use super::PatternError;
+use super::{MOST_STORED, PatternError};
 use crate::Vec2;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
@@ -69,6 +69,15 @@ impl Route {
     pub fn points(&self) -> impl Iterator<Item = Vec2> + '_ {
         let first = self.edges.first().map(|e| e.from);
         first.into_iter().chain(self.edges.iter().map(|e| e.to))
+    }
+
+    /// Refuses more paths beside it than can be laid out at once.
+    pub(super) fn check_paths(&self, paths: u64) -> Result<(), PatternError> {
+        let points = (self.edges.len() as u64 + 1).saturating_mul(paths);
+        if points > MOST_STORED as u64 {
+            return Err(PatternError::TooMany { most: MOST_STORED as u64 });
+        }
+        Ok(())
     }
 
     /// The path a distance to its right (negative: left), prolonged at both ends, metres.

@@ -34,7 +34,8 @@ impl TrackLine {
     /// A parameter that makes no sense; more waypoints than can be stored.
     pub fn new(route: &Route, p: &TrackLineParameters) -> Result<Self, PatternError> {
         positive("spacing", p.spacing_m)?;
-        counted("pairs of passes", p.pairs + u64::from(!p.returns), MOST_PAIRS)?;
+        counted("pairs of passes", p.pairs.saturating_add(u64::from(!p.returns)), MOST_PAIRS)?;
+        route.check_paths(2 * p.pairs)?;
         let mut stored = Stored::default();
         if !p.returns {
             stored.push(route.points())?;
@@ -93,11 +94,23 @@ mod tests {
     }
 
     #[test]
+    fn many_passes_along_many_points_are_refused() {
+        let points: Vec<Vec2> = (0..5000).map(|i| Vec2::new(f64::from(i % 2), 10.0 * f64::from(i))).collect();
+        let p = TrackLineParameters { spacing_m: 400.0, returns: true, pairs: 500, first_side: Turn::Right };
+        let refused = TrackLine::new(&Route::new(&points).unwrap(), &p);
+        assert!(matches!(refused, Err(super::super::PatternError::TooMany { .. })));
+    }
+
+    #[test]
     fn no_or_endless_passes_are_refused() {
         let route = Route::new(&[Vec2::default(), Vec2::new(0.0, 5000.0)]).unwrap();
-        for (pairs, returns, spacing_m) in
-            [(0, true, 100.0), (2000, false, 100.0), (1, true, 0.0), (1, true, f64::NAN)]
-        {
+        for (pairs, returns, spacing_m) in [
+            (0, true, 100.0),
+            (2000, false, 100.0),
+            (1, true, 0.0),
+            (1, true, f64::NAN),
+            (u64::MAX, false, 5.0),
+        ] {
             let p = TrackLineParameters { spacing_m, returns, pairs, first_side: Turn::Left };
             assert!(TrackLine::new(&route, &p).is_err(), "{p:?}");
         }
