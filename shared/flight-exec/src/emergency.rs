@@ -1,8 +1,9 @@
 //! Emergencies: an alternative plan at once, more severe causes only, back to the main plan by command.
 
-use crate::api::{Event, Output, Refusal};
+use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::Cursor;
-use crate::executor::{Emergency, Executor, refusal};
+use crate::executor::{Executor, refusal};
+use crate::state::Emergency;
 use flight_plan::{Cause, Id};
 
 impl Executor {
@@ -61,6 +62,10 @@ impl Executor {
         out.push(Output::Event(event));
         self.state.emergency = Some(Emergency { cause, plan, from_leg });
         if goes_on {
+            if self.state.phase == Phase::Holding {
+                self.leave_hold(out);
+                self.refeed(out);
+            }
             return;
         }
         let cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
@@ -71,7 +76,7 @@ impl Executor {
     /// An emergency doesn't wait for a resume.
     fn leave_hold(&mut self, out: &mut Vec<Output>) {
         self.state.held_at = None;
-        self.enter_phase(crate::api::Phase::Flying, out);
+        self.enter_phase(Phase::Flying, out);
     }
 
     pub(crate) fn return_to_main(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {

@@ -52,12 +52,8 @@ pub fn document_with(legs: &str, variables: &str, stage: &str) -> String {
     )
 }
 
-pub fn program(document: &str) -> Arc<Program> {
-    match compile_document(document.as_bytes(), &Profile::default(), &Flat(GROUND_M)) {
-        Ok(program) => Arc::new(program),
-        Err(problems) => {
-            let shown: Vec<_> = problems.iter().map(ToString::to_string).collect();
-            panic!("the test's plan has problems:\n{}", shown.join("\n"))
-        }
-    }
+/// The document's program, or its problems, one a line.
+pub fn compiled(document: &str) -> Result<Arc<Program>, String> {
+    let program = compile_document(document.as_bytes(), &Profile::default(), &Flat(GROUND_M));
+    program.map(Arc::new).map_err(|problems| Vec::from_iter(problems.iter().map(ToString::to_string)).join("\n"))
 }

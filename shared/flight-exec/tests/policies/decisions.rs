@@ -146,7 +146,7 @@ fn condition_held(trace: &Trace, found: &mut Findings) {
         |seen: &Seen| matches!(seen.variables.get(&"r".into()), Some(VariableValue::Number(r)) if *r > 900.0);
     let mut held = false;
     for step in trace.steps() {
-        held |= wide(step.before);
+        held |= wide(step.before) || wide(step.after);
         for event in step.events() {
             let Some((leg, branch, "condition")) = taken(event) else { continue };
             let conditional = seen_fork(step.after, leg)
@@ -176,16 +176,14 @@ fn operators_word(trace: &Trace, found: &mut Findings) {
             word.clear();
         }
         for event in step.events() {
-            match event {
-                Event::LegEntered { place } => word.retain(|fork| !leads_to(step.after, fork, &place.leg)),
-                Event::DecisionTaken { leg, by, .. } if by == "operator" && is_pending(step, leg) => {
-                    word.push(leg)
-                }
-                Event::DecisionTaken { leg, by, .. } => {
-                    let overruled = by != "operator" && word.contains(&leg);
-                    found.expect(step, !overruled, || format!("{leg} by {by}"));
-                }
-                _ => {}
+            if let Event::LegEntered { place } = event {
+                word.retain(|fork| !leads_to(step.after, fork, &place.leg));
+            }
+            let Some((leg, _, by)) = taken(event) else { continue };
+            let overruled = by != "operator" && word.contains(&leg);
+            found.expect(step, !overruled, || format!("{leg} by {by}"));
+            if by == "operator" && is_pending(step, leg) {
+                word.push(leg);
             }
         }
     }

@@ -61,7 +61,8 @@ fn running(trace: &Trace, until: usize) -> Option<Cause> {
     for step in trace.steps().take(until) {
         cause = started(step).map(|(cause, ..)| cause).or(cause);
         let over = matches!(step.accepted(), Some(Command::ReturnToMain { .. } | Command::Start));
-        if over || !step.after.is_flying() {
+        let in_main = step.after.place().is_some() && emergency_flown(step.after).is_none();
+        if over || in_main || !step.after.is_flying() {
             cause = None;
         }
     }
@@ -159,7 +160,7 @@ fn most_specific(trace: &Trace, found: &mut Findings) {
         };
         let expected = wanted.as_ref().or_else(|| resolve(program, from?, *cause));
         found.expect(step, expected == Some(plan), || format!("{plan} instead of {expected:?}"));
-        if emergency_flown(step.before).is_none() {
+        if running(trace, step.at).is_none() {
             let here = step.before.place().map(|p| &p.leg);
             found.expect(step, from == here, || format!("raised on {from:?}, flown was {here:?}"));
         }
@@ -184,7 +185,7 @@ fn in_force(trace: &Trace, found: &mut Findings) {
 fn ends_a_hold(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::Emergency { .. } = command else { continue };
-        if step.before.status.phase == Phase::Holding && emergency_flown(step.before).is_none() {
+        if step.before.status.phase == Phase::Holding {
             let phase = step.after.status.phase;
             found.expect(step, phase == Phase::Flying, || format!("{phase:?}"));
         }

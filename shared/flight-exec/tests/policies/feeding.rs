@@ -17,7 +17,7 @@ pub const POLICIES: &[Policy] = &[
         "While flying, executor and gateway have the same waypoints ahead.",
         ahead_is_the_buffer,
     ),
-    policy("a-waypoint-never-changes", "A token means the same waypoint for ever.", never_changes),
+    policy("a-waypoint-never-changes", "A token means the same waypoint for ever, within half a metre.", never_changes),
     policy(
         "one-cancellation-an-input",
         "A command is answered by one cancelling transaction at most, before anything is appended.",
@@ -133,17 +133,25 @@ fn ahead_is_the_buffer(trace: &Trace, found: &mut Findings) {
     }
 }
 
+/// So near to each other that an autopilot sees no difference, two waypoints laid out anew share their number.
 fn never_changes(trace: &Trace, found: &mut Findings) {
     let mut known: BTreeMap<Token, &Waypoint> = BTreeMap::new();
-    for (step, _, waypoints) in trace.feeds() {
-        known.extend(waypoints.iter().map(|w| (w.token, w)));
+    for step in trace.steps() {
+        known.extend(step.feeds().flat_map(|(_, waypoints)| waypoints).map(|w| (w.token, w)));
         for waypoint in step.after.ahead.iter().filter(|_| step.after.is_fed()) {
             let sent = known.get(&waypoint.token);
-            found.expect(step, sent.is_some_and(|w| *w == waypoint), || {
+            found.expect(step, sent.is_some_and(|w| is_the_same(w, waypoint)), || {
                 format!("{sent:?} is now {waypoint:?}")
             });
         }
     }
+}
+
+fn is_the_same(a: &Waypoint, b: &Waypoint) -> bool {
+    let near = a.position.distance_m(b.position) < 0.5
+        && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < 0.5
+        && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05;
+    near && (&a.leg, a.action, a.fly_over, a.end_of_plan) == (&b.leg, b.action, b.fly_over, b.end_of_plan)
 }
 
 fn one_cancellation(trace: &Trace, found: &mut Findings) {

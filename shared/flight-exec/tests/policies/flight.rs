@@ -3,7 +3,7 @@
 //! A flight is repeatable: its seed and the number of happenings give the same trace. After the last happening it is left
 //! alone, helped where it asks for help, until it ends.
 
-use crate::grid::{GROUND_M, HOME, program};
+use crate::grid::{GROUND_M, HOME};
 use crate::plans::Draft;
 use crate::random::Random;
 use crate::trace::{Deed, Moment, Seen, Trace};
@@ -61,9 +61,10 @@ pub fn fly(seed: u64, most_happenings: usize) -> Trace {
 impl Flight {
     fn new(seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let draft = Draft::new(&mut random);
-        let other = if random.percent(70) { draft.edited(&mut random) } else { Draft::new(&mut random) };
-        let plans = vec![program(&draft.document()), program(&other.document())];
+        let (draft, main) = Draft::flyable(&mut random, Draft::new);
+        let draw = |r: &mut Random| if r.percent(70) { draft.edited(r) } else { Draft::new(r) };
+        let (_, other) = Draft::flyable(&mut random, draw);
+        let plans = vec![main, other];
         let ids = plans.iter().flat_map(|p| p.plan.all_legs().into_iter().map(|c| c.leg.id.clone()));
         let ids = ids.chain(["m".into(), "land".into(), "b-df".into(), "nowhere".into()]).collect();
         let executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default());

@@ -63,7 +63,8 @@ struct Model<'a, 'f> {
     counts: BTreeMap<Id, u64>,
     taken: BTreeMap<Id, Id>,
     cannot_be_flown: BTreeSet<Id>,
-    may_miss: bool,
+    /// Legs that were skipped before they were entered.
+    may_miss: usize,
 }
 
 fn recite(trace: &Trace, found: &mut Findings) {
@@ -78,7 +79,7 @@ fn recite(trace: &Trace, found: &mut Findings) {
         counts: BTreeMap::new(),
         taken: BTreeMap::new(),
         cannot_be_flown: BTreeSet::new(),
-        may_miss: false,
+        may_miss: 0,
     };
     while let Some(jump) = model.next_jump() {
         if let Err(Stop::Wrong(what)) = model.jump(jump) {
@@ -120,7 +121,7 @@ impl<'a> Model<'a, '_> {
             Sight::Taken(leg, branch) => drop(self.taken.insert(leg.clone(), branch.clone())),
             Sight::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
             Sight::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
-            Sight::Skipped { announced } => self.may_miss |= !announced,
+            Sight::Skipped { announced } => self.may_miss += usize::from(!announced),
             _ => {}
         }
     }
@@ -142,14 +143,14 @@ impl<'a> Model<'a, '_> {
         let step = self.tape[self.at].0;
         self.found.expect(step, true, String::new);
         self.at += 1;
-        self.may_miss = false;
+        self.may_miss = 0;
     }
 
     // ---- jumps -------------------------------------------------------------------------------------------------
 
     fn jump(&mut self, jump: Jump<'a>) -> Flown {
         let mut after = None;
-        self.may_miss = false;
+        self.may_miss = 0;
         let target = match jump {
             Jump::Start(program) => {
                 self.program = Some(program);
@@ -397,7 +398,11 @@ impl<'a> Model<'a, '_> {
                 self.here = Some(id.clone());
                 Ok(self.agree())
             }
-            _ if optional || std::mem::take(&mut self.may_miss) => Ok(()),
+            _ if optional => Ok(()),
+            _ if self.may_miss > 0 => {
+                self.may_miss -= 1;
+                Ok(())
+            }
             other => {
                 let loops: Vec<_> = self.stack.iter().map(|f| (&f.id, f.iteration, f.reverse)).collect();
                 Err(Stop::Wrong(format!("{id} comes next, in {loops:?}, but {other:?}")))

@@ -1,7 +1,12 @@
 //! Random plans: every kind of control leg, nested; small enough that a flight meets all of it.
 
-use crate::grid::{HOME, document_with};
+use crate::grid::{HOME, compiled, document_with};
 use crate::random::Random;
+use flight_plan::Program;
+use std::sync::Arc;
+
+/// Nearly every draft can be flown.
+const MOST_DRAWS: usize = 50;
 
 /// `r` shapes the scans, `stop` ends loops, `n` counts passes.
 const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="1500"/>
@@ -94,6 +99,19 @@ impl Draft {
                 body: self.list(depth - 1, random),
             },
         }
+    }
+
+    /// A draft that can be flown: random legs may be too steep or too short for the aircraft.
+    pub fn flyable(random: &mut Random, draw: impl Fn(&mut Random) -> Self) -> (Self, Arc<Program>) {
+        let mut problems = String::new();
+        for _ in 0..MOST_DRAWS {
+            let draft = draw(random);
+            match compiled(&draft.document()) {
+                Ok(program) => return (draft, program),
+                Err(why) => problems = why,
+            }
+        }
+        panic!("no draft of {MOST_DRAWS} can be flown, the last one for:\n{problems}")
     }
 
     /// Another draft that is mostly this one: what an operator would propose.

@@ -12,17 +12,17 @@ pub const fn policy(name: &'static str, says: &'static str, check: fn(&Trace, &m
     Policy { name, says, check }
 }
 
-/// What a checker found: how often the policy applied, and where it was broken.
+/// What a checker found: the moments at which the policy applied, and where it was broken.
 #[derive(Default)]
 pub struct Findings {
-    pub applied: u64,
+    pub applied: Vec<usize>,
     pub broken: Vec<(usize, String)>,
 }
 
 impl Findings {
     /// The policy applies at this moment, and must hold.
     pub fn expect(&mut self, step: Step, holds: bool, what: impl FnOnce() -> String) {
-        self.applied += 1;
+        self.applied.push(step.at);
         if !holds {
             self.broken.push((step.at, what()));
         }
