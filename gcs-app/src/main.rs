@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 /// Program a UAV's flight instead of placing waypoints.
 ///
-/// Without a command, opens the ground station's window.
+/// Without a command, opens the ground station's window. `legwork COMMAND --help` has examples.
 #[derive(Debug, Parser)]
 #[command(name = "legwork", version, about, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -96,4 +96,15 @@ fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
         eprintln!("legwork: {error:#}");
         ExitCode::from(2)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
 }

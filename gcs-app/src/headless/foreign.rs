@@ -3,12 +3,11 @@
 use anyhow::Context;
 use flight_plan::Runway;
 use geometry::LatLon;
-use interchange::{Assumptions, Format, Note};
+use interchange::{Assumptions, Format, Import, Note};
 use std::path::Path;
 
 /// How a file is read that isn't a flight plan of ours.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Reading other formats")]
 pub struct Foreign {
     /// Format of the file, instead of guessing it from its name and content.
     #[arg(long, value_name = "FORMAT", value_parser = format)]
@@ -92,19 +91,16 @@ fn runway(text: &str) -> Result<Runway, String> {
 }
 
 impl Foreign {
-    /// A document of ours from whatever this is, and what was said while it was converted.
+    /// The plan that another program's file means; `None`: it is one of ours.
     ///
     /// # Errors
     /// It is not what it seems to be.
-    pub fn document(&self, path: &Path, bytes: Vec<u8>) -> anyhow::Result<(Vec<u8>, Vec<Note>)> {
-        match self.from.unwrap_or_else(|| FileFormat::of(path, &bytes)) {
-            FileFormat::Legwork => Ok((bytes, Vec::new())),
-            FileFormat::Other(format) => {
-                let import = interchange::read(format, &bytes, &self.assumptions(path))
-                    .with_context(|| format!("{} ({})", path.display(), format.name()))?;
-                Ok((flight_plan::write(&import.plan).into_bytes(), import.notes))
-            }
-        }
+    pub fn import(&self, path: &Path, bytes: &[u8]) -> anyhow::Result<Option<Import>> {
+        let FileFormat::Other(format) = self.from.unwrap_or_else(|| FileFormat::of(path, bytes)) else {
+            return Ok(None);
+        };
+        let import = interchange::read(format, bytes, &self.assumptions(path));
+        import.map(Some).with_context(|| format!("{} ({})", path.display(), format.name()))
     }
 
     fn assumptions(&self, path: &Path) -> Assumptions {

@@ -44,7 +44,7 @@ pub enum Command {
         #[command(flatten)]
         source: Box<Source>,
         /// Which way is flown.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
         /// Where the report goes.
         #[command(flatten)]
@@ -62,7 +62,7 @@ pub enum Command {
         #[command(flatten)]
         source: Box<Source>,
         /// Which way is flown.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
         /// Where and how they are written.
         #[command(flatten)]
@@ -84,7 +84,7 @@ pub enum Command {
         #[command(flatten)]
         target: convert::Target,
         /// Which way is flown.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
         /// Where the wind comes from (degrees true) and its speed (m/s).
         #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]

@@ -10,7 +10,6 @@ use interchange::Step;
 
 /// What is decided ahead.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Which way is flown")]
 pub struct Selection {
     /// Let a variable begin with this value (a position: LAT LON; a polygon: LAT LON, LAT LON, …).
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]

@@ -29,7 +29,7 @@ pub struct Source {
     #[arg(long, value_name = "JSON")]
     pub aircraft: Option<PathBuf>,
     /// How other formats are read.
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Reading other formats")]
     pub foreign: Foreign,
 }
 
@@ -37,8 +37,10 @@ pub struct Source {
 pub struct Loaded {
     /// The plan and what is wrong with its document.
     pub reading: Reading,
-    /// What was assumed or left out, if it came from another program.
+    /// What was assumed or left out, if it came from another program's format.
     pub notes: Vec<Note>,
+    /// It came from another program's format: places in the document mean nothing to its author.
+    pub converted: bool,
     /// The aircraft, or why there is none.
     pub profile: Result<Profile, String>,
     /// The ground.
@@ -53,8 +55,13 @@ impl Source {
     pub fn load(&self) -> anyhow::Result<Loaded> {
         // one byte more than is allowed: the reader then says that it is too long
         let bytes = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
-        let (document, notes) = self.foreign.document(&self.file, bytes)?;
-        Ok(Loaded { notes, ..self.surround(&document)? })
+        match self.foreign.import(&self.file, &bytes)? {
+            None => self.surround(&bytes),
+            Some(import) => {
+                let document = flight_plan::write(&import.plan);
+                Ok(Loaded { notes: import.notes, converted: true, ..self.surround(document.as_bytes())? })
+            }
+        }
     }
 
     /// A document that is here already, with the surroundings of this source.
@@ -67,7 +74,7 @@ impl Source {
             Some(path) => Ok(profile_from(path)?),
             None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),
         };
-        Ok(Loaded { reading, notes: Vec::new(), profile, terrain: self.load_terrain()? })
+        Ok(Loaded { reading, notes: Vec::new(), converted: false, profile, terrain: self.load_terrain()? })
     }
 
     fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
@@ -97,6 +104,9 @@ impl Loaded {
                 self.reading.places.locate(&mut found);
                 problems.extend(found);
             }
+        }
+        if self.converted {
+            problems.iter_mut().for_each(|p| p.location = None);
         }
         problems
     }
