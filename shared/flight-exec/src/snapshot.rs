@@ -3,8 +3,9 @@
 use crate::api::Time;
 use crate::config::Config;
 use crate::cursor::Cursor;
-use crate::executor::{Executor, State};
+use crate::executor::Executor;
 use crate::expand::Expansion;
+use crate::state::State;
 use aircraft::Profile;
 use flight_plan::Program;
 use serde::{Deserialize, Serialize};

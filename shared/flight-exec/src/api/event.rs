@@ -1,0 +1,128 @@
+//! What is told as it happens.
+
+use super::{DecisionRequest, Phase, PlacePointer, ResolvedAct};
+use flight_plan::{Cause, Id, VariableValue};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub enum Event {
+    /// The aircraft began a leg.
+    LegEntered {
+        /// Where that is.
+        place: PlacePointer,
+    },
+    /// A pass of a loop ended at its final leg.
+    IterationFinished {
+        /// The iterative leg.
+        leg: Id,
+        /// Passes finished.
+        finished: u64,
+        /// The count, if any.
+        of: Option<u64>,
+    },
+    /// Somebody should decide.
+    DecisionRequested(DecisionRequest),
+    /// It was decided.
+    DecisionTaken {
+        /// The intersection leg.
+        leg: Id,
+        /// The branch.
+        branch: Id,
+        /// Name of the person or service that decided, `condition` or `default`.
+        by: String,
+    },
+    /// A variable has a new value.
+    VariableChanged {
+        /// Its name.
+        name: Id,
+        /// Its value.
+        value: VariableValue,
+        /// Who wrote it: a service's name, `operator`, or `plan` for an action of the plan.
+        by: Arc<str>,
+    },
+    /// An action of the plan was begun.
+    ActionDone {
+        /// The leg it belongs to.
+        leg: Id,
+        /// Which passage of it; of a loop: which activation.
+        passage: u64,
+        /// What is done.
+        act: ResolvedAct,
+    },
+    /// An action of the plan was due and could not be done; it isn't tried again on this passage.
+    ActionRefused {
+        /// The leg it belongs to.
+        leg: Id,
+        /// Which passage of it; of a loop: which activation.
+        passage: u64,
+        /// Why.
+        reason: String,
+    },
+    /// A pattern could not be regenerated; the old one goes on.
+    PatternRefused {
+        /// The leg.
+        leg: Id,
+        /// Why.
+        reason: String,
+    },
+    /// A condition or a number of a leg has no value now (a division by zero, for instance): the condition counts as
+    /// false, the number as not given. Told once.
+    ExpressionFailed {
+        /// The leg.
+        leg: Id,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A plan became the active one.
+    PlanActivated {
+        /// Its hash.
+        hash: Arc<str>,
+        /// The revision it makes.
+        revision: u64,
+    },
+    /// An emergency plan is being flown.
+    EmergencyStarted {
+        /// Why.
+        cause: Cause,
+        /// Which.
+        plan: Id,
+        /// The leg it was raised on.
+        from_leg: Option<Id>,
+    },
+    /// No emergency plan applies: the gateway's Safe mode has to decide.
+    EmergencyUnanswered {
+        /// Why it was raised.
+        cause: Cause,
+    },
+    /// What it is doing changed.
+    PhaseChanged {
+        /// To this.
+        phase: Phase,
+    },
+    /// Waypoints were refused by the gateway.
+    WaypointsRejected {
+        /// The leg of the first of them.
+        leg: Option<Id>,
+        /// Why.
+        reason: String,
+    },
+    /// The gateway does not grant what the flight needs; it is asked again, for the take-off until
+    /// it is granted. Told once for each reason, by the FP Manager.
+    NotGranted {
+        /// `launch`, `hold`, `resume` or `set-runways`.
+        request: String,
+        /// Why.
+        reason: String,
+    },
+    /// What happens is not recorded (disk full, not writable), or a restart could not use what was: the flight
+    /// goes on, its place would not survive another restart. Told once, by the FP Manager.
+    NotJournalled {
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// What happens is recorded again.
+    Journalled,
+}

@@ -1,0 +1,40 @@
+//! What is told about a proposed plan.
+
+use flight_plan::Id;
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What a proposed plan would do, or why it can't be flown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ProposalReport {
+    /// Hash of the proposal.
+    pub hash: Arc<str>,
+    /// May be committed.
+    pub acceptable: bool,
+    /// Errors and warnings, one sentence each.
+    pub problems: Vec<String>,
+    /// Legs that are only in the new plan.
+    pub added: Vec<Id>,
+    /// Legs that are only in the active plan.
+    pub removed: Vec<Id>,
+    /// Legs that differ.
+    pub changed: Vec<Id>,
+    /// How many legs and stages stay as they are.
+    pub unchanged: usize,
+    /// The leg the aircraft would fly next.
+    pub next_leg: Option<Id>,
+    /// The position it would fly to next.
+    pub next_position: Option<LatLon>,
+    /// Metres to that position.
+    pub next_in_m: Option<f64>,
+    /// Seconds to that position.
+    pub next_in_s: Option<f64>,
+    /// Metres of the present path that would still be flown before the first waypoint that is another one; `None`: none is, as far
+    /// ahead as waypoints are handed out.
+    pub differs_in_m: Option<f64>,
+    /// The same in seconds.
+    pub differs_in_s: Option<f64>,
+    /// The current leg is gone: the commit must name an entry leg.
+    pub entry_needed: bool,
+}

@@ -1,0 +1,92 @@
+//! Giving out points, with their altitudes; circling at the end of a leg.
+
+use super::{Cursor, Doing, Emission, Notes, Step};
+use crate::api::Action;
+use crate::expand::Point;
+use crate::path::{Passing, PathState, distance_and_course};
+use crate::world::World;
+use flight_plan::{Act, Trigger};
+
+/// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
+/// target, however wide it turns. The gateway grants ten.
+const CLIMB_LEAD_M: f64 = 8.0;
+
+impl Cursor {
+    /// Seconds to be circled at the end of the leg before it is left.
+    pub(super) fn wait_due(&self, world: &World, notes: &mut Notes) -> Option<f64> {
+        let leg = self.leg(world).filter(|leg| !leg.actions.is_empty() && self.expansion.is_some())?;
+        if world.waited == Some(self.passage) {
+            return None;
+        }
+        let inside = self.inside(world);
+        let seconds = leg.actions.iter().map(|action| match (&action.trigger, &action.act) {
+            (Trigger::End, Act::Wait { seconds }) => {
+                notes.value(&leg.id, inside.number(seconds)).unwrap_or(0.0)
+            }
+            _ => 0.0,
+        });
+        Some(seconds.map(|s: f64| s.max(0.0)).sum()).filter(|s| *s > 0.0)
+    }
+
+    pub(super) fn wait(&mut self, seconds: f64, notes: Notes, world: &World) -> Step {
+        let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
+        let emission = self.emit(self.circle_here(world), world);
+        Step::Waypoint(Box::new(Emission { wait_s: Some(seconds), notes, sealed, ..emission }))
+    }
+
+    /// Circling at the end of the path.
+    pub(super) fn circle_here(&self, world: &World) -> Point {
+        let action = Action::Loiter { radius_m: world.turn_radius_m(self.airspeed_mps) };
+        Point { action, ..Point::fly(self.path.last.position) }
+    }
+
+    pub(super) fn emit(&mut self, point: Point, world: &World) -> Emission {
+        let level = point.level.unwrap_or(self.level);
+        let altitude_amsl_m = world.amsl_m(level, point.position);
+        let from = self.path.last.position;
+        let (length_m, course_deg) = distance_and_course(from, point.position);
+        let time_s = length_m / self.airspeed_mps.max(1.0);
+        // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
+        // such a gradient
+        let profile = world.profile;
+        let (descent_m, climb_m) = (profile.max_descent_mps * time_s, profile.max_climb_mps * time_s);
+        let towards = |from_m: f64, lead_m: f64| {
+            from_m + (altitude_amsl_m - from_m).clamp(-descent_m - lead_m, climb_m + lead_m)
+        };
+        let (commanded_amsl_m, predicted_amsl_m) = match point.action {
+            Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),
+            Action::Land { .. } => (altitude_amsl_m, towards(self.path.predicted_amsl_m, 0.0)),
+            Action::Fly | Action::Loiter { .. } => {
+                let commanded_m = towards(self.path.commanded_amsl_m, CLIMB_LEAD_M);
+                (commanded_m, towards(self.path.predicted_amsl_m, 0.0))
+            }
+        };
+        self.path = PathState {
+            last: Passing {
+                position: point.position,
+                level,
+                airspeed_mps: self.airspeed_mps,
+                fly_over: point.fly_over,
+            },
+            course_deg: if length_m > 0.5 { course_deg } else { self.path.course_deg },
+            predicted_amsl_m,
+            commanded_amsl_m,
+            distance_m: self.path.distance_m + length_m,
+            time_s: self.path.time_s + time_s,
+        };
+        self.given += 1;
+        if matches!(point.action, Action::Loiter { .. }) {
+            self.doing = Doing::Waiting;
+        }
+        Emission {
+            position: point.position,
+            altitude_amsl_m: commanded_amsl_m,
+            airspeed_mps: self.airspeed_mps,
+            action: point.action,
+            fly_over: point.fly_over,
+            wait_s: None,
+            notes: Notes::default(),
+            sealed: None,
+        }
+    }
+}
