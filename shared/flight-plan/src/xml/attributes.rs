@@ -16,6 +16,10 @@ pub(super) struct Attributes<'a> {
     names: u64,
 }
 
+/// The memory of attributes that are done with: most elements need none of their own.
+#[derive(Default)]
+pub(super) struct Memory<'a>(Vec<Entry<'a>>);
+
 struct Entry<'a> {
     name: &'a str,
     value: Cow<'a, str>,
@@ -23,9 +27,15 @@ struct Entry<'a> {
 }
 
 impl<'a> Attributes<'a> {
-    /// Reads what stands behind an element's name.
-    pub fn parse(text: &'a str, place: Place<'a>, problems: &mut Vec<Problem>) -> Self {
-        let list = plain(text).unwrap_or_else(|| Self::any(text, place, problems));
+    /// Reads what stands behind an element's name. `memory` is used again.
+    pub fn parse(
+        text: &'a str,
+        place: Place<'a>,
+        mut memory: Memory<'a>,
+        problems: &mut Vec<Problem>,
+    ) -> Self {
+        memory.0.clear();
+        let list = plain(text, memory.0).unwrap_or_else(|| Self::any(text, place, problems));
         let names = list.iter().fold(0, |names, entry| names | bit(entry.name));
         Self { list, place, names }
     }
@@ -51,6 +61,11 @@ impl<'a> Attributes<'a> {
             }
         }
         list
+    }
+
+    /// What can be used again when nothing more will be asked.
+    pub fn into_memory(self) -> Memory<'a> {
+        Memory(self.list)
     }
 
     /// The value of an attribute, if it is there.
@@ -93,12 +108,11 @@ fn bit(name: &str) -> u64 {
 
 /// Attributes as nearly every document has them: `name="value"`, no references, no line breaks, no name twice.
 /// `None`: something else.
-fn plain(text: &str) -> Option<Vec<Entry<'_>>> {
+fn plain<'a>(text: &'a str, mut list: Vec<Entry<'a>>) -> Option<Vec<Entry<'a>>> {
     let special = |b: &&u8| matches!(b, b'&' | b'<' | b'\t' | b'\n' | b'\r');
     if text.as_bytes().iter().filter(special).count() > 0 {
         return None;
     }
-    let mut list: Vec<Entry> = Vec::with_capacity(8);
     let mut rest = text;
     loop {
         rest = rest.trim_ascii_start();

@@ -1,6 +1,6 @@
 //! A bounded walk over the elements of a document.
 
-use super::attributes::Attributes;
+use super::attributes::{Attributes, Memory};
 use crate::{Location, Problem};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -35,6 +35,8 @@ pub(super) struct Cursor<'a> {
     problems: Vec<Problem>,
     depth: usize,
     elements: usize,
+    /// Of attributes that are done with.
+    memory: Memory<'a>,
     /// Nothing more is read: the end, or a fault that can't be read past.
     stopped: bool,
 }
@@ -48,6 +50,7 @@ impl<'a> Cursor<'a> {
             problems: Vec::new(),
             depth: 0,
             elements: 0,
+            memory: Memory::default(),
             stopped: false,
         }
     }
@@ -94,7 +97,13 @@ impl<'a> Cursor<'a> {
         while let Some(child) = self.child(&element) {
             self.unknown(child, element.name, "nothing");
         }
+        self.end(element);
+    }
+
+    /// As [`Cursor::finish`], for an element that nobody needs any more.
+    pub fn end(&mut self, element: Element<'a>) {
         self.finish(&element);
+        self.memory = element.attributes.into_memory();
     }
 
     /// Reports the attributes that nobody asked for.
@@ -191,7 +200,8 @@ impl<'a> Cursor<'a> {
         let inside = self.text.get(start + 1..end - if empty { 2 } else { 1 }).unwrap_or("");
         let (name, list) = inside.split_at_checked(tag.name().0.len()).unwrap_or((inside, ""));
         let mut problems = Vec::new();
-        let attributes = Attributes::parse(list, self.place, &mut problems);
+        let memory = std::mem::take(&mut self.memory);
+        let attributes = Attributes::parse(list, self.place, memory, &mut problems);
         problems.into_iter().for_each(|p| self.report(p));
         Some(Element { name, attributes, location, empty })
     }

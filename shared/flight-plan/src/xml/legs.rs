@@ -42,7 +42,7 @@ impl<'a> Document<'a> {
         let next = self.reference(&element, "next");
         let mut actions = Vec::new();
         let kind = self.leg_kind(&element, &mut emergency, &mut actions);
-        self.cursor.finish(&element);
+        self.cursor.end(element);
         Leg { id, name, emergency, altitude, speed_mps, next, actions, kind }
     }
 
