@@ -59,7 +59,7 @@ fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
         notes.push(
             "fixes-not-carried",
             "fixes",
-            format!("the names of {} fixes are left out", plan.fixes.len()),
+            format!("the names of the fixes ({}) are left out", plan.fixes.len()),
         );
     }
     if !kept.runways {

@@ -161,14 +161,23 @@ fn take_off_and_landing_come_back_as_stages() {
         step("l", 2, RUNWAY, 349.0, 25.0, Action::Land { heading_deg: 52.0 }),
     ];
     let plan = plan(vec![leg("w", LegKind::Tf(to(way)))]);
-    for format in [Format::Plan, Format::Waypoints] {
+    for format in PATHS {
         let import = again(format, &plan, &steps);
         let kinds: Vec<_> = import.plan.stages.iter().map(|s| s.kind).collect();
-        assert_eq!(kinds, [StageKind::TakeOff, StageKind::Mission, StageKind::Land], "{format:?}");
+        assert_eq!((kinds.len(), kinds[0], kinds[2]), (3, StageKind::TakeOff, StageKind::Land), "{format:?}");
         assert_eq!(import.plan.runways.len(), 1, "{format:?}");
         let runway = &import.plan.runways[0];
-        assert!(near(runway.threshold, RUNWAY) && runway.heading_deg == 52.0, "{format:?}: {runway:?}");
+        // where a format holds no direction, it is the take-off's
+        assert!(near(runway.threshold, RUNWAY), "{format:?}: {runway:?}");
+        assert!((runway.heading_deg - 52.0).abs() < 1e-3, "{format:?}: {runway:?}");
         assert_eq!(runway.elevation_amsl_m, 349.0);
+        // another runway takes over both ends
+        let other = Runway { id: "OTHER".into(), heading_deg: 90.0, ..plan.runways[0].clone() };
+        let assumptions = Assumptions { runway: Some(other), ..Assumptions::default() };
+        let written = write(format, &Export { plan: &plan, steps: &steps }).unwrap();
+        let stages = read(format, &written.bytes, &assumptions).unwrap().plan.stages;
+        let runways: Vec<_> = stages.iter().filter_map(|s| s.runway.as_ref()).map(|r| r.as_str()).collect();
+        assert_eq!((stages.len(), runways), (3, vec!["OTHER", "OTHER"]), "{format:?}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! A drawing as a plan.
 
-use super::{Drawing, Feature, Shape, Vertex};
+use super::{Drawing, Feature, Shape, Vertex, ends};
 use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
@@ -8,7 +8,7 @@ use crate::synthetic::{self, Assumptions};
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
     Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanStyle,
-    Spacing, StageKind, Value, Zone, ZoneKind, ZoneShape,
+    Spacing, Stage, StageKind, Value, Zone, ZoneKind, ZoneShape,
 };
 use geometry::LatLon;
 
@@ -30,10 +30,13 @@ pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error
     plan.runways.extend(
         assumptions.runway.iter().map(|r| Runway { id: names.take(r.id.as_str(), "runway"), ..r.clone() }),
     );
-    let mut importer = Importer { assumptions, names, notes: drawing.notes, plan };
+    let mut importer = Importer { assumptions, names, notes: drawing.notes, plan, land: None };
     importer.ends(StageKind::TakeOff, "take-off");
-    drawing.features.into_iter().for_each(|f| importer.feature(f));
-    importer.ends(StageKind::Land, "land");
+    // runways first: paths take off from them and land on them
+    let is_runway = |f: &Feature| f.mark("legwork") == Some("runway");
+    let (runways, others): (Vec<_>, Vec<_>) = drawing.features.into_iter().partition(is_runway);
+    runways.into_iter().chain(others).for_each(|f| importer.feature(f));
+    importer.finish();
     if importer.plan.stages.is_empty() && importer.plan.fixes.is_empty() && importer.plan.zones.is_empty() {
         importer.notes.push("empty", "file", "there is no point, line or area in this file");
     }
@@ -45,9 +48,21 @@ struct Importer<'a> {
     names: Names,
     notes: Notes,
     plan: FlightPlan,
+    /// The landing that a path ends with: it comes behind everything else.
+    land: Option<Stage>,
 }
 
 impl Importer<'_> {
+    fn finish(&mut self) {
+        self.ends(StageKind::Land, "land");
+        self.plan.stages.extend(self.land.take());
+        for runway in self.plan.runways.iter_mut().filter(|r| r.heading_deg.is_nan()) {
+            runway.heading_deg = 0.0;
+            let message = "the direction of this runway is not known: it is taken as north, correct it";
+            self.notes.push("runway-made-up", runway.id.as_str(), message);
+        }
+    }
+
     /// Take-off or landing, where a runway is given.
     fn ends(&mut self, kind: StageKind, name: &str) {
         let Some(runway) = self.assumptions.runway.as_ref().map(|r| r.id.clone()) else { return };
@@ -96,14 +111,45 @@ impl Importer<'_> {
             id: self.names.take(&feature.name, "runway"),
             threshold: at.position,
             elevation_amsl_m: elevation_m,
-            heading_deg: feature.number("heading_deg").unwrap_or(0.0),
+            // found later, where a path takes off
+            heading_deg: feature.number("heading_deg").unwrap_or(f64::NAN),
             length_m: feature.number("length_m").unwrap_or(self.assumptions.runway_length_m),
             priority: 1,
             approach_entry: None,
         });
     }
 
+    /// What is flown between take-off and landing; these become stages, where a runway is near.
+    fn without_ends<'a>(&mut self, feature: &Feature, line: &'a [Vertex]) -> &'a [Vertex] {
+        let mut way = line;
+        if self.assumptions.runway.is_some() {
+            let begun =
+                way.split_first().filter(|(v, _)| ends::begins(feature, v)).map_or(way, |(_, rest)| rest);
+            return begun
+                .split_last()
+                .filter(|(v, _)| ends::ends(feature, v))
+                .map_or(begun, |(_, rest)| rest);
+        }
+        if self.plan.stages.is_empty()
+            && let Some((first, rest)) = way.split_first().filter(|(v, _)| ends::begins(feature, v))
+            && let Some(stage) =
+                ends::stage(StageKind::TakeOff, first, &mut self.plan.runways, &mut self.names)
+        {
+            self.plan.stages.push(stage);
+            way = rest;
+        }
+        if self.land.is_none()
+            && let Some((last, rest)) = way.split_last().filter(|(v, _)| ends::ends(feature, v))
+            && let Some(stage) = ends::stage(StageKind::Land, last, &mut self.plan.runways, &mut self.names)
+        {
+            self.land = Some(stage);
+            way = rest;
+        }
+        way
+    }
+
     fn line(&mut self, feature: &Feature, line: &[Vertex]) {
+        let line = self.without_ends(feature, line);
         if line.is_empty() {
             return;
         }

@@ -3,6 +3,7 @@
 //! Features that were written by us carry marks (`legwork` and more), so that a runway comes back as a runway and a zone as a zone; of
 //! others, points become fixes, lines become legs, and areas are scanned.
 
+mod ends;
 mod import;
 mod of_plan;
 
@@ -12,6 +13,11 @@ pub use of_plan::of;
 use crate::note::Notes;
 use flight_plan::Altitude;
 use geometry::LatLon;
+
+/// Mark of a path: what kind of point it begins with.
+const BEGINS: &str = "begins_with";
+/// Mark of a path: what kind of point it ends with.
+const ENDS: &str = "ends_with";
 
 /// What a drawing holds.
 #[derive(Debug, Default)]

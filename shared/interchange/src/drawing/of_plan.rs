@@ -1,6 +1,6 @@
 //! A plan and its flown waypoints as a drawing.
 
-use super::{Drawing, Feature, Shape, Vertex};
+use super::{BEGINS, Drawing, ENDS, Feature, Shape, Vertex};
 use crate::losses::{self, Kept};
 use crate::note::Notes;
 use crate::synthetic::altitude;
@@ -50,13 +50,17 @@ fn path(export: &Export<'_>, notes: &mut Notes) -> Option<Feature> {
     if export.steps.iter().any(|s| s.waypoint.fly_over) {
         notes.push("fly-over-not-carried", "path", "which waypoints are crossed before the turn is left out");
     }
+    let mut marks = marks("path", &[]);
+    let kind = |vertex: Option<&Vertex>| vertex.map_or(String::new(), |v| v.kind.clone());
+    marks.push((BEGINS.into(), kind(vertices.first())));
+    marks.push((ENDS.into(), kind(vertices.last())));
     let shape = match vertices.len() {
         0 => return None,
         1 => vertices.into_iter().next().map(Shape::Point)?,
         _ => Shape::Line(vertices),
     };
     let name = export.plan.name.clone();
-    Some(Feature { place: String::new(), name, description: String::new(), marks: marks("path", &[]), shape })
+    Some(Feature { place: String::new(), name, description: String::new(), marks, shape })
 }
 
 fn points(plan: &FlightPlan) -> impl Iterator<Item = Feature> + '_ {
