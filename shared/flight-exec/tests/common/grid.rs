@@ -55,5 +55,7 @@ pub fn document_with(legs: &str, variables: &str, stage: &str) -> String {
 /// The document's program, or its problems, one a line.
 pub fn compiled(document: &str) -> Result<Arc<Program>, String> {
     let program = compile_document(document.as_bytes(), &Profile::default(), &Flat(GROUND_M));
-    program.map(Arc::new).map_err(|problems| Vec::from_iter(problems.iter().map(ToString::to_string)).join("\n"))
+    program
+        .map(Arc::new)
+        .map_err(|problems| Vec::from_iter(problems.iter().map(ToString::to_string)).join("\n"))
 }

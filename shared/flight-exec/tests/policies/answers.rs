@@ -159,7 +159,11 @@ fn writes_are_told(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::SetVariable { name, value } = command else { continue };
         let told = step.events().filter(|e| matches!(e, Event::VariableChanged { .. }));
-        let right = told.eq([&Event::VariableChanged { name: name.clone(), value: value.clone(), by: "operator".into() }]);
+        let right = told.eq([&Event::VariableChanged {
+            name: name.clone(),
+            value: value.clone(),
+            by: "operator".into(),
+        }]);
         let has = step.after.variables.get(name) == Some(value);
         found.expect(step, right && has, || format!("{name}: {:?}", step.moment.outputs));
     }

@@ -4,6 +4,7 @@ use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, kind};
 use flight_exec::{Command, DecisionRequest, Event, Phase};
 use flight_plan::{Branch, Id, LegKind, Program, VariableValue};
+use std::collections::BTreeMap;
 
 pub const POLICIES: &[Policy] = &[
     policy(
@@ -194,27 +195,33 @@ fn is_pending(step: Step, leg: &Id) -> bool {
     step.before.status.decision.as_ref().is_some_and(|d| d.leg == *leg)
 }
 
-/// A leg that only one branch leads to is entered right after an intersection: its branch was decided.
+/// A branch's leg that is not entered from another branch's leg is entered from the intersection.
 fn flown_as_decided(trace: &Trace, found: &mut Findings) {
-    let mut last: Vec<(&Id, &Id)> = Vec::new();
+    let mut decided: BTreeMap<&Id, &Id> = BTreeMap::new();
+    let mut before: Option<&Id> = None;
     for step in trace.steps() {
         if step.is_jump() {
-            last.clear();
+            (decided, before) = Default::default();
         }
         for event in step.events() {
             if let Some((leg, branch, _)) = taken(event) {
-                last.retain(|(l, _)| *l != leg);
-                last.push((leg, branch));
+                decided.insert(leg, branch);
             }
             let Event::LegEntered { place } = event else { continue };
-            let Some(spot) = last.iter().position(|(leg, _)| leads_to(step.after, leg, &place.leg)) else {
+            let from = before.replace(&place.leg);
+            let crossed = |leg: &Id| {
+                let merges = from.is_some_and(|from| leads_to(step.after, leg, from));
+                leads_to(step.after, leg, &place.leg) && !merges && !place.reverse
+            };
+            let Some(leg) = decided.keys().copied().find(|leg| crossed(leg)) else { continue };
+            let (Some(branch), Some((branches, _))) = (decided.remove(leg), seen_fork(step.after, leg))
+            else {
                 continue;
             };
-            let (leg, branch) = last.remove(spot);
-            let Some((branches, _)) = seen_fork(step.after, leg) else { continue };
             let next = branches.iter().find(|b| b.id == *branch).and_then(|b| b.next.as_ref());
-            let right = place.reverse || next == Some(&place.leg);
-            found.expect(step, right, || format!("{leg}: decided {branch}, flown {}", place.leg));
+            found.expect(step, next == Some(&place.leg), || {
+                format!("{leg}: decided {branch}, flown {}", place.leg)
+            });
         }
     }
 }

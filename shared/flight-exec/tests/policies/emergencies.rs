@@ -87,12 +87,16 @@ fn is_answered(trace: &Trace, found: &mut Findings) {
         let Some(Command::Emergency { cause, .. }) = step.command() else { continue };
         let unanswered = step.events().any(|e| *e == Event::EmergencyUnanswered { cause: *cause });
         let answered = match step.refused() {
-            None => started(step)
-                .is_some_and(|(c, plan, _)| c == *cause && emergency_flown(step.after) == Some(plan)),
+            None => started(step).is_some_and(|(c, plan, _)| c == *cause && flies(step.after, plan)),
             Some((_, why)) => unanswered == (why.code == "no-emergency-plan"),
         };
         found.expect(step, answered, || format!("{:?}", step.moment.outputs));
     }
+}
+
+/// Where nothing at all is ahead (refused, or not fed while the gateway controls) there is no place to tell.
+fn flies(seen: &Seen, plan: &Id) -> bool {
+    seen.place().is_none() || emergency_flown(seen) == Some(plan)
 }
 
 fn cancels_everything(trace: &Trace, found: &mut Findings) {

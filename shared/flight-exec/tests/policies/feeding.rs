@@ -17,7 +17,11 @@ pub const POLICIES: &[Policy] = &[
         "While flying, executor and gateway have the same waypoints ahead.",
         ahead_is_the_buffer,
     ),
-    policy("a-waypoint-never-changes", "A token means the same waypoint for ever, within half a metre.", never_changes),
+    policy(
+        "a-waypoint-never-changes",
+        "A token means the same waypoint for ever, within half a metre.",
+        never_changes,
+    ),
     policy(
         "one-cancellation-an-input",
         "A command is answered by one cancelling transaction at most, before anything is appended.",

@@ -142,8 +142,15 @@ impl Flight {
         self.command(command);
     }
 
+    /// Of the plan being flown, mostly.
+    fn any_leg(&mut self) -> Id {
+        let program = self.executor.program().filter(|_| self.random.percent(70));
+        let flown = program.map(|p| Vec::from_iter(p.plan.all_legs().iter().map(|c| c.leg.id.clone())));
+        self.random.pick(flown.as_ref().unwrap_or(&self.ids))
+    }
+
     fn any_command(&mut self) -> Command {
-        let id = self.random.pick(&self.ids);
+        let id = self.any_leg();
         match self.random.below(24) {
             0 | 1 => Command::Hold,
             2 | 3 => Command::Resume,

@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 use trace::Trace;
 
 /// Sequences in a plain `cargo test`.
-const SEQUENCES: u64 = 300;
+const SEQUENCES: u64 = 200;
 /// Moments told before the one that is wrong.
 const TOLD: usize = 60;
 const EVERY_HAPPENING: usize = usize::MAX;

@@ -171,7 +171,9 @@ fn track(id: &str, attributes: &str) -> String {
 
 /// A place of its own for each name, within ten kilometres (FNV-1a of the name).
 fn spot(name: &str) -> String {
-    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let hash = name
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
     let metres = |bits: u64| 10_000.0 * (bits % 1009) as f64 / 1009.0;
     let at = HOME.destination(90.0, metres(hash >> 40)).destination(0.0, metres(hash >> 20));
     format!(r#"lat="{:.6}" lon="{:.6}""#, at.lat_deg, at.lon_deg)

@@ -56,7 +56,12 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
                 last_entered = Some(place);
             }
         }
-        tape.extend(order(step, last_entered).map(|s| (step, s)));
+        let order = order(step, last_entered);
+        // the same passage may be gone to once more: then it is to be entered again
+        if step.is_jump() && !matches!(order, Some(Sight::Jump(Jump::GoOn { .. }))) {
+            last_entered = None;
+        }
+        tape.extend(order.map(|s| (step, s)));
     }
     tape
 }

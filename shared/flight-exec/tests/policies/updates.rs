@@ -56,7 +56,7 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "the-same-plan-changes-nothing",
-        "Committing the plan that is being flown feeds nothing.",
+        "Committing the plan that is being flown feeds nothing, when nothing else has changed.",
         same_plan,
     ),
     policy(
@@ -183,7 +183,9 @@ fn revisions(trace: &Trace, found: &mut Findings) {
 
 fn place_survives(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
-        let (Some((old, new)), Command::Commit { entry: None, .. }) = (step.update(), command) else { continue };
+        let (Some((old, new)), Command::Commit { entry: None, .. }) = (step.update(), command) else {
+            continue;
+        };
         let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
         let entered = trace.entered().take_while(|(s, _)| s.at < step.at).last();
         let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
@@ -233,15 +235,19 @@ fn superseded_is_gone(trace: &Trace, found: &mut Findings) {
     }
 }
 
+/// Whatever was decided or written since the leg was entered may change its end (an orbit is left towards what follows).
 fn same_plan(trace: &Trace, found: &mut Findings) {
-    for step in trace.steps() {
-        let (Some((old, new)), Some(Command::Commit { entry: None, .. })) = (step.update(), step.accepted())
-        else {
+    for (step, command) in trace.accepted() {
+        let (Some((old, new)), Command::Commit { entry: None, .. }) = (step.update(), command) else {
             continue;
         };
-        if old.hash == new.hash && step.before.is_fed() {
-            let quiet = step.feeds().next().is_none() && step.before.tokens() == step.after.tokens();
-            found.expect(step, quiet, || format!("{:?}", step.moment.outputs));
+        let entered = trace.entered().map(|(s, _)| s.at).take_while(|at| *at < step.at).last().unwrap_or(0);
+        let quiet = |c: &Command| matches!(c, Command::Commit { .. });
+        let undisturbed =
+            trace.accepted().filter(|(s, _)| (entered..step.at).contains(&s.at)).all(|(_, c)| quiet(c));
+        if old.hash == new.hash && step.before.is_fed() && undisturbed {
+            let same = step.feeds().next().is_none() && step.before.tokens() == step.after.tokens();
+            found.expect(step, same, || format!("{:?}", step.moment.outputs));
         }
     }
 }
