@@ -3,7 +3,7 @@
 use super::{Forecast, Passage, Point};
 use aircraft::{Profile, Wind};
 use flight_exec::preview::{Options, Preview, Scenario, Start};
-use flight_plan::FlightPlan;
+use flight_plan::{FlightPlan, Program};
 use geometry::LocalFrame;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -12,18 +12,21 @@ use terrain::Terrain;
 const MOST_POINTS: f64 = 60_000.0;
 
 /// Flies a plan ahead of time in calm air. The sentence says why it can't be flown.
-pub fn fly(plan: &FlightPlan, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Result<Forecast, String> {
-    if plan.stages.is_empty() {
+pub fn fly(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+) -> Result<Forecast, String> {
+    if program.plan.stages.is_empty() {
         return Err("Nothing to be flown yet: add stages and legs to the plan.".into());
     }
-    let program = flight_plan::compile(plan.clone(), profile, terrain.as_ref())
-        .map_err(|_| "This plan can't be flown yet: see its problems.".to_owned())?;
     let options = Options::default();
     let options =
         Options { track_every_s: (options.most_s / MOST_POINTS).max(options.track_every_s), ..options };
+    let plan = &program.plan;
     let start = if plan.home().is_some() { Start::Runway } else { in_flight(plan)? };
     let flown = flight_exec::preview(
-        &Arc::new(program),
+        program,
         profile,
         terrain,
         Wind::default(),

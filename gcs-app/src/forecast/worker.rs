@@ -2,7 +2,8 @@
 
 use super::Shared;
 use aircraft::Profile;
-use flight_plan::{FlightPlan, Problem};
+use flight_exec::review::{Conditions, review};
+use flight_plan::{FlightPlan, Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -24,8 +25,10 @@ pub struct Analysis {
     pub version: u64,
     /// The plan's hash.
     pub hash: String,
-    /// What the checks found.
+    /// What the checks found, and the review of the path if it was made.
     pub problems: Vec<Problem>,
+    /// The path was reviewed, or there is none.
+    pub reviewed: bool,
     /// What will be flown; that of the last plan that could be flown, if this one can't.
     pub forecast: Shared,
     /// Differs whenever the forecast does.
@@ -96,19 +99,43 @@ fn work(
     terrain: &Arc<dyn Terrain>,
     wake: &(dyn Fn() + Send + Sync),
 ) {
+    let tell = |analysis: &Analysis| {
+        let told = outbox.send(analysis.clone());
+        wake();
+        told
+    };
     let mut last = Analysis::default();
-    while let Some(question) = newest(inbox) {
-        last = analyse(&question, terrain, last);
-        if outbox.send(last.clone()).is_err() {
+    let mut newer = None;
+    while let Some(question) = newest(newer.take(), inbox) {
+        let (analysis, program) = analyse(&question, terrain, last);
+        last = analysis;
+        if tell(&last).is_err() {
             return;
         }
-        wake();
+        newer = inbox.try_recv().ok();
+        // the path takes longer to be looked at than the plan: not while the plan is being changed
+        if let (Some(program), None) = (program, &newer) {
+            let profile = profile_of(&program.plan);
+            let found = review(&program, &profile, terrain, Conditions::default());
+            last.problems.extend(found);
+            last.reviewed = true;
+            if tell(&last).is_err() {
+                return;
+            }
+        }
     }
 }
 
+fn profile_of(plan: &FlightPlan) -> Profile {
+    Profile::by_name(&plan.aircraft).unwrap_or_default()
+}
+
 /// The newest question once there was a rest; `None` when nobody asks any more.
-fn newest(inbox: &Receiver<Question>) -> Option<Question> {
-    let mut question = inbox.recv().ok()?;
+fn newest(first: Option<Question>, inbox: &Receiver<Question>) -> Option<Question> {
+    let mut question = match first {
+        Some(question) => question,
+        None => inbox.recv().ok()?,
+    };
     loop {
         match inbox.recv_timeout(REST) {
             Ok(newer) => question = newer,
@@ -118,21 +145,33 @@ fn newest(inbox: &Receiver<Question>) -> Option<Question> {
     }
 }
 
-fn analyse(question: &Question, terrain: &Arc<dyn Terrain>, last: Analysis) -> Analysis {
+/// Everything but the review of the path, and the program if the plan can be flown.
+fn analyse(
+    question: &Question,
+    terrain: &Arc<dyn Terrain>,
+    last: Analysis,
+) -> (Analysis, Option<Arc<Program>>) {
     let plan = &question.plan;
-    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-    let problems = flight_plan::check(plan, &profile, terrain.as_ref());
-    let hash = flight_plan::hash(plan);
-    let (forecast, no_forecast) = match super::preview::fly(plan, &profile, terrain) {
+    let profile = profile_of(plan);
+    let (program, problems, hash) =
+        match flight_plan::compile(plan.as_ref().clone(), &profile, terrain.as_ref()) {
+            Ok(program) => {
+                let (problems, hash) = (program.warnings.clone(), program.hash.to_string());
+                (Some(Arc::new(program)), problems, hash)
+            }
+            Err(problems) => (None, problems, flight_plan::hash(plan)),
+        };
+    let flown = match &program {
+        Some(program) => super::preview::fly(program, &profile, terrain),
+        None => Err("This plan can't be flown yet: see its problems.".into()),
+    };
+    let (forecast, no_forecast) = match flown {
         Ok(forecast) => (Arc::new(forecast), None),
         Err(why) => (last.forecast, Some(why)),
     };
-    Analysis {
-        version: question.version,
-        hash,
-        problems,
-        forecast,
-        forecast_version: question.version,
-        no_forecast,
-    }
+    let version = question.version;
+    let reviewed = program.is_none();
+    let analysis =
+        Analysis { version, hash, problems, reviewed, forecast, forecast_version: version, no_forecast };
+    (analysis, program)
 }

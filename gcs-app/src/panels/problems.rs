@@ -12,8 +12,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.horizontal(|ui| {
         super::group_title(ui, &format!("Problems ({})", problems.len()));
-        if scene.analysis.version != scene.document.version() {
-            ui.spinner();
+        if scene.analysis.version != scene.document.version() || !scene.analysis.reviewed {
+            ui.spinner().on_hover_text("The path is being looked at");
         }
     });
     if problems.is_empty() {

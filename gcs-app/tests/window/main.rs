@@ -56,7 +56,9 @@ impl Window {
 
     /// The present version was checked, hashed and previewed.
     fn until_analysed(&mut self) {
-        self.until("analysis", |app| app.analysis().version == app.document().version());
+        self.until("analysis", |app| {
+            app.analysis().version == app.document().version() && app.analysis().reviewed
+        });
     }
 
     fn click(&mut self, label: &str) {
