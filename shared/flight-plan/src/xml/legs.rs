@@ -251,13 +251,31 @@ impl<'a> Document<'a> {
 
 /// A leg's element.
 fn is_leg(name: &str) -> bool {
-    match name {
-        "IF" | "TF" | "DF" | "RF" | "CF" | "FA" | "HF" | "HA" | "HM" | "iterative" | "intersection"
-        | "call" => true,
-        "scan" | "creepingLine" | "crissCross" | "spiral" | "expandingSquare" | "sector" => true,
-        "trackLine" | "corridor" | "contour" | "orbit" | "figureEight" => true,
-        _ => false,
-    }
+    matches!(
+        name,
+        "IF" | "TF"
+            | "DF"
+            | "RF"
+            | "CF"
+            | "FA"
+            | "HF"
+            | "HA"
+            | "HM"
+            | "iterative"
+            | "intersection"
+            | "call"
+            | "scan"
+            | "creepingLine"
+            | "crissCross"
+            | "spiral"
+            | "expandingSquare"
+            | "sector"
+            | "trackLine"
+            | "corridor"
+            | "contour"
+            | "orbit"
+            | "figureEight"
+    )
 }
 
 /// `30s` or `800m`.
