@@ -6,6 +6,7 @@ use super::{Source, check, forecast, foreign};
 use crate::report;
 use aircraft::Wind;
 use flight_exec::preview::Preview;
+use flight_plan::Id;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -16,6 +17,12 @@ pub struct Target {
     /// Folder for pictures and tables.
     #[arg(long, value_name = "DIR", default_value = "legwork-preview")]
     pub out: PathBuf,
+    /// Only a diagram of the geometry, into this picture: generated waypoints, areas, zones, what is flown backwards.
+    #[arg(long, value_name = "PNG", conflicts_with = "out")]
+    pub diagram: Option<PathBuf>,
+    /// The stage that the diagram shows; otherwise all of them.
+    #[arg(long, value_name = "STAGE", requires = "diagram")]
+    pub stage: Option<String>,
     /// The outcome as one JSON document instead of a line.
     #[arg(long)]
     pub json: bool,
@@ -29,7 +36,8 @@ pub struct Target {
 /// # Errors
 /// A file can't be read or written.
 pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
-    target.overwriting.allow(&target.out.join("map.png"))?;
+    let map = target.out.join("map.png");
+    target.overwriting.allow(target.diagram.as_ref().unwrap_or(&map))?;
     let mut loaded = source.load()?;
     foreign::tell(&source.file, &loaded.notes);
     selection.prepare(&mut loaded)?;
@@ -53,10 +61,19 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
         say!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
         return Ok(ExitCode::from(1));
     }
-    report::write(&forecast::record(&loaded, &program, &preview, &wind), &target.out)?;
+    let pictures = target.diagram.as_ref().unwrap_or(&target.out);
+    match &target.diagram {
+        Some(picture) => {
+            let stage = target.stage.as_deref().map(Id::new);
+            target.overwriting.write(picture, &report::diagram::png(&program, &preview, stage.as_ref())?)?;
+        }
+        None => {
+            report::write(&forecast::record(&loaded, &program, &preview, &wind), &target.out)?;
+        }
+    }
     match target.json {
-        true => say!("{:#}", document(&source.file, &preview, &target.out)),
-        false => say!("{}", line(&source.file, &preview, &target.out)),
+        true => say!("{:#}", document(&source.file, &preview, pictures)),
+        false => say!("{}", line(&source.file, &preview, pictures)),
     }
     Ok(ExitCode::SUCCESS)
 }

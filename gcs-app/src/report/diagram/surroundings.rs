@@ -14,6 +14,7 @@ const KEEP_OUT: Ink = rgb(0xc92a2a);
 const KEEP_IN: Ink = rgb(0x2b8a3e);
 
 /// Something beside the path.
+#[derive(PartialEq)]
 struct Thing {
     /// Closed, the first one filled but for the others; or, as a route, open.
     rings: Vec<Vec<LatLon>>,
@@ -41,7 +42,14 @@ impl Diagram<'_> {
     fn things(&self) -> Vec<Thing> {
         let variables = Variables::initial(&self.program.plan);
         let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
-        self.legs().into_iter().filter_map(|leg| self.thing(leg, &env)).collect()
+        let mut things: Vec<Thing> = Vec::new();
+        for thing in self.legs().into_iter().filter_map(|leg| self.thing(leg, &env)) {
+            // legs may share it
+            if !things.contains(&thing) {
+                things.push(thing);
+            }
+        }
+        things
     }
 
     fn thing(&self, leg: &Leg, env: &Env) -> Option<Thing> {
@@ -73,8 +81,12 @@ impl Diagram<'_> {
         }
         let variables = Variables::initial(&self.program.plan);
         let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
+        let mut drawn: Vec<LatLon> = Vec::new();
         for centre in self.legs().into_iter().filter_map(|leg| self.centre(leg, &env)) {
-            draw_centre(canvas, labels, view.place(centre));
+            if !drawn.contains(&centre) {
+                draw_centre(canvas, labels, view.place(centre));
+                drawn.push(centre);
+            }
         }
     }
 
