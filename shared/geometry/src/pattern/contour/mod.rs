@@ -17,8 +17,10 @@ const MOST_LEVELS: u64 = 10_000;
 const MOST_WORK: f64 = 5e5;
 /// Share of a strip along loops that their sharp corners may leave unseen.
 const MOST_UNSEEN: f64 = 0.0015;
-/// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing.
+/// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing …
 const FLOWN_ROUND: f64 = 0.25;
+/// … or than this share of a small area.
+const FLOWN_ROUND_OF_AREA: f64 = 0.0005;
 /// Strips are taken to be so much wider, metres: between exact ones films would be left.
 const FILM_M: f64 = 0.01;
 
@@ -135,7 +137,7 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
     let mut level = p.level(area, offset_m)?;
     if covering && p.side == Side::Inward {
         // arms too narrow for any loop
-        let outside = unseen(&[rings_of(area)], &level, p)?;
+        let outside = unseen(&[rings_of(area)], &level, p, area.area_m2())?;
         at = fly(&mut stored, outside, p.turn, at)?;
     }
     for number in 1..=p.levels {
@@ -146,7 +148,11 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
         let between = if p.side == Side::Inward && !last {
             // what the loops of this level do not see
             let inner = p.level(area, offset_m + half_m)?;
-            if covering { unseen(&inner, &next, p)? } else { without_loops_inside(inner, &next) }
+            if covering {
+                unseen(&inner, &next, p, area.area_m2())?
+            } else {
+                without_loops_inside(inner, &next)
+            }
         } else {
             Vec::new()
         };
@@ -190,11 +196,17 @@ fn corners_of(ring: &[Vec2]) -> impl Iterator<Item = (f64, f64)> + '_ {
 }
 
 /// What the loops round areas do not see of others, without what is too small to be flown round.
-fn unseen(of: &[Shape], round: &[Shape], p: &ContourParameters) -> Result<Vec<Shape>, PatternError> {
+fn unseen(
+    of: &[Shape],
+    round: &[Shape],
+    p: &ContourParameters,
+    whole_m2: f64,
+) -> Result<Vec<Shape>, PatternError> {
     let seen = grown(round, p.spacing_m / 2.0 + FILM_M, p.tolerance_m)?;
-    let least_m = FLOWN_ROUND * p.spacing_m;
+    let side_m = FLOWN_ROUND * p.spacing_m;
+    let least_m2 = (side_m * side_m).min(FLOWN_ROUND_OF_AREA * whole_m2);
     let mut left = minus(of, &seen)?;
-    left.retain(|shape| area_m2(shape) > least_m * least_m);
+    left.retain(|shape| area_m2(shape) > least_m2);
     Ok(left)
 }
 

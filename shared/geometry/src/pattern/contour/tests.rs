@@ -98,6 +98,19 @@ fn sharp_corners_bring_covering_loops_nearer_instead_of_being_flown_round() {
 }
 
 #[test]
+fn of_a_small_area_small_rests_are_flown_round() {
+    let corners = [(0, 0), (0, 355), (559, 355), (559, 925), (709, 925), (709, 355), (759, 355), (759, 0)];
+    let hole =
+        [(80, 80), (80, 275), (250, 255), (250, 90)].map(|(e, n)| Vec2::new(f64::from(e), f64::from(n)));
+    let outer = corners.map(|(e, n)| Vec2::new(f64::from(e), f64::from(n))).to_vec();
+    let area = Polygon::new(outer, vec![hole.to_vec()]).unwrap();
+    let p = ContourParameters { spacing_m: 263.0, tolerance_m: 0.5, ..parameters() };
+    let loops = rings_flown(&Contours::covering(&area, &p).unwrap());
+    let ways = loops.iter().flat_map(|ring| ring.windows(2).map(|w| (w[0], w[1])));
+    assert!(crate::scan::coverage(&area, ways, 131.5) >= 0.995);
+}
+
+#[test]
 fn what_would_take_too_long_is_refused() {
     let area = |drawn_in_m: f64| {
         let corner = |i: i32| {
