@@ -83,7 +83,8 @@ impl Executor {
                 self.state.tail.as_ref().map_or(0, |t| t.crossings_of(leg)) + 1
             }
         };
-        let changes = pending.as_ref().is_some_and(|p| p.branch.as_ref() != Some(branch));
+        // an orbit before an intersection out of sight may be left elsewhere
+        let changes = pending.as_ref().is_none_or(|p| p.branch.as_ref() != Some(branch));
         if pending.as_ref().is_some_and(|p| changes && self.is_too_close(p)) {
             let advice = "it is too close to change the way now; decide earlier or use go-to";
             return Err(refusal("too-late", format!("intersection `{leg}`: {advice}")));
@@ -92,7 +93,7 @@ impl Executor {
         let decision = Decision { leg: leg.clone(), crossing, branch: branch.clone(), by };
         self.record(decision, out);
         if changes {
-            self.replan(out);
+            self.refresh(out);
         }
         Ok(())
     }

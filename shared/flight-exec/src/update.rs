@@ -59,13 +59,14 @@ impl Executor {
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
     fn go_on_in(&mut self, program: Arc<Program>, bookmarks: Vec<Cursor>, out: &mut Vec<Output>) {
         let keep = bookmarks.len().saturating_sub(1);
+        let another = self.program.as_ref().is_none_or(|p| p.hash != program.hash);
         self.activate(program, out);
         for (handed, bookmark) in self.state.handed.iter_mut().zip(&bookmarks).take(keep) {
             handed.before = bookmark.clone();
             handed.pinned = true;
         }
         let Some(mut cursor) = bookmarks.into_iter().next_back() else { return };
-        if let Some(world) = self.world() {
+        if let Some(world) = self.world().filter(|_| another) {
             let leg = cursor.leg(&world).map(|l| l.id.clone());
             let refreshed = cursor.refresh_pattern(&world);
             if let (Err(why), Some(leg)) = (refreshed, leg) {
