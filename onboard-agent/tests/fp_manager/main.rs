@@ -381,6 +381,26 @@ async fn damaged_journal_is_set_aside_and_told_and_the_manager_runs() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn variable_is_written_by_its_writers_only_and_who_did_is_told() {
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    let variable =
+        r#"<variables><variable name="fire" type="bool" initial="false" writers="fire-watch"/></variables>"#;
+    flight.load(&SQUARE.replace("<mainPlan", &format!("{variable}<mainPlan"))).await;
+    let set = Command::SetVariable { name: "fire".into(), value: VariableValue::Bool(true) };
+    let refused = flight.command(set.clone()).await.unwrap_err();
+    assert!(refused.to_string().contains("fire-watch"), "{refused}");
+    let service = usal::Config::client("uav1", &flight.config.connect).named("fire-watch");
+    let service = Session::open(service).await.unwrap();
+    flight.gateway.step_until_done(service.call(topic::COMMAND, &set, DEADLINE)).await.unwrap();
+    until(async || {
+        matches!(events.try_recv(), Some(Occurrence::Event { event, .. })
+            if matches!(&event.value, PlanEvent::VariableChanged { by, .. } if **by == *"fire-watch"))
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn proposal_not_committed_survives_a_kill() {
     let directory = tempfile::tempdir().unwrap();
     let mut flight = Flight::new(Some(directory.path())).await;

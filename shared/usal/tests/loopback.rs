@@ -157,6 +157,22 @@ async fn a_request_gets_its_answer_or_its_refusal() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_request_says_who_asks_if_its_session_has_a_name() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let config = usal::Config::client("uav1", &net.endpoint);
+    for (config, from) in [(config.clone().named("fire-watch"), Some("fire-watch")), (config, None)] {
+        let client = within(Session::open(config)).await.unwrap();
+        let _call = client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+        let incoming = within(server.recv()).await.unwrap();
+        assert_eq!(incoming.from(), from);
+        assert!(incoming.id().is_some());
+    }
+    let unusable = usal::Config::client("uav1", &net.endpoint).named("a;id=1");
+    assert!(within(Session::open(unusable)).await.is_err());
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn silent_service_the_caller_hears_of_it_at_the_deadline() {
     let net = Net::open().await;
     let mut server = net.hub.serve(gateway::REQUEST).unwrap();
