@@ -9,6 +9,7 @@ mod legs;
 mod legs_actions;
 mod legs_changes;
 mod legs_courses;
+mod legs_flown;
 mod legs_patterns;
 mod loops;
 mod rig;
