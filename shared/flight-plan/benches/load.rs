@@ -89,6 +89,21 @@ fn edit_one_of_10_000_legs(bencher: Bencher) {
     bencher.bench_local(|| an_edit().apply(black_box(&plan)));
 }
 
+/// From the edit to a program that can be flown in a preview: the limit, with the preview's waypoints, is 10 ms.
+#[divan::bench]
+fn edit_and_compile_10_000_legs_again(bencher: Bencher) {
+    let mut plan = flight_plan::read(document(EDITED_LEGS)).plan;
+    let (profile, mut memory, mut lat_deg) = (Profile::default(), flight_plan::Memory::default(), 36.41);
+    bencher.bench_local(|| {
+        lat_deg += 0.00001;
+        let edit = Edit::MoveWaypoint { leg: "leg-5000".into(), to: LatLon::new(lat_deg, -84.21) };
+        if let Ok(edited) = edit.apply(&plan) {
+            plan = edited;
+        }
+        flight_plan::compile_again(plan.clone(), &profile, &Flat(300.0), &mut memory).is_ok()
+    });
+}
+
 #[divan::bench]
 fn check_10_000_legs(bencher: Bencher) {
     let plan = flight_plan::read(document(EDITED_LEGS)).plan;

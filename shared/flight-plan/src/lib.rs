@@ -14,7 +14,7 @@ pub mod variables;
 pub mod walk;
 pub mod xml;
 
-pub use checks::check;
+pub use checks::{Memory, check, check_again};
 pub use diff::{Change, Difference, Fate};
 pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};
@@ -22,7 +22,7 @@ pub use history::History;
 pub use model::*;
 pub use problem::{Location, Problem, Severity};
 pub use procedure::instantiate;
-pub use program::{LegPath, Program, compile, compile_document, compile_reading};
+pub use program::{LegPath, Program, compile, compile_again, compile_document, compile_reading};
 pub use uses::{Part, Use};
 pub use variables::{VariableError, Variables};
 pub use walk::{LegContext, Section};

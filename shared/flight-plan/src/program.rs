@@ -1,10 +1,10 @@
 //! A checked plan, ready for the executor.
 
-use crate::checks::checked;
+use crate::checks::{Memory, checked};
 use crate::expression::{self, Env, EvalError, Expression, Names};
 use crate::{
-    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage, Value,
-    xml,
+    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage,
+    Value, xml,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -50,7 +50,20 @@ pub struct LegPath {
 /// # Errors
 /// Every problem of the plan, if one of them forbids flying.
 pub fn compile(plan: FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Result<Program, Vec<Problem>> {
-    let (flown, problems) = checked(&plan, profile, terrain);
+    compile_again(plan, profile, terrain, &mut Memory::default())
+}
+
+/// As [`compile`], for a plan that is compiled again and again while it is edited (see [`crate::checks::check_again`]).
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_again(
+    plan: FlightPlan,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+    memory: &mut Memory,
+) -> Result<Program, Vec<Problem>> {
+    let (flown, problems) = checked(&plan, profile, terrain, memory);
     if problems.iter().any(Problem::is_error) {
         return Err(problems);
     }

@@ -1,5 +1,6 @@
 //! What the rules look at: the plan's legs with their geometry at the variables' initial values.
 
+use super::memory::{Memory, Recall};
 use crate::expression::{self, Expression, ExpressionError, Names};
 use crate::{
     Altitude, AltitudeReference, Branch, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Place,
@@ -106,12 +107,12 @@ impl Path {
         }
     }
 
-    /// Positions along the way from `start`: `steps` steps of one length, each with its share (0..=1) of the way.
+    /// Positions along the way from `start` to `end`: `steps` steps of one length, each with its share (0..=1) of the way.
     ///
     /// A line is followed as a geodesic from kilometre to kilometre; in between, latitude and longitude are
     /// interpolated, which is much quicker. That is off by d²·tan φ / 8R at the most: 0.2 m at 85°, beyond which every
     /// position is computed.
-    pub fn along(&self, start: LatLon, steps: u32) -> impl Iterator<Item = (f64, LatLon)> + '_ {
+    pub fn along(&self, start: LatLon, end: LatLon, steps: u32) -> impl Iterator<Item = (f64, LatLon)> + '_ {
         const CHUNK_M: f64 = 1_000.0;
         let share = move |i: u32| f64::from(i) / f64::from(steps.max(1));
         let straight = matches!(self, Path::Line { .. }) && start.lat_deg.abs() < 85.0;
@@ -122,7 +123,8 @@ impl Path {
             let first = i - i % chunk;
             if begins.replace(first) != Some(first) {
                 from = if first == 0 { start } else { to };
-                to = self.at(start, share((first + chunk).min(steps)));
+                let last = (first + chunk).min(steps);
+                to = if last == steps { end } else { self.at(start, share(last)) };
             }
             let last = (first + chunk).min(steps);
             let inside = f64::from(i - first) / f64::from((last - first).max(1));
@@ -155,7 +157,12 @@ pub(super) fn course_change_deg(from_deg: f64, to_deg: f64) -> f64 {
 }
 
 impl<'a> Inspection<'a> {
-    pub fn new(plan: &'a FlightPlan, profile: &'a Profile, terrain: &'a dyn Terrain) -> Self {
+    pub fn new(
+        plan: &'a FlightPlan,
+        profile: &'a Profile,
+        terrain: &'a dyn Terrain,
+        memory: &mut Memory,
+    ) -> Self {
         let variables = Variables::initial(plan);
         let mut inspection = Self {
             plan,
@@ -169,7 +176,9 @@ impl<'a> Inspection<'a> {
             expressions: compiled(plan),
             home: plan.home(),
         };
-        inspection.trace();
+        let mut recall = Recall::new(memory);
+        inspection.trace(&mut recall);
+        recall.finish();
         inspection
     }
 
@@ -251,7 +260,7 @@ impl<'a> Inspection<'a> {
         self.profile.turn_radius_m(speed_mps)
     }
 
-    fn trace(&mut self) {
+    fn trace(&mut self, recall: &mut Recall) {
         let mut arrival = Arrival::default();
         let mut section = None;
         for (of, stage) in self.plan.all_stages() {
@@ -260,7 +269,7 @@ impl<'a> Inspection<'a> {
             }
             arrival = match stage.kind {
                 StageKind::TakeOff => Arrival { point: self.climb_out(stage), step: None },
-                _ => self.trace_list(&stage.legs, stage, of, &mut Vec::new(), arrival),
+                _ => self.trace_list(&stage.legs, stage, of, &mut Vec::new(), arrival, recall),
             };
         }
     }
@@ -289,29 +298,31 @@ impl<'a> Inspection<'a> {
         section: Section<'a>,
         loops: &mut Vec<&'a Leg>,
         mut arrival: Arrival,
+        recall: &mut Recall,
     ) -> Arrival {
         for (index, leg) in legs.iter().enumerate() {
             let follows = index == 0 || legs.get(index - 1).is_some_and(|previous| leads_to(previous, leg));
             let entry = if follows { arrival } else { Arrival::default() };
             let context = LegContext { leg, stage, section, loops: loops.clone(), siblings: legs, index };
-            arrival = self.trace_leg(context, entry);
+            arrival = self.trace_leg(context, entry, recall);
             if let LegKind::Iterative { body, .. } = &leg.kind {
                 loops.push(leg);
-                arrival = self.trace_list(body, stage, section, loops, entry);
+                arrival = self.trace_list(body, stage, section, loops, entry, recall);
                 loops.pop();
             }
         }
         arrival
     }
 
-    fn trace_leg(&mut self, context: LegContext<'a>, entry: Arrival) -> Arrival {
+    fn trace_leg(&mut self, context: LegContext<'a>, entry: Arrival, recall: &mut Recall) -> Arrival {
         let leg = context.leg;
         let start = entry.point;
         let speed_mps = self.speed_mps(&context);
         let mut step = Step { context, start, end: start, speed_mps, path: None, before: entry.step };
         if !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. }) {
             step.end = self.end_of(&step);
-            step.path = start.zip(step.end).and_then(|(from, to)| path_of(leg, from.position, to.position));
+            step.path =
+                start.zip(step.end).and_then(|(from, to)| path_of(leg, from.position, to.position, recall));
         }
         let passes_through = matches!(leg.kind, LegKind::Intersection { .. });
         let arrival = Arrival {
@@ -370,9 +381,9 @@ fn leads_to(previous: &Leg, leg: &Leg) -> bool {
     }
 }
 
-fn path_of(leg: &Leg, from: LatLon, to: LatLon) -> Option<Path> {
+fn path_of(leg: &Leg, from: LatLon, to: LatLon, recall: &mut Recall) -> Option<Path> {
     match &leg.kind {
-        LegKind::Tf(_) => Some(Path::line(from, to)),
+        LegKind::Tf(_) => Some(recall.line(from, to)),
         LegKind::Rf { centre, turn, .. } if centre.is_valid() => Some(Path::arc(from, to, *centre, *turn)),
         _ => None,
     }
@@ -406,8 +417,9 @@ mod tests {
             lat in -89.0..89.0, lon in -180.0..180.0, course in 0.0..360.0, length_m in 10.0..50_000.0, steps in 1..200_u32,
         ) {
             let start = LatLon::new(lat, lon);
-            let path = Path::line(start, start.destination(course, length_m));
-            let along: Vec<_> = path.along(start, steps).collect();
+            let end = start.destination(course, length_m);
+            let path = Path::line(start, end);
+            let along: Vec<_> = path.along(start, end, steps).collect();
             prop_assert_eq!(along.len(), steps as usize + 1);
             for (share, position) in along {
                 // see `along`; a path that goes on beyond 85° from below: 1 km² · tan 85.5° / 8R

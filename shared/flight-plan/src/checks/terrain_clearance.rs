@@ -58,7 +58,7 @@ fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
             let altitude_m = from_m + (to_m - from_m) * share;
             clearance_m(view, Point { position, altitude_amsl_m: None }, altitude_m)
         };
-        let looks = path.along(start.position, looks as u32);
+        let looks = path.along(start.position, end.position, looks as u32);
         looks.filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     at_end.into_iter().chain(along).min_by(|a, b| a.0.total_cmp(&b.0))

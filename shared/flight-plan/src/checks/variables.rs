@@ -2,7 +2,7 @@
 //! write it has a name that no service can have.
 
 use super::Inspection;
-use crate::{Edit, Problem, Variable, VariableValue, Thing};
+use crate::{Edit, Problem, Thing, Variable, VariableValue};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for variable in &view.plan.variables {

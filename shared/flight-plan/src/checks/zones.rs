@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::scans::not_simple;
-use crate::{Altitude, Edit, Problem, Value, Zone, ZoneShape, Thing};
+use crate::{Altitude, Edit, Problem, Thing, Value, Zone, ZoneShape};
 
 /// Greatest radius of a zone, metres.
 const LARGEST_M: f64 = 200_000.0;
