@@ -1,13 +1,13 @@
 //! Which flights are looked at.
 //!
-//! The main plan once for each branch of the intersection that has most (so that, where ways do not depend on each other, every
-//! branch is taken at least once), at most [`MOST_VARIANTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
+//! The main plan once for each branch of the intersection that has most, then once for each branch that was not taken so far, at
+//! most [`MOST_FLIGHTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
 //! once, from the point of those flights that is farthest from where it leads; and the plan as it stands, with its real counts
 //! and conditions, by the preview.
 
 use super::alternates::Origin;
 use super::flown::{Flown, Point, fly, tireless};
-use super::layout::{counts, decisions, lay_out};
+use super::layout::{Way, counts, decisions, lay_out};
 use crate::config::Config;
 use crate::executor::Executor;
 use crate::path::{Level, Passing, PathState};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most flights of the main plan.
-pub(super) const MOST_VARIANTS: u64 = 6;
+pub(super) const MOST_FLIGHTS: usize = 8;
 /// Most emergency plans that are flown.
 pub(super) const MOST_EMERGENCY_PLANS: usize = 16;
 
@@ -84,14 +84,37 @@ impl Flights {
         wind: Wind,
     ) {
         let counts = counts(program);
-        for variant in 0..variants(program).min(MOST_VARIANTS) {
+        let mut ways: Vec<Way> = (0..variants(program).min(MOST_FLIGHTS as u64)).map(Way::all).collect();
+        let mut flown: Vec<(Way, HashSet<Id>)> = Vec::new();
+        while let Some(way) = ways.pop().or_else(|| self.unseen(program, &flown)) {
             let path = beginning.path(tireless);
-            let layout = lay_out(executor, None, path, &counts, &decisions(program, variant));
+            let layout = lay_out(executor, None, path, &counts, &decisions(program, &way));
             self.complete &= layout.complete;
+            flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
             self.taken.extend(layout.taken);
             self.refused.extend(layout.refused);
             self.main.push(fly(beginning.aircraft(tireless), layout.waypoints, wind, None, 0.0));
         }
+    }
+
+    /// A way to a branch that was not taken yet: one that came to its intersection, but there another branch.
+    fn unseen(&self, program: &Program, flown: &[(Way, HashSet<Id>)]) -> Option<Way> {
+        if flown.len() >= MOST_FLIGHTS {
+            return None;
+        }
+        let legs = program.flown().all_legs();
+        legs.iter().find_map(|context| {
+            let LegKind::Intersection { branches, .. } = &context.leg.kind else { return None };
+            let id = &context.leg.id;
+            let (way, _) = flown.iter().find(|(_, came_to)| came_to.contains(id))?;
+            let seen = |branch: &Id| self.taken.contains(&(id.clone(), branch.clone()));
+            let index = branches.iter().position(|b| !seen(&b.id))? as u64;
+            // tried before, in vain
+            let again = flown.iter().any(|(other, _)| other.named.get(id) == Some(&index));
+            let mut named = way.named.clone();
+            named.insert(id.clone(), index);
+            (!again).then(|| Way { named, ..way.clone() })
+        })
     }
 
     fn fly_emergencies(&mut self, program: &Program, executor: &Executor, tireless: &Profile, wind: Wind) {
@@ -106,7 +129,7 @@ impl Flights {
                 on_ground: false,
             };
             let path = beginning.path(tireless);
-            let layout = lay_out(executor, Some(index), path, &counts, &decisions(program, 0));
+            let layout = lay_out(executor, Some(index), path, &counts, &decisions(program, &Way::default()));
             self.refused.extend(layout.refused);
             let aircraft = beginning.aircraft(tireless);
             let flown = fly(aircraft, layout.waypoints, wind, Some(index), worst.time_s);

@@ -8,7 +8,7 @@ use crate::executor::Executor;
 use crate::path::PathState;
 use crate::world::World;
 use flight_plan::{Id, LegKind, Program};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Passes of each loop: the first is entered from outside, the second from the loop's own end.
 const PASSES: u64 = 2;
@@ -58,13 +58,29 @@ pub(super) fn counts(program: &Program) -> Vec<(Id, u64)> {
     legs(program).filter(is_loop).map(|leg| (leg.id.clone(), count(leg))).collect()
 }
 
-/// The branch for each of the first crossings of each intersection: number `variant` for the first one, the others in turn.
-pub(super) fn decisions(program: &Program, variant: u64) -> Vec<Decision> {
+/// A way through the plan's intersections: the number of the branch that is taken at the first crossing of each.
+#[derive(Clone, Default)]
+pub(super) struct Way {
+    /// Of those that are not named.
+    pub others: u64,
+    pub named: HashMap<Id, u64>,
+}
+
+impl Way {
+    /// The same number for all.
+    pub fn all(number: u64) -> Self {
+        Self { others: number, named: HashMap::new() }
+    }
+}
+
+/// The branch for each of the first crossings of each intersection: after the way's own the others in turn.
+pub(super) fn decisions(program: &Program, way: &Way) -> Vec<Decision> {
     let mut decisions = Vec::new();
     for leg in legs(program) {
         let LegKind::Intersection { branches, .. } = &leg.kind else { continue };
+        let first = way.named.get(&leg.id).copied().unwrap_or(way.others);
         for crossing in 1..=CROSSINGS {
-            let which = (variant + crossing - 1) % (branches.len() as u64).max(1);
+            let which = (first + crossing - 1) % (branches.len() as u64).max(1);
             let branch = branches.get(which as usize).map(|b| b.id.clone());
             let decision = |branch| Decision {
                 leg: leg.id.clone(),

@@ -1,7 +1,7 @@
 //! `not-reviewed`: what the bounded review did not come to.
 
 use super::View;
-use super::flights::{MOST_EMERGENCY_PLANS, MOST_VARIANTS};
+use super::flights::{MOST_EMERGENCY_PLANS, MOST_FLIGHTS};
 use flight_plan::{LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
@@ -15,7 +15,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         let main = context.section == flight_plan::Section::Main;
         if let Some(branch) = unseen.filter(|_| main).map(|b| &b.id).next() {
             let message = format!(
-                "look at the branch `{branch}` yourself: {MOST_VARIANTS} flights through the plan did not come to it"
+                "look at the branch `{branch}` yourself: the first {MOST_FLIGHTS} flights through the plan did not come to it"
             );
             problems.push(Problem::warning("not-reviewed", message).of(leg));
         }

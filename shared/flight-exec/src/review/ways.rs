@@ -72,7 +72,12 @@ fn into_terrain(view: &View, alternate: &Alternate, from: &Origin) -> Option<Pro
     let way = PathElement::Line { from: from.position, to: alternate.entry };
     let length_m = crate::path::distance_m(from.position, alternate.entry);
     let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
-    let hit = (0..=looks as u32).find_map(|i| {
+    // where the flight itself is in the ground, another rule says so
+    let ground_m = view.terrain.elevation_m(from.position)?;
+    if from.altitude_amsl_m < ground_m + view.conditions.margins.terrain_m {
+        return None;
+    }
+    let hit = (1..=looks as u32).find_map(|i| {
         let share = f64::from(i) / looks;
         let position = way.point_at(length_m * share);
         let ground_m = view.terrain.elevation_m(position)?;

@@ -1,0 +1,316 @@
+//! The path as flown: the good plans have no problems on it, each faulty plan has the problem in its name.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use aircraft::{Profile, Wind};
+use flight_exec::{Conditions, compile_and_review, review};
+use flight_plan::{
+    Altitude, AltitudeReference, Edit, FlightPlan, Id, Problem, Program, Spot, Value, check, compile,
+    compile_document,
+};
+use geometry::LatLon;
+use proptest::prelude::*;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use terrain::{Flat, Terrain, Tile, Tiles};
+
+fn assets() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets")
+}
+
+fn ground() -> Arc<dyn Terrain> {
+    let bytes = std::fs::read(assets().join("terrain/N36W085.hgt")).unwrap();
+    let mut tiles = Tiles::new();
+    tiles.add(Tile::from_hgt("N36W085.hgt", &bytes).unwrap());
+    Arc::new(tiles)
+}
+
+fn plans(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(assets().join("plans").join(folder)).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut plans: Vec<PathBuf> = paths.filter(|p| p.extension().is_some_and(|e| e == "xml")).collect();
+    plans.sort();
+    assert!(!plans.is_empty());
+    plans
+}
+
+/// Over the shipped ground, in calm air.
+fn verdict(document: &[u8]) -> Result<Arc<Program>, Vec<Problem>> {
+    compile_and_review(document, &Profile::default(), &ground(), Conditions::default())
+}
+
+fn shown(problems: &[Problem]) -> Vec<String> {
+    problems.iter().map(Problem::to_string).collect()
+}
+
+#[test]
+fn good_plans_have_no_problems_on_their_path() {
+    for path in plans("") {
+        let program = verdict(&std::fs::read(&path).unwrap());
+        let program = program.unwrap_or_else(|p| panic!("{}: {:?}", path.display(), shown(&p)));
+        assert_eq!(shown(&program.warnings), [""; 0], "{}", path.display());
+    }
+}
+
+#[test]
+fn each_bad_path_has_the_problem_in_its_name() {
+    let mut failures = Vec::new();
+    for path in plans("bad/path") {
+        let code = path.file_stem().unwrap().to_str().unwrap();
+        let document = std::fs::read(&path).unwrap();
+        // only the path is wrong
+        let read = flight_plan::read(&document);
+        let program = compile_document(&document, &Profile::default(), ground().as_ref());
+        assert_eq!((read.problems, program.is_ok()), (vec![], true), "{code}");
+        let (problems, refused) = match verdict(&document) {
+            Ok(program) => (program.warnings.clone(), false),
+            Err(problems) => (problems, true),
+        };
+        let found: Vec<_> = problems.iter().filter(|p| p.code == code).collect();
+        failures.extend(found.is_empty().then(|| format!("{code}: not in {:?}", shown(&problems))));
+        // the gateway keeps off the ground too
+        let too_low = |p: &Problem| code == "below-terrain" && p.code == "gateway-refuses";
+        let errors = problems.iter().filter(|p| p.is_error() && p.code != code && !too_low(p));
+        failures.extend(errors.map(|p| format!("{code}: also {p}")));
+        assert_eq!(refused, problems.iter().any(Problem::is_error), "{code}");
+        let placed = found.iter().all(|p| p.location.is_some() || p.subject.is_none());
+        assert!(placed, "{code}: {found:?}");
+    }
+    assert_eq!(failures, [""; 0]);
+}
+
+/// A rectangle of legs over flat ground at 300 m, with a runway inside; the zones are given.
+fn rectangle(zones: &str, legs: &str) -> Vec<u8> {
+    format!(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
+             <fixes>
+               <fix id="A" lat="36.30" lon="-84.20"/> <fix id="B" lat="36.30" lon="-84.16"/>
+               <fix id="C" lat="36.33" lon="-84.16"/> <fix id="D" lat="36.33" lon="-84.20"/>
+             </fixes>
+             <runways><runway id="R" lat="36.31" lon="-84.19" elevation="300" heading="90" length="500" priority="1"/></runways>
+             <zones>{zones}</zones>
+             <mainPlan emergency="home">
+               <stage id="s" type="en-route" altitude="500" altitudeReference="amsl">
+                 <IF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="C"/><TF id="d" fix="D"/>{legs}
+               </stage>
+               <stage id="l" type="land" runway="R"/>
+             </mainPlan>
+             <emergencyPlans><emergencyPlan id="home" runway="R">
+               <stage id="e" type="arrival"><DF id="ed" fix="A" altitude="450" altitudeReference="amsl"/></stage>
+               <stage id="el" type="land" runway="R"/></emergencyPlan></emergencyPlans>
+           </flightPlan>"#
+    )
+    .into_bytes()
+}
+
+fn over_flat_ground(document: &[u8], conditions: Conditions) -> Vec<(&'static str, String)> {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let program = compile_document(document, &Profile::default(), flat.as_ref());
+    let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+    let found = review(&program, &Profile::default(), &flat, conditions);
+    found.iter().map(|p| (p.code, p.subject.as_ref().map(|id| id.to_string()).unwrap_or_default())).collect()
+}
+
+fn broken(zones: &str, legs: &str, conditions: Conditions) -> Vec<(&'static str, String)> {
+    let found = over_flat_ground(&rectangle(zones, legs), conditions);
+    found.into_iter().filter(|(code, _)| code.starts_with("keep")).collect()
+}
+
+fn on(code: &'static str, leg: &str) -> Vec<(&'static str, String)> {
+    vec![(code, leg.to_owned())]
+}
+
+#[test]
+fn a_holding_is_held_against_zones_where_no_leg_of_it_is_written() {
+    // the racetrack lies north of D, two turn radii aside
+    let zone = r#"<keepOut id="z" lat="36.3338" lon="-84.204" radius="120"/>"#;
+    assert_eq!(broken(zone, "", Conditions::default()), []);
+    let hold = r#"<HM id="h" fix="D" course="90" turn="left" length="700" maxLaps="2"/>"#;
+    assert_eq!(broken(zone, hold, Conditions::default()), on("keep-out", "h"));
+}
+
+#[test]
+fn a_turn_that_the_wind_carries_into_a_zone() {
+    // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind
+    let over = r#"<TF id="over" fix="A" flyOver="true"/><TF id="f" fix="B"/>"#;
+    let broken_at = |south_m: f64, conditions| {
+        let corner = LatLon::new(36.30, -84.20).destination(90.0, 120.0).destination(180.0, south_m);
+        let zone =
+            format!(r#"<keepOut id="z" lat="{}" lon="{}" radius="40"/>"#, corner.lat_deg, corner.lon_deg);
+        !broken(&zone, over, conditions).is_empty()
+    };
+    let farthest_m = |conditions| {
+        (1..16).map(|i| f64::from(i) * 25.0).filter(|m| broken_at(*m, conditions)).fold(0.0, f64::max)
+    };
+    let windy = Conditions { wind: Wind::from_direction(0.0, 9.0), ..Conditions::default() };
+    let (calm_m, windy_m) = (farthest_m(Conditions::default()), farthest_m(windy));
+    assert!(windy_m > calm_m, "{calm_m} m without wind, {windy_m} m with it");
+}
+
+#[test]
+fn altitudes_and_times_of_a_zone() {
+    let zone = |limits: &str, inside: &str| {
+        let zone =
+            format!(r#"<keepOut id="z" lat="36.315" lon="-84.16" radius="200" {limits}>{inside}</keepOut>"#);
+        move |conditions| broken(&zone, "", conditions)
+    };
+    let band = |floor: u32, ceiling: u32, reference: &str| {
+        format!(
+            r#"floor="{floor}" floorReference="{reference}" ceiling="{ceiling}" ceilingReference="{reference}""#
+        )
+    };
+    let calm = Conditions::default();
+    assert_eq!(zone("", "")(calm), on("keep-out", "c"));
+    assert_eq!(zone(&band(520, 900, "amsl"), "")(calm), []);
+    assert_eq!(zone(&band(150, 250, "agl"), "")(calm), on("keep-out", "c"));
+    assert_eq!(zone(&band(250, 350, "agl"), "")(calm), []);
+    let mixed = r#"floor="100" floorReference="agl" ceiling="450" ceilingReference="amsl""#;
+    assert_eq!(zone(mixed, "")(calm), []);
+    let morning = r#"<active from="2026-06-01T06:00:00Z" until="2026-06-01T09:00:00Z"/>"#;
+    let at = |unix_s| Conditions { start_unix_s: Some(unix_s), ..calm };
+    let six = 1_780_293_600;
+    assert_eq!(zone("", morning)(calm), on("keep-out", "c"), "the time is not known");
+    assert_eq!(zone("", morning)(at(six)), on("keep-out", "c"));
+    assert_eq!(zone("", morning)(at(six - 3600)), []);
+}
+
+#[test]
+fn zones_to_stay_in_are_one_area() {
+    let half = |id: &str, west: f64, east: f64| {
+        let corner = |lat: f64, lon: f64| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#);
+        let ring = [(36.27, west), (36.27, east), (36.36, east), (36.36, west)];
+        format!(r#"<keepIn id="{id}">{}</keepIn>"#, ring.map(|(lat, lon)| corner(lat, lon)).concat())
+    };
+    let (west, east) = (half("w", -84.25, -84.179), half("ea", -84.181, -84.13));
+    assert_eq!(broken(&format!("{west}{east}"), "", Conditions::default()), []);
+    assert!(!broken(&west, "", Conditions::default()).is_empty());
+    let gap = half("ea", -84.177, -84.13);
+    assert!(!broken(&format!("{west}{gap}"), "", Conditions::default()).is_empty());
+}
+
+#[test]
+fn every_branch_is_flown() {
+    let fork = r#"<intersection id="i" default="stay"><branch id="stay" next="z"/><branch id="away" next="y"/></intersection>
+        <DF id="y" lat="36.38" lon="-84.20" next="z"/><DF id="z" fix="A"/>"#;
+    let zone = r#"<keepOut id="z0" lat="36.37" lon="-84.20" radius="300"/>"#;
+    let found = broken(zone, fork, Conditions::default());
+    assert_eq!(found, [on("keep-out", "y"), on("keep-out", "z")].concat(), "there and back");
+}
+
+/// A hill of 620 m between the far leg and the runway.
+struct Hill;
+impl Terrain for Hill {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        let near = (p.lat_deg - 36.35).abs() < 0.004 && (p.lon_deg + 84.185).abs() < 0.03;
+        Some(if near { 620.0 } else { 300.0 })
+    }
+}
+
+#[test]
+fn a_glide_that_ends_in_a_hill() {
+    let far = r#"<HA id="up" fix="D" course="0" turn="left" length="600" altitude="900" altitudeReference="amsl"/>
+        <TF id="n" lat="36.36" lon="-84.23" altitude="900" altitudeReference="amsl"/>
+        <TF id="o" lat="36.38" lon="-84.19" altitude="900" altitudeReference="amsl"/>
+        <HA id="down" lat="36.38" lon="-84.19" course="90" turn="left" length="600" altitude="660" altitudeReference="amsl"/>
+        <TF id="back" lat="36.38" lon="-84.14" altitude="660" altitudeReference="amsl"/>"#;
+    let document = String::from_utf8(rectangle("", far)).unwrap();
+    let document = document.replace(
+        r#"<mainPlan emergency="home">"#,
+        r#"<mainPlan emergency="home"><emergency cause="engine" plan="home"/>"#,
+    );
+    let hill: Arc<dyn Terrain> = Arc::new(Hill);
+    let program = compile_document(document.as_bytes(), &Profile::default(), hill.as_ref());
+    let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+    let glider = Profile { glide_ratio: 60.0, ..Profile::default() };
+    let found = review(&program, &glider, &hill, Conditions::default());
+    assert!(found.iter().any(|p| p.code == "glide-into-terrain"), "{:?}", shown(&found));
+    let poor = review(&program, &Profile::default(), &hill, Conditions::default());
+    assert!(poor.iter().any(|p| p.code == "glide-out-of-reach"), "{:?}", shown(&poor));
+}
+
+#[test]
+fn a_flight_that_never_ends_is_reviewed_all_the_same() {
+    let lasting = Profile { energy_j: 1e12, ..Profile::default() };
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let legs = r#"<iterative id="loop" form="forward" until="battery &lt; 0.0"><TF id="e1" fix="A"/><TF id="e2" fix="C"/></iterative>
+        <TF id="g" fix="D"/>"#;
+    let zone = r#"<keepOut id="z" lat="36.33" lon="-84.18" radius="100"/>"#;
+    let program = compile_document(&rectangle(zone, legs), &lasting, flat.as_ref());
+    let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+    let found = review(&program, &lasting, &flat, Conditions::default());
+    assert!(found.iter().any(|p| p.code == "endless-flight"), "{:?}", shown(&found));
+    let after =
+        |p: &&Problem| p.code == "keep-out" && p.subject.as_ref().is_some_and(|id| id.as_str() == "g");
+    assert!(found.iter().find(after).is_some(), "what comes after the loop is reviewed: {:?}", shown(&found));
+}
+
+/// Something that a person or a program does to a plan.
+#[derive(Debug, Clone)]
+enum Change {
+    Delete(prop::sample::Index),
+    Move(prop::sample::Index, prop::sample::Index),
+    Altitude(prop::sample::Index, f64),
+    Speed(prop::sample::Index, f64),
+    Place(prop::sample::Index, f64, f64),
+    Count(prop::sample::Index, f64),
+    Radius(prop::sample::Index, f64),
+    /// Whatever the checks offer.
+    Fix(prop::sample::Index),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let index = any::<prop::sample::Index>;
+    let odd = || prop_oneof![-1e3..4e3_f64, Just(0.0), Just(-1.0), Just(1e308), Just(f64::NAN), Just(1e-300)];
+    prop_oneof![
+        index().prop_map(Change::Delete),
+        (index(), index()).prop_map(|(a, b)| Change::Move(a, b)),
+        (index(), odd()).prop_map(|(leg, x)| Change::Altitude(leg, x)),
+        (index(), odd()).prop_map(|(leg, x)| Change::Speed(leg, x)),
+        (index(), 35.0..37.0_f64, -85.0..-84.0_f64).prop_map(|(leg, a, b)| Change::Place(leg, a, b)),
+        (index(), odd()).prop_map(|(leg, x)| Change::Count(leg, x)),
+        (index(), odd()).prop_map(|(leg, x)| Change::Radius(leg, x)),
+        index().prop_map(Change::Fix),
+    ]
+}
+
+fn edit(plan: &FlightPlan, change: &Change, ground: &dyn Terrain) -> Option<Edit> {
+    let ids: Vec<Id> = plan.all_legs().iter().map(|c| c.leg.id.clone()).collect();
+    let leg = |index: &prop::sample::Index| (!ids.is_empty()).then(|| index.get(&ids).clone());
+    let level = |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Amsl };
+    Some(match change {
+        Change::Delete(a) => Edit::DeleteLeg { leg: leg(a)? },
+        Change::Move(a, b) => Edit::MoveLeg { leg: leg(a)?, at: Spot::After(leg(b)?) },
+        Change::Altitude(a, x) => Edit::SetAltitude { of: leg(a)?, altitude: Some(level(*x)) },
+        Change::Speed(a, x) => Edit::SetSpeed { of: leg(a)?, speed_mps: Some(Value::Constant(*x)) },
+        Change::Place(a, lat, lon) => Edit::MoveWaypoint { leg: leg(a)?, to: LatLon::new(*lat, *lon) },
+        Change::Count(a, x) => Edit::SetCount { leg: leg(a)?, count: Some(Value::Constant(*x)) },
+        Change::Radius(a, x) => Edit::SetRadius { leg: leg(a)?, radius_m: *x },
+        Change::Fix(a) => {
+            let found = check(plan, &Profile::default(), ground);
+            let fixes: Vec<_> = found.into_iter().filter_map(|p| p.fix).collect();
+            if fixes.is_empty() { return None } else { a.get(&fixes).as_ref().clone() }
+        }
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// Whatever is done to a good plan: checks and review come to an end, and what one of them refuses is not flown.
+    #[test]
+    fn random_edits_never_break_checks_or_review(
+        which in any::<prop::sample::Index>(), changes in prop::collection::vec(change(), 1..6),
+    ) {
+        let flat: Arc<dyn Terrain> = Arc::new(Flat(100.0));
+        let mut plan = flight_plan::read(std::fs::read(which.get(&plans(""))).unwrap()).plan;
+        for change in &changes {
+            let edited = edit(&plan, change, flat.as_ref()).and_then(|edit| edit.apply(&plan).ok());
+            plan = edited.unwrap_or(plan);
+        }
+        if let Ok(program) = compile(plan, &Profile::default(), flat.as_ref()) {
+            let found = review(&Arc::new(program), &Profile::default(), &flat, Conditions::default());
+            let known: HashSet<_> = found.iter().map(|p| (p.code, p.subject.clone())).collect();
+            prop_assert_eq!(known.len(), found.len(), "a problem is told once");
+        }
+    }
+}
