@@ -73,3 +73,54 @@ fn tell(file: &Path, notes: &[Note], json: bool) {
         false => foreign::tell(file, notes),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    const SQUARE: &[u8] = include_bytes!("../../../assets/plans/square.xml");
+
+    fn convert(source: &Source, target: &Target) -> anyhow::Result<String> {
+        run(source, Wind::default(), &Selection::default(), target).map(|status| format!("{status:?}"))
+    }
+
+    fn target(file: PathBuf) -> Target {
+        Target { file, to: None, strict: false, json: true, overwriting: Output::default() }
+    }
+
+    #[test]
+    fn to_every_format_and_back_again() {
+        let (_plan, source) = source(SQUARE);
+        let folder = tempfile::tempdir().unwrap();
+        let good = format!("{:?}", ExitCode::SUCCESS);
+        for (name, format) in interchange::Format::ALL {
+            let there = folder.path().join(format!("square.{name}"));
+            assert_eq!(convert(&source, &target(there.clone())).unwrap(), good, "{name}");
+            let error = convert(&source, &target(there.clone())).unwrap_err();
+            assert!(error.to_string().contains("--force"), "{error}");
+            let back = folder.path().join(format!("square-{name}.xml"));
+            let other = Source { file: there, ..Source::default() };
+            match convert(&other, &target(back.clone())) {
+                Ok(status) => {
+                    assert_eq!(status, good, "{name}");
+                    let plan = flight_plan::read(std::fs::read(back).unwrap()).plan;
+                    let legs: Vec<_> = plan.stages.iter().flat_map(|s| &s.legs).collect();
+                    assert!(legs.len() >= 4, "{name}: {} legs", legs.len());
+                }
+                Err(error) => assert!(format == interchange::Format::Csv, "{name}: {error:#}"),
+            }
+        }
+    }
+
+    #[test]
+    fn losses_count_when_asked_and_formats_are_named() {
+        let (_plan, source) = source(SQUARE);
+        let folder = tempfile::tempdir().unwrap();
+        let strict = Target { strict: true, ..target(folder.path().join("a.gpx")) };
+        assert_eq!(convert(&source, &strict).unwrap(), format!("{:?}", ExitCode::from(1)));
+        let nameless = convert(&source, &target(folder.path().join("a"))).unwrap_err();
+        assert!(nameless.to_string().contains("--to"), "{nameless}");
+    }
+}

@@ -163,3 +163,55 @@ fn takeover(report: &ProposalReport) -> Vec<String> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
+
+    fn status(old: &str, new: &str, moment: &Moment) -> anyhow::Result<String> {
+        let (_old, old) = source(old.as_bytes());
+        let (_new, new) = source(new.as_bytes());
+        run(&old, &new.file, moment, Wind::default(), true).map(|status| format!("{status:?}"))
+    }
+
+    #[test]
+    fn a_difference_has_status_1() {
+        let (same, other) = (format!("{:?}", ExitCode::SUCCESS), format!("{:?}", ExitCode::from(1)));
+        let renamed = SQUARE.replace("Square circuit", "Round circuit");
+        let slower = SQUARE.replace("id=\"side3\"", "id=\"side3\" speed=\"20\"");
+        let nowhere = Moment::default();
+        assert_eq!(status(SQUARE, SQUARE, &nowhere).unwrap(), same);
+        assert_eq!(status(SQUARE, &renamed, &nowhere).unwrap(), other);
+        assert_eq!(status(SQUARE, &slower, &nowhere).unwrap(), other);
+        assert!(status(SQUARE, "<oops/>", &nowhere).is_err());
+        let at = |leg: &str| Moment { at: Some(leg.into()), pass: None };
+        assert_eq!(status(SQUARE, SQUARE, &at("side2")).unwrap(), same);
+        assert!(status(SQUARE, SQUARE, &at("side9")).is_err());
+    }
+
+    #[test]
+    fn parts_besides_legs() {
+        let plan = |text: &str| flight_plan::read(text).plan;
+        let moved = SQUARE.replace("length=\"600\"", "length=\"700\"");
+        let changes = Changes::between(&plan(SQUARE), &plan(&moved));
+        // the landing legs of that runway are other ones, too
+        assert!(changes.other.contains(&"runways"), "{changes:?}");
+    }
+
+    #[test]
+    fn the_takeover_is_told() {
+        let (_old, old) = source(SQUARE.as_bytes());
+        let (_new, new) = source(SQUARE.replace("id=\"side2\"", "id=\"other\"").as_bytes());
+        let (old, new) = (readable(&old).unwrap(), readable(&new).unwrap());
+        let report =
+            |leg| proposed(Path::new("old"), (&old, &new), leg, None, Wind::default()).unwrap().unwrap();
+        let lines = takeover(&report("side2"));
+        assert!(lines.iter().any(|l| l.contains("name the leg to enter")), "{lines:?}");
+        let lines = takeover(&report("side3"));
+        assert!(lines.iter().any(|l| l.starts_with("the aircraft would go on leg side3")), "{lines:?}");
+    }
+}

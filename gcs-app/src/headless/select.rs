@@ -151,3 +151,63 @@ fn position(text: &str) -> Option<LatLon> {
     let position = LatLon::new(lat.parse().ok()?, lon.trim().parse().ok()?);
     position.is_valid().then_some(position)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    const FIRE_WATCH: &[u8] = include_bytes!("../../../assets/plans/fire-watch.xml");
+
+    fn set(pairs: &[&str]) -> anyhow::Result<VariableValue> {
+        let (_file, source) = source(FIRE_WATCH);
+        let mut loaded = source.load().unwrap();
+        let selection =
+            Selection { set: pairs.iter().map(|p| pair(p).unwrap()).collect(), ..Selection::default() };
+        selection.prepare(&mut loaded)?;
+        let name = selection.set.first().map(|(name, _)| name.as_str()).unwrap_or_default();
+        Ok(loaded.reading.plan.variable(&name.into()).unwrap().initial.clone())
+    }
+
+    #[test]
+    fn variables_take_only_what_fits() {
+        assert_eq!(set(&["fire_radius=900"]).unwrap(), VariableValue::Number(900.0));
+        let fire = LatLon::new(36.35, -84.2);
+        assert_eq!(set(&["fire_centre=36.35 -84.2"]).unwrap(), VariableValue::Position(fire));
+        for (bad, said) in [
+            ("fire_radius=wide", "no value of type number"),
+            ("fire_radius=NaN", ""),
+            ("fire_radius=1e9", "fire_radius"),
+            ("fire_centre=36.35", "no value of type position"),
+            ("nobody=1", "there is no variable"),
+        ] {
+            let error = set(&[bad]).unwrap_err().to_string();
+            assert!(error.contains(said), "{bad}: {error}");
+        }
+        assert!(pair("fire_radius").is_err());
+    }
+
+    #[test]
+    fn ways_that_are_not_there() {
+        let plan = flight_plan::read(FIRE_WATCH).plan;
+        let decide = |text: &str| Selection { decide: vec![pair(text).unwrap()], ..Selection::default() };
+        let emergency = |plan: &str, at: Option<&str>| Selection {
+            emergency: Some(plan.into()),
+            at: at.map(str::to_owned),
+            ..Selection::default()
+        };
+        for (selection, said) in [
+            (decide("ask=nope"), "has no branch `nope`: it has again, close"),
+            (decide("sweep=close"), "no intersection"),
+            (decide("nope=close"), "no leg `nope`"),
+            (emergency("nope", None), "there are return, north-strip"),
+            (emergency("return", Some("nope")), "no leg `nope`"),
+        ] {
+            let error = selection.scenario(&plan).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+        assert_eq!(decide("ask=close").scenario(&plan).unwrap().triggers.len(), 1);
+        assert_eq!(emergency("return", None).scenario(&plan).unwrap().triggers.len(), 1);
+    }
+}

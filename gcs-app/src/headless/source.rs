@@ -174,12 +174,33 @@ pub(super) mod tests {
     #[test]
     fn garbage_is_a_problem_and_never_compiles() {
         for garbage in
-            [&b""[..], b"\xff\xfe\0\0", b"<a", b"<!DOCTYPE x [<!ENTITY a \"b\">]><x>&a;</x>", b"{}"]
+            [&b""[..], b"\xff\xfe\0\0", b"<a", b"<!DOCTYPE x [<!ENTITY a \"b\">]><x>&a;</x>", b"[]"]
         {
             let (_file, source) = source(garbage);
             let loaded = source.load().unwrap();
             assert!(loaded.problems().iter().any(Problem::is_error), "{garbage:?}");
             assert!(loaded.compile().is_err(), "{garbage:?}");
         }
+        // what another program's file seems to be, and isn't, can't be read
+        for garbage in
+            [&b"{}"[..], b"{\"fileType\": \"Plan\"", b"QGC WPL 1\n", b"PK\x03\x04", b"<kml>", b"<gpx"]
+        {
+            let (_file, source) = source(garbage);
+            assert!(source.load().is_err(), "{garbage:?}");
+        }
+    }
+
+    #[test]
+    fn a_plan_of_another_program_has_notes_and_no_places() {
+        let (_file, source) =
+            source(b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.3 -84.1 100 1\n2 0 3 211 0 0 0 0 0 0 0 1\n");
+        let loaded = source.load().unwrap();
+        assert!(
+            loaded.notes.iter().any(|n| n.code == "command-not-carried" && n.place == "line 3"),
+            "{:?}",
+            loaded.notes
+        );
+        let problems = loaded.problems();
+        assert!(!problems.is_empty() && problems.iter().all(|p| p.location.is_none()), "{problems:?}");
     }
 }
