@@ -1,7 +1,7 @@
 //! `zero-length`: a track or arc ends where it begins, so that it has no direction.
 
 use super::Inspection;
-use super::inspection::SHORTEST_M;
+use super::inspection::{Path, SHORTEST_M};
 use crate::{Edit, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -9,9 +9,12 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         let leg = step.context.leg;
         let Some((start, end)) = step.start.zip(step.end) else { continue };
         let directed = matches!(leg.kind, LegKind::Tf(_) | LegKind::Rf { .. });
-        // farther than this the geodesic need not be asked
-        let near = (start.position.lat_deg - end.position.lat_deg).abs() < 1e-3;
-        if directed && near && start.position.distance_m(end.position) < SHORTEST_M {
+        let apart_m = match step.path {
+            Some(Path::Line { length_m, .. }) => length_m,
+            _ if directed => start.position.distance_m(end.position),
+            _ => continue,
+        };
+        if directed && apart_m < SHORTEST_M {
             let message = "remove this leg or move its waypoint: it ends where the leg before it ends";
             let fix = Edit::DeleteLeg { leg: leg.id.clone() };
             problems.push(Problem::error("zero-length", message).of(&leg.id).fixed_by(fix));
