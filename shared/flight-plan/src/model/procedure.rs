@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 /// A fragment that can be called at any place, in any direction, with arguments.
 ///
-/// Its positions are written where they are for its own reference point and bearing; a call moves and turns them.
+/// Its positions are written where they are for its own reference point and bearing; a call moves and turns them. That is so
+/// for constants: what a fix or an expression gives is where it is, and does not move (see [`crate::procedure`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Procedure {
     /// Its identifier.

@@ -18,11 +18,12 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Makes a leg of the procedure one of the call (not the legs inside it). Answers how many bytes of text that took.
+    /// Makes a leg of the procedure one of the call (not the legs inside it). Answers how many bytes of text that took; beyond
+    /// `room` the rest stays as it is, and nobody will fly it.
     ///
     /// # Errors
     /// It has a position or number that can only be a constant, and the call's anchor or bearing is an expression.
-    pub fn rewrite(&self, leg: &mut Leg) -> Result<usize, Problem> {
+    pub fn rewrite(&self, leg: &mut Leg, room: usize) -> Result<usize, Problem> {
         leg.id = self.id(&leg.id);
         leg.next = leg.next.as_ref().map(|next| self.id(next));
         if let LegKind::Intersection { branches, .. } = &mut leg.kind {
@@ -34,6 +35,7 @@ impl Frame {
         };
         let (mut bytes, mut fixed) = (leg.id.as_str().len(), false);
         leg.for_each_slot_mut(&mut |slot| match slot {
+            _ if bytes > room => {}
             SlotMut::Number(name, value) => bytes += self.number(name, value, at),
             SlotMut::Optional(name, value) => {
                 bytes += value.as_mut().map_or(0, |value| self.number(name, value, at));

@@ -20,9 +20,9 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Most legs of a plan whose calls are instantiated.
+/// Most legs that the calls of a plan make.
 pub const MAX_LEGS: usize = 100_000;
-/// Longest text of a plan whose calls are instantiated, bytes: as long as that of a document.
+/// Longest text of what the calls of a plan make, bytes: as long as that of a document.
 pub const MAX_BYTES: usize = crate::xml::MAX_BYTES;
 /// Deepest nesting of procedures.
 pub const MAX_NESTING: usize = 16;
@@ -87,7 +87,7 @@ impl Calls<'_> {
     }
 
     fn rewrite(&mut self, leg: &mut Leg, frame: &Frame) {
-        match frame.rewrite(leg) {
+        match frame.rewrite(leg, MAX_BYTES.saturating_sub(self.bytes)) {
             Ok(bytes) => self.bytes = self.bytes.saturating_add(bytes),
             Err(problem) => self.problems.push(problem.of(&leg.id)),
         }
@@ -132,7 +132,7 @@ impl Calls<'_> {
             return Ok(());
         }
         let message = format!(
-            "call fewer or smaller procedures: with this call the plan would have more than {MAX_LEGS} legs or {MAX_BYTES} bytes"
+            "call fewer or smaller procedures: with this one the plan's calls make more than {MAX_LEGS} legs or {MAX_BYTES} bytes"
         );
         Err(Problem::error("too-large", message))
     }

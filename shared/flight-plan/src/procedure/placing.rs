@@ -1,5 +1,6 @@
 //! Where a call puts what its procedure has written.
 
+use crate::expression::MAX_LENGTH;
 use crate::{Call, FlightPlan, Place, Problem, Procedure, Value};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
@@ -21,8 +22,8 @@ pub(super) enum Placing {
 }
 
 impl Placing {
-    /// What a call does. Its anchor and bearing have been moved with what is `around` it. `None`: the anchor is
-    /// nowhere, which the checks say.
+    /// What a call does. Its anchor and bearing have been moved with what is `around` it. `None`: its anchor or bearing
+    /// is not one, or too long, which the checks say.
     pub fn of(
         procedure: &Procedure,
         call: &Call,
@@ -55,6 +56,13 @@ impl Placing {
                 Value::Expression(format!("double({to}) - {}", number(procedure.bearing_deg)).into())
             }
         };
+        // too long to be compiled, let alone to be repeated
+        let long = |source: &str| source.len() > MAX_LENGTH;
+        if matches!(&anchor, Value::Expression(source) if long(source))
+            || matches!(&turn_deg, Value::Expression(source) if long(source))
+        {
+            return Ok(None);
+        }
         let somewhere = !matches!(&anchor, Value::Constant(p) if !p.is_valid())
             && !matches!(&turn_deg, Value::Constant(x) if !x.is_finite());
         Ok(somewhere.then_some(Placing::Moved { reference, anchor, turn_deg }))

@@ -243,6 +243,24 @@ fn doubling_sixteen_times_is_no_bomb() {
     assert_eq!(codes(&procedures, call), ["expression-too-large"]);
 }
 
+/// A long expression at each of very many points.
+#[test]
+fn a_long_anchor_is_not_repeated_without_end() {
+    let points = r#"<point lat="36.01" lon="-84.01"/>"#.repeat(100_000);
+    let corridor = format!(
+        r#"<procedure id="p" reference="36.0 -84.0"><corridor id="c1" width="5" spacing="1"><route>{points}</route></corridor></procedure>"#
+    );
+    let call = |length: usize| {
+        let at = format!("offset(where, 0.0, 0.0{})", " + 0.0".repeat(length / 6));
+        format!(r#"<call id="c" procedure="p" at="= {at}"/>"#)
+    };
+    assert_eq!(codes(&corridor, &call(900)), ["too-large"]);
+    // this one the checks refuse, as an expression
+    let (plan, problems) = flown(&corridor, &call(900_000));
+    assert_eq!(problems, []);
+    assert!(matches!(plan.leg(&"c".into()).unwrap().leg.kind, LegKind::Call(_)));
+}
+
 #[test]
 fn a_program_flies_the_legs_and_keeps_the_plan_as_written() {
     let good = include_str!("../../../../assets/plans/square.xml");
