@@ -15,6 +15,7 @@ use flight_exec::preview::{FlownWaypoint, LegPassage, Preview};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
 use labels::Labels;
+use surroundings::Bounds;
 
 const WIDTH: f32 = 840.0;
 const HEIGHT: f32 = 540.0;
@@ -89,7 +90,9 @@ impl Diagram<'_> {
     fn extent(&self) -> impl Iterator<Item = LatLon> {
         let track = self.preview.track.iter().filter(|p| self.shows(p.passage)).map(|p| p.position);
         let waypoints = self.waypoints().map(|w| w.waypoint.position);
-        track.chain(waypoints).chain(self.outlines())
+        let path: Vec<LatLon> = track.chain(waypoints).chain(self.outlines()).collect();
+        let zones = self.zones_near(Bounds::around(path.iter().copied()));
+        path.into_iter().chain(zones)
     }
 
     /// The waypoints that were flown to.

@@ -39,6 +39,13 @@ impl Diagram<'_> {
         self.things().into_iter().flat_map(|thing| thing.rings).flatten()
     }
 
+    /// Zones to keep out of that the path, whose box this is, comes near to.
+    pub fn zones_near(&self, path: Bounds) -> impl Iterator<Item = LatLon> {
+        let near = path.grown(0.25);
+        let zones = self.program.plan.zones.iter().filter(|zone| zone.kind == ZoneKind::KeepOut);
+        zones.map(ring).filter(move |ring| Bounds::around(ring.iter().copied()).meets(near)).flatten()
+    }
+
     fn things(&self) -> Vec<Thing> {
         let variables = Variables::initial(&self.program.plan);
         let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
@@ -107,6 +114,51 @@ impl Diagram<'_> {
     }
 }
 
+/// Latitudes and longitudes, degrees.
+#[derive(Clone, Copy)]
+pub struct Bounds {
+    south: f64,
+    north: f64,
+    west: f64,
+    east: f64,
+}
+
+impl Bounds {
+    /// All of these.
+    pub fn around(points: impl Iterator<Item = LatLon>) -> Self {
+        let nothing = Self {
+            south: f64::INFINITY,
+            north: f64::NEG_INFINITY,
+            west: f64::INFINITY,
+            east: f64::NEG_INFINITY,
+        };
+        points.fold(nothing, |b, p| Self {
+            south: b.south.min(p.lat_deg),
+            north: b.north.max(p.lat_deg),
+            west: b.west.min(p.lon_deg),
+            east: b.east.max(p.lon_deg),
+        })
+    }
+
+    /// Larger by this share of its size, to each side.
+    fn grown(self, share: f64) -> Self {
+        let (up, across) = (share * (self.north - self.south), share * (self.east - self.west));
+        Self {
+            south: self.south - up,
+            north: self.north + up,
+            west: self.west - across,
+            east: self.east + across,
+        }
+    }
+
+    fn meets(self, other: Self) -> bool {
+        self.south <= other.north
+            && other.south <= self.north
+            && self.west <= other.east
+            && other.west <= self.east
+    }
+}
+
 fn pixels(view: &View, ring: &[LatLon]) -> Vec<(f32, f32)> {
     ring.iter().map(|p| view.place(*p)).collect()
 }
@@ -144,15 +196,20 @@ fn draw_centre(canvas: &mut Canvas, labels: &mut Labels, (x, y): (f32, f32)) {
     labels.beside(canvas, (x, y), "centre", Type::bold(15.0, AREA).on(DIAGRAM_PAPER));
 }
 
-fn draw_zone(canvas: &mut Canvas, view: &View, labels: &mut Labels, zone: &Zone) {
+/// The outline of a zone; of a circle: enough of its points.
+fn ring(zone: &Zone) -> Vec<LatLon> {
     const CORNERS: u32 = 90;
-    let ring: Vec<LatLon> = match &zone.shape {
+    let bearing = |i: u32| f64::from(i) * 360.0 / f64::from(CORNERS);
+    match &zone.shape {
         ZoneShape::Polygon(corners) => corners.clone(),
-        ZoneShape::Circle { centre, radius_m } => (0..CORNERS)
-            .map(|i| centre.destination(f64::from(i) * 360.0 / f64::from(CORNERS), *radius_m))
-            .collect(),
-    };
-    let points = pixels(view, &ring);
+        ZoneShape::Circle { centre, radius_m } => {
+            (0..CORNERS).map(|i| centre.destination(bearing(i), *radius_m)).collect()
+        }
+    }
+}
+
+fn draw_zone(canvas: &mut Canvas, view: &View, labels: &mut Labels, zone: &Zone) {
+    let points = pixels(view, &ring(zone));
     let (ink, fill) = match zone.kind {
         ZoneKind::KeepIn => (KEEP_IN, 0),
         ZoneKind::KeepOut => (KEEP_OUT, 34),
