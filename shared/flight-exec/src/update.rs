@@ -194,6 +194,10 @@ fn restore_trails(
     for (frame, leg) in moved.loops.iter_mut().zip(new_chain) {
         let Some(place) = known.iter().position(|id| *id == leg.id) else { continue };
         let (Some(before), Some(old_leg)) = (old.loops.get(place), old_chain.get(place)) else { continue };
+        if form_of(old_leg) != form_of(leg) {
+            // forth and back has become round and round, or the reverse: directions and trails mean nothing any more
+            break;
+        }
         *frame = LoopFrame {
             index: frame.index,
             trail: Arc::new(remap(&before.trail, old_leg, leg)),
@@ -201,6 +205,13 @@ fn restore_trails(
         };
         let flown_back = before.trail.iter().take(before.back);
         frame.back = remap(&flown_back.cloned().collect::<Vec<_>>(), old_leg, leg).len();
+    }
+}
+
+fn form_of(leg: &Leg) -> Option<flight_plan::IterativeForm> {
+    match &leg.kind {
+        flight_plan::LegKind::Iterative { form, .. } => Some(*form),
+        _ => None,
     }
 }
 

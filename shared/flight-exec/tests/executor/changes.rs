@@ -275,6 +275,33 @@ fn loops_keep_their_counters_through_an_update() {
     assert_eq!(rig.legs(), "s a b <l <b <a l a b n z");
 }
 
+/// Its passes back would never come to an end that counts.
+#[test]
+fn a_loop_that_becomes_forward_while_flown_back_goes_forward() {
+    let legs = |form: &str| {
+        format!(
+            r#"<TF id="s" fix="A1"/><iterative id="l" form="{form}" count="3"><TF id="a" fix="B1"/><TF id="b" fix="B2"/></iterative><TF id="z" fix="A3"/>"#
+        )
+    };
+    let mut rig = Rig::flying(&document(&legs("reverse")));
+    while !rig.executor.status().place.unwrap().reverse {
+        rig.fly_one();
+    }
+    rig.update(&program(&document(&legs("forward")))).unwrap();
+    rig.fly_to_the_end();
+}
+
+/// What is laid out before the leg being flown is of the past.
+#[test]
+fn a_leg_put_in_before_the_one_being_flown_is_not_flown() {
+    let mut rig = Rig::started(BASE);
+    rig.fly_to("b");
+    rig.update(&program(&document(&BASE.replace(r#"<TF id="b""#, r#"<TF id="n" fix="D3"/><TF id="b""#))))
+        .unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+}
+
 #[test]
 fn when_the_current_leg_is_gone_the_commit_names_the_entry() {
     let new = program(&document(&BASE.replace(r#"<TF id="b" fix="B2"/>"#, "")));

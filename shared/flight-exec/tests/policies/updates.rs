@@ -2,9 +2,9 @@
 
 use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Step, Trace, knows, same_passage};
-use flight_exec::{Answer, Command, Event, Input, Phase, ProposalReport};
-use flight_plan::{Id, Program, Variable};
+use crate::trace::{Step, Trace, kind, knows, same_passage};
+use flight_exec::{Answer, Command, Event, Input, Phase, PlacePointer, ProposalReport};
+use flight_plan::{Id, IterativeForm, LegKind, Program, Variable};
 use std::collections::BTreeSet;
 
 pub const POLICIES: &[Policy] = &[
@@ -193,11 +193,24 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         if !is_there || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
             continue;
         }
-        let (old, now) = (iterations(before), iterations(after));
-        let counted = old.iter().all(|(id, count)| now.get(id).is_none_or(|n| n == count));
+        // a loop of another form begins its directions anew
+        let turned = form(old, before) != form(new, before);
+        let (was, is) = (iterations(before), iterations(after));
+        let same_count = |(id, n): (&&Id, &(u64, bool))| {
+            is.get(*id).is_none_or(|now| if turned { now.0 == n.0 } else { now == n })
+        };
+        let counted = was.iter().all(same_count);
         let same = before.leg == after.leg && before.plan == after.plan && counted;
         found.expect(step, same, || format!("{before:?} became {after:?}"));
     }
+}
+
+fn form(program: &Program, place: &PlacePointer) -> Vec<Option<IterativeForm>> {
+    let of = |id: &Id| match kind(program, id)? {
+        LegKind::Iterative { form, .. } => Some(*form),
+        _ => None,
+    };
+    place.iterations.iter().map(|i| of(&i.leg)).collect()
 }
 
 fn entry_is_entered(trace: &Trace, found: &mut Findings) {
