@@ -404,7 +404,7 @@ fn plan() -> BoxedStrategy<FlightPlan> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
     fn reading_what_was_written_gives_the_plan_back(plan in plan()) {
