@@ -78,6 +78,14 @@ impl Problem {
         Self { fix: Some(Box::new(edit)), ..self }
     }
 
+    /// The same problem, with an edit that removes it, if there is one.
+    pub fn perhaps_fixed_by(self, edit: Option<Edit>) -> Self {
+        match edit {
+            Some(edit) => self.fixed_by(edit),
+            None => self,
+        }
+    }
+
     /// Forbids flying.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error

@@ -137,6 +137,11 @@ impl Variables {
         Ok(())
     }
 
+    /// Writes one whatever the plan says: for trials, never in flight.
+    pub(crate) fn put(&mut self, name: &Id, value: VariableValue) {
+        self.0.insert(name.clone(), value);
+    }
+
     /// The variables of a new plan: values that it still accepts are kept, the others start afresh.
     pub fn carried_over(&self, plan: &FlightPlan) -> Self {
         let keep = |v: &Variable| {

@@ -120,7 +120,7 @@ impl<'a> Flight<'a> {
 
     /// One step of guidance and dynamics.
     fn move_on(&mut self, step_s: f64) {
-        let next = self.buffer.get(1).map(target);
+        let next = self.buffer.get(1).map(Target::from);
         let guided = self.guidance.step(self.aircraft.state(), next.as_ref());
         if guided.reached && !self.buffer.is_empty() {
             self.reached();
@@ -141,7 +141,7 @@ impl<'a> Flight<'a> {
         }
         let next = self.buffer.front().cloned();
         if let Some(waypoint) = &next {
-            self.guidance.proceed(self.aircraft.state(), target(waypoint));
+            self.guidance.proceed(self.aircraft.state(), Target::from(waypoint));
         }
         self.tell(Input::Progress { current: next.as_ref().map(|w| w.token) });
         self.note_current();
@@ -222,7 +222,7 @@ impl<'a> Flight<'a> {
             flown.replaced = true;
         }
         if let Some(waypoint) = self.buffer.front() {
-            let first = target(waypoint);
+            let first = Target::from(waypoint);
             self.guidance.direct(self.aircraft.state(), first);
             self.tell(Input::Progress { current: now });
             self.note_current();
@@ -387,17 +387,20 @@ fn placed(program: &Program, profile: &Profile, start: Start) -> Result<Aircraft
     }
 }
 
-fn target(waypoint: &Waypoint) -> Target {
-    Target {
-        position: waypoint.position,
-        altitude_amsl_m: waypoint.altitude_amsl_m,
-        airspeed_mps: waypoint.airspeed_mps,
-        action: match waypoint.action {
-            Action::TakeOff { heading_deg } => aircraft::Action::TakeOff { heading_deg },
-            Action::Fly => aircraft::Action::Fly,
-            Action::Loiter { radius_m } => aircraft::Action::Loiter { radius_m },
-            Action::Land { heading_deg } => aircraft::Action::Land { heading_deg },
-        },
-        fly_over: waypoint.fly_over,
+/// What the guidance is told to steer to.
+impl From<&Waypoint> for Target {
+    fn from(waypoint: &Waypoint) -> Self {
+        Target {
+            position: waypoint.position,
+            altitude_amsl_m: waypoint.altitude_amsl_m,
+            airspeed_mps: waypoint.airspeed_mps,
+            action: match waypoint.action {
+                Action::TakeOff { heading_deg } => aircraft::Action::TakeOff { heading_deg },
+                Action::Fly => aircraft::Action::Fly,
+                Action::Loiter { radius_m } => aircraft::Action::Loiter { radius_m },
+                Action::Land { heading_deg } => aircraft::Action::Land { heading_deg },
+            },
+            fly_over: waypoint.fly_over,
+        }
     }
 }

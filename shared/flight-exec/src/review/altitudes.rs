@@ -1,9 +1,9 @@
 //! `altitude-missed`: at the end of a leg the aircraft is not yet where the leg should take it: climb or descent don't fit
 //! into the length of the leg, in this wind.
 
-use super::View;
 use super::flown::{Flown, Point};
 use super::layout::LaidOut;
+use super::View;
 use crate::api::Action;
 use flight_plan::Problem;
 
@@ -41,5 +41,7 @@ fn problem(view: &View, flown: &Flown, last: &LaidOut, at: &Point) -> Option<Pro
         missing_m.abs(),
         last.wanted_amsl_m
     );
-    Some(Problem::warning("altitude-missed", message).of(&last.waypoint.leg))
+    let reached_m = if missing_m > 0.0 { at.altitude_amsl_m.floor() } else { at.altitude_amsl_m.ceil() };
+    let fix = view.relevelled(&last.waypoint.leg, reached_m).filter(|_| flown.emergency.is_none());
+    Some(Problem::warning("altitude-missed", message).of(&last.waypoint.leg).perhaps_fixed_by(fix))
 }

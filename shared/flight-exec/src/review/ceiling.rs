@@ -1,22 +1,21 @@
-//! `above-ceiling`: the path goes higher than the aircraft flies.
+//! `above-ceiling`: a leg leads higher than the aircraft flies. (A pattern above the ground does so only over hills.)
 
 use super::View;
 use flight_plan::Problem;
 
-/// What the altitude of a real flight swings about the one that it holds, metres.
-const SWING_M: f64 = 15.0;
+/// Altitudes are not more exact than that, metres.
+const TOLERANCE_M: f64 = 0.5;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let ceiling_m = view.profile.ceiling_amsl_m;
-    for flown in view.flights.all() {
-        let high = flown.points.iter().filter(|p| p.altitude_amsl_m > ceiling_m + SWING_M);
-        for point in high {
-            let Some(leg) = flown.leg(point) else { continue };
-            let message = format!(
-                "lower this leg by {:.0} m: it is flown above the aircraft's ceiling of {ceiling_m:.0} m",
-                point.altitude_amsl_m - ceiling_m
-            );
-            problems.push(Problem::error("above-ceiling", message).of(leg));
-        }
+    let waypoints = view.flights.all().flat_map(|flown| &flown.waypoints);
+    for high in waypoints.filter(|w| w.wanted_amsl_m > ceiling_m + TOLERANCE_M) {
+        let leg = &high.waypoint.leg;
+        let message = format!(
+            "lower this leg by {:.0} m: over the ground that it passes it leads above the aircraft's ceiling of {ceiling_m:.0} m",
+            high.wanted_amsl_m - ceiling_m
+        );
+        let fix = view.relevelled(leg, ceiling_m);
+        problems.push(Problem::error("above-ceiling", message).of(leg).perhaps_fixed_by(fix));
     }
 }

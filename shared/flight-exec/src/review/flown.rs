@@ -1,7 +1,7 @@
 //! Waypoints, flown by the simulated aircraft in the wind: the path as it will be.
 
 use super::layout::LaidOut;
-use crate::api::{Action, Waypoint};
+use crate::api::Action;
 use aircraft::{Aircraft, Guidance, Profile, Target, Wind};
 use flight_plan::Id;
 use geometry::LatLon;
@@ -50,26 +50,14 @@ impl Flown {
         self.emergency.is_some() && passage(point.waypoint) == passage(0)
     }
 
+    /// The altitude that the leg asks for at the waypoint that is steered to at a point, metres AMSL.
+    pub fn wanted_amsl_m(&self, point: &Point) -> Option<f64> {
+        self.waypoints.get(point.waypoint).map(|w| w.wanted_amsl_m)
+    }
+
     /// The leg that is flown at a point.
     pub fn leg(&self, point: &Point) -> Option<&Id> {
         self.waypoints.get(point.waypoint).map(|w| &w.waypoint.leg)
-    }
-}
-
-impl From<&Waypoint> for Target {
-    fn from(waypoint: &Waypoint) -> Self {
-        Target {
-            position: waypoint.position,
-            altitude_amsl_m: waypoint.altitude_amsl_m,
-            airspeed_mps: waypoint.airspeed_mps,
-            action: match waypoint.action {
-                Action::TakeOff { heading_deg } => aircraft::Action::TakeOff { heading_deg },
-                Action::Fly => aircraft::Action::Fly,
-                Action::Loiter { radius_m } => aircraft::Action::Loiter { radius_m },
-                Action::Land { heading_deg } => aircraft::Action::Land { heading_deg },
-            },
-            fly_over: waypoint.fly_over,
-        }
     }
 }
 

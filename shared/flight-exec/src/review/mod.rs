@@ -27,7 +27,7 @@ mod zones;
 
 use aircraft::{Profile, Wind};
 use alternates::Origin;
-use flight_plan::{Id, LegKind, Problem, Program, StageKind};
+use flight_plan::{Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value};
 use flights::{Flights, InForce};
 use prepared::Zones;
 use std::collections::HashSet;
@@ -131,6 +131,13 @@ impl View<'_> {
     /// A leg that loops: what is flown in its name is a turn.
     fn is_loop(&self, leg: &Id) -> bool {
         self.program.leg(leg).is_some_and(|leg| matches!(leg.kind, LegKind::Iterative { .. }))
+    }
+
+    /// Another altitude for a leg that the plan has as it is written (not only by a call).
+    fn relevelled(&self, leg: &Id, amsl_m: f64) -> Option<Edit> {
+        self.program.plan.leg(leg)?;
+        let altitude = Altitude { metres: Value::Constant(amsl_m), reference: AltitudeReference::Amsl };
+        Some(Edit::SetAltitude { of: leg.clone(), altitude: Some(altitude) })
     }
 
     /// Points of the flights of the main plan, so many seconds apart.

@@ -1,41 +1,46 @@
 //! `below-terrain`: the path goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
 
-use super::View;
 use super::flown::{Flown, Point};
+use super::View;
 use flight_plan::{Id, Problem, StageKind};
 use std::collections::HashMap;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
-    let mut lowest: HashMap<&Id, (f64, Point)> = HashMap::new();
+    let mut lowest: HashMap<&Id, Lowest> = HashMap::new();
     let mut order = Vec::new();
     for flown in view.flights.all() {
         track(view, flown, &mut lowest, &mut order);
     }
     for leg in order {
-        let Some((clearance_m, point)) = lowest.get(leg) else { continue };
-        problems.extend(problem(view, leg, *clearance_m, point));
+        problems.extend(lowest.get(leg).and_then(|lowest| problem(view, leg, lowest)));
     }
 }
 
-fn track<'a>(
-    view: &View,
-    flown: &'a Flown,
-    lowest: &mut HashMap<&'a Id, (f64, Point)>,
-    order: &mut Vec<&'a Id>,
-) {
+/// Where a leg is nearest to the ground.
+struct Lowest {
+    clearance_m: f64,
+    point: Point,
+    /// The altitude that the leg asks for there, metres AMSL.
+    wanted_amsl_m: f64,
+}
+
+fn track<'a>(view: &View, flown: &'a Flown, lowest: &mut HashMap<&'a Id, Lowest>, order: &mut Vec<&'a Id>) {
     for point in flown.points.iter().filter(|p| !flown.enters(p)) {
         let Some(ground_m) = view.terrain.elevation_m(point.position) else { continue };
         let Some(leg) = flown.leg(point) else { continue };
         let clearance_m = point.altitude_amsl_m - ground_m;
-        if lowest.get(leg).is_none_or(|(least_m, _)| clearance_m < *least_m)
-            && lowest.insert(leg, (clearance_m, *point)).is_none()
+        let wanted_amsl_m = flown.wanted_amsl_m(point).unwrap_or(point.altitude_amsl_m);
+        let here = Lowest { clearance_m, point: *point, wanted_amsl_m };
+        if lowest.get(leg).is_none_or(|old| clearance_m < old.clearance_m)
+            && lowest.insert(leg, here).is_none()
         {
             order.push(leg);
         }
     }
 }
 
-fn problem(view: &View, leg: &Id, clearance_m: f64, point: &Point) -> Option<Problem> {
+fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
+    let Lowest { clearance_m, point, wanted_amsl_m } = *lowest;
     let kind = view.stage_kind(leg)?;
     // the autopilot performs these, on the runway's elevation and not the terrain's
     if matches!(kind, StageKind::TakeOff | StageKind::Land) {
@@ -45,13 +50,15 @@ fn problem(view: &View, leg: &Id, clearance_m: f64, point: &Point) -> Option<Pro
     let margin_m = view.conditions.margins.terrain_m;
     let (lat, lon) = (point.position.lat_deg, point.position.lon_deg);
     let raise_m = margin_m - clearance_m;
+    let fix = view.relevelled(leg, (wanted_amsl_m + raise_m).ceil());
     if clearance_m < 0.0 {
         let message =
             format!("raise this leg by {raise_m:.0} m: it goes into the ground at {lat:.5}, {lon:.5}");
-        return Some(Problem::error("below-terrain", message).of(leg));
+        return Some(Problem::error("below-terrain", message).of(leg).perhaps_fixed_by(fix));
     }
     let message = format!(
         "raise this leg by {raise_m:.0} m: as flown, it passes {clearance_m:.0} m above the ground at {lat:.5}, {lon:.5}"
     );
-    (clearance_m < margin_m && !near_runway).then(|| Problem::warning("low-clearance", message).of(leg))
+    let problem = Problem::warning("low-clearance", message).of(leg);
+    (clearance_m < margin_m && !near_runway).then(|| problem.perhaps_fixed_by(fix))
 }

@@ -199,12 +199,18 @@ impl<'a> Inspection<'a> {
 
     /// A compiled expression has a value at the start.
     pub fn has_value(&self, source: &str, used: Use) -> bool {
+        self.has_value_with(source, used, &self.variables)
+    }
+
+    /// A compiled expression has a value at the start if the variables have these ones.
+    pub fn has_value_with(&self, source: &str, used: Use, variables: &Variables) -> bool {
+        let env = Env { variables, ..self.env() };
         self.expression(source).is_some_and(|e| match used {
-            Use::Number => e.number(&self.env()).is_ok(),
-            Use::Condition => e.bool(&self.env()).is_ok(),
-            Use::Position => e.position(&self.env()).is_ok(),
-            Use::Polygon => e.polygon(&self.env()).is_ok(),
-            Use::Any => e.value(&self.env()).is_ok(),
+            Use::Number => e.number(&env).is_ok(),
+            Use::Condition => e.bool(&env).is_ok(),
+            Use::Position => e.position(&env).is_ok(),
+            Use::Polygon => e.polygon(&env).is_ok(),
+            Use::Any => e.value(&env).is_ok(),
         })
     }
 

@@ -7,6 +7,7 @@ mod courses;
 mod emergency_coverage;
 mod emergency_plans;
 mod empty;
+mod expression_bounds;
 mod expressions;
 mod gradients;
 mod holdings;
@@ -50,12 +51,13 @@ use terrain::Terrain;
 type Rule = fn(&Inspection, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 29] = [
+const RULES: [Rule; 30] = [
     empty::check,
     identifiers::check,
     references::check,
     values::check,
     expressions::check,
+    expression_bounds::check,
     variables::check,
     zones::check,
     aircraft::check,

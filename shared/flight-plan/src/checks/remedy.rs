@@ -1,17 +1,7 @@
 //! Edits that several rules offer.
 
 use super::Inspection;
-use crate::{Altitude, AltitudeReference, Edit, Id, Leg, LegKind, Problem, Value};
-
-impl Problem {
-    /// The same problem, with an edit that removes it, if there is one.
-    pub(super) fn perhaps_fixed_by(self, edit: Option<Edit>) -> Self {
-        match edit {
-            Some(edit) => self.fixed_by(edit),
-            None => self,
-        }
-    }
-}
+use crate::{Altitude, AltitudeReference, Edit, Id, Leg, LegKind, Value};
 
 /// The leg with another kind. Not for loops: their bodies may be large.
 pub(super) fn with_kind(leg: &Leg, kind: LegKind) -> Edit {
