@@ -68,7 +68,11 @@ impl Executor {
             }
             return;
         }
-        let cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
+        let mut cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
+        // crossings are counted on, so that a decision for the next one is not taken for another after the return
+        if let Some(now) = self.bookmark(0) {
+            cursor.crossings.clone_from(&now.crossings);
+        }
         self.leave_hold(out);
         self.jump(cursor, out);
     }

@@ -195,7 +195,7 @@ fn is_pending(step: Step, leg: &Id) -> bool {
     step.before.status.decision.as_ref().is_some_and(|d| d.leg == *leg)
 }
 
-/// A branch's leg that is not entered from another branch's leg is entered from the intersection.
+/// A branch's leg that is entered neither by a jump nor from another branch's leg is entered from the intersection.
 fn flown_as_decided(trace: &Trace, found: &mut Findings) {
     let mut decided: BTreeMap<&Id, &Id> = BTreeMap::new();
     let mut before: Option<&Id> = None;
@@ -210,7 +210,7 @@ fn flown_as_decided(trace: &Trace, found: &mut Findings) {
             let Event::LegEntered { place } = event else { continue };
             let from = before.replace(&place.leg);
             let crossed = |leg: &Id| {
-                let merges = from.is_some_and(|from| leads_to(step.after, leg, from));
+                let merges = from.is_none_or(|from| leads_to(step.after, leg, from));
                 leads_to(step.after, leg, &place.leg) && !merges && !place.reverse
             };
             let Some(leg) = decided.keys().copied().find(|leg| crossed(leg)) else { continue };
