@@ -1,9 +1,9 @@
 //! `altitude-missed`: at the end of a leg the aircraft is not yet where the leg should take it: climb or descent don't fit
 //! into the length of the leg, in this wind.
 
+use super::View;
 use super::flown::{Flown, Point};
 use super::layout::LaidOut;
-use super::View;
 use crate::api::Action;
 use flight_plan::Problem;
 

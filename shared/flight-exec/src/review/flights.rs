@@ -7,15 +7,16 @@
 
 use super::alternates::Origin;
 use super::flown::{Flown, Point, fly, tireless};
+use super::in_force::InForce;
 use super::layout::{Way, counts, decisions, lay_out};
 use crate::config::Config;
 use crate::executor::Executor;
 use crate::path::{Level, Passing, PathState};
 use crate::preview::{Options, Preview, PreviewError, Scenario, Start, preview};
 use aircraft::{Aircraft, Profile, Wind};
-use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Variables};
+use flight_plan::{AltitudeReference, EmergencyPlan, Id, LegKind, Program, Variables};
 use geometry::LatLon;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -201,62 +202,6 @@ fn variants(program: &Program) -> u64 {
         _ => 1,
     };
     program.flown().all_legs().iter().map(|c| branches(c.leg)).max().unwrap_or(1).max(1)
-}
-
-/// Which emergency plans answer on which leg.
-pub(super) struct InForce {
-    /// By leg: the plan for an engine failure, and those for the other causes.
-    by_leg: HashMap<Id, (Option<usize>, Vec<usize>)>,
-}
-
-/// Every cause but an engine failure.
-const POWERED: [Cause; 6] =
-    [Cause::Operator, Cause::Payload, Cause::Traffic, Cause::Link, Cause::Gps, Cause::Energy];
-
-impl InForce {
-    pub fn of(program: &Program) -> Self {
-        let number: HashMap<&Id, usize> =
-            program.flown().emergency_plans.iter().enumerate().map(|(i, e)| (&e.id, i)).collect();
-        let answer = |leg: &Id, cause| {
-            program.emergency_for(leg, cause).and_then(|plan| number.get(&plan.id).copied())
-        };
-        let stages = program.flown().stages.iter().map(|s| &s.id);
-        let legs = program.flown().all_legs();
-        let main = legs.iter().filter(|c| c.section == flight_plan::Section::Main).map(|c| &c.leg.id);
-        let of = |leg: &Id| {
-            let mut powered: Vec<usize> = POWERED.iter().filter_map(|cause| answer(leg, *cause)).collect();
-            powered.sort_unstable();
-            powered.dedup();
-            let engine = answer(leg, Cause::Engine).filter(|_| names_engine(program, leg));
-            (leg.clone(), (engine, powered))
-        };
-        Self { by_leg: stages.chain(main).map(of).collect() }
-    }
-
-    /// The plan that is named for an engine failure on a leg. (A fallback answers one too, but promises no glide: over
-    /// most of the earth there is no runway within the glide of a low flight.)
-    pub fn engine(&self, leg: &Id) -> Option<usize> {
-        self.by_leg.get(leg)?.0
-    }
-
-    /// The plans for the other causes, each once.
-    pub fn powered(&self, leg: &Id) -> &[usize] {
-        self.by_leg.get(leg).map_or(&[], |(_, plans)| plans)
-    }
-
-    /// All of them; one may come twice.
-    pub fn plans(&self, leg: &Id) -> impl Iterator<Item = usize> + '_ {
-        self.powered(leg).iter().copied().chain(self.engine(leg))
-    }
-}
-
-/// The association that answers an engine failure on a leg names that cause.
-fn names_engine(program: &Program, leg: &Id) -> bool {
-    let Some(path) = program.path(leg) else { return false };
-    let chain = program.chain(path);
-    let levels = chain.iter().rev().map(|l| &l.emergency).chain(program.stage(path).map(|s| &s.emergency));
-    let level = levels.chain([&program.plan.emergency]).find(|level| level.plan_for(Cause::Engine).is_some());
-    level.is_some_and(|level| level.by_cause.iter().any(|(cause, _)| *cause == Some(Cause::Engine)))
 }
 
 fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Executor {

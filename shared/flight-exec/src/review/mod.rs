@@ -5,7 +5,7 @@
 //! their own end), each emergency plan from the point that is worst for it, and the plan as it stands by the preview. Then
 //! each rule looks at those flights: one rule a file, each with the codes it gives.
 //!
-//! The work is bounded: [`flights`] says by what. What was not seen is told (`not-reviewed`).
+//! The work is bounded: the module `flights` says by what. What was not seen is told (`not-reviewed`).
 
 mod alternates;
 mod altitudes;
@@ -14,6 +14,7 @@ mod endurance;
 mod flights;
 mod flown;
 mod glide;
+mod in_force;
 mod layout;
 pub mod plausibility;
 mod powered;
@@ -28,7 +29,8 @@ mod zones;
 use aircraft::{Profile, Wind};
 use alternates::Origin;
 use flight_plan::{Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value};
-use flights::{Flights, InForce};
+use flights::Flights;
+use in_force::InForce;
 use prepared::Zones;
 use std::collections::HashSet;
 use std::sync::Arc;

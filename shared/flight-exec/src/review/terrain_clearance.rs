@@ -1,7 +1,7 @@
 //! `below-terrain`: the path goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
 
-use super::flown::{Flown, Point};
 use super::View;
+use super::flown::{Flown, Point};
 use flight_plan::{Id, Problem, StageKind};
 use std::collections::HashMap;
 
