@@ -4,6 +4,7 @@
 
 mod altitudes;
 pub mod commands;
+mod ends;
 mod export;
 mod import;
 mod jumps;
