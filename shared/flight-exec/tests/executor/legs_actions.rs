@@ -214,11 +214,11 @@ fn an_update_keeps_what_was_done_of_the_leg_being_flown() {
 }
 
 fn refusals(rig: &Rig) -> Vec<&str> {
-    let refused = |e| match e {
-        &Event::ActionRefused { ref reason, .. } => Some(reason.as_str()),
+    let refused = rig.events.iter().filter_map(|e| match e {
+        Event::ActionRefused { reason, .. } => Some(reason.as_str()),
         _ => None,
-    };
-    rig.events.iter().filter_map(refused).collect()
+    });
+    refused.collect()
 }
 
 #[test]

@@ -70,7 +70,7 @@ fn a_track_until_an_altitude_is_left_when_it_is_really_reached() {
 fn a_track_until_an_altitude_also_descends() {
     let legs = CLIMB.replace(r#"altitude="800""#, r#"altitude="420""#);
     let rig = check(&legs, "a f z");
-    let lowest = rig.flown.iter().filter(|w| w.leg.as_str() == "f").last().unwrap();
+    let lowest = rig.flown.iter().rfind(|w| w.leg.as_str() == "f").unwrap();
     assert!((lowest.altitude_amsl_m - 420.0).abs() < 30.0 && lowest.altitude_amsl_m > GROUND_M);
 }
 
