@@ -7,7 +7,6 @@ use super::alarms::Alarms;
 use super::feeder::{Fate, Feeder};
 use super::journal::{Entry, Notes, Record, Reply};
 use super::liaison::Liaison;
-use super::runways::safe_runways;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
@@ -39,8 +38,6 @@ pub enum Effect {
 pub const OPERATOR: &str = "operator";
 /// Who asks for what an alarm of the gateway leads to.
 const GATEWAY: &str = "gateway";
-/// Who asks for what the FP Manager does of itself.
-const FP_MANAGER: &str = "fp-manager";
 /// Answers remembered, should a request be repeated after a restart.
 const REPLIES: usize = 64;
 /// Longer names of requests are not remembered, bytes.
@@ -49,7 +46,7 @@ const REPLY_ID_MAX: usize = 128;
 /// The FP Manager without its shell.
 pub struct Manager {
     pub(super) executor: Executor,
-    feeder: Feeder,
+    pub(super) feeder: Feeder,
     pub(super) liaison: Liaison,
     aircraft: Aircraft,
     pub(super) alarms: Alarms,
@@ -142,7 +139,13 @@ impl Manager {
         }
     }
 
-    fn order(&mut self, now: Time, command: Command, by: &str, out: &mut Vec<Effect>) -> Result<(), Refusal> {
+    pub(super) fn order(
+        &mut self,
+        now: Time,
+        command: Command,
+        by: &str,
+        out: &mut Vec<Effect>,
+    ) -> Result<(), Refusal> {
         let starts = command == Command::Start;
         let request = self.next_request();
         let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
@@ -276,73 +279,7 @@ impl Manager {
         self.send(now, out);
     }
 
-    /// The answer to [`Effect::Join`]; `None`: none came.
-    pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
-        let Some(answer) = self.liaison.joined(now, answer) else { return };
-        self.want_runways();
-        self.alarms.joined();
-        self.feeder.settle(answer.highest);
-        let lost = std::mem::take(&mut self.returning) && answer.highest > self.executor.last_token();
-        if answer.highest > self.executor.last_token() {
-            self.record(now, Record::NumberAfter(answer.highest), out);
-            self.executor.number_after(answer.highest);
-        }
-        if let Some(current) = answer.current {
-            self.progress(now, current, out);
-        }
-        let flying =
-            matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
-        if flying && lost {
-            self.hold_for_want_of_a_place(now, out);
-        } else if flying {
-            self.agree(now, &answer, out);
-        } else {
-            self.step(now, Input::GatewayControls(false), out);
-        }
-        self.send(now, out);
-    }
-
-    /// After a join in flight: the gateway must have what we believe it has. Waypoints that it
-    /// took and has no more, while the aircraft stands, have been flown: nothing is flown twice.
-    fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
-        let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
-        if self.liaison.is_on_ground() && answer.last.is_none() && taken {
-            self.liaison.unwant_launch();
-            self.step(now, Input::Progress { current: None }, out);
-        } else if self.liaison.take_controlled() || self.has_gap(answer.last) {
-            self.feeder.clear();
-            // having given control back, the executor sends everything ahead anew
-            self.step(now, Input::GatewayControls(true), out);
-            self.step(now, Input::GatewayControls(false), out);
-        }
-    }
-
-    /// What waits to be sent does not continue what the gateway has.
-    fn has_gap(&self, last: Option<Token>) -> bool {
-        let sent = self.executor.ahead().map(|w| w.token);
-        let first_waiting = self.feeder.first_waiting().unwrap_or(Token(u64::MAX));
-        !self.feeder.is_under_way() && last != sent.take_while(|token| *token < first_waiting).last()
-    }
-
-    /// The gateway was given waypoints by an earlier process that no record knows of (its disk had failed, or was too
-    /// slow): the place we know is an old one. To fly on from there is for people to say.
-    fn hold_for_want_of_a_place(&mut self, now: Time, out: &mut Vec<Effect>) {
-        let reason = "the gateway has waypoints that are not in the journal, so the place in the plan is not known: \
-                      it holds; go to a leg, or resume from the last place recorded";
-        tracing::error!("{reason}");
-        out.push(Effect::Event(PlanEvent::NotJournalled { reason: reason.into() }));
-        self.feeder.clear();
-        let held = self.order(now, Command::Hold, FP_MANAGER, out);
-        if held.is_err() {
-            // it held before
-            self.liaison.want(GatewayRequest::Hold);
-        }
-        if self.liaison.take_controlled() {
-            self.step(now, Input::GatewayControls(false), out);
-        }
-    }
-
-    fn progress(&mut self, now: Time, current: Token, out: &mut Vec<Effect>) {
+    pub(super) fn progress(&mut self, now: Time, current: Token, out: &mut Vec<Effect>) {
         if current > self.steered && current <= self.executor.last_token() {
             self.step(now, Input::Progress { current: Some(current) }, out);
         }
@@ -355,7 +292,12 @@ impl Manager {
 
     /// Records an input, steps the executor with it and passes on what it wants; its answer, if there is one.
     /// What makes it want something is synced first.
-    fn step(&mut self, now: Time, input: Input, out: &mut Vec<Effect>) -> Option<Result<Answer, Refusal>> {
+    pub(super) fn step(
+        &mut self,
+        now: Time,
+        input: Input,
+        out: &mut Vec<Effect>,
+    ) -> Option<Result<Answer, Refusal>> {
         let at = self.timeline.at(now, self.executor.last_step());
         self.count(&input);
         if let Input::Propose { program, .. } = &input {
@@ -383,7 +325,7 @@ impl Manager {
         answer
     }
 
-    fn record(&mut self, now: Time, what: Record, out: &mut Vec<Effect>) {
+    pub(super) fn record(&mut self, now: Time, what: Record, out: &mut Vec<Effect>) {
         let at = self.timeline.at(now, self.executor.last_step());
         out.extend([Effect::Record(Entry { at, what }), Effect::Sync]);
     }
@@ -396,14 +338,6 @@ impl Manager {
             self.want_runways();
         }
         out.push(Effect::Event(event));
-    }
-
-    /// The gateway should know the plan's runways. A plan without any leaves it those it has.
-    fn want_runways(&mut self) {
-        let runways = self.executor.program().map(|p| safe_runways(&p.plan)).unwrap_or_default();
-        if !runways.is_empty() {
-            self.liaison.want_runways(runways);
-        }
     }
 
     /// Records what is remembered beside the executor, if it has changed.
@@ -420,7 +354,7 @@ impl Manager {
     }
 
     /// Sends what is due: first the join, then waypoints, then what wants them to be there.
-    fn send(&mut self, now: Time, out: &mut Vec<Effect>) {
+    pub(super) fn send(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.note(now, out);
         if self.liaison.should_join(now) {
             out.push(Effect::Join(Join {

@@ -5,12 +5,14 @@
 mod aircraft;
 mod alarms;
 mod feeder;
+mod joining;
 pub mod journal;
 #[cfg(test)]
 mod kills;
 mod liaison;
 mod manager;
 mod publish;
+mod recording;
 mod restart;
 mod runways;
 mod shell;

@@ -87,6 +87,16 @@ impl Keeper {
         self.desk.changed.notify_one();
     }
 
+    /// Something could not even be given: only a new state helps.
+    pub fn lose(&mut self) {
+        self.given += 1;
+        let mut slot = self.desk.lock();
+        slot.last = self.given;
+        slot.overrun = true;
+        drop(slot);
+        self.desk.changed.notify_one();
+    }
+
     /// Waits until everything given is done, but not for long.
     pub async fn done(&mut self) {
         let given = self.given;
@@ -137,7 +147,8 @@ impl Desk {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for jobs, or until `wait` is over; `None` when there will be no more.
+    /// Waits for jobs, or until `wait` is over: those there are, the number of the last, and whether some were lost.
+    /// `None` when there will be no more.
     fn take(&self, wait: Option<Duration>) -> Option<(Vec<Job>, u64, bool)> {
         let idle = |slot: &mut Slot| slot.jobs.is_empty() && !slot.overrun && !slot.closed;
         let mut slot = match wait {

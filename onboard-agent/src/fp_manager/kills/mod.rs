@@ -2,63 +2,25 @@
 //! synced and a random part of the rest, beside the same flight undisturbed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod asks;
 mod gateway;
 
 use super::journal::faulty::{Death, Faulty, Random};
 use super::journal::{Clerk, Job, Limits, Log, Saved, Storage, encode};
 use super::{Config, Effect, Manager, compile, restart};
 use crate::clock::Time;
+use asks::{Ask, What, asks};
 use gateway::Gateway;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use terrain::Flat;
 use usal::contract::*;
 
-const MISSION: &str = include_str!("mission.xml");
 const KILLS: u64 = 1000;
 /// Segments are short, so that many deaths fall on a change of segments.
 const LIMITS: Limits = Limits { turns: 20, bytes: 64 << 10, bytes_max: 1 << 20, plans: 8 };
 /// A flight that takes longer does not end.
 const STEPS_MAX: usize = 2000;
-
-/// What the client asks, once so many waypoints are flown and so many steps after the last answer.
-struct Ask {
-    flown: usize,
-    steps: usize,
-    what: What,
-}
-
-enum What {
-    Propose(String),
-    Commit,
-    Command(Command),
-    /// The gateway raises an alarm.
-    Alarm(Cause),
-}
-
-fn set(name: &str, value: VariableValue) -> What {
-    What::Command(Command::SetVariable { name: Id::new(name), value })
-}
-
-/// Everything that is asked of a flight.
-fn asks(emergency: bool) -> VecDeque<Ask> {
-    let decide = Command::Decide { leg: Id::new("ask"), branch: Id::new("look") };
-    let changed = MISSION.replace("radius=\"250\" turns=\"1\"", "radius=\"260\" turns=\"1\"");
-    let list = vec![
-        (0, 0, What::Propose(MISSION.into())),
-        (0, 1, What::Commit),
-        (0, 1, What::Command(Command::Start)),
-        (8, 0, set("reach", VariableValue::Number(300.0))),
-        (12, 0, What::Command(decide)),
-        (30, 2, What::Command(Command::SkipLeg)),
-        (34, 0, What::Command(Command::Hold)),
-        (0, 5, What::Command(Command::Resume)),
-        (40, 0, What::Propose(changed)),
-        (0, 2, What::Commit),
-        (47, 0, if emergency { What::Alarm(Cause::Energy) } else { set("found", VariableValue::Bool(true)) }),
-    ];
-    list.into_iter().map(|(flown, steps, what)| Ask { flown, steps, what }).collect()
-}
 
 fn config() -> Config {
     Config { terrain: Arc::new(Flat(322.0)), simulated: true, ..Config::new("uav1", "") }

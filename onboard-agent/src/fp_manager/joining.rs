@@ -1,0 +1,87 @@
+//! Pure: joining the gateway, at the beginning, after a loss of either side, and after a restart.
+
+use super::journal::Record;
+use super::manager::{Effect, Manager};
+use super::runways::safe_runways;
+use crate::clock::Time;
+use flight_exec::{Input, Phase, Token};
+use usal::contract::*;
+
+/// Who asks for what the FP Manager does of itself.
+const FP_MANAGER: &str = "fp-manager";
+
+impl Manager {
+    /// The answer to [`Effect::Join`]; `None`: none came.
+    pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
+        let Some(answer) = self.liaison.joined(now, answer) else { return };
+        self.want_runways();
+        self.alarms.joined();
+        self.feeder.settle(answer.highest);
+        let lost = std::mem::take(&mut self.returning) && answer.highest > self.executor.last_token();
+        if answer.highest > self.executor.last_token() {
+            self.record(now, Record::NumberAfter(answer.highest), out);
+            self.executor.number_after(answer.highest);
+        }
+        if let Some(current) = answer.current {
+            self.progress(now, current, out);
+        }
+        let flying =
+            matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
+        if flying && lost {
+            self.hold_for_want_of_a_place(now, out);
+        } else if flying {
+            self.agree(now, &answer, out);
+        } else {
+            self.step(now, Input::GatewayControls(false), out);
+        }
+        self.send(now, out);
+    }
+
+    /// After a join in flight: the gateway must have what we believe it has. Waypoints that it
+    /// took and has no more, while the aircraft stands, have been flown: nothing is flown twice.
+    fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
+        let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
+        if self.liaison.is_on_ground() && answer.last.is_none() && taken {
+            self.liaison.unwant_launch();
+            self.step(now, Input::Progress { current: None }, out);
+        } else if self.liaison.take_controlled() || self.has_gap(answer.last) {
+            self.feeder.clear();
+            // having given control back, the executor sends everything ahead anew
+            self.step(now, Input::GatewayControls(true), out);
+            self.step(now, Input::GatewayControls(false), out);
+        }
+    }
+
+    /// What waits to be sent does not continue what the gateway has.
+    fn has_gap(&self, last: Option<Token>) -> bool {
+        let sent = self.executor.ahead().map(|w| w.token);
+        let first_waiting = self.feeder.first_waiting().unwrap_or(Token(u64::MAX));
+        !self.feeder.is_under_way() && last != sent.take_while(|token| *token < first_waiting).last()
+    }
+
+    /// The gateway was given waypoints by an earlier process that no record knows of (its disk had failed, or was too
+    /// slow): the place we know is an old one. To fly on from there is for people to say.
+    fn hold_for_want_of_a_place(&mut self, now: Time, out: &mut Vec<Effect>) {
+        let reason = "the gateway has waypoints that are not in the journal, so the place in the plan is not known: \
+                      it holds; go to a leg, or resume from the last place recorded";
+        tracing::error!("{reason}");
+        out.push(Effect::Event(PlanEvent::NotJournalled { reason: reason.into() }));
+        self.feeder.clear();
+        let held = self.order(now, Command::Hold, FP_MANAGER, out);
+        if held.is_err() {
+            // it held before
+            self.liaison.want(GatewayRequest::Hold);
+        }
+        if self.liaison.take_controlled() {
+            self.step(now, Input::GatewayControls(false), out);
+        }
+    }
+
+    /// The gateway should know the plan's runways. A plan without any leaves it those it has.
+    pub(super) fn want_runways(&mut self) {
+        let runways = self.executor.program().map(|p| safe_runways(&p.plan)).unwrap_or_default();
+        if !runways.is_empty() {
+            self.liaison.want_runways(runways);
+        }
+    }
+}
