@@ -7,7 +7,7 @@ use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
 use flight_exec::preview::{Act, Scenario, Trigger, When};
 use flight_plan::{Difference, FlightPlan, Id};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -26,8 +26,8 @@ pub struct Moment {
 ///
 /// # Errors
 /// A file can't be read, or there is no such leg.
-pub fn run(old: &Source, new: &PathBuf, moment: &Moment, wind: Wind, json: bool) -> anyhow::Result<ExitCode> {
-    let new = Source { file: new.clone(), ..old.clone() };
+pub fn run(old: &Source, new: &Path, moment: &Moment, wind: Wind, json: bool) -> anyhow::Result<ExitCode> {
+    let new = Source { file: new.to_owned(), ..old.clone() };
     let (before, after) = (readable(old)?, readable(&new)?);
     let changes = Changes::between(&before.reading.plan, &after.reading.plan);
     let report = match &moment.at {
