@@ -145,3 +145,19 @@ fn preview_of_two_hours(bencher: Bencher) {
     println!("previewed flight: {:.0} s, {} waypoints", fly().time_s, fly().waypoints.len());
     bencher.bench_local(fly);
 }
+
+/// A plan of two hours with everything that a review looks at: each loop twice, both branches, a zone, the emergency plans.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn review_a_plan_of_two_hours(bencher: Bencher) {
+    let plan = include_str!("../../../assets/plans/fire-watch.xml");
+    let zone = r#"<zones><keepOut id="z" lat="36.26" lon="-84.10" radius="900"/></zones><mainPlan"#;
+    let plan = plan.replace("<mainPlan", zone).replace(r#"count="3""#, r#"count="9""#);
+    let profile = Profile { energy_j: 3e7, ..Profile::default() };
+    let program = Arc::new(compile_document(plan.as_bytes(), &profile, &Flat(300.0)).unwrap());
+    let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let (start, options) = (Start::Runway, Options::default());
+    let planned = preview(&program, &profile, &terrain, Wind::CALM, start, &Scenario::default(), &options);
+    println!("reviewed flight: {:.0} s", planned.unwrap().time_s);
+    let conditions = flight_exec::Conditions::default();
+    bencher.bench_local(|| flight_exec::review(&program, &profile, &terrain, conditions));
+}

@@ -173,12 +173,16 @@ impl Program {
     /// cause meant every cause. Legs of emergency plans end at the document's association as well; the executor
     /// sees to it that an emergency does not nest.
     pub fn emergency_for(&self, id: &Id, cause: Cause) -> Option<&EmergencyPlan> {
+        self.flown().emergency_plan(self.emergency_choice(id, cause)?.plan_for(cause)?)
+    }
+
+    /// The association that answers a cause on a leg (or stage): see [`Program::emergency_for`].
+    pub fn emergency_choice(&self, id: &Id, cause: Cause) -> Option<&EmergencyChoice> {
         let path = self.path(id)?;
         let chain = self.chain(path);
         let levels = chain.iter().rev().map(|leg| &leg.emergency);
-        let levels = levels.chain(self.stage(path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
-        let chosen = levels.filter_map(|level| level.plan_for(cause)).next()?;
-        self.flown().emergency_plan(chosen)
+        let mut levels = levels.chain(self.stage(path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
+        levels.find(|level| level.plan_for(cause).is_some())
     }
 
     /// A number: a constant as it is, an expression evaluated.

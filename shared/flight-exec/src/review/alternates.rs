@@ -7,6 +7,8 @@ use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway, Variables};
 use geometry::geodesy::normalise_180;
 use geometry::{LatLon, Vec2};
 
+/// Most places of a way out that a glide is led through.
+const MOST_PLACES: usize = 200;
 /// Least speed over the ground with which a place is still reached, m/s.
 const LEAST_GROUND_MPS: f64 = 1.0;
 
@@ -75,7 +77,7 @@ fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
     let env = Env { variables: &variables, flight: FlightState::on_ground(runway.threshold) };
     let legs = plan.stages.iter().flat_map(|s| &s.legs);
     let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
-    let mut route: Vec<LatLon> = places.chain([runway.threshold]).collect();
+    let mut route: Vec<LatLon> = places.take(MOST_PLACES).chain([runway.threshold]).collect();
     route.dedup_by(|a, b| crate::path::distance_m(*a, *b) < 1.0);
     route
 }

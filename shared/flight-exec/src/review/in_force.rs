@@ -17,9 +17,8 @@ impl InForce {
     pub fn of(program: &Program) -> Self {
         let number: HashMap<&Id, usize> =
             program.flown().emergency_plans.iter().enumerate().map(|(i, e)| (&e.id, i)).collect();
-        let answer = |leg: &Id, cause| {
-            program.emergency_for(leg, cause).and_then(|plan| number.get(&plan.id).copied())
-        };
+        let answer =
+            |leg: &Id, cause| number.get(program.emergency_choice(leg, cause)?.plan_for(cause)?).copied();
         let stages = program.flown().stages.iter().map(|s| &s.id);
         let legs = program.flown().all_legs();
         let main = legs.iter().filter(|c| c.section == flight_plan::Section::Main).map(|c| &c.leg.id);
@@ -52,9 +51,6 @@ impl InForce {
 
 /// The association that answers an engine failure on a leg names that cause.
 fn names_engine(program: &Program, leg: &Id) -> bool {
-    let Some(path) = program.path(leg) else { return false };
-    let chain = program.chain(path);
-    let levels = chain.iter().rev().map(|l| &l.emergency).chain(program.stage(path).map(|s| &s.emergency));
-    let level = levels.chain([&program.plan.emergency]).find(|level| level.plan_for(Cause::Engine).is_some());
-    level.is_some_and(|level| level.by_cause.iter().any(|(cause, _)| *cause == Some(Cause::Engine)))
+    let choice = program.emergency_choice(leg, Cause::Engine);
+    choice.is_some_and(|choice| choice.by_cause.iter().any(|(cause, _)| *cause == Some(Cause::Engine)))
 }

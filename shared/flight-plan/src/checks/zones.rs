@@ -1,4 +1,4 @@
-//! `bad-zone`: an outline that is no simple polygon or no circle, or limits that are expressions; `zone-altitudes`: a floor
+//! `too-many-zones`: more than the path can be held against in time; `bad-zone`: an outline that is no simple polygon or no circle, or limits that are expressions; `zone-altitudes`: a floor
 //! that is not below the ceiling; `zone-times`: a time that ends before it begins.
 
 use super::Inspection;
@@ -7,9 +7,23 @@ use crate::{Altitude, Edit, Problem, Thing, Value, Zone, ZoneShape};
 
 /// Greatest radius of a zone, metres.
 const LARGEST_M: f64 = 200_000.0;
+/// Most zones, and most corners of all of them.
+const MOST_ZONES: usize = 1000;
+const MOST_CORNERS: usize = 10_000;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for zone in &view.plan.zones {
+    let zones = &view.plan.zones;
+    let corners = zones.iter().map(|zone| match &zone.shape {
+        ZoneShape::Polygon(corners) => corners.len(),
+        ZoneShape::Circle { .. } => 1,
+    });
+    if zones.len() > MOST_ZONES || corners.sum::<usize>() > MOST_CORNERS {
+        let message = format!(
+            "keep to {MOST_ZONES} zones with {MOST_CORNERS} corners in all: leave out those far from the flight, simplify outlines"
+        );
+        problems.push(Problem::error("too-many-zones", message));
+    }
+    for zone in zones {
         outline(zone, problems);
         limits(view, zone, problems);
         times(zone, problems);
@@ -96,6 +110,15 @@ mod tests {
         assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)])), [""; 0]);
         assert_eq!(codes(&polygon(&crossing)), ["bad-zone"]);
         assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0)])), ["bad-zone"]);
+    }
+
+    #[test]
+    fn more_zones_than_a_path_is_held_against() {
+        let many = |n: usize| -> String {
+            (0..n).map(|i| format!(r#"<keepOut id="z{i}" lat="36.5" lon="-84.5" radius="5"/>"#)).collect()
+        };
+        assert_eq!(codes(&with(&many(1000))), [""; 0]);
+        assert_eq!(codes(&with(&many(1001))), ["too-many-zones"]);
     }
 
     #[test]
