@@ -151,7 +151,7 @@ fn preview_of_two_hours(bencher: Bencher) {
 fn review_a_plan_of_two_hours(bencher: Bencher) {
     let plan = include_str!("../../../assets/plans/fire-watch.xml");
     let zone = r#"<zones><keepOut id="z" lat="36.26" lon="-84.10" radius="900"/></zones><mainPlan"#;
-    let plan = plan.replace("<mainPlan", zone).replace(r#"count="3""#, r#"count="9""#);
+    let plan = plan.replace("<mainPlan", zone).replace(r#"count="3""#, r#"count="12""#);
     let profile = Profile { energy_j: 3e7, ..Profile::default() };
     let program = Arc::new(compile_document(plan.as_bytes(), &profile, &Flat(300.0)).unwrap());
     let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
