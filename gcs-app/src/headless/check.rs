@@ -1,19 +1,45 @@
 //! `legwork check`: everything that is wrong with a plan.
 
 use super::{Source, foreign};
+use aircraft::Wind;
+use flight_exec::Conditions;
 use flight_plan::Problem;
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
+
+/// What a path is looked at for.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct Circumstances {
+    /// Where the wind comes from (degrees true) and its speed (m/s).
+    #[arg(long, value_name = "DIRECTION,SPEED", value_parser = super::wind::parse, default_value = "0,0")]
+    pub wind: Wind,
+    /// When the flight starts (UTC, as 2026-06-01T06:00:00Z); without it every zone counts as active.
+    #[arg(long, value_name = "TIME")]
+    pub start: Option<jiff::Timestamp>,
+    /// The plan only, not the path.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+impl Circumstances {
+    fn conditions(&self) -> Conditions {
+        let start_unix_s = self.start.map(jiff::Timestamp::as_second);
+        Conditions { wind: self.wind, start_unix_s, ..Conditions::default() }
+    }
+}
 
 /// Prints the problems, as lines `file:line:column: severity [code] subject: message` or as one JSON document; 0
 /// if the plan may be flown, else 1.
 ///
 /// # Errors
 /// A file can't be read.
-pub fn run(source: &Source, json: bool) -> anyhow::Result<ExitCode> {
+pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow::Result<ExitCode> {
     let loaded = source.load()?;
-    let problems = loaded.problems();
+    let mut problems = loaded.problems();
+    if !circumstances.quick {
+        problems.extend(loaded.review(circumstances.conditions()));
+    }
     if json {
         say!("{:#}", document(&source.file, &problems, &loaded.notes));
     } else {
@@ -75,6 +101,9 @@ mod tests {
         let json = document(&source.file, &problems, &[]);
         assert_eq!(json["good"], false);
         assert!(json["problems"].as_array().unwrap().iter().any(|p| p["line"] == 2), "{json:#}");
-        assert_eq!(format!("{:?}", run(&source, true).unwrap()), format!("{:?}", ExitCode::from(1)));
+        assert_eq!(
+            format!("{:?}", run(&source, &Circumstances::default(), true).unwrap()),
+            format!("{:?}", ExitCode::from(1))
+        );
     }
 }

@@ -27,12 +27,17 @@ use std::process::ExitCode;
 pub enum Command {
     /// Say what is wrong with a plan.
     ///
-    /// Prints a line for each problem: file:line:column: severity [code] subject: message.
+    /// Prints a line for each problem: file:line:column: severity [code] subject: message. A plan that has no errors
+    /// is also flown ahead of time, every branch and every emergency plan, and the path is looked at: zones, terrain, climbs,
+    /// energy, ways to the runways.
     #[command(after_help = help::CHECK)]
     Check {
         /// The plan and its surroundings.
         #[command(flatten)]
         source: Box<Source>,
+        /// What the path is looked at for.
+        #[command(flatten)]
+        circumstances: check::Circumstances,
         /// One JSON document instead of lines.
         #[arg(long)]
         json: bool,
@@ -117,7 +122,7 @@ pub enum Command {
 /// Files that can't be read or written, options that make no sense (exit status 2).
 pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
-        Command::Check { source, json } => check::run(source, *json),
+        Command::Check { source, circumstances, json } => check::run(source, circumstances, *json),
         Command::Preview { source, selection, target, wind } => {
             preview::run(source, *wind, selection, target)
         }

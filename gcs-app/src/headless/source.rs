@@ -5,6 +5,7 @@ use super::output::DASH;
 use crate::assets;
 use aircraft::Profile;
 use anyhow::Context;
+use flight_exec::Conditions;
 use flight_plan::{Problem, Program, Reading};
 use interchange::Note;
 use std::fs::File;
@@ -109,6 +110,16 @@ impl Loaded {
             problems.iter_mut().for_each(|p| p.location = None);
         }
         problems
+    }
+
+    /// What is wrong with the path that would be flown; nothing if the plan has errors already.
+    pub fn review(&self, conditions: Conditions) -> Vec<Problem> {
+        let Ok((program, profile)) = self.compile() else { return Vec::new() };
+        let mut found = flight_exec::review(&Arc::new(program), &profile, &self.terrain, conditions);
+        if !self.converted {
+            self.reading.places.locate(&mut found);
+        }
+        found
     }
 
     /// The plan ready to be flown, and its aircraft.
