@@ -315,7 +315,7 @@ fn edit(plan: &FlightPlan, change: &Change, ground: &dyn Terrain) -> Option<Edit
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Whatever is done to a good plan: checks and review come to an end, and what one of them refuses is not flown.
     #[test]
