@@ -6,12 +6,12 @@ use anyhow::{Context, bail, ensure};
 use geometry::LatLon;
 use std::{path::Path, time::Duration};
 use usal::{
-    Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber,
+    Config, EventSubscriber, Occurrence, Participant, Presence, Session, Start, VariableSubscriber,
     contract::{
         Attitude, ClockTick, Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation,
         PlanEvent, PlanStatus, Position, ProposalReport, Propose, TimedGatewayEvent,
     },
-    topics::{fp_manager, gateway},
+    topics::{self, fp_manager, gateway},
 };
 
 /// Where the simulator stands.
@@ -103,6 +103,7 @@ struct Ground {
     position: VariableSubscriber<Position>,
     navigation: VariableSubscriber<Navigation>,
     attitude: VariableSubscriber<Attitude>,
+    presence: Presence,
 }
 
 impl Ground {
@@ -116,6 +117,7 @@ impl Ground {
             position: session.follow(gateway::POSITION)?,
             navigation: session.follow(gateway::NAVIGATION)?,
             attitude: session.follow(gateway::ATTITUDE)?,
+            presence: session.presence()?,
             clock: match pace {
                 Pace::Lockstep => Some(Participant::join(&session, "test")?),
                 Pace::Free => None,
@@ -273,6 +275,18 @@ impl Rig {
     pub fn restart_fp_manager(&mut self) -> anyhow::Result<()> {
         self.fp_manager = start_fp_manager(&self.endpoint, self.state.path(), self.pace)?;
         Ok(())
+    }
+
+    /// Waits, without letting time go on, until the network knows whether the FP Manager is there.
+    pub async fn fp_manager_is_there(&mut self, there: bool) -> anyhow::Result<()> {
+        let presence = &mut self.ground.as_mut().context("no ground station")?.presence;
+        let known = async {
+            while presence.is_alive(topics::FP_MANAGER) != there {
+                presence.changed().await.context("the session is closed")?;
+            }
+            Ok(())
+        };
+        tokio::time::timeout(PATIENCE, known).await.with_context(|| format!("FP Manager there: {there}"))?
     }
 
     fn ground(&self) -> anyhow::Result<&Ground> {
