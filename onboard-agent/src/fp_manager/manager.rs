@@ -9,6 +9,7 @@ use super::journal::{Entry, Notes, Record, Reply};
 use super::liaison::Liaison;
 use super::timeline::Timeline;
 use crate::clock::Time;
+use ::aircraft::Wind;
 use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
 use flight_plan::{Problem, Program};
 use std::collections::VecDeque;
@@ -91,6 +92,12 @@ impl Manager {
     /// The gateway takes our waypoints.
     pub fn is_joined(&self) -> bool {
         self.liaison.is_joined()
+    }
+
+    /// The wind as it is measured; calm, as long as nothing is known.
+    pub fn wind(&self) -> Wind {
+        let state = self.aircraft.state();
+        state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps })
     }
 
     /// Fresh variables of the gateway; they reach the executor with the next tick.
@@ -176,12 +183,12 @@ impl Manager {
     pub fn propose(
         &mut self,
         now: Time,
-        program: Program,
+        program: impl Into<Arc<Program>>,
         based_on: Option<u64>,
         out: &mut Vec<Effect>,
     ) -> Result<ProposalReport, Refusal> {
         let request = self.next_request();
-        let (program, objections) = (Arc::new(program), Vec::new());
+        let (program, objections) = (program.into(), Vec::new());
         let input = Input::Propose { request, program, based_on, objections };
         match self.step(now, input, out) {
             Some(Ok(Answer::Proposal(report))) => Ok(*report),

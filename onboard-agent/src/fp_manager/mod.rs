@@ -11,6 +11,7 @@ pub mod journal;
 mod kills;
 mod liaison;
 mod manager;
+mod proposals;
 mod publish;
 mod recording;
 mod restart;
@@ -70,6 +71,7 @@ impl Config {
 /// Problems listed in a sentence.
 const PROBLEMS_MAX: usize = 20;
 
+/// A document that was accepted before: it is not reviewed again.
 fn compile(xml: &[u8], config: &Config) -> Result<Program, Vec<Problem>> {
     flight_plan::compile_document(xml, &config.profile, config.terrain.as_ref())
 }

@@ -1,13 +1,16 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
+use super::Config;
 use super::journal::Keeper;
 use super::manager::{Effect, Manager, OPERATOR};
+use super::proposals::{Desk, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
-use super::{Config, compile, listed};
 use crate::Shutdown;
 use crate::clock::Clock;
 use anyhow::Context;
+use flight_plan::Program;
+use std::sync::Arc;
 use std::time::Duration;
 use usal::contract::*;
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
@@ -141,6 +144,7 @@ pub(super) struct Shell {
     pub(super) journal: Option<Keeper>,
     pub(super) publishers: Publishers,
     pending: Pending,
+    desk: Desk,
 }
 
 /// Runs the FP Manager until `shutdown`.
@@ -167,7 +171,8 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let session = session.clone();
     let pending = Pending::default();
     let manager = past.manager;
-    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending };
+    let desk = Desk::default();
+    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending, desk };
     let troubles = past.troubles.into_iter();
     let told = troubles.map(|reason| Effect::Event(PlanEvent::NotJournalled { reason })).collect();
     shell.perform(told).await;
@@ -183,6 +188,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             occurrence = ears.events.recv() => {
                 shell.occurred(occurrence.context("the network session was closed")?).await;
             }
+            (incoming, looked) = shell.desk.next() => shell.looked(incoming, looked).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -204,10 +210,8 @@ impl Shell {
         else {
             return Ok(());
         };
-        let report = self
-            .propose(&Propose { xml, seen_revision: None })
-            .await
-            .map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
+        let program = looked_at(&xml, &self.config, self.manager.wind());
+        let report = self.propose(program, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
         self.command(commit, OPERATOR, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
     }
@@ -294,10 +298,7 @@ impl Shell {
         match call {
             Call::Describe(incoming) => incoming.answer(Ok(usal::fp_manager_description())),
             Call::Plan(incoming) => incoming.answer(Ok(self.document())),
-            Call::Propose(incoming) => {
-                let answer = self.propose(&incoming.request).await;
-                incoming.answer(answer);
-            }
+            Call::Propose(incoming) => self.proposed(incoming).await,
             Call::Command(incoming) => {
                 let id = incoming.id().map(str::to_owned);
                 let by = incoming.from().unwrap_or(OPERATOR).to_owned();
@@ -312,16 +313,38 @@ impl Shell {
         }
     }
 
-    async fn propose(&mut self, propose: &Propose) -> Result<ProposalReport, Refusal> {
+    async fn proposed(&mut self, incoming: Incoming<Propose, ProposalReport>) {
         let revision = self.manager.executor().status().revision;
-        if propose.seen_revision.is_some_and(|seen| seen != revision) {
+        if incoming.request.seen_revision.is_some_and(|seen| seen != revision) {
             let reason = format!("the plan is at revision {revision} by now: look at it, then propose again");
-            return Err(refusal("stale-revision", reason));
+            return incoming.answer(Err(refusal("stale-revision", reason)));
         }
-        let program =
-            compile(propose.xml.as_bytes(), &self.config).map_err(|p| refusal("plan-errors", listed(&p)))?;
+        let wind = self.manager.wind();
+        if self.clock.is_simulated() {
+            // in lockstep looking takes no time
+            let looked = looked_at(&incoming.request.xml, &self.config, wind);
+            return self.looked(incoming, looked).await;
+        }
+        self.desk.take(incoming, &self.config, wind);
+    }
+
+    /// A proposal has been looked at. The executor sees to it that the plan it was made for is still the one being flown.
+    async fn looked(
+        &mut self,
+        incoming: Incoming<Propose, ProposalReport>,
+        looked: Result<Arc<Program>, Refusal>,
+    ) {
+        let answer = self.propose(looked, incoming.request.seen_revision).await;
+        incoming.answer(answer);
+    }
+
+    async fn propose(
+        &mut self,
+        program: Result<Arc<Program>, Refusal>,
+        based_on: Option<u64>,
+    ) -> Result<ProposalReport, Refusal> {
         let mut effects = Vec::new();
-        let report = self.manager.propose(self.clock.now(), program, propose.seen_revision, &mut effects);
+        let report = self.manager.propose(self.clock.now(), program?, based_on, &mut effects);
         self.perform(effects).await;
         report
     }

@@ -4,6 +4,7 @@ use crate::api::{Command, Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing, Trouble};
 use crate::executor::{Executor, refusal};
 use crate::handed::Handed;
+use crate::world::LoopCount;
 use flight_plan::{Id, LegKind, VariableValue};
 
 /// Most loops whose counts are set by command at a time.
@@ -182,19 +183,30 @@ impl Executor {
         if count == 0 {
             return Err(refusal("bad-count", "the least count is 1; skip the leg to leave it at once"));
         }
-        let active = self.place().is_some_and(|p| p.iterations.iter().any(|i| i.leg == leg));
-        if !active {
+        let Some(activation) = self.activation_at(0, &leg) else {
             let reason = format!("loop `{leg}` is not being flown: set its count when the aircraft is in it");
             return Err(refusal("not-in-loop", reason));
-        }
-        self.state.counts.retain(|(id, _)| *id != leg);
+        };
+        self.state.counts.retain(|c| c.leg != leg);
         self.state.counts.truncate(MOST_COUNTS - 1);
         // waypoints too near to be laid out anew tell it as well
-        let near = self.state.handed.iter_mut().flat_map(|h| &mut h.place.iterations);
-        near.filter(|i| i.leg == leg).for_each(|i| i.of = Some(count));
-        self.state.counts.push((leg, count));
+        for near in 0..self.alterable_from() {
+            if self.activation_at(near, &leg) == Some(activation) {
+                let place = self.state.handed.get_mut(near).map(|h| &mut h.place.iterations);
+                place.into_iter().flatten().filter(|i| i.leg == leg).for_each(|i| i.of = Some(count));
+            }
+        }
+        self.state.counts.push(LoopCount { leg, activation: Some(activation), count });
         self.replan(out);
         Ok(())
+    }
+
+    /// Which activation of a loop a waypoint handed out belongs to.
+    fn activation_at(&self, index: usize, leg: &Id) -> Option<u64> {
+        // the bookmark behind the waypoint is still in its leg
+        let behind = self.bookmark(index + 1)?;
+        let around = behind.loop_ids(&self.world()?);
+        behind.loops.get(around.iter().position(|id| id == leg)?).map(|frame| frame.activation)
     }
 
     fn set_variable(

@@ -65,7 +65,7 @@ impl Executor {
             match choice {
                 Choice::Loop { leg, arrival, of, again } => {
                     if !again {
-                        self.state.counts.retain(|(id, _)| *id != leg);
+                        self.state.counts.retain(|c| c.leg != leg);
                     }
                     out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
                 }

@@ -51,6 +51,9 @@ impl Executor {
 
     /// Takes a stretch over behind what is handed out, numbering its waypoints.
     fn append(&mut self, stretch: Stretch, out: &mut Vec<Output>) {
+        if let Some(last) = self.state.handed.back_mut().filter(|_| !stretch.handed.is_empty()) {
+            last.waypoint.end_of_plan = false;
+        }
         for mut handed in stretch.handed {
             self.state.last_token += 1;
             handed.waypoint.token = Token(self.state.last_token);
@@ -190,7 +193,7 @@ impl Executor {
         cursor.passage = self.state.last_passage;
         // a count belongs to an activation: that of a loop which is left is forgotten
         let around = self.world().map_or_else(Vec::new, |w| cursor.loop_ids(&w));
-        self.state.counts.retain(|(id, _)| around.contains(id));
+        self.state.counts.retain(|c| around.contains(&c.leg));
         if cursor.section.is_none() {
             self.state.emergency = None;
         }

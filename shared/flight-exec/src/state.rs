@@ -5,6 +5,7 @@ use crate::api::{AircraftState, Phase};
 use crate::cursor::{Cursor, Trouble};
 use crate::decision::Decision;
 use crate::handed::{Handed, Onward};
+use crate::world::LoopCount;
 use flight_plan::{Cause, Id, Variables};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -30,7 +31,7 @@ pub(crate) struct State {
     pub announced: Option<(u64, Id)>,
     pub decisions: Vec<Decision>,
     pub requested: Vec<(Id, u64)>,
-    pub counts: Vec<(Id, u64)>,
+    pub counts: Vec<LoopCount>,
     /// See [`crate::world::World::released`].
     pub released: Option<u64>,
     /// See [`crate::world::World::waited`].

@@ -10,10 +10,22 @@ use flight_plan::{
     VariableValue, Variables,
 };
 use geometry::LatLon;
+use serde::{Deserialize, Serialize};
 use terrain::Terrain;
 
 /// Steps in which a wind above the design wind widens turns, m/s.
 const WIND_STEP_MPS: f64 = 2.0;
+
+/// A loop's count that is not the plan's.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LoopCount {
+    /// The iterative leg.
+    pub leg: Id,
+    /// [`crate::cursor::LoopFrame::activation`]; `None`: each of them.
+    pub activation: Option<u64>,
+    /// The count.
+    pub count: u64,
+}
 
 /// Everything that expansion depends on besides the cursor itself: the same world gives the same path.
 #[derive(Clone, Copy)]
@@ -36,8 +48,8 @@ pub struct World<'a> {
     pub released: Option<u64>,
     /// Passage at whose end the aircraft has circled as long as it should.
     pub waited: Option<u64>,
-    /// Counts set by command, by loop.
-    pub counts: &'a [(Id, u64)],
+    /// Counts set by command, or for a review.
+    pub counts: &'a [LoopCount],
     /// The aircraft is at the cursor's place: measured values count instead of predicted ones.
     pub arriving: bool,
     /// A look ahead from inside an expansion: no further one.
@@ -51,9 +63,10 @@ impl World<'_> {
         self
     }
 
-    /// A loop's count, if a command has set it.
-    pub fn count_of(&self, leg: &Id) -> Option<u64> {
-        self.counts.iter().find(|(id, _)| id == leg).map(|(_, n)| *n)
+    /// The count of an activation of a loop, if it has been set.
+    pub fn count_of(&self, leg: &Id, activation: u64) -> Option<u64> {
+        let of = |c: &&LoopCount| c.leg == *leg && c.activation.is_none_or(|a| a == activation);
+        self.counts.iter().find(of).map(|c| c.count)
     }
 
     fn env(&self) -> Env<'_> {

@@ -63,7 +63,8 @@ pub struct Waypoint {
     pub fly_over: bool,
     /// The leg it belongs to.
     pub leg: Id,
-    /// Flying it ends the plan: no waypoint will follow.
+    /// Flying it ends the plan: no waypoint will follow. What is fed behind it after all (by an update, for instance)
+    /// takes the mark away: that of the last waypoint counts.
     pub end_of_plan: bool,
 }
 

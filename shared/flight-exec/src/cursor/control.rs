@@ -100,7 +100,7 @@ impl Cursor {
         if frame.reverse == frame.mirrored {
             let inside = world.in_iteration(frame.iteration);
             let own = count.as_ref().and_then(|c| notes.value(&leg.id, inside.number(c)));
-            let of = world.count_of(&leg.id).or(own.map(|n| n.max(1.0) as u64));
+            let of = world.count_of(&leg.id, frame.activation).or(own.map(|n| n.max(1.0) as u64));
             let until = until.as_ref().and_then(|c| notes.value(&leg.id, inside.condition(c)));
             let done = of.is_some_and(|n| frame.iteration >= n) || until == Some(true);
             let arrival = frame.iteration;

@@ -36,7 +36,7 @@ impl Cursor {
             let LegKind::Iterative { count, .. } = &leg.kind else { return None };
             let inside = world.in_iteration(frame.iteration);
             let own = count.as_ref().and_then(|c| inside.number(c).ok()).map(|n| n.max(1.0) as u64);
-            world.count_of(&leg.id).or(own)
+            world.count_of(&leg.id, frame.activation).or(own)
         };
         let named = self.loops.iter().zip(chain);
         named

@@ -6,7 +6,7 @@ use crate::cursor::{Cursor, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::path::PathState;
-use crate::world::World;
+use crate::world::{LoopCount, World};
 use flight_plan::{Id, LegKind, Program};
 use std::collections::{HashMap, HashSet};
 
@@ -47,7 +47,7 @@ fn legs(program: &Program) -> impl Iterator<Item = &flight_plan::Leg> {
 }
 
 /// Counts for every loop.
-pub(super) fn counts(program: &Program) -> Vec<(Id, u64)> {
+pub(super) fn counts(program: &Program) -> Vec<LoopCount> {
     let is_loop = |leg: &&flight_plan::Leg| matches!(leg.kind, LegKind::Iterative { .. });
     let count = |leg: &flight_plan::Leg| {
         let LegKind::Iterative { count: Some(flight_plan::Value::Constant(n)), .. } = &leg.kind else {
@@ -55,7 +55,9 @@ pub(super) fn counts(program: &Program) -> Vec<(Id, u64)> {
         };
         PASSES.min(n.max(1.0) as u64)
     };
-    legs(program).filter(is_loop).map(|leg| (leg.id.clone(), count(leg))).collect()
+    let count_of =
+        |leg: &flight_plan::Leg| LoopCount { leg: leg.id.clone(), activation: None, count: count(leg) };
+    legs(program).filter(is_loop).map(count_of).collect()
 }
 
 /// A way through the plan's intersections: the number of the branch that is taken at the first crossing of each.
@@ -99,7 +101,7 @@ pub(super) fn lay_out(
     executor: &Executor,
     section: Option<usize>,
     from: PathState,
-    counts: &[(Id, u64)],
+    counts: &[LoopCount],
     decisions: &[Decision],
 ) -> Layout {
     let mut layout = Layout::default();

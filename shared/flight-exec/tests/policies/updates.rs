@@ -189,7 +189,9 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
         let entered = trace.entered().take_while(|(s, _)| s.at < step.at).last();
         let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
-        let is_there = knows(new, &before.leg) && kind(old) == kind(new);
+        // where an orbit is left depends on what follows: it may turn out to be flown already
+        let ends_early = kind(new) == Some("orbit");
+        let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early;
         if !is_there || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
             continue;
         }

@@ -168,7 +168,9 @@ impl Recipe {
             entry: frame.to_local(from),
             tolerance_m: self.tolerance_m,
         };
-        let pattern = shapes::Contours::new(&polygon, &p).map(Pattern::Contours).map_err(geometric)?;
+        // without a number of loops the area is to be filled
+        let lay_out = if loops.is_none() { shapes::Contours::covering } else { shapes::Contours::new };
+        let pattern = lay_out(&polygon, &p).map(Pattern::Contours).map_err(geometric)?;
         Ok(LaidOut { pattern, frame })
     }
 }
