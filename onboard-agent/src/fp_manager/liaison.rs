@@ -163,13 +163,13 @@ impl Liaison {
         }
     }
 
-    /// The request to be made now, if any; runways come first, and all but them and a hold wait
-    /// for the waypoints.
+    /// The request to be made now, if any; runways come first, and all but them, a hold and Safe mode
+    /// wait for the waypoints.
     pub fn request(&mut self, now: Time, fed: bool) -> Option<GatewayRequest> {
         if self.asking {
             return None;
         }
-        let ready = |wish: &&Wish| fed || wish.request == GatewayRequest::Hold;
+        let ready = |wish: &&Wish| fed || matches!(wish.request, GatewayRequest::Hold | GatewayRequest::Safe);
         let due = |wish: &&Wish| wish.is_due(now);
         let runways = self.runways.as_ref().filter(due);
         let request = runways.or(self.wanted.as_ref().filter(due).filter(ready))?.request.clone();

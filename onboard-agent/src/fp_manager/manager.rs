@@ -10,8 +10,8 @@ use super::liaison::Liaison;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
-use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, Token};
-use flight_plan::{Problem, Program};
+use flight_exec::{Answer, Branching, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
+use flight_plan::{Id, Problem, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use usal::contract::*;
@@ -25,6 +25,15 @@ pub enum Effect {
     Join(Join),
     /// Ask the gateway; tell [`Manager::requested`] the answer.
     Request(GatewayRequest),
+    /// Call a service for the plan; nobody waits for the answer.
+    Invoke {
+        /// The service.
+        service: String,
+        /// Its operation.
+        operation: String,
+        /// The request.
+        argument: serde_json::Value,
+    },
     /// Publish an event.
     Event(PlanEvent),
     /// Record this, with all of the turn's records, before anything else of the turn takes effect.
@@ -249,6 +258,9 @@ impl Manager {
         tracing::warn!(?cause, "alarm of the gateway: emergency");
         if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {
             tracing::warn!(?cause, "no emergency plan flown: {refusal}");
+            if refusal.code == "no-emergency-plan" {
+                self.liaison.want(GatewayRequest::Safe);
+            }
         }
     }
 
@@ -267,9 +279,18 @@ impl Manager {
             Fate::Refused(first, reason) => {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
                 self.step(now, Input::Rejected { first, reason }, out);
+                if self.is_in_emergency() {
+                    // its plan can't be flown: whoever takes no waypoints has to bring the aircraft home
+                    self.liaison.want(GatewayRequest::Safe);
+                }
             }
         }
         self.send(now, out);
+    }
+
+    fn is_in_emergency(&self) -> bool {
+        let place = self.executor.status().place;
+        place.is_some_and(|place| matches!(place.plan, Branching::Emergency(_)))
     }
 
     /// The answer to [`Effect::Request`].
@@ -325,8 +346,7 @@ impl Manager {
                 Output::Hold => self.liaison.want(GatewayRequest::Hold),
                 Output::Event(event) => self.happened(event, out),
                 Output::Answer { result, .. } => answer = Some(result),
-                // told by its event, which is published
-                Output::Act { .. } => {}
+                Output::Act { leg, passage, act } => out.extend(invocation(leg, passage, act)),
             }
         }
         answer
@@ -379,6 +399,19 @@ impl Manager {
             out.push(Effect::Request(request));
         }
     }
+}
+
+/// The call that an act asks for. The other acts are told by their events, for whoever does them.
+fn invocation(leg: Id, passage: u64, act: ResolvedAct) -> Option<Effect> {
+    let ResolvedAct::Invoke { service, operation, argument } = act else { return None };
+    let text = if argument.is_empty() { "null" } else { &argument };
+    Some(match serde_json::from_str(text) {
+        Ok(argument) => Effect::Invoke { service, operation, argument },
+        Err(error) => {
+            let reason = format!("the argument for {service}/{operation} is no JSON: {error}");
+            Effect::Event(PlanEvent::ActionRefused { leg, passage, reason })
+        }
+    })
 }
 
 /// An input as it is recorded.

@@ -381,6 +381,17 @@ impl Shell {
                     let call = self.session.call(gateway::REQUEST, &request, CALL_TIMEOUT);
                     self.pending.request = Some((request, call));
                 }
+                Effect::Invoke { service, operation, argument } => {
+                    let call = self.session.call_named::<_, serde_json::Value>(
+                        &service,
+                        &operation,
+                        &argument,
+                        CALL_TIMEOUT,
+                    );
+                    tokio::spawn(async move {
+                        told(call.await, &format!("the plan's call of {service}/{operation}"));
+                    });
+                }
                 Effect::Record(_) | Effect::Keep(_) | Effect::Sync => {}
             }
         }

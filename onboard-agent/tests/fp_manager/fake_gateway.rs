@@ -224,6 +224,7 @@ impl FakeGateway {
                 self.state = GatewayState::Nav;
             }
             GatewayRequest::Hold => self.state = GatewayState::Hold,
+            GatewayRequest::Safe => self.state = GatewayState::SafeHold,
             GatewayRequest::SetRunways { runways } => {
                 self.runways.push(runways);
                 return Ok(Empty {});

@@ -230,6 +230,37 @@ async fn alarm_with_a_cause_flies_the_emergency_plan() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn alarm_without_an_emergency_plan_asks_the_gateway_for_safe_mode() {
+    let mut flight = Flight::new(None).await;
+    flight.load(&SQUARE.replace(r#"<mainPlan emergency="return">"#, "<mainPlan>")).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.len() >= 2).await;
+    flight.gateway.alarm(Cause::Energy);
+    flight.step_until(|g| g.requests.contains(&GatewayRequest::Safe)).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_plan_calls_a_service_once_where_it_says_so() {
+    let mut flight = Flight::new(None).await;
+    let invocation: usal::topics::Invocation<serde_json::Value, Empty> =
+        usal::topics::Invocation::new("payload", "drop");
+    let service = Session::open(usal::Config::client("uav1", &flight.config.connect)).await.unwrap();
+    let mut drops = service.serve(invocation).unwrap();
+    let action =
+        r#"<action on="end"><invoke service="payload" operation="drop" argument='{"bay": 2}'/></action>"#;
+    let side = r#"<TF id="side2" fix="B"/>"#;
+    let with = format!(r#"<TF id="side2" fix="B">{action}</TF>"#);
+    flight.load(&SQUARE.replace(side, &with)).await;
+    flight.start().await;
+    flight.step_until(FakeGateway::finished).await;
+    let dropped = within(drops.recv()).await.unwrap();
+    assert_eq!(dropped.request, serde_json::json!({"bay": 2}));
+    dropped.answer(Ok(Empty {}));
+    flight.step(20).await;
+    assert!(drops.try_recv().is_none(), "once");
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
     let directory = tempfile::tempdir().unwrap();
     let mut flight = Flight::new(Some(directory.path())).await;

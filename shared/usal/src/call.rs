@@ -62,10 +62,25 @@ impl Session {
         Q: Serialize,
         A: DeserializeOwned + Send + 'static,
     {
+        self.call_named(invocation.service, invocation.name, request, timeout)
+    }
+
+    /// As [`Session::call`], of an invocation that is only known by its names.
+    pub fn call_named<Q, A>(
+        &self,
+        service: &str,
+        name: &str,
+        request: &Q,
+        timeout: Duration,
+    ) -> PendingCall<A>
+    where
+        Q: Serialize,
+        A: DeserializeOwned + Send + 'static,
+    {
         let (sender, answer) = oneshot::channel();
-        match self.request(invocation, request, timeout) {
+        match self.request(service, name, request, timeout) {
             Err(reason) => {
-                let name = invocation.name.to_owned();
+                let name = name.to_owned();
                 // the receiver is in our hands
                 let _ = sender.send(Err(CallError::Undecodable { name, reason }));
             }
@@ -82,14 +97,14 @@ impl Session {
         PendingCall { answer }
     }
 
-    fn request<Q: Serialize, A>(
+    fn request<Q: Serialize>(
         &self,
-        invocation: Invocation<Q, A>,
+        service: &str,
+        name: &str,
         request: &Q,
         timeout: Duration,
     ) -> Result<Request, String> {
-        let key =
-            self.key(invocation.service, Kind::Invocation, invocation.name).map_err(|e| e.to_string())?;
+        let key = self.key(service, Kind::Invocation, name).map_err(|e| e.to_string())?;
         let payload = codec::encode(request, Format::Cbor)?;
         Ok(Request {
             inner: Arc::downgrade(&self.inner),

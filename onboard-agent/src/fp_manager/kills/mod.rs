@@ -173,6 +173,7 @@ impl Flight {
                 }
             }
             Effect::Event(event) => self.heard.push(event),
+            Effect::Invoke { .. } => {}
             Effect::Record(_) | Effect::Keep(_) | Effect::Sync => unreachable!("recorded before"),
         }
         out
