@@ -84,10 +84,11 @@ impl Executor {
             let current = &front.place.leg;
             if new.path(current).is_some() && entry.is_none_or(|e| e == current) {
                 let keep = self.alterable_from();
-                let begun = self.at_the_leg_begun(&world);
                 let translate = |i: usize| {
-                    let leg = i.checked_sub(1).and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
-                    let bookmark = begun.as_ref().filter(|_| i == 0).or(self.bookmark(i));
+                    let begun = self.at_the_leg_begun(i, &world);
+                    let kept = i.checked_sub(1).filter(|_| begun.is_none());
+                    let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
+                    let bookmark = begun.as_ref().or(self.bookmark(i));
                     bookmark.map(|c| translated(c, leg, current, old, new, &world))
                 };
                 return Ok(Carried::On((0..=keep).filter_map(translate).collect()));
@@ -120,19 +121,20 @@ impl Executor {
 }
 
 impl Executor {
-    /// At the beginning of the leg being flown, when its first waypoint is still ahead: that waypoint's bookmark is at the end of
-    /// the leg before it, and a leg that a new plan puts in between belongs to the past.
-    fn at_the_leg_begun(&self, world: &World) -> Option<Cursor> {
-        let front = self.state.handed.front()?;
-        let before = self.bookmark(0).filter(|c| c.passage != front.passage)?;
+    /// At the beginning of the leg being flown, when waypoint number `index` is its first and still ahead (after a
+    /// resume it comes behind the place where the hold was given): that waypoint's bookmark is at the end of the leg before it, and a leg that a new
+    /// plan puts in between belongs to the past.
+    fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
+        let first = self.state.handed.get(index)?;
+        let before = self.bookmark(index).filter(|c| c.passage != first.passage)?;
         let mut begun = before.clone();
-        self.is_announced(front).then(|| begun.next(world))?;
+        self.is_announced(first).then(|| begun.next(world))?;
         begun.path = before.path;
         begun.given = 0;
         if begun.doing != Doing::Turning {
             begun.doing = Doing::Arriving;
             begun.expansion = None;
-            begun.passage = front.passage.saturating_sub(1);
+            begun.passage = first.passage.saturating_sub(1);
         }
         Some(begun)
     }

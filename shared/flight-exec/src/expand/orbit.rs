@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// More turns than any aircraft can fly.
 const MOST_TURNS: f64 = 1e6;
 
+/// The point to leave at may lie so little before where the turns end, degrees: nobody wants a whole circle more for it.
+const SHORT_DEG: f64 = 1.0;
+
 /// A circle, as a polygon around it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Circle {
@@ -40,8 +43,9 @@ impl Circle {
         }
         let side = if turn == TurnDirection::Right { 1.0 } else { -1.0 };
         let start_bearing_deg = centre.bearing_deg(from);
-        let onward_deg =
-            onward.map_or(0.0, |to| normalise_360(side * (centre.bearing_deg(to) - start_bearing_deg)));
+        let turned_deg = 360.0 * turns.fract();
+        let behind = |to| normalise_360(side * (centre.bearing_deg(to) - start_bearing_deg) - turned_deg);
+        let onward_deg = onward.map(behind).filter(|deg| *deg < 360.0 - SHORT_DEG).unwrap_or(0.0);
         let sweep_deg = 360.0 * turns + onward_deg;
         let widest_deg = Flattening::Circumscribed.step_rad(radius_m, tolerance_m).to_degrees().max(0.5);
         let steps = (sweep_deg / widest_deg).ceil();
@@ -84,13 +88,19 @@ mod tests {
         for (turns, turn, exit_deg, sweep_deg) in [
             (2.0, TurnDirection::Left, 270.0, 720.0 + 90.0),
             (2.0, TurnDirection::Right, 270.0, 720.0 + 270.0),
-            (0.25, TurnDirection::Right, 0.0, 90.0),
+            (0.25, TurnDirection::Right, 0.0, 360.0),
+            (1.5, TurnDirection::Right, 180.0, 540.0),
+            (1.5, TurnDirection::Left, 180.0, 540.0),
+            (1.5, TurnDirection::Right, 179.5, 540.0),
+            (1.5, TurnDirection::Right, 0.0, 720.0),
+            (1.25, TurnDirection::Left, 180.0, 540.0),
+            (1.0, TurnDirection::Left, 0.0, 360.0),
         ] {
             let onward = CENTRE.destination(exit_deg, 5000.0);
             let from = CENTRE.destination(0.0, 3000.0);
             let c = Circle::new((CENTRE, 250.0, turns, turn), from, Some(onward), 3.0).unwrap();
             let swept = c.step_deg.abs() * c.steps as f64;
-            assert!((swept - sweep_deg).abs() < 1e-6 || (swept - sweep_deg - 360.0).abs() < 1e-6, "{swept}");
+            assert!((swept - sweep_deg).abs() < 1e-6, "{turns} turns to {exit_deg}: {swept}");
             assert!(c.point(c.count()).is_none());
             for i in 0..c.count() {
                 let out = CENTRE.distance_m(c.point(i).unwrap().position) - 250.0;

@@ -302,6 +302,32 @@ fn a_leg_put_in_before_the_one_being_flown_is_not_flown() {
     assert_eq!(rig.legs(), "a b c d");
 }
 
+/// After a resume the leg's first waypoint comes behind the place where the hold was given.
+#[test]
+fn put_in_before_a_resumed_leg_a_leg_is_not_flown() {
+    let in_between = r#"<TF id="n" fix="D3"/><TF id="b""#;
+    for (what, legs) in [
+        ("put in", BASE.replace(r#"<TF id="b""#, in_between)),
+        (
+            "put in before a direct leg",
+            BASE.replace(r#"<TF id="b""#, in_between).replace(r#"<TF id="b""#, r#"<DF id="b""#),
+        ),
+    ] {
+        let mut rig = Rig::started(BASE);
+        rig.fly_to("b");
+        for _ in 0..2 {
+            rig.command(Command::Hold).unwrap();
+            rig.command(Command::Resume).unwrap();
+            rig.steer();
+        }
+        rig.update(&program(&document(&legs))).unwrap();
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), "a b c d", "{what}");
+        let last = rig.flown.iter().rfind(|w| w.leg.as_str() == "b").unwrap();
+        assert!(last.position.distance_m(fix("B2")) < 0.1, "{what}: left at {:?}", last.position);
+    }
+}
+
 #[test]
 fn when_the_current_leg_is_gone_the_commit_names_the_entry() {
     let new = program(&document(&BASE.replace(r#"<TF id="b" fix="B2"/>"#, "")));

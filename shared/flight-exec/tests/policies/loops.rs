@@ -110,7 +110,7 @@ fn follows_arrival(trace: &Trace, found: &mut Findings) {
 }
 
 /// Loops whose count was set by command so far.
-fn set_counts<'a>(trace: &'a Trace, until: usize) -> impl Iterator<Item = (&'a Id, u64)> {
+fn set_counts(trace: &Trace, until: usize) -> impl Iterator<Item = (&Id, u64)> {
     trace.accepted().take_while(move |(s, _)| s.at < until).filter_map(|(_, c)| match c {
         Command::SetCount { leg, count } => Some((leg, *count)),
         _ => None,

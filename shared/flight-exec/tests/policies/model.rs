@@ -227,7 +227,10 @@ impl<'a> Model<'a, '_> {
             self.fly_stage(stage, entry.take())?;
         }
         match self.peek()? {
-            Sight::Finished => Ok(self.agree()),
+            Sight::Finished => {
+                self.agree();
+                Ok(())
+            }
             other => Err(Stop::Wrong(format!("the plan is over, but {other:?}"))),
         }
     }
@@ -396,7 +399,8 @@ impl<'a> Model<'a, '_> {
         match self.peek()? {
             Sight::Entered(place) if self.is_here(id, place) => {
                 self.here = Some(id.clone());
-                Ok(self.agree())
+                self.agree();
+                Ok(())
             }
             _ if optional => Ok(()),
             _ if self.may_miss > 0 => {

@@ -191,7 +191,9 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
         // where an orbit is left depends on what follows: it may turn out to be flown already
         let ends_early = kind(new) == Some("orbit");
-        let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early;
+        // nobody has to decide any more: the new plan does
+        let is_decided = decides(step, &before.leg);
+        let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early && !is_decided;
         if !is_there || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
             continue;
         }
@@ -205,6 +207,11 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         let same = before.leg == after.leg && before.plan == after.plan && counted;
         found.expect(step, same, || format!("{before:?} became {after:?}"));
     }
+}
+
+/// The choice that was waited for is made in this step, by a condition or a default.
+fn decides(step: Step, leg: &Id) -> bool {
+    step.events().any(|e| matches!(e, Event::DecisionTaken { leg: l, .. } if l == leg))
 }
 
 fn form(program: &Program, place: &PlacePointer) -> Vec<Option<IterativeForm>> {
