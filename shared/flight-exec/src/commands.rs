@@ -135,6 +135,9 @@ impl Executor {
         if ends {
             return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
         }
+        // skipped before it was entered, it is passed all the same, and what led to it with it
+        let choices = self.state.handed.front_mut().map(|h| std::mem::take(&mut h.choices));
+        self.tell_choices(choices.unwrap_or_default(), out);
         self.jump(cursor, out);
         Ok(())
     }

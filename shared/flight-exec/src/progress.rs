@@ -61,6 +61,13 @@ impl Executor {
     fn announce(&mut self, handed: &mut Handed, out: &mut Vec<Output>) {
         let (choices, marks) =
             if handed.waits_for_decision() { handed.seal_before_wait() } else { handed.seal() };
+        self.tell_choices(choices, out);
+        self.announce_leg(handed, marks, out);
+        self.begin_wait(handed, out);
+    }
+
+    /// Choices that are final: arrivals, and decisions that nobody has taken before.
+    pub(crate) fn tell_choices(&mut self, choices: Vec<Choice>, out: &mut Vec<Output>) {
         for choice in choices {
             match choice {
                 Choice::Loop { leg, arrival, of, again } => {
@@ -79,8 +86,6 @@ impl Executor {
                 Choice::Hold { .. } => {}
             }
         }
-        self.announce_leg(handed, marks, out);
-        self.begin_wait(handed, out);
     }
 
     fn announce_leg(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {

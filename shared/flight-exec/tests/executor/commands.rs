@@ -47,6 +47,25 @@ fn skip_and_go_to_cancel_everything_and_go_direct() {
     assert_eq!(rig.legs(), "a b c a b c d");
 }
 
+/// Skipped before it is steered to, the first leg of a pass takes the arrival before it with it.
+#[test]
+fn an_arrival_skipped_together_with_the_leg_behind_it_is_told() {
+    let mut rig = Rig::started(
+        r#"<iterative id="l" form="forward" count="2"><TF id="a" fix="A2"/><TF id="b" fix="B2"/></iterative><TF id="z" fix="C4"/>"#,
+    );
+    rig.fly_to("b");
+    for _ in 0..2 {
+        rig.command(Command::SkipLeg).unwrap();
+    }
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b b z");
+    let arrivals = rig.events.iter().filter_map(|e| match e {
+        Event::IterationFinished { finished, .. } => Some(*finished),
+        _ => None,
+    });
+    assert_eq!(arrivals.collect::<Vec<_>>(), [1, 2]);
+}
+
 #[test]
 fn the_last_leg_can_not_be_skipped() {
     let mut rig = Rig::started(LEGS);
