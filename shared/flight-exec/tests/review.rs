@@ -52,6 +52,16 @@ fn good_plans_have_no_problems_on_their_path() {
     }
 }
 
+/// What comes after a wait is looked at as well.
+#[test]
+fn a_plan_with_a_wait_is_reviewed_to_its_end() {
+    let document = std::fs::read(assets().join("docs/fragments/actions.xml")).unwrap();
+    let sea: Arc<dyn Terrain> = Arc::new(Flat(2.0));
+    let program = compile_and_review(&document, &Profile::default(), &sea, Conditions::default());
+    let program = program.unwrap_or_else(|p| panic!("{:?}", shown(&p)));
+    assert_eq!(shown(&program.warnings), [""; 0]);
+}
+
 #[test]
 fn each_bad_path_has_the_problem_in_its_name() {
     let mut failures = Vec::new();

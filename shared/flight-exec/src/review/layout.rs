@@ -2,7 +2,7 @@
 
 use crate::api::{Action, Token, Waypoint};
 use crate::choice::{By, Choice};
-use crate::cursor::{Cursor, Step};
+use crate::cursor::{Cursor, Doing, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::path::PathState;
@@ -17,8 +17,6 @@ const CROSSINGS: u64 = 8;
 /// Longest path, waypoints and seconds without wind.
 const MOST_WAYPOINTS: usize = 50_000;
 const MOST_S: f64 = 6.0 * 3600.0;
-/// Most steps that give no waypoint: waits and releases.
-const MOST_PAUSES: usize = 1000;
 
 /// A waypoint with what it was made for.
 pub(super) struct LaidOut {
@@ -108,27 +106,32 @@ pub(super) fn lay_out(
     let Some(world) = executor.world() else { return layout };
     let mut world = World { counts, decisions, ..world };
     let mut cursor = Cursor::start(section, from, 0);
-    let mut pauses = 0;
-    while layout.waypoints.len() < MOST_WAYPOINTS
-        && cursor.path.time_s - from.time_s < MOST_S
-        && pauses < MOST_PAUSES
-    {
+    while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from.time_s < MOST_S {
         release(&mut world, &cursor);
         match cursor.next(&world) {
-            Step::Waypoint(emission) => layout.take(*emission, &cursor, &world),
-            Step::Waiting => {
-                pauses += 1;
-                world.waited = Some(cursor.passage);
+            Step::Waypoint(emission) => {
+                let waits = emission.wait_s.is_some();
+                layout.take(*emission, &cursor, &world);
+                if waits {
+                    go_on(&mut world, &mut cursor);
+                }
             }
             Step::Ended { notes } => {
                 layout.note(notes);
                 layout.complete = true;
                 break;
             }
-            Step::Stalled => break,
+            Step::Waiting | Step::Stalled => break,
         }
     }
     layout
+}
+
+/// A wait is over: the leg is at its end once more, as before its circle was given out.
+fn go_on(world: &mut World, cursor: &mut Cursor) {
+    world.waited = Some(cursor.passage);
+    cursor.doing = Doing::Flying;
+    cursor.given = cursor.given.saturating_sub(1);
 }
 
 /// A holding that only its condition or a command ends is left after [`PASSES`] laps.
