@@ -76,6 +76,9 @@ fn updated(plan: &FlightPlan, steps: &[Step]) -> anyhow::Result<FlightPlan> {
     Ok(plan)
 }
 
+/// Questions so near in time are the same one, seconds.
+const SAME_QUESTION_S: f64 = 5.0;
+
 /// Previews the flight with the mission logic: again for each decision, as the time at which it is asked for
 /// depends on what was done before.
 fn preview(
@@ -103,7 +106,9 @@ fn preview(
             .map(|(t, _)| *t)
             .collect();
         if asked_s.len() < decisions {
-            let Some(next) = asked.get(asked_s.len()) else {
+            // what was decided in the moment it was asked for last time may not be asked for now
+            let after_s = asked_s.last().map_or(f64::NEG_INFINITY, |last| last + SAME_QUESTION_S);
+            let Some(next) = asked.iter().find(|at_s| **at_s > after_s) else {
                 bail!(
                     "the mission logic waits for {decisions} decisions, the preview was asked for {}",
                     asked.len()
