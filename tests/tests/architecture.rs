@@ -16,7 +16,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("onboard-agent", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal"]),
     (
         "gcs-app",
-        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "usal", "onboard-agent", "sim"],
+        &[
+            "geometry",
+            "terrain",
+            "aircraft",
+            "flight-plan",
+            "flight-exec",
+            "interchange",
+            "usal",
+            "onboard-agent",
+            "sim",
+        ],
     ),
     ("system-tests", &["geometry", "usal"]),
 ];

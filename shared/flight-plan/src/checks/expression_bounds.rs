@@ -46,7 +46,8 @@ impl Trial<'_, '_> {
         self.seen.insert(source.clone());
         let Some(Ok(compiled)) = self.view.compiled(source) else { return };
         let read = compiled.variables.iter().filter_map(|name| self.by_name.get(name).copied());
-        let found = read.collect::<Vec<_>>().into_iter().find_map(|v| Some((v, self.fails_at(v, source, used)?)));
+        let found =
+            read.collect::<Vec<_>>().into_iter().find_map(|v| Some((v, self.fails_at(v, source, used)?)));
         if let Some((variable, x)) = found {
             let message = format!(
                 "`{source}` has no value when `{}` is {x}: guard it, as in `x != 0.0 ? 1.0 / x : 0.0`, or narrow the variable's bounds",
