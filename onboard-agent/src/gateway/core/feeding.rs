@@ -1,10 +1,11 @@
 //! The FP Manager joins and feeds waypoints.
 
 use super::Gateway;
+use super::batch;
 use super::io::{Intent, Output};
-use super::plausibility::{self, Context};
 use super::states::{Trigger, is_safe};
 use crate::gateway::order::Time;
+use flight_exec::review::plausibility::Context;
 use usal::contract::{Action, Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
 
 impl Gateway {
@@ -116,18 +117,14 @@ impl Gateway {
         !self.control.safe_commanded && !self.fp_manager.is_silent(now, &self.safe)
     }
 
-    fn faults(&self, feed: &Feed) -> Vec<plausibility::Fault> {
+    fn faults(&self, feed: &Feed) -> Vec<batch::Fault> {
         let chain = self.window.chain();
         let terrain = self.settings.terrain.as_deref();
-        let context = Context {
-            profile: &self.settings.profile,
-            terrain,
-            wind_mps: self.telemetry.wind_mps(),
-            highest: self.highest,
-        };
+        let context =
+            Context { profile: &self.settings.profile, terrain, wind_mps: self.telemetry.wind_mps() };
         let here = self.here(feed);
         let previous = chain.predecessor(feed.cancel_after).or(here.as_ref());
-        plausibility::faults(&context, None, previous, &feed.waypoints)
+        batch::faults(&context, self.highest, previous, &feed.waypoints)
     }
 
     /// Where the aircraft is, as a waypoint that the batch follows on; in flight only.

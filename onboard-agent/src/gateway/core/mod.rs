@@ -5,10 +5,10 @@
 //! do, then the orders that follow. The state tells what was confirmed, the intent what is wanted.
 
 mod alarms;
+mod batch;
 mod control;
 mod feeding;
 mod io;
-mod plausibility;
 mod requests;
 mod safe;
 mod states;

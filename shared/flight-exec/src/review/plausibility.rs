@@ -167,3 +167,105 @@ fn turn(c: &Context, before: Option<LatLon>, previous: Option<&Waypoint>, w: &Wa
         fault("turn", format!("Turning {angle_deg:.0}° needs {need_m:.0} m before and after the corner; there are {have_m:.0} m."))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::api::Token;
+    use flight_plan::Id;
+    use proptest::prelude::*;
+
+    const GROUND_M: f64 = 300.0;
+
+    fn waypoint(east_m: f64, north_m: f64) -> Waypoint {
+        Waypoint {
+            token: Token(1),
+            position: LatLon::new(36.49, -84.27).destination(90.0, east_m).destination(0.0, north_m),
+            altitude_amsl_m: 600.0,
+            airspeed_mps: 25.0,
+            action: Action::Fly,
+            fly_over: false,
+            leg: Id::from("leg"),
+            end_of_plan: false,
+        }
+    }
+
+    /// The codes for the last of up to three waypoints.
+    fn codes(path: &[Waypoint]) -> Vec<&'static str> {
+        let profile = Profile::default();
+        let context = Context { profile: &profile, terrain: Some(&terrain::Flat(GROUND_M)), wind_mps: 5.0 };
+        let mut back = path.iter().rev();
+        let Some(waypoint) = back.next() else { return vec![] };
+        let (previous, before) = (back.next(), back.next().map(|w| w.position));
+        faults(&context, before, previous, waypoint).into_iter().map(|f| f.code).collect()
+    }
+
+    /// The codes for the last of three good waypoints after it was spoilt.
+    fn spoilt(spoil: impl FnOnce(&mut Waypoint)) -> Vec<&'static str> {
+        let mut last = waypoint(300.0, 900.0);
+        spoil(&mut last);
+        codes(&[waypoint(0.0, 0.0), waypoint(0.0, 500.0), last])
+    }
+
+    #[test]
+    fn a_good_waypoint_passes() {
+        assert!(spoilt(|_| {}).is_empty());
+    }
+
+    #[test]
+    fn each_rule_refuses_what_it_is_there_for() {
+        type Spoil = fn(&mut Waypoint);
+        let cases: [(&str, Spoil); 15] = [
+            ("not-a-number", |w| w.position.lat_deg = f64::NAN),
+            ("not-a-number", |w| w.altitude_amsl_m = f64::INFINITY),
+            ("not-a-number", |w| w.airspeed_mps = f64::NAN),
+            ("not-a-number", |w| w.action = Action::Land { heading_deg: f64::NAN }),
+            ("no-such-place", |w| w.position.lat_deg = 91.0),
+            ("no-such-place", |w| w.position.lon_deg = -180.5),
+            ("no-such-place", |w| w.position = LatLon::new(0.0, 0.0)),
+            ("altitude", |w| w.altitude_amsl_m = 3100.0),
+            ("altitude", |w| w.altitude_amsl_m = -900.0),
+            ("speed", |w| w.airspeed_mps = 15.0),
+            ("speed", |w| w.airspeed_mps = 36.0),
+            ("loiter-radius", |w| w.action = Action::Loiter { radius_m: 0.0 }),
+            ("too-far", |w| w.position = w.position.destination(10.0, 100_000.0)),
+            ("gradient", |w| w.altitude_amsl_m = 900.0),
+            ("below-terrain", |w| w.altitude_amsl_m = 310.0),
+        ];
+        for (i, (code, spoil)) in cases.into_iter().enumerate() {
+            let found = spoilt(spoil);
+            assert!(found.contains(&code), "case {i}: {code} not in {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_that_does_not_fit_is_refused() {
+        let corner = |out_m: f64| [waypoint(0.0, 0.0), waypoint(0.0, 30.0), waypoint(-out_m, 30.0)];
+        assert_eq!(codes(&corner(20.0)), ["turn"]);
+        assert!(codes(&corner(400.0)).is_empty());
+    }
+
+    /// Any number of a range, and what is none.
+    fn number_in(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+        prop_oneof![8 => range, 1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY])]
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_the_numbers_a_verdict_comes_and_nothing_unfit_passes(
+            lat in number_in(-100.0..100.0), lon in number_in(-200.0..200.0),
+            h in number_in(200.0..3_200.0), v in number_in(10.0..40.0),
+        ) {
+            let mut w = waypoint(0.0, 0.0);
+            (w.position, w.altitude_amsl_m, w.airspeed_mps) = (LatLon::new(lat, lon), h, v);
+            let profile = Profile::default();
+            let fit = w.position.is_valid()
+                && (GROUND_M + TERRAIN_MARGIN_M..=profile.ceiling_amsl_m).contains(&h)
+                && (profile.min_airspeed_mps..=profile.max_airspeed_mps).contains(&v);
+            let alone = codes(std::slice::from_ref(&w));
+            prop_assert_eq!(alone.is_empty(), fit);
+            let after = codes(&[waypoint(0.0, 0.0), waypoint(0.0, 500.0), w]);
+            prop_assert!(alone.iter().all(|code| after.contains(code)));
+        }
+    }
+}
