@@ -125,6 +125,7 @@ impl MapState {
         self.path.draw(&painter, view, scene, &self.sketch, p);
         self.aircraft.draw_trail(&painter, view, scene.vehicle, p);
         aircraft::draw_ahead(&painter, view, scene, p);
+        path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);
         let on_handle = self.handles.run(ui, view, &self.sketch, scene, queue);
         path::draw_cursor(&painter, view, scene, p);

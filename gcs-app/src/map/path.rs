@@ -2,11 +2,12 @@
 
 use super::polyline::{self, Cached, Style};
 use super::sketch::Sketch;
+use super::text;
 use super::view::{Mercator, View};
 use crate::command::Selection;
-use crate::panels::{Scene, bar};
+use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
 use flight_plan::Id;
 
 /// The layer; keeps the decimated line until view or forecast change.
@@ -79,6 +80,23 @@ fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
             painter.circle(at, 3.4, p.halo, Stroke::new(1.6, p.accent));
         } else {
             painter.circle(at, 2.4, p.accent, Stroke::new(1.0, p.halo));
+        }
+    }
+}
+
+/// Where each branch of the decision that is asked for leads; the default's is the stronger line.
+pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let Some((request, _)) = decision::open(scene) else { return };
+    for (number, option) in (1..).zip(&request.options) {
+        let line: Vec<Mercator> = option.preview.iter().map(|at| (*at).into()).collect();
+        let is_default = request.default.as_ref() == Some(&option.branch);
+        let stroke = Stroke::new(if is_default { 2.6 } else { 1.8 }, p.active);
+        let style = if is_default { Style::Solid } else { Style::Dashed };
+        polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
+        if let Some(end) = option.preview.last() {
+            let at = view.place(*end) + vec2(6.0, -6.0);
+            let name = format!("{number} {}", option.label);
+            text::haloed(painter, at, Align2::LEFT_BOTTOM, &name, 12.0, p.active, p);
         }
     }
 }

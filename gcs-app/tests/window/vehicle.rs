@@ -34,7 +34,8 @@ pub fn place(stage: &str, leg: &str) -> PlacePointer {
 }
 
 fn option(branch: &str, label: &str) -> BranchOption {
-    BranchOption { branch: branch.into(), label: label.into(), preview: Vec::new() }
+    let preview = (0..5).map(|i| LatLon::new(36.32, -84.17 + 0.002 * f64::from(i))).collect();
+    BranchOption { branch: branch.into(), label: label.into(), preview }
 }
 
 pub fn decision(default: Option<&str>) -> DecisionRequest {
