@@ -10,6 +10,9 @@ from pathlib import Path
 
 import pytest
 
+# pymavlink looks at this when it is imported, by whichever test comes first
+os.environ["MAVLINK20"] = "1"
+
 BIN = Path(os.environ["LEGWORK_BIN"])
 TOP = Path(os.environ["LEGWORK_TOP"])
 # where the missions of pymavlink and MAVSDK begin

@@ -1,9 +1,5 @@
 """pymavlink uploads to, downloads from, arms and flies the simulator."""
 
-import os
-
-os.environ["MAVLINK20"] = "1"
-
 from conftest import until
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mav

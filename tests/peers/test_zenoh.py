@@ -87,7 +87,7 @@ def test_it_answers_an_intersection(agent):
     call(agent, "fp-manager", "command", {"command": "commit", "hash": report["hash"], "entry": None})
     call(agent, "fp-manager", "command", {"command": "start"})
     asked = until(lambda: [e for e in seen if e["event"] == "decision-requested"], 120, "a decision is asked for")[0]
-    assert {option[0] for option in asked["options"]} == {"again", "close"}
+    assert {option["branch"] for option in asked["options"]} == {"again", "close"}
     answer = call(agent, "fp-manager", "command", {"command": "decide", "leg": "ask", "branch": "close"})
     assert "code" not in (answer or {}), answer
     until(
