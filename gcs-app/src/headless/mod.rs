@@ -36,10 +36,10 @@ pub enum Command {
         #[command(flatten)]
         source: Box<Source>,
         /// What the path is looked at for.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "Looking at the path")]
         circumstances: check::Circumstances,
         /// One JSON document instead of lines.
-        #[arg(long)]
+        #[arg(long, help_heading = "Options")]
         json: bool,
     },
     /// Draw what would be flown: map, profile and leg table.
