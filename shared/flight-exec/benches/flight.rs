@@ -118,7 +118,7 @@ fn million_waypoints_of_a_scan(bencher: Bencher) {
         <scan id="s" spacing="0.05" heading="0" overshoot="0"><area fix="A" radius="2490"/></scan></iterative>"#;
     let executor = Flying::start(scan).executor;
     bencher.counter(ItemsCount::new(1_000_000_u64)).bench_local(|| {
-        let world = executor.world().unwrap();
+        let world = executor.world();
         let mut cursor = Cursor::start(None, executor.here(), 0);
         let mut last = None;
         for _ in 0..1_000_000 {

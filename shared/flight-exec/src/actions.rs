@@ -50,8 +50,7 @@ pub(crate) struct Wait {
 impl Executor {
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
     pub(crate) fn change_passage(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
-        let stays = |p: &Passage| p.is_of(handed);
-        self.end_passages(|p| !stays(p), out);
+        self.end_passages(|p| !p.is_around(handed), out);
         self.pass_silently(marks, handed, out);
         out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
         let loops: Vec<_> = loops_of(handed).map(|(leg, number)| (leg.clone(), number)).collect();
@@ -73,44 +72,41 @@ impl Executor {
 
     /// Loops are begun with the first leg inside them; at an intersection nothing is flown.
     fn is_control_leg(&self, id: &Id) -> bool {
-        let leg = self.program.as_ref().and_then(|p| p.leg(id));
-        leg.is_none_or(is_control)
+        self.program.leg(id).is_none_or(is_control)
     }
 
     fn begin_passage(&mut self, leg: &Id, number: u64, handed: &Handed, out: &mut Vec<Output>) {
-        let actions = self.program.as_ref().and_then(|p| p.leg(leg)).map_or(0, |l| l.actions.len());
+        let actions = self.program.leg(leg).map_or(0, |l| l.actions.len());
         if actions == 0 || self.state.passages.iter().any(|p| (&p.leg, p.number) == (leg, number)) {
             return;
         }
         self.state.acted_s = self.state.clock_s;
-        self.state.passages.push(Passage {
+        let mut passage = Passage {
             leg: leg.clone(),
             number,
             iteration: handed.place.iterations.last().map_or(0, |i| i.iteration),
             began_m: handed.leg_start_m,
             flown_s: 0.0,
             done: vec![Done::default(); actions],
-        });
-        let index = self.state.passages.len() - 1;
-        self.act_on(index, &Moment::begun(handed), out);
+        };
+        self.act_on(&mut passage, &Moment::begun(handed), out);
+        self.state.passages.push(passage);
     }
 
     /// Ends passages as they should, the innermost first.
     pub(crate) fn end_passages(&mut self, over: impl Fn(&Passage) -> bool, out: &mut Vec<Output>) {
-        for index in (0..self.state.passages.len()).rev() {
-            if self.state.passages.get(index).is_some_and(&over) {
-                self.act_at_the_end(index, out);
-                self.state.passages.remove(index);
-            }
+        let (ending, open): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.state.passages).into_iter().partition(over);
+        self.state.passages = open;
+        for mut passage in ending.into_iter().rev() {
+            self.act_at_the_end(&mut passage, out);
         }
     }
 
     /// The flight goes on elsewhere: only loops around that place go on, and nothing is done at the end of the others.
     pub(crate) fn abandon_passages(&mut self) {
         let front = self.state.handed.front();
-        let around = |p: &Passage| front.is_some_and(|h| loops_of(h).any(|l| l == (&p.leg, p.number)));
-        let kept = self.state.passages.iter().filter(|p| around(p)).cloned().collect();
-        self.state.passages = kept;
+        self.state.passages.retain(|passage| front.is_some_and(|h| passage.is_around(h)));
         self.state.wait = None;
     }
 
@@ -137,14 +133,22 @@ impl Executor {
     }
 
     fn act_on_all(&mut self, moment: &Moment, out: &mut Vec<Output>) {
-        for index in 0..self.state.passages.len() {
-            self.act_on(index, moment, out);
-        }
+        self.for_passages(|executor, passage| executor.act_on(passage, moment, out));
+    }
+
+    /// Each passage under way, outermost first.
+    fn for_passages(&mut self, mut act: impl FnMut(&mut Self, &mut Passage)) {
+        let mut passages = std::mem::take(&mut self.state.passages);
+        passages.iter_mut().for_each(|passage| act(self, passage));
+        self.state.passages = passages;
     }
 
     /// When the next action is due by time, in seconds of the executor's clock.
     pub(crate) fn next_action_s(&self) -> Option<f64> {
-        let (Some(world), false) = (self.world(), self.is_muted()) else { return None };
+        if self.is_muted() {
+            return None;
+        }
+        let world = self.world();
         let open = self.state.passages.iter().filter_map(|p| Some((p, world.program.leg(&p.leg)?)));
         let due_s = open.flat_map(|(p, leg)| {
             let left = leg.actions.iter().zip(&p.done).filter(|(_, done)| done.times == 0);
@@ -159,9 +163,8 @@ impl Executor {
 
     /// The actions of legs in another plan: what was done stays done, found again by the action itself.
     pub(crate) fn carry_passages_over(&mut self, old: &flight_plan::Program) {
-        let Some(program) = self.program.clone() else { return };
         for passage in &mut self.state.passages {
-            let (before, after) = (old.leg(&passage.leg), program.leg(&passage.leg));
+            let (before, after) = (old.leg(&passage.leg), self.program.leg(&passage.leg));
             passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg));
         }
         self.state.passages.retain(|p| !p.done.is_empty());
@@ -171,10 +174,11 @@ impl Executor {
     /// before.
     pub(crate) fn begin_wait(&mut self, handed: &Handed, out: &mut Vec<Output>) {
         let Some(seconds) = handed.wait_s.filter(|_| !self.is_waiting_at(handed.passage)) else { return };
-        let own = |p: &Passage| (&p.leg, p.number) == (&handed.place.leg, handed.passage);
-        if let Some(index) = self.state.passages.iter().position(own) {
-            self.act_at_the_end(index, out);
-        }
+        self.for_passages(|executor, passage| {
+            if (&passage.leg, passage.number) == (&handed.place.leg, handed.passage) {
+                executor.act_at_the_end(passage, out);
+            }
+        });
         self.state.wait = Some(Wait { passage: handed.passage, due_s: self.state.clock_s + seconds });
         let (leg, passage) = (handed.place.leg.clone(), handed.passage);
         out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
@@ -185,20 +189,17 @@ impl Executor {
     }
 
     /// Goes on from a circle that was flown long enough, or is not to be flown any longer.
-    pub(crate) fn end_wait(&mut self, out: &mut Vec<Output>) {
-        let Some(wait) = self.state.wait.take() else { return };
+    pub(crate) fn end_wait(&mut self, wait: Wait, out: &mut Vec<Output>) {
+        self.state.wait = None;
         self.state.waited = Some(wait.passage);
-        if let Some(cursor) = self.bookmark(0).cloned() {
-            self.replan_with(0, cursor, true, out);
-        }
+        self.replan_from(0, true, out);
     }
 }
 
 impl Passage {
-    /// The waypoint belongs to it.
-    fn is_of(&self, handed: &Handed) -> bool {
-        (&self.leg, self.number) == (&handed.place.leg, handed.passage)
-            || loops_of(handed).any(|l| l == (&self.leg, self.number))
+    /// It is that of a loop around a waypoint.
+    fn is_around(&self, handed: &Handed) -> bool {
+        loops_of(handed).any(|l| l == (&self.leg, self.number))
     }
 }
 

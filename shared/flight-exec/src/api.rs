@@ -12,7 +12,7 @@ pub use command::{Command, Refusal};
 pub use event::Event;
 pub use place::{BranchOption, Branching, DecisionRequest, IterationPlace, Phase, PlacePointer, Status};
 pub use proposal::ProposalReport;
-pub use waypoint::{Action, AircraftState, Token, Waypoint};
+pub use waypoint::{Action, AircraftState, FARTHEST_M, Token, Waypoint};
 
 use flight_plan::Id;
 use serde::{Deserialize, Serialize};

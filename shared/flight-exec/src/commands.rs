@@ -1,11 +1,11 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use crate::api::{Command, Event, Output, Phase, Refusal};
-use crate::cursor::{Cursor, Doing, Trouble};
+use crate::cursor::{Cursor, Doing};
 use crate::executor::{Executor, refusal};
 use crate::handed::Handed;
 use crate::world::LoopCount;
-use flight_plan::{Id, LegKind, VariableValue};
+use flight_plan::{Id, Leg, LegKind, VariableValue};
 
 /// Most loops whose counts are set by command at a time.
 const MOST_COUNTS: usize = 64;
@@ -39,11 +39,8 @@ impl Executor {
                 "a plan is being flown: hold, go to a leg, or commit another plan",
             ));
         }
-        let Some(program) = self.program.clone() else {
+        if self.program().is_none() {
             return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
-        };
-        if program.stages(None).is_empty() {
-            return Err(refusal("empty-plan", "the main plan has no stage: add one"));
         }
         self.state.started_s = Some(self.state.clock_s);
         self.state.emergency = None;
@@ -109,8 +106,8 @@ impl Executor {
 
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
-        if self.state.wait.is_some() {
-            self.end_wait(out);
+        if let Some(wait) = self.state.wait {
+            self.end_wait(wait, out);
             return Ok(());
         }
         if let Some(passage) = self.holding_to_release() {
@@ -118,21 +115,19 @@ impl Executor {
             self.replan(out);
             return Ok(());
         }
-        // after a resume the leg's first waypoint is the place where the hold was given
-        let passage = self.state.handed.front().map(|h| h.passage);
-        let of_leg = self.state.handed.iter().take_while(|h| Some(h.passage) == passage).count();
-        let after = self.bookmark(of_leg).cloned();
-        let Some(mut cursor) = after.filter(|_| !self.state.handed.is_empty()) else {
+        let Some(front) = self.state.handed.front() else {
             return Err(refusal("nothing-to-skip", "no leg is being flown: wait for the next one"));
         };
-        if matches!(cursor.doing, Doing::Waiting) {
+        if front.waits_for_decision() {
             return Err(refusal("decision-needed", "it waits for a decision: decide, or go to a leg"));
         }
+        // after a resume the leg's first waypoint is the place where the hold was given
+        let of_leg = self.state.handed.iter().take_while(|h| h.passage == front.passage).count();
+        let mut cursor = self.bookmark(of_leg);
         cursor.abandon_leg();
         cursor.move_path_to(self.here_at_level_of(&cursor));
         let mut probe = cursor.clone();
-        let ends = self.world().is_none_or(|w| matches!(probe.next(&w), crate::cursor::Step::Ended { .. }));
-        if ends {
+        if matches!(probe.next(&self.world()), crate::cursor::Step::Ended { .. }) {
             return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
         }
         // skipped before it was entered, it is passed all the same, and what led to it with it
@@ -145,7 +140,7 @@ impl Executor {
     /// The passage being flown, if it is a holding until released that was not released yet.
     fn holding_to_release(&self) -> Option<u64> {
         let front = self.state.handed.front().filter(|h| self.state.released != Some(h.passage))?;
-        let leg = self.program.as_ref()?.leg(&front.place.leg)?;
+        let leg = self.program.leg(&front.place.leg)?;
         matches!(leg.kind, LegKind::Hm { .. }).then_some(front.passage)
     }
 
@@ -171,16 +166,15 @@ impl Executor {
             refusal("unknown-leg", reason)
         };
         let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
-        let world = self.world().ok_or_else(unknown)?;
-        let now = self.bookmark(1).or(self.state.tail.as_ref()).ok_or_else(unknown)?;
-        let mut cursor = now.moved_to(target, &world);
-        cursor.move_path_to(self.here_at_level_of(now));
+        let now = self.bookmark(1);
+        let mut cursor = now.moved_to(target, &self.world());
+        cursor.move_path_to(self.here_at_level_of(&now));
         Ok(cursor)
     }
 
     fn set_count(&mut self, leg: Id, count: u64, out: &mut Vec<Output>) -> Result<(), Refusal> {
         let program = self.flying_program()?;
-        if !matches!(program.leg(&leg).map(|l| &l.kind), Some(LegKind::Iterative { .. })) {
+        if program.leg(&leg).and_then(Leg::as_loop).is_none() {
             return Err(refusal("unknown-leg", format!("`{leg}` is no iterative leg of the plan: name one")));
         }
         if count == 0 {
@@ -207,8 +201,8 @@ impl Executor {
     /// Which activation of a loop a waypoint handed out belongs to.
     fn activation_at(&self, index: usize, leg: &Id) -> Option<u64> {
         // the bookmark behind the waypoint is still in its leg
-        let behind = self.bookmark(index + 1)?;
-        let around = behind.loop_ids(&self.world()?);
+        let behind = self.bookmark(index + 1);
+        let around = behind.loop_ids(&self.world());
         behind.loops.get(around.iter().position(|id| id == leg)?).map(|frame| frame.activation)
     }
 
@@ -219,7 +213,7 @@ impl Executor {
         by: &str,
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
-        let variable = self.program.as_ref().and_then(|p| p.plan.variable(name));
+        let variable = self.program.plan.variable(name);
         if let Some(variable) = variable.filter(|v| !v.may_be_written_by(by)) {
             let writers: Vec<_> = variable.writers.iter().map(Id::as_str).collect();
             let writers = writers.join(", ");
@@ -239,13 +233,11 @@ impl Executor {
         by: &str,
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
-        let Some(program) = self.program.clone() else {
-            return Err(refusal(
-                "no-plan",
-                "there is no plan, so there are no variables: commit a plan first",
-            ));
-        };
-        let set = self.state.variables.set(&program.plan, name, value.clone());
+        if self.program().is_none() {
+            let reason = "there is no plan, so there are no variables: commit a plan first";
+            return Err(refusal("no-plan", reason));
+        }
+        let set = self.state.variables.set(&self.program.plan, name, value.clone());
         set.map_err(|e| refusal("bad-variable", e.to_string()))?;
         out.push(Output::Event(Event::VariableChanged { name: name.clone(), value, by: by.into() }));
         let earliest_s = self.state.last_refresh_s.map_or(0.0, |last| last + self.config.debounce_s);
@@ -261,9 +253,8 @@ impl Executor {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
         let keep = self.alterable_from().max(1).min(self.state.handed.len());
-        let (Some(mut cursor), Some(world)) = (self.bookmark(keep).cloned(), self.world()) else { return };
-        let leg = cursor.leg(&world).map(|l| l.id.clone());
-        match cursor.refresh_pattern(&world) {
+        let mut cursor = self.bookmark(keep);
+        match cursor.refresh_pattern(&self.world()) {
             Ok(true) => {
                 for handed in self.state.handed.iter_mut().take(keep) {
                     handed.pinned = true;
@@ -271,9 +262,8 @@ impl Executor {
                 self.replan_with(keep, cursor, false, out);
             }
             Ok(false) => self.replan(out),
-            Err(why) => {
-                let leg = leg.unwrap_or_else(|| Id::new("plan"));
-                self.tell_trouble(Trouble::Leg { leg, reason: why.to_string() }, out);
+            Err(trouble) => {
+                self.tell_trouble(trouble, out);
                 self.replan(out);
             }
         }
@@ -281,11 +271,11 @@ impl Executor {
 }
 
 impl Cursor {
-    /// Leaves the leg it is in, whatever is left of it.
+    /// Leaves the leg it is in, whatever is left of it, a wait at its end included.
     pub(crate) fn abandon_leg(&mut self) {
-        if !matches!(self.doing, Doing::Ended | Doing::Arriving) {
-            self.doing = if self.doing == Doing::Turning { Doing::Turning } else { Doing::Flying };
-            self.expansion = None;
+        self.expansion = None;
+        if self.doing == Doing::Waiting {
+            self.doing = Doing::Flying;
         }
     }
 }

@@ -11,7 +11,7 @@ mod place;
 
 pub use notes::{Mark, Notes, Trouble};
 
-use crate::api::{Action, Time};
+use crate::api::Action;
 use crate::expand::{Expansion, Point};
 use crate::path::{Level, Passing, PathState};
 use crate::world::World;
@@ -244,9 +244,4 @@ impl Cursor {
     pub fn crossings_of(&self, leg: &Id) -> u64 {
         self.crossings.iter().find(|(id, _)| id == leg).map_or(0, |(_, n)| *n)
     }
-}
-
-/// Duration in seconds, for [`flight_plan::FlightState::time_s`].
-pub fn flight_time_s(started: Option<Time>, now: Time) -> f64 {
-    started.map_or(0.0, |s| crate::world::seconds_between(s, now))
 }

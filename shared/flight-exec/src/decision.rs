@@ -5,7 +5,7 @@ use crate::choice::{By, Choice};
 use crate::cursor::Step;
 use crate::executor::{Executor, refusal};
 use crate::world::World;
-use flight_plan::{Branch, DecideBefore, Id, Leg, LegKind, LegPath, Program};
+use flight_plan::{Branch, DecideBefore, Fork, Id, Leg, LegPath, Program};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +42,7 @@ impl Executor {
     /// Asks for decisions that came into the horizon, and makes those final whose deadline has passed.
     pub(crate) fn attend_decisions(&mut self, out: &mut Vec<Output>) {
         for pending in self.pending() {
-            let Some((_, time_left_s)) = self.left_for(&pending) else { continue };
+            let time_left_s = self.left_for(&pending).map_or(f64::INFINITY, |(_, left_s)| left_s);
             let key = (pending.leg.clone(), pending.crossing);
             let soon = time_left_s <= self.config.ask_ahead_s;
             if soon && !self.state.requested.contains(&key) {
@@ -151,10 +151,7 @@ impl Executor {
     }
 
     fn request_for(&self, pending: &Pending) -> Option<DecisionRequest> {
-        let program = self.program.as_ref()?;
-        let LegKind::Intersection { branches, default, .. } = &program.leg(&pending.leg)?.kind else {
-            return None;
-        };
+        let Fork { branches, default, .. } = self.program.leg(&pending.leg)?.as_fork()?;
         let (distance_left_m, time_left_s) = self.left_for(pending)?;
         let option = |branch: &Branch| BranchOption {
             branch: branch.id.clone(),
@@ -164,7 +161,7 @@ impl Executor {
         Some(DecisionRequest {
             leg: pending.leg.clone(),
             options: branches.iter().map(option).collect(),
-            default: default.clone(),
+            default: default.cloned(),
             distance_left_m,
             time_left_s,
         })
@@ -172,8 +169,7 @@ impl Executor {
 
     /// Metres of path and seconds left until a decision is due.
     fn left_for(&self, pending: &Pending) -> Option<(f64, f64)> {
-        let leg = self.program.as_ref()?.leg(&pending.leg)?;
-        let LegKind::Intersection { decide_before, .. } = &leg.kind else { return None };
+        let Fork { decide_before, .. } = self.program.leg(&pending.leg)?.as_fork()?;
         let handed = self.state.handed.get(pending.index)?;
         let path_m = self.path_left_m(handed.before.path.distance_m);
         let speed_mps = handed.waypoint.airspeed_mps.max(1.0);
@@ -194,7 +190,7 @@ impl Executor {
         decisions.extend(
             self.state.decisions.iter().filter(|d| d.leg != *leg || d.crossing != *crossing).cloned(),
         );
-        let world = World { decisions: &decisions, ..self.world()? };
+        let world = World { decisions: &decisions, ..self.world() };
         let begin_m = cursor.path.distance_m;
         let mut positions = vec![cursor.path.last.position];
         while positions.len() < PREVIEW_POSITIONS && cursor.path.distance_m - begin_m < PREVIEW_M {
@@ -217,7 +213,7 @@ impl Executor {
 
     fn check_branch(&self, leg: &Id, branch: &Id) -> Result<(), Refusal> {
         let program = self.flying_program()?;
-        let Some(LegKind::Intersection { branches, .. }) = program.leg(leg).map(|l| &l.kind) else {
+        let Some(Fork { branches, .. }) = program.leg(leg).and_then(Leg::as_fork) else {
             let reason = format!("`{leg}` is no intersection of the plan: name one that is");
             return Err(refusal("unknown-leg", reason));
         };
@@ -236,9 +232,10 @@ fn may_lead(program: &Program, from: &LegPath, to: &LegPath) -> bool {
     if from.emergency_plan != to.emergency_plan || from.stage != to.stage {
         return from.emergency_plan == to.emergency_plan && from.stage < to.stage;
     }
-    let (Some(here), Some(there)) = (from.indices.first(), to.indices.first()) else { return true };
+    let legs = program.stage(from).map_or(&[][..], |stage| &stage.legs);
+    let both = from.indices.first().zip(to.indices.first());
     // the same one: a loop around both, or the leg itself, waited at
-    here == there || program.stage(from).is_some_and(|stage| leads(&stage.legs, *here, *there))
+    both.is_none_or(|(here, there)| here == there || leads(legs, *here, *there))
 }
 
 /// In a list, by its successors, jumps and branches included.
@@ -249,9 +246,8 @@ fn leads(list: &[Leg], from: usize, to: usize) -> bool {
     while let Some(leg) = open.pop().and_then(|i| list.get(i).map(|leg| (i, leg))) {
         let (index, leg) = leg;
         let mut next = vec![leg.next.as_ref().and_then(index_of).unwrap_or(index + 1)];
-        if let LegKind::Intersection { branches, .. } = &leg.kind {
-            next.extend(branches.iter().filter_map(|b| b.next.as_ref()).filter_map(index_of));
-        }
+        let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+        next.extend(branches.iter().filter_map(|b| b.next.as_ref()).filter_map(index_of));
         for index in next {
             if let Some(seen) = reached.get_mut(index).filter(|seen| !**seen) {
                 *seen = true;

@@ -19,12 +19,12 @@ impl Executor {
             Some(running) => running.from_leg.clone(),
             None => self.main_leg(),
         };
-        let Some(index) = self.resolve(cause, plan.as_ref(), from_leg.as_ref())? else {
+        let Some((index, plan)) = self.resolve(cause, plan.as_ref(), from_leg.as_ref())? else {
             out.push(Output::Event(Event::EmergencyUnanswered { cause }));
             let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
             return Err(refusal("no-emergency-plan", reason));
         };
-        self.switch_to(index, cause, from_leg, out);
+        self.switch_to(index, Emergency { cause, plan, from_leg }, out);
         Ok(())
     }
 
@@ -42,10 +42,18 @@ impl Executor {
         }
     }
 
-    /// The emergency plan's index: the named one, else the one in force for the leg and the cause.
-    fn resolve(&self, cause: Cause, named: Option<&Id>, leg: Option<&Id>) -> Result<Option<usize>, Refusal> {
+    /// The emergency plan and its index: the named one, else the one in force for the leg and the cause.
+    fn resolve(
+        &self,
+        cause: Cause,
+        named: Option<&Id>,
+        leg: Option<&Id>,
+    ) -> Result<Option<(usize, Id)>, Refusal> {
         let program = self.flying_program()?;
-        let index_of = |id: &Id| program.plan.emergency_plans.iter().position(|p| p.id == *id);
+        let index_of = |id: &Id| {
+            let index = program.plan.emergency_plans.iter().position(|p| p.id == *id)?;
+            Some((index, id.clone()))
+        };
         if let Some(id) = named {
             let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
             return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
@@ -54,13 +62,11 @@ impl Executor {
         Ok(in_force.and_then(|plan| index_of(&plan.id)))
     }
 
-    fn switch_to(&mut self, index: usize, cause: Cause, from_leg: Option<Id>, out: &mut Vec<Output>) {
-        let Some(program) = self.program.clone() else { return };
-        let Some(plan) = program.plan.emergency_plans.get(index).map(|p| p.id.clone()) else { return };
-        let goes_on = self.state.emergency.as_ref().is_some_and(|running| running.plan == plan);
-        let event = Event::EmergencyStarted { cause, plan: plan.clone(), from_leg: from_leg.clone() };
-        out.push(Output::Event(event));
-        self.state.emergency = Some(Emergency { cause, plan, from_leg });
+    fn switch_to(&mut self, index: usize, emergency: Emergency, out: &mut Vec<Output>) {
+        let goes_on = self.state.emergency.as_ref().is_some_and(|running| running.plan == emergency.plan);
+        let Emergency { cause, plan, from_leg } = emergency.clone();
+        out.push(Output::Event(Event::EmergencyStarted { cause, plan, from_leg }));
+        self.state.emergency = Some(emergency);
         if goes_on {
             if self.state.phase == Phase::Holding {
                 self.leave_hold(out);
@@ -70,9 +76,7 @@ impl Executor {
         }
         let mut cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
         // crossings are counted on, so that a decision for the next one is not taken for another after the return
-        if let Some(now) = self.bookmark(0) {
-            cursor.crossings.clone_from(&now.crossings);
-        }
+        cursor.crossings = self.bookmark(0).crossings;
         self.leave_hold(out);
         self.jump(cursor, out);
     }
@@ -101,11 +105,10 @@ impl Executor {
 
     /// The plan an emergency without a particular cause would fly now.
     pub(crate) fn emergency_in_force(&self) -> Option<Id> {
-        let program = self.program.as_ref()?;
         let leg = match &self.state.emergency {
             Some(running) => running.from_leg.clone(),
             None => self.main_leg(),
         };
-        Some(program.emergency_for(&leg?, Cause::Operator)?.id.clone())
+        Some(self.program.emergency_for(&leg?, Cause::Operator)?.id.clone())
     }
 }

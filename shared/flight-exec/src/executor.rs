@@ -17,7 +17,8 @@ pub struct Executor {
     pub(crate) config: Config,
     pub(crate) terrain: Arc<dyn Terrain>,
     pub(crate) profile: Profile,
-    pub(crate) program: Option<Arc<Program>>,
+    /// [`Program::default`]: there is none.
+    pub(crate) program: Arc<Program>,
     pub(crate) proposed: Option<Arc<Program>>,
     pub(crate) state: State,
     pub(crate) last_step: Option<Time>,
@@ -32,7 +33,7 @@ impl Executor {
     /// An executor without a plan.
     pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
         let state = State::default();
-        Self { config, terrain, profile, program: None, proposed: None, state, last_step: None }
+        Self { config, terrain, profile, program: Arc::default(), proposed: None, state, last_step: None }
     }
 
     /// One thing happened at `now`; what has to be done about it is appended to `out`.
@@ -72,7 +73,8 @@ impl Executor {
 
     /// The active plan.
     pub fn program(&self) -> Option<&Arc<Program>> {
-        self.program.as_ref()
+        // whatever was compiled has a hash
+        Some(&self.program).filter(|program| !program.hash.is_empty())
     }
 
     /// The plan that was proposed last and may be committed.
@@ -124,8 +126,8 @@ impl Executor {
         // a deadline rounded to nanoseconds is not to be missed by one
         let by_now_s = self.state.clock_s + 1e-6;
         self.act_on_the_way(out);
-        if self.state.wait.is_some_and(|wait| wait.due_s <= by_now_s) {
-            self.end_wait(out);
+        if let Some(wait) = self.state.wait.filter(|wait| wait.due_s <= by_now_s) {
+            self.end_wait(wait, out);
         }
         if self.state.refresh_due_s.is_some_and(|due| due <= by_now_s) {
             self.refresh(out);
@@ -144,9 +146,10 @@ impl Executor {
     }
 
     pub(crate) fn flying_program(&self) -> Result<Arc<Program>, Refusal> {
-        let program = self.program.clone().filter(|_| self.is_flying());
-        program
-            .ok_or_else(|| refusal("not-flying", "no plan is being flown: commit a plan and start it first"))
+        if self.is_flying() {
+            return Ok(self.program.clone());
+        }
+        Err(refusal("not-flying", "no plan is being flown: commit a plan and start it first"))
     }
 
     /// What is changed now must wait to be fed.
@@ -161,10 +164,10 @@ impl Executor {
         }
     }
 
-    /// The world as the cursor sees it; `None` without a plan.
-    pub fn world(&self) -> Option<World<'_>> {
-        Some(World {
-            program: self.program.as_deref()?,
+    /// The world as the cursor sees it.
+    pub fn world(&self) -> World<'_> {
+        World {
+            program: &self.program,
             config: &self.config,
             profile: &self.profile,
             terrain: self.terrain.as_ref(),
@@ -176,7 +179,7 @@ impl Executor {
             counts: &self.state.counts,
             arriving: false,
             looking_ahead: false,
-        })
+        }
     }
 
     fn flight_state(&self) -> FlightState {
@@ -197,13 +200,13 @@ impl Executor {
     }
 
     fn home(&self) -> LatLon {
-        let home = self.program.as_ref().and_then(|p| p.plan.home());
+        let home = self.program.plan.home();
         home.map_or(LatLon::new(0.0, 0.0), |r| r.threshold)
     }
 
     /// The aircraft as the end of a path; before its first report, standing at home.
     pub fn here(&self) -> PathState {
-        let runway = self.program.as_ref().and_then(|p| p.plan.home());
+        let runway = self.program.plan.home();
         let aircraft = self.state.aircraft.as_ref();
         let elevation_m = runway.map_or(0.0, |r| r.elevation_amsl_m);
         let altitude_m = aircraft.map_or(elevation_m, |a| a.altitude_amsl_m);
@@ -233,11 +236,8 @@ impl Executor {
 
     /// Path from the aircraft to a path length ahead, metres; never negative.
     pub(crate) fn path_left_m(&self, at_m: f64) -> f64 {
-        let Some(front) = self.state.handed.front() else { return 0.0 };
-        if at_m <= front.before.path.distance_m {
-            return 0.0;
-        }
-        (self.to_current_m() + at_m - front.end_m).max(0.0)
+        let beyond = self.state.handed.front().filter(|front| at_m > front.before.path.distance_m);
+        beyond.map_or(0.0, |front| (self.to_current_m() + at_m - front.end_m).max(0.0))
     }
 
     fn has_provisional_choices(&self) -> bool {

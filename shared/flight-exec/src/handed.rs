@@ -219,13 +219,11 @@ impl Handed {
 
     /// Makes what happens before a wait final, all but the choice that is waited for: that bookmark is at the intersection.
     pub fn seal_before_wait(&mut self) -> (Vec<Choice>, Vec<Mark>) {
-        let Some(open) = self.choices.pop() else { return Default::default() };
-        if let Some(waiting) = self.sealed.as_deref() {
-            let passage = waiting.passage.saturating_sub(1);
-            self.before =
-                Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting.clone() };
-        }
-        (std::mem::replace(&mut self.choices, vec![open]), std::mem::take(&mut self.marks))
+        let waiting = self.sealed.as_deref().unwrap_or(&self.before).clone();
+        let passage = waiting.passage.saturating_sub(1);
+        self.before = Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting };
+        let open = self.choices.split_off(self.choices.len().saturating_sub(1));
+        (std::mem::replace(&mut self.choices, open), std::mem::take(&mut self.marks))
     }
 
     /// The aircraft circles here until something else is fed.

@@ -28,20 +28,17 @@ impl Executor {
 
     /// Drops waypoints that have been flown; what they led to is announced in order.
     fn fly_past(&mut self, count: usize, out: &mut Vec<Output>) {
-        for _ in 0..count {
-            if let Some(mut flown) = self.state.handed.pop_front() {
-                self.announce(&mut flown, out);
-                self.act_up_to(&flown, out);
-            }
+        let flown: Vec<Handed> = self.state.handed.drain(..count).collect();
+        for mut flown in flown {
+            self.announce(&mut flown, out);
+            self.act_up_to(&flown, out);
         }
     }
 
     /// The choices that led to the current waypoint are due: if they would be others now, the way is changed.
     fn arrive_at_current(&mut self, out: &mut Vec<Output>) {
-        if self.front_choices_changed()
-            && let Some(cursor) = self.bookmark(0).cloned()
-        {
-            self.replan_with(0, cursor, true, out);
+        if self.front_choices_changed() {
+            self.replan_from(0, true, out);
         }
         if let Some(mut front) = self.state.handed.pop_front() {
             self.announce(&mut front, out);
@@ -51,10 +48,8 @@ impl Executor {
     }
 
     fn front_choices_changed(&self) -> bool {
-        let (Some(front), Some(world)) = (self.state.handed.front(), self.world()) else { return false };
-        !front.choices.is_empty()
-            && !front.pinned
-            && choices_changed(front, &World { arriving: true, ..world })
+        let front = self.state.handed.front().filter(|front| !front.choices.is_empty() && !front.pinned);
+        front.is_some_and(|front| choices_changed(front, &World { arriving: true, ..self.world() }))
     }
 
     /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
@@ -113,28 +108,23 @@ impl Executor {
         }
     }
 
-    /// Loops that ended together with the plan, and actions at its end.
+    /// Loops that ended together with the plan, decisions that led to its end, and actions there.
     fn announce_end(&mut self, last: &Handed, out: &mut Vec<Output>) {
-        let (Some(mut tail), Some(world)) = (self.state.tail.clone(), self.world()) else { return };
-        let Step::Ended { notes } = tail.next(&world) else { return };
+        let Step::Ended { notes } = self.bookmark(0).next(&self.world()) else { return };
         self.end_passages(|_| true, out);
         self.pass_silently(notes.marks, last, out);
-        for choice in notes.choices {
-            if let Choice::Loop { leg, arrival, of, .. } = choice {
-                out.push(Output::Event(Event::IterationFinished { leg, finished: arrival, of }));
-            }
-        }
+        self.tell_choices(notes.choices, out);
     }
 
     /// Reads the conditions of choices ahead again, and changes the way where they have changed.
     pub(crate) fn review(&mut self, out: &mut Vec<Output>) {
-        let Some(world) = self.world() else { return };
+        let world = self.world();
         let from = self.alterable_from();
         let ahead = self.state.handed.iter().enumerate().skip(from);
         let changed = ahead.filter(|(_, h)| !h.choices.is_empty()).find(|(_, h)| choices_changed(h, &world));
         let changed = changed.map(|(index, _)| index).or_else(|| self.end_changed(&world, from));
-        if let Some((index, cursor)) = changed.and_then(|i| Some((i, self.bookmark(i)?.clone()))) {
-            self.replan_with(index, cursor, false, out);
+        if let Some(index) = changed {
+            self.replan_from(index, false, out);
         }
     }
 
@@ -151,10 +141,8 @@ impl Executor {
         let index = self.state.handed.iter().position(|h| h.waypoint.token >= first);
         let leg = index.and_then(|i| self.state.handed.get(i)).map(|h| h.place.leg.clone());
         out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
-        let Some((index, cursor)) = index.and_then(|i| Some((i, self.bookmark(i)?.clone()))) else { return };
-        if !self.is_flying() {
-            return;
-        }
+        let Some(index) = index else { return };
+        let cursor = self.bookmark(index);
         self.state.handed.truncate(index);
         self.state.tail = Some(cursor);
         self.state.onward = Onward::Open;

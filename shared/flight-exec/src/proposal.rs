@@ -34,16 +34,14 @@ impl Executor {
     }
 
     fn report(&self, program: &Arc<Program>, objections: &[Problem]) -> ProposalReport {
-        let empty = FlightPlan::default();
-        let old = self.program.as_ref().map_or(&empty, |p| &p.plan);
         let problems = program.warnings.iter().chain(objections).map(|w| w.message.clone()).collect();
         let forbidden = objections.iter().any(Problem::is_error);
         let mut report = ProposalReport {
             hash: program.hash.clone(),
-            acceptable: !program.stages(None).is_empty() && !forbidden,
+            acceptable: !forbidden,
             problems,
             entry_needed: false,
-            ..differences(old, &program.plan)
+            ..differences(&self.program.plan, &program.plan)
         };
         match self.outcome(program) {
             Ok(after) => self.tell_outcome(&after, &mut report),

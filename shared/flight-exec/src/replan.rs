@@ -24,8 +24,7 @@ impl Executor {
         }
         let more = self.horizon(self.state.handed.len(), self.time_at_aircraft_s());
         let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
-        let Some(world) = self.world() else { return };
-        let stretch = lay_out(tail, &world, false, false, more);
+        let stretch = lay_out(tail, &self.world(), false, false, more);
         self.append(stretch, out);
     }
 
@@ -86,7 +85,7 @@ impl Executor {
 
     /// A loop without waypoints: nothing will ever follow, so the aircraft holds where its path ends.
     fn stalled(&mut self, out: &mut Vec<Output>) {
-        let leg = self.state.tail.as_ref().and_then(|t| Some(t.loop_ids(&self.world()?).last()?.clone()));
+        let leg = self.state.tail.as_ref().and_then(|t| t.loop_ids(&self.world()).pop());
         let reason = "this loop flies no waypoint; change its body by a plan update, or go to another leg";
         let leg = leg.unwrap_or_else(|| Id::new("plan"));
         self.tell_trouble(Trouble::Leg { leg, reason: reason.into() }, out);
@@ -132,28 +131,30 @@ impl Executor {
 
     /// Lays the path out anew behind what can't be altered, and feeds what differs.
     pub(crate) fn replan(&mut self, out: &mut Vec<Output>) {
-        let from = self.alterable_from();
-        if let Some(cursor) = self.bookmark(from).cloned() {
-            self.replan_with(from, cursor, false, out);
-        }
+        self.replan_from(self.alterable_from(), false, out);
     }
 
-    /// The cursor before waypoint number `index`, or behind the last one.
-    pub(crate) fn bookmark(&self, index: usize) -> Option<&Cursor> {
-        self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref())
+    /// Lays the path out anew from waypoint number `from` on: see [`Executor::replan_with`].
+    pub(crate) fn replan_from(&mut self, from: usize, arriving: bool, out: &mut Vec<Output>) {
+        self.replan_with(from, self.bookmark(from), arriving, out);
+    }
+
+    /// The cursor before waypoint number `index`, or behind the last one; before the start the one that starts.
+    pub(crate) fn bookmark(&self, index: usize) -> Cursor {
+        let laid_out = self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref());
+        laid_out.cloned().unwrap_or_else(|| Cursor::start(None, self.here(), self.state.last_passage))
     }
 
     /// Replaces the waypoints from number `from` on by what `cursor` gives. Waypoints that come out the same keep their
     /// numbers; one transaction cancels and appends the rest.
     pub(crate) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
-        let Some(world) = self.world() else { return };
         let from = from.min(self.state.handed.len());
         let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
         let more = self.horizon(from, self.time_at_aircraft_s());
         let at_least = old.len();
         let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
-        let stretch = lay_out(&cursor, &world, arriving, marked, |n, c| n < at_least || more(n, c));
+        let stretch = lay_out(&cursor, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
         let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
         let tokens: Vec<Token> = old.iter().take(same).map(|h| h.waypoint.token).collect();
         self.state.handed.truncate(from);
@@ -192,16 +193,15 @@ impl Executor {
     pub(crate) fn jump(&mut self, mut cursor: Cursor, out: &mut Vec<Output>) {
         cursor.passage = self.state.last_passage;
         // a count belongs to an activation: that of a loop which is left is forgotten
-        let around = self.world().map_or_else(Vec::new, |w| cursor.loop_ids(&w));
+        let around = cursor.loop_ids(&self.world());
         self.state.counts.retain(|c| around.contains(&c.leg));
         if cursor.section.is_none() {
             self.state.emergency = None;
         }
         self.state.handed.clear();
         self.state.held_at = None;
-        let Some(world) = self.world() else { return };
         let more = self.horizon(0, cursor.path.time_s);
-        let stretch = lay_out(&cursor, &world, false, false, more);
+        let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
         self.abandon_passages();
         self.feed(Some(Token(0)), 0, out);

@@ -46,7 +46,7 @@ impl Executor {
         let mut expansions: Vec<Arc<Expansion>> = Vec::new();
         let in_expansion = bookmarks(&self.state).map(|c| index_in(&mut expansions, c)).collect();
         let sealed = self.state.handed.iter().map(|h| h.sealed.clone()).collect();
-        let plan = self.program.as_ref().map(|p| p.hash.clone());
+        let plan = self.program().map(|p| p.hash.clone());
         Snapshot { plan, state: self.state.clone(), expansions, in_expansion, sealed }
     }
 
@@ -67,7 +67,7 @@ impl Executor {
             return Err(RestoreError::OtherPlan { wanted: name(snapshot.plan), given: name(given) });
         }
         let mut executor = Self::new(config, terrain, profile);
-        executor.program = program;
+        executor.program = program.unwrap_or_default();
         executor.state = revived(snapshot)?;
         Ok(executor)
     }

@@ -13,7 +13,7 @@ impl Executor {
     pub fn status(&self) -> Status {
         Status {
             phase: self.state.phase,
-            plan: self.program.as_ref().map(|p| p.hash.clone()),
+            plan: self.program().map(|p| p.hash.clone()),
             revision: self.state.revision,
             place: self.place(),
             emergency_in_force: self.emergency_in_force(),

@@ -1,10 +1,10 @@
 //! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
 
 use crate::api::{Event, Output, Phase, Refusal};
-use crate::cursor::{Cursor, Doing, LoopFrame, Trouble, Visit};
+use crate::cursor::{Cursor, Doing, LoopFrame, Visit};
 use crate::executor::{Executor, refusal};
 use crate::world::World;
-use flight_plan::{Id, Leg, Program, Variables};
+use flight_plan::{Id, Leg, LegPath, Program};
 use std::sync::Arc;
 
 impl Executor {
@@ -19,9 +19,6 @@ impl Executor {
             let advice = "was not the last acceptable one proposed: propose it first";
             refusal("not-proposed", format!("plan {hash} {advice}"))
         })?;
-        if proposed.plan.stages.is_empty() {
-            return Err(refusal("empty-plan", "the main plan has no stage: add one"));
-        }
         if !self.is_flying() {
             self.activate(proposed, out);
             self.state.handed.clear();
@@ -34,65 +31,59 @@ impl Executor {
                 self.activate(proposed, out);
                 self.jump(*cursor, out);
             }
-            Carried::On(bookmarks) => self.go_on_in(proposed, bookmarks, out),
+            Carried::On { kept, onward } => self.go_on_in(proposed, &kept, *onward, out),
         }
         Ok(())
     }
 
     fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
-        self.state.variables = match &self.program {
-            Some(_) => self.state.variables.carried_over(&program.plan),
-            None => Variables::initial(&program.plan),
-        };
+        self.state.variables = self.state.variables.carried_over(&program.plan);
         self.state.revision += 1;
         let event = Event::PlanActivated { hash: program.hash.clone(), revision: self.state.revision };
-        let before = self.program.replace(program);
+        let before = std::mem::replace(&mut self.program, program);
         self.proposed = None;
         // what couldn't be flown in the old plan may come to be told again in the new one
         self.state.told.clear();
-        if let Some(before) = before {
-            self.carry_passages_over(&before);
-        }
+        self.carry_passages_over(&before);
         out.push(Output::Event(event));
     }
 
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
-    fn go_on_in(&mut self, program: Arc<Program>, bookmarks: Vec<Cursor>, out: &mut Vec<Output>) {
-        let keep = bookmarks.len().saturating_sub(1);
-        let another = self.program.as_ref().is_none_or(|p| p.hash != program.hash);
+    fn go_on_in(
+        &mut self,
+        program: Arc<Program>,
+        kept: &[Cursor],
+        mut onward: Cursor,
+        out: &mut Vec<Output>,
+    ) {
+        let same = self.program == program;
         self.activate(program, out);
-        for (handed, bookmark) in self.state.handed.iter_mut().zip(&bookmarks).take(keep) {
+        for (handed, bookmark) in self.state.handed.iter_mut().zip(kept) {
             handed.before = bookmark.clone();
             handed.pinned = true;
         }
-        let Some(mut cursor) = bookmarks.into_iter().next_back() else { return };
-        if let Some(world) = self.world().filter(|_| another) {
-            let leg = cursor.leg(&world).map(|l| l.id.clone());
-            let refreshed = cursor.refresh_pattern(&world);
-            if let (Err(why), Some(leg)) = (refreshed, leg) {
-                self.tell_trouble(Trouble::Leg { leg, reason: why.to_string() }, out);
-            }
+        let refreshed = if same { Ok(false) } else { onward.refresh_pattern(&self.world()) };
+        if let Err(trouble) = refreshed {
+            self.tell_trouble(trouble, out);
         }
-        self.replan_with(keep, cursor, false, out);
+        self.replan_with(kept.len(), onward, false, out);
     }
 
     fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
-        let (Some(old), Some(world)) = (&self.program, self.world()) else {
-            return Err(refusal("not-flying", "no plan is being flown: start one first"));
-        };
-        if let Some(front) = self.state.handed.front() {
-            let current = &front.place.leg;
-            if new.path(current).is_some() && entry.is_none_or(|e| e == current) {
-                let keep = self.alterable_from();
-                let translate = |i: usize| {
-                    let begun = self.at_the_leg_begun(i, &world);
-                    let kept = i.checked_sub(1).filter(|_| begun.is_none());
-                    let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
-                    let bookmark = begun.as_ref().or(self.bookmark(i));
-                    bookmark.map(|c| translated(c, leg, current, old, new, &world))
-                };
-                return Ok(Carried::On((0..=keep).filter_map(translate).collect()));
-            }
+        let world = self.world();
+        let current = self.state.handed.front().map(|h| &h.place.leg);
+        let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
+        if let Some(current) = current {
+            let keep = self.alterable_from();
+            let translate = |i: usize| {
+                let begun = self.at_the_leg_begun(i, &world);
+                let kept = i.checked_sub(1).filter(|_| begun.is_none());
+                let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
+                let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
+                translated(&bookmark, leg, current, new, &world)
+            };
+            let (kept, onward) = ((0..keep).map(translate).collect(), Box::new(translate(keep)));
+            return Ok(Carried::On { kept, onward });
         }
         let Some(entry) = entry else {
             let reason = "the leg being flown is not in the new plan: name the leg to enter in the commit";
@@ -101,10 +92,7 @@ impl Executor {
         let target = new.path(entry).ok_or_else(|| {
             refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
         })?;
-        let now = self
-            .bookmark(1)
-            .or(self.state.tail.as_ref())
-            .ok_or_else(|| refusal("no-place", "wait for the first leg"))?;
+        let now = self.bookmark(1);
         let flown = self.state.emergency.as_ref().map(|e| &e.plan);
         let entered = target.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
         if entered.is_some() && entered != flown {
@@ -126,7 +114,7 @@ impl Executor {
     /// plan puts in between belongs to the past.
     fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
         let first = self.state.handed.get(index)?;
-        let before = self.bookmark(index).filter(|c| c.passage != first.passage)?;
+        let before = Some(self.bookmark(index)).filter(|c| c.passage != first.passage)?;
         let mut begun = before.clone();
         self.is_announced(first).then(|| begun.next(world))?;
         begun.path = before.path;
@@ -144,8 +132,13 @@ impl Executor {
 enum Carried {
     /// Directly to an entry leg.
     Enter(Box<Cursor>),
-    /// Bookmarks before each waypoint that stays, and behind the last of them.
-    On(Vec<Cursor>),
+    /// Goes on where it is.
+    On {
+        /// Bookmarks before each waypoint that stays.
+        kept: Vec<Cursor>,
+        /// And behind the last of them.
+        onward: Box<Cursor>,
+    },
 }
 
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
@@ -153,19 +146,17 @@ enum Carried {
 fn translated(
     cursor: &Cursor,
     kept_leg: Option<&Id>,
-    current: &Id,
-    old: &Program,
+    current: &LegPath,
     new: &Program,
-    world: &crate::world::World,
+    world: &World,
 ) -> Cursor {
     let known = cursor.loop_ids(world);
     let own = cursor.leg(world).map(|l| &l.id).or(cursor.current_stage(world).map(|s| &s.id));
-    let same_kind = |id: &&Id| kind_of(old, id) == kind_of(new, id);
+    let same_kind = |id: &&Id| kind_of(world.program, id) == kind_of(new, id);
     let target = own.filter(same_kind).and_then(|id| new.path(id));
     let Some(target) = target else {
-        let fallback = kept_leg.filter(|id| new.path(id).is_some()).unwrap_or(current);
-        let Some(path) = new.path(fallback) else { return cursor.clone() };
-        let mut placed = cursor.placed_at(path, &known, new);
+        let fallback = kept_leg.and_then(|id| new.path(id)).unwrap_or(current);
+        let mut placed = cursor.placed_at(fallback, &known, new);
         if kept_leg.is_some() {
             placed.doing = Doing::Flying;
         }
@@ -187,16 +178,17 @@ fn restore_trails(
     moved: &mut Cursor,
     old: &Cursor,
     known: &[Id],
-    world: &crate::world::World,
+    world: &World,
     new: &Program,
-    target: &flight_plan::LegPath,
+    target: &LegPath,
 ) {
     let old_chain = old.chain(world);
     let new_chain = new.chain(target);
     for (frame, leg) in moved.loops.iter_mut().zip(new_chain) {
-        let Some(place) = known.iter().position(|id| *id == leg.id) else { continue };
-        let (Some(before), Some(old_leg)) = (old.loops.get(place), old_chain.get(place)) else { continue };
-        if form_of(old_leg) != form_of(leg) {
+        let place = known.iter().position(|id| *id == leg.id);
+        let was = place.and_then(|i| old.loops.get(i).zip(old_chain.get(i)));
+        let Some((before, old_leg)) = was else { continue };
+        if old_leg.as_loop().map(|l| l.form) != leg.as_loop().map(|l| l.form) {
             // forth and back has become round and round, or the reverse: directions and trails mean nothing any more
             break;
         }
@@ -210,22 +202,13 @@ fn restore_trails(
     }
 }
 
-fn form_of(leg: &Leg) -> Option<flight_plan::IterativeForm> {
-    match &leg.kind {
-        flight_plan::LegKind::Iterative { form, .. } => Some(*form),
-        _ => None,
-    }
-}
-
 /// A trail in the new body: legs that are gone are left out.
 fn remap(trail: &[Visit], old: &Leg, new: &Leg) -> Vec<Visit> {
     let moved = |visit: &Visit| {
         let leg = old.body().get(visit.index)?;
         let index = new.body().iter().position(|l| l.id == leg.id)?;
-        let inner = match (&visit.inner, new.body().get(index)) {
-            (Some(inner), Some(new_leg)) => Some(Arc::new(remap(inner, leg, new_leg))),
-            _ => None,
-        };
+        let inner = visit.inner.as_ref().zip(new.body().get(index));
+        let inner = inner.map(|(inner, new_leg)| Arc::new(remap(inner, leg, new_leg)));
         Some(Visit { index, inner, ..visit.clone() })
     };
     trail.iter().filter_map(moved).collect()

@@ -136,16 +136,16 @@ impl World<'_> {
     }
 
     /// Altitude of a leg: its own, the innermost loop's that has one, the stage's, else `before`.
-    pub fn level(&self, chain: &[&Leg], stage: &Stage, before: Level) -> Level {
+    pub fn level(&self, chain: &[&Leg], stage: Option<&Stage>, before: Level) -> Level {
         let own = chain.iter().rev().find_map(|leg| leg.altitude.as_ref());
-        let own = own.or(stage.altitude.as_ref());
+        let own = own.or(stage.and_then(|s| s.altitude.as_ref()));
         own.and_then(|a| self.evaluated(a)).unwrap_or(before)
     }
 
     /// Airspeed of a leg, m/s: its own, the innermost loop's that has one, the stage's, else cruise; within the envelope.
-    pub fn airspeed_mps(&self, chain: &[&Leg], stage: &Stage) -> f64 {
+    pub fn airspeed_mps(&self, chain: &[&Leg], stage: Option<&Stage>) -> f64 {
         let own = chain.iter().rev().find_map(|leg| leg.speed_mps.as_ref());
-        let own = own.or(stage.speed_mps.as_ref());
+        let own = own.or(stage.and_then(|s| s.speed_mps.as_ref()));
         let wanted = own.and_then(|v| self.number(v).ok()).unwrap_or(self.profile.cruise_airspeed_mps);
         wanted.clamp(self.profile.min_airspeed_mps, self.profile.max_airspeed_mps)
     }

@@ -25,5 +25,5 @@ pub use procedure::instantiate;
 pub use program::{LegPath, Program, compile, compile_again, compile_document, compile_reading};
 pub use uses::{Part, Use};
 pub use variables::{VariableError, Variables};
-pub use walk::{LegContext, Section};
+pub use walk::{Fork, LegContext, Loop, Section};
 pub use xml::{Places, Reading, hash, read, write};

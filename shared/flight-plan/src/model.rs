@@ -371,7 +371,7 @@ pub struct Branch {
 }
 
 /// When a decision is due before the intersection.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DecideBefore {
     /// Seconds of flight.
     Time(f64),

@@ -13,8 +13,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use terrain::Terrain;
 
-/// A plan without errors, its expressions compiled and its lookups resolved; immutable.
-#[derive(Debug)]
+/// A plan without errors, its expressions compiled and its lookups resolved; immutable. The default, without a hash, is no plan
+/// at all.
+#[derive(Debug, Default)]
 pub struct Program {
     /// The plan it was made from, as it was written: with its calls.
     pub plan: FlightPlan,

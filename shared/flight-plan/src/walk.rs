@@ -1,6 +1,10 @@
 //! Walking a plan: every leg with what is around it.
 
-use crate::{Area, EmergencyPlan, FlightPlan, Id, Leg, LegKind, Pattern, Place, ScanStyle, Stage};
+use crate::{
+    Area, Branch, DecideBefore, EmergencyPlan, FlightPlan, Id, IterativeForm, Leg, LegKind, Pattern, Place,
+    ScanStyle, Stage, TurnDirection, Value,
+};
+use std::sync::Arc;
 
 /// Which part of the document a stage is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +42,51 @@ impl<'a> LegContext<'a> {
     }
 }
 
+/// How an iterative leg repeats its body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loop<'a> {
+    /// Forth and back, or round and round.
+    pub form: IterativeForm,
+    /// How often.
+    pub count: Option<&'a Value<f64>>,
+    /// CEL condition that ends it.
+    pub until: Option<&'a Arc<str>>,
+    /// Turn direction of the full turns.
+    pub turn: TurnDirection,
+}
+
+/// The ways on from an intersection.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fork<'a> {
+    /// Ways on; empty or one: a pure merge.
+    pub branches: &'a [Branch],
+    /// The branch taken when nobody decides.
+    pub default: Option<&'a Id>,
+    /// When the decision is due.
+    pub decide_before: DecideBefore,
+}
+
 impl Leg {
+    /// How it repeats its body, if it is iterative.
+    pub fn as_loop(&self) -> Option<Loop<'_>> {
+        match &self.kind {
+            LegKind::Iterative { form, count, until, turn, .. } => {
+                Some(Loop { form: *form, count: count.as_ref(), until: until.as_ref(), turn: *turn })
+            }
+            _ => None,
+        }
+    }
+
+    /// Its ways on, if it is an intersection.
+    pub fn as_fork(&self) -> Option<Fork<'_>> {
+        match &self.kind {
+            LegKind::Intersection { branches, default, decide_before } => {
+                Some(Fork { branches, default: default.as_ref(), decide_before: *decide_before })
+            }
+            _ => None,
+        }
+    }
+
     /// The legs inside it: the body of an iterative leg, else none.
     pub fn body(&self) -> &[Leg] {
         match &self.kind {

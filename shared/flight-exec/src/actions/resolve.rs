@@ -6,6 +6,8 @@ use flight_plan::{Act, EvalError, Id};
 
 /// Who writes a variable when the plan itself does.
 const PLAN: &str = "plan";
+/// A loop or an intersection has no end of its own to circle at, and where a leg has one the path itself circles there.
+const WAIT_INSIDE: &str = "a wait is flown at the end of a leg: put it on the last leg inside this one";
 
 impl Executor {
     /// Does an action once, or tells why it can't be done.
@@ -17,7 +19,7 @@ impl Executor {
         act: &Act,
         out: &mut Vec<Output>,
     ) {
-        let done = self.resolved(act, iteration).map_err(|why| why.to_string()).and_then(|act| {
+        let done = self.resolved(act, iteration).and_then(|act| {
             if let ResolvedAct::Set { variable, value } = &act {
                 let set = self.write_variable(variable, value.clone(), PLAN, out);
                 set.map_err(|refusal| refusal.reason)?;
@@ -33,24 +35,26 @@ impl Executor {
         }
     }
 
-    fn resolved(&self, act: &Act, iteration: u64) -> Result<ResolvedAct, EvalError> {
-        let world = self.world().map(|w| w.in_iteration(iteration));
-        let world = world.ok_or_else(|| EvalError::NotCompiled("action".into()))?;
+    fn resolved(&self, act: &Act, iteration: u64) -> Result<ResolvedAct, String> {
+        let world = self.world().in_iteration(iteration);
+        let why = |error: EvalError| error.to_string();
         Ok(match act {
             Act::Photo => ResolvedAct::Photo,
-            Act::PhotoSeries { every_m } => ResolvedAct::PhotoSeries { every_m: world.number(every_m)? },
+            Act::PhotoSeries { every_m } => {
+                ResolvedAct::PhotoSeries { every_m: world.number(every_m).map_err(why)? }
+            }
             Act::PhotoStop => ResolvedAct::PhotoStop,
             Act::VideoStart => ResolvedAct::VideoStart,
             Act::VideoStop => ResolvedAct::VideoStop,
             Act::Set { variable, to } => {
-                ResolvedAct::Set { variable: variable.clone(), value: world.value(to)? }
+                ResolvedAct::Set { variable: variable.clone(), value: world.value(to).map_err(why)? }
             }
             Act::Invoke { service, operation, argument } => ResolvedAct::Invoke {
                 service: service.clone(),
                 operation: operation.clone(),
                 argument: argument.clone(),
             },
-            Act::Wait { seconds } => ResolvedAct::Wait { seconds: world.number(seconds)? },
+            Act::Wait { .. } => return Err(WAIT_INSIDE.into()),
         })
     }
 }

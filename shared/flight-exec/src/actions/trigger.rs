@@ -1,12 +1,12 @@
 //! When actions are due.
 
 use super::{Done, Passage, Piece, is_control, is_wait};
-use crate::api::{Event, Output};
+use crate::api::Output;
 use crate::cursor::Trouble;
 use crate::executor::Executor;
 use crate::handed::Handed;
 use crate::world::World;
-use flight_plan::{EvalError, LegAction, Trigger};
+use flight_plan::{Act, EvalError, LegAction, Place, Trigger};
 use geometry::{LatLon, LocalFrame};
 
 /// So near to a piece's ends a position counts as beside it, metres.
@@ -52,80 +52,57 @@ impl Moment {
 
 impl Executor {
     /// Does what is due on a passage, in the order of its path.
-    pub(super) fn act_on(&mut self, index: usize, moment: &Moment, out: &mut Vec<Output>) {
-        let Some(program) = self.program.clone() else { return };
-        let Some(passage) = self.state.passages.get(index) else { return };
-        let Some(leg) = program.leg(&passage.leg) else { return };
-        let (mut due, mut troubles) = (Vec::new(), Vec::new());
-        for (number, action) in leg.actions.iter().enumerate() {
-            match self.due(passage, number, action, moment) {
-                Ok(ways_m) => due.extend(ways_m.into_iter().map(|way_m| (way_m, number))),
-                Err(reason) => troubles.push(Trouble::Expression { leg: leg.id.clone(), reason }),
+    pub(super) fn act_on(&mut self, passage: &mut Passage, moment: &Moment, out: &mut Vec<Output>) {
+        let program = self.program.clone();
+        let actions = program.leg(&passage.leg).map_or(&[][..], |leg| &leg.actions);
+        let mut due = Vec::new();
+        for (number, (action, done)) in actions.iter().zip(&passage.done).enumerate() {
+            match self.due(passage, *done, action, moment) {
+                Ok(ways_m) => due.extend(ways_m.into_iter().map(|way_m| (way_m, number, &action.act))),
+                Err(reason) => {
+                    let leg = passage.leg.clone();
+                    self.tell_trouble(Trouble::Expression { leg, reason }, out);
+                }
             }
         }
-        let beyond = self.beyond(passage, &leg.actions, moment);
-        if let Some(passage) = self.state.passages.get_mut(index) {
-            for (done, ahead) in passage.done.iter_mut().zip(beyond) {
-                done.ahead = ahead.unwrap_or(done.ahead);
-            }
+        let beyond = self.beyond(passage, actions, moment);
+        for (done, ahead) in passage.done.iter_mut().zip(beyond) {
+            done.ahead = ahead.unwrap_or(done.ahead);
         }
-        troubles.into_iter().for_each(|trouble| self.tell_trouble(trouble, out));
         due.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, number) in due {
-            self.fulfil(index, number, &leg.actions, out);
+        for (_, number, act) in due {
+            self.fulfil(passage, number, act, out);
         }
     }
 
     /// Does what is due at the end of a passage.
-    pub(super) fn act_at_the_end(&mut self, index: usize, out: &mut Vec<Output>) {
-        let Some(program) = self.program.clone() else { return };
-        let leg = self.state.passages.get(index).and_then(|p| program.leg(&p.leg));
-        let Some(leg) = leg else { return };
-        for (number, action) in leg.actions.iter().enumerate() {
-            let done = self.state.passages.get(index).and_then(|p| p.done.get(number));
+    pub(super) fn act_at_the_end(&mut self, passage: &mut Passage, out: &mut Vec<Output>) {
+        let program = self.program.clone();
+        let leg = program.leg(&passage.leg);
+        let actions = leg.map_or(&[][..], |leg| &leg.actions);
+        for (number, action) in actions.iter().enumerate() {
+            let done = passage.done.get(number);
             let due = action.trigger == Trigger::End && done.is_some_and(|d| d.times == 0);
-            if due && !is_wait(&action.act) {
-                self.fulfil(index, number, &leg.actions, out);
-            } else if due && is_control(leg) {
-                self.refuse_wait(index, number, out);
+            if due && (!is_wait(&action.act) || leg.is_some_and(is_control)) {
+                self.fulfil(passage, number, &action.act, out);
             }
         }
     }
 
-    /// A loop, a call or an intersection has no end of its own to circle at.
-    fn refuse_wait(&mut self, index: usize, number: usize, out: &mut Vec<Output>) {
-        let Some(passage) = self.state.passages.get_mut(index) else { return };
-        if let Some(done) = passage.done.get_mut(number) {
-            done.times += 1;
-        }
-        let reason = "a wait is flown at the end of a leg: put it on the last leg inside this one".into();
-        let (leg, passage) = (passage.leg.clone(), passage.number);
-        out.push(Output::Event(Event::ActionRefused { leg, passage, reason }));
-    }
-
-    fn fulfil(&mut self, index: usize, number: usize, actions: &[LegAction], out: &mut Vec<Output>) {
-        let (Some(passage), Some(action)) = (self.state.passages.get_mut(index), actions.get(number)) else {
-            return;
-        };
-        if let Some(done) = passage.done.get_mut(number) {
-            done.times += 1;
-        }
-        let (leg, passage, iteration) = (passage.leg.clone(), passage.number, passage.iteration);
-        self.perform(leg, passage, iteration, &action.act, out);
+    fn fulfil(&mut self, passage: &mut Passage, number: usize, act: &Act, out: &mut Vec<Output>) {
+        passage.done.iter_mut().skip(number).take(1).for_each(|done| done.times += 1);
+        self.perform(passage.leg.clone(), passage.number, passage.iteration, act, out);
     }
 
     /// Path lengths at which an action is due by now, one for each time.
     fn due(
         &self,
         passage: &Passage,
-        number: usize,
+        done: Done,
         action: &LegAction,
         moment: &Moment,
     ) -> Result<Vec<f64>, String> {
-        let (Some(done), Some(world)) = (passage.done.get(number), self.world()) else {
-            return Ok(Vec::new());
-        };
-        let world = world.in_iteration(passage.iteration);
+        let world = self.world().in_iteration(passage.iteration);
         let way_m = moment.way_m - passage.began_m;
         if let Trigger::Every(every) = &action.trigger {
             let every_m = world.number(every).map_err(|why| why.to_string())?;
@@ -140,14 +117,14 @@ impl Executor {
             Trigger::Start => once(true, f64::NEG_INFINITY),
             Trigger::Distance(metres) => number(metres).map(|m| once(way_m >= m, m))?,
             Trigger::Time(seconds) => once(passage.flown_s >= number(seconds)?, way_m),
-            Trigger::Abeam(_) => once(is_abeam(action, *done, moment, &world)?, way_m),
+            Trigger::Abeam(place) => once(is_abeam(place, done, moment, &world)?, way_m),
             Trigger::End | Trigger::Every(_) => Vec::new(),
         })
     }
 
     /// Which positions lie beyond the end of a piece that is complete; `None`: nothing new is known.
     fn beyond(&self, passage: &Passage, actions: &[LegAction], moment: &Moment) -> Vec<Option<bool>> {
-        let Some(world) = self.world().map(|w| w.in_iteration(passage.iteration)) else { return Vec::new() };
+        let world = self.world().in_iteration(passage.iteration);
         let of = |action: &LegAction| {
             let Trigger::Abeam(place) = &action.trigger else { return None };
             let beside = world.place(place).ok().and_then(|p| moment.piece.beside(p));
@@ -158,8 +135,7 @@ impl Executor {
 }
 
 /// The aircraft has passed the position of an action on this piece of the path, or on the corner before it.
-fn is_abeam(action: &LegAction, done: Done, moment: &Moment, world: &World) -> Result<bool, String> {
-    let Trigger::Abeam(place) = &action.trigger else { return Ok(false) };
+fn is_abeam(place: &Place, done: Done, moment: &Moment, world: &World) -> Result<bool, String> {
     let place = world.place(place).map_err(|why| why.to_string())?;
     let Some((along_m, length_m)) = moment.piece.beside(place) else { return Ok(false) };
     let on_corner = done.ahead && along_m < 0.0;

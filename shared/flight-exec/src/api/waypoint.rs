@@ -4,6 +4,9 @@ use flight_plan::Id;
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
+/// Farther apart than this, two waypoints are a mistake, metres: the gateway takes none such.
+pub const FARTHEST_M: f64 = 50_000.0;
+
 /// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
 /// updates, emergencies and restarts.
 #[derive(

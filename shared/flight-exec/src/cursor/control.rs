@@ -6,7 +6,7 @@ use crate::expand::Expansion;
 use crate::expand::track::turn_round;
 use crate::path::distance_m;
 use crate::world::World;
-use flight_plan::{Branch, Id, IterativeForm, Leg, LegKind};
+use flight_plan::{Branch, Fork, Id, IterativeForm, Leg, LegKind, Loop, Stage};
 use std::sync::Arc;
 
 /// Most intersections whose passings are counted apart.
@@ -17,20 +17,31 @@ impl Cursor {
     pub(super) fn leave(&mut self, world: &World, notes: &mut Notes) {
         let flown = self.expansion.take();
         let list = self.list(world);
-        let Some(leg) = list.get(self.index).filter(|_| !self.is_performed_stage(world)) else {
+        let Some(leg) = list.get(self.index).filter(|_| self.performed_stage(world).is_none()) else {
             return self.next_stage(world);
         };
         if flown.is_some() && self.given == 0 {
             self.mark(leg, notes);
         }
-        if self.is_reverse() {
-            self.step_back();
-        } else {
-            let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));
-            self.remember(world, flown.filter(|_| pattern), None);
-            self.index = successor(list, leg, self.index);
-            self.doing = Doing::Arriving;
+        let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));
+        self.go_on_from(leg, flown.filter(|_| pattern), None, world);
+    }
+
+    /// The leg it is at is behind: back along the trail, or on to the leg's successor.
+    fn go_on_from(
+        &mut self,
+        leg: &Leg,
+        flown: Option<Arc<Expansion>>,
+        inner: Option<Arc<Vec<Visit>>>,
+        world: &World,
+    ) {
+        self.doing = Doing::Arriving;
+        if let Some(frame) = self.loops.last_mut().filter(|frame| frame.reverse) {
+            frame.back = frame.back.saturating_sub(1);
+            return;
         }
+        self.remember(world, flown, inner);
+        self.index = successor(self.list(world), leg, self.index);
     }
 
     /// A leg is passed without a waypoint of its own.
@@ -40,17 +51,10 @@ impl Cursor {
         }
     }
 
-    fn step_back(&mut self) {
-        if let Some(frame) = self.loops.last_mut() {
-            frame.back = frame.back.saturating_sub(1);
-        }
-        self.doing = Doing::Arriving;
-    }
-
     /// Take-off and landing have no legs: the stage itself is flown.
-    pub(super) fn is_performed_stage(&self, world: &World) -> bool {
+    pub(super) fn performed_stage<'a>(&self, world: &World<'a>) -> Option<&'a Stage> {
         use flight_plan::StageKind::{Land, TakeOff};
-        self.current_stage(world).is_some_and(|s| matches!(s.kind, TakeOff | Land))
+        self.current_stage(world).filter(|s| matches!(s.kind, TakeOff | Land))
     }
 
     pub(super) fn next_stage(&mut self, world: &World) {
@@ -64,11 +68,9 @@ impl Cursor {
     /// Keeps what a pass back would need; erases the trail since the last visit of the same leg, so that jumps back can't
     /// make it grow.
     fn remember(&mut self, world: &World, flown: Option<Arc<Expansion>>, inner: Option<Arc<Vec<Visit>>>) {
-        if !self.goes_back_later(world) {
-            return;
-        }
+        let goes_back = self.goes_back_later(world);
         let (index, start, end) = (self.index, self.leg_start.last, self.path.last);
-        if let Some(frame) = self.loops.last_mut() {
+        if let Some(frame) = self.loops.last_mut().filter(|_| goes_back) {
             let trail = Arc::make_mut(&mut frame.trail);
             let again = trail.iter().position(|v| v.index == index).unwrap_or(trail.len());
             trail.truncate(again);
@@ -76,65 +78,54 @@ impl Cursor {
         }
     }
 
+    /// In a loop that is flown forth and back, however deep.
     fn goes_back_later(&self, world: &World) -> bool {
-        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
-        self.loops.iter().any(|frame| {
-            let Some(leg) = list.get(frame.index) else { return false };
-            list = leg.body();
-            frame.mirrored || matches!(leg.kind, LegKind::Iterative { form: IterativeForm::Reverse, .. })
-        })
+        let around = self.chain(world).into_iter().take(self.loops.len());
+        around.filter_map(Leg::as_loop).any(|l| l.form == IterativeForm::Reverse)
     }
 
     /// The innermost list is at its end in the direction of flight.
     pub(super) fn end_of_list(&mut self, world: &World, notes: &mut Notes) {
-        let Some(frame) = self.loops.last() else {
-            return self.next_stage(world);
-        };
-        let parent = self.parent_list(world);
-        let Some(leg) = parent.get(frame.index) else {
-            return self.next_stage(world);
-        };
-        let LegKind::Iterative { form, count, until, turn, .. } = &leg.kind else {
+        // without its frame, it is in the list of the loop itself
+        let innermost = self.loops.pop().and_then(|frame| {
+            let leg = self.list(world).get(frame.index)?;
+            Some((frame, leg, leg.as_loop()?))
+        });
+        let Some((frame, leg, passes)) = innermost else {
             return self.next_stage(world);
         };
         if frame.reverse == frame.mirrored {
             let inside = world.in_iteration(frame.iteration);
-            let own = count.as_ref().and_then(|c| notes.value(&leg.id, inside.number(c)));
+            let own = passes.count.and_then(|c| notes.value(&leg.id, inside.number(c)));
             let of = world.count_of(&leg.id, frame.activation).or(own.map(|n| n.max(1.0) as u64));
-            let until = until.as_ref().and_then(|c| notes.value(&leg.id, inside.condition(c)));
+            let until = passes.until.and_then(|c| notes.value(&leg.id, inside.condition(c)));
             let done = of.is_some_and(|n| frame.iteration >= n) || until == Some(true);
             let arrival = frame.iteration;
             notes.choices.push(Choice::Loop { leg: leg.id.clone(), arrival, of, again: !done });
             if done {
-                return self.leave_loop(world);
+                return self.leave_loop(frame, leg, world);
             }
         }
-        self.next_pass(leg, *form, *turn, world);
+        self.next_pass(frame, passes, world);
     }
 
-    fn next_pass(&mut self, leg: &Leg, form: IterativeForm, turn: flight_plan::TurnDirection, world: &World) {
-        let Some(frame) = self.loops.last_mut() else { return };
+    fn next_pass(&mut self, mut frame: LoopFrame, passes: Loop, world: &World) {
         if frame.reverse == frame.mirrored {
             frame.iteration = frame.iteration.saturating_add(1);
         }
-        let turns = form == IterativeForm::Reverse;
-        if turns {
-            frame.reverse = !frame.reverse;
-        }
+        frame.reverse ^= passes.form == IterativeForm::Reverse;
         frame.back = frame.trail.len();
         if !frame.reverse {
             frame.trail = Arc::default();
         }
+        self.loops.push(frame);
         self.index = 0;
         self.doing = Doing::Arriving;
-        if turns && frame_flies(leg) {
-            self.begin_turn_round(turn, world);
+        if passes.form == IterativeForm::Reverse {
+            let round = turn_round(&self.path, passes.turn, self.airspeed_mps, world);
+            self.expansion = Some(Arc::new(round));
+            self.begin_passage(Doing::Turning);
         }
-    }
-
-    fn begin_turn_round(&mut self, turn: flight_plan::TurnDirection, world: &World) {
-        self.expansion = Some(Arc::new(turn_round(&self.path, turn, self.airspeed_mps, world)));
-        self.begin_passage(Doing::Turning);
     }
 
     pub(super) fn begin_passage(&mut self, doing: Doing) {
@@ -144,33 +135,15 @@ impl Cursor {
         self.doing = doing;
     }
 
-    fn parent_list<'a>(&self, world: &World<'a>) -> &'a [Leg] {
-        let outer = self.loops.len().saturating_sub(1);
-        let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
-        for frame in self.loops.iter().take(outer) {
-            list = list.get(frame.index).map_or(&[][..], Leg::body);
-        }
-        list
-    }
-
-    fn leave_loop(&mut self, world: &World) {
-        let Some(LoopFrame { index, trail, entered, .. }) = self.loops.pop() else { return };
-        self.index = index;
-        self.leg_start.last = entered;
-        let list = self.list(world);
-        let Some(leg) = list.get(index) else { return self.next_stage(world) };
-        if self.is_reverse() {
-            self.step_back();
-        } else {
-            self.remember(world, None, Some(trail));
-            self.index = successor(list, leg, index);
-            self.doing = Doing::Arriving;
-        }
+    fn leave_loop(&mut self, frame: LoopFrame, leg: &Leg, world: &World) {
+        self.index = frame.index;
+        self.leg_start.last = frame.entered;
+        self.go_on_from(leg, None, Some(frame.trail), world);
     }
 
     /// A fork or merge: which way on.
-    pub(super) fn cross(&mut self, leg: &Leg, world: &World, notes: &mut Notes) {
-        let LegKind::Intersection { branches, default, .. } = &leg.kind else { return };
+    pub(super) fn cross(&mut self, leg: &Leg, fork: Fork, world: &World, notes: &mut Notes) {
+        let Fork { branches, default, .. } = fork;
         self.leg_start = self.path;
         self.remember(world, None, None);
         let list = self.list(world);
@@ -181,7 +154,7 @@ impl Cursor {
             return;
         }
         let crossing = self.crossings_of(&leg.id) + 1;
-        let chosen = choose(&leg.id, crossing, branches, default.as_ref(), &self.inside(world), notes);
+        let chosen = choose(&leg.id, crossing, branches, default, &self.inside(world), notes);
         let (branch, by) = chosen.map_or((None, By::Default), |(b, by)| (Some(b), by));
         let name = branch.map(|b| b.id.clone());
         notes.choices.push(Choice::Branch { leg: leg.id.clone(), crossing, branch: name, by });
@@ -247,10 +220,6 @@ impl Cursor {
         let left_m = if climbing { target_m - altitude_m } else { altitude_m - target_m };
         left_m <= world.config.altitude_tolerance_m
     }
-}
-
-fn frame_flies(leg: &Leg) -> bool {
-    !leg.body().is_empty()
 }
 
 fn successor(list: &[Leg], leg: &Leg, index: usize) -> usize {

@@ -5,19 +5,20 @@ use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion, runway};
 use crate::path::PathState;
 use crate::world::World;
-use flight_plan::{Id, Leg, LegKind, StageKind};
+use flight_plan::{Id, Leg, LegKind, Stage, StageKind};
 use geometry::LatLon;
 use std::sync::Arc;
 
 impl Cursor {
     /// At the beginning of a stage or a leg: what is it?
     pub(super) fn arrive(&mut self, world: &World, notes: &mut Notes) {
-        if self.is_performed_stage(world) {
-            return self.perform_stage(world, notes);
+        if let Some(stage) = self.performed_stage(world) {
+            return self.perform_stage(stage, world, notes);
         }
         if let Some(frame) = self.loops.last().filter(|f| f.reverse) {
-            match frame.back.checked_sub(1).and_then(|i| frame.trail.get(i)).cloned() {
-                Some(visit) => self.begin_backward(&visit, world, notes),
+            let visit = frame.back.checked_sub(1).and_then(|i| frame.trail.get(i)).cloned();
+            match visit.and_then(|visit| Some((self.list(world).get(visit.index)?, visit))) {
+                Some((leg, visit)) => self.begin_backward(leg, &visit, world, notes),
                 None => self.end_of_list(world, notes),
             }
             return;
@@ -25,18 +26,15 @@ impl Cursor {
         let Some(leg) = self.leg(world) else {
             return self.end_of_list(world, notes);
         };
-        match &leg.kind {
-            LegKind::Iterative { .. } => self.enter_loop(false, Arc::default()),
-            LegKind::Intersection { .. } => self.cross(leg, world, notes),
+        match (&leg.kind, leg.as_fork()) {
+            (LegKind::Iterative { .. }, _) => self.enter_loop(false, Arc::default()),
+            (_, Some(fork)) => self.cross(leg, fork, world, notes),
             _ => self.begin(leg, None, world, notes),
         }
     }
 
-    fn begin_backward(&mut self, visit: &Visit, world: &World, notes: &mut Notes) {
+    fn begin_backward(&mut self, leg: &Leg, visit: &Visit, world: &World, notes: &mut Notes) {
         self.index = visit.index;
-        let Some(leg) = self.leg(world) else {
-            return self.leave(world, notes);
-        };
         match (&leg.kind, &visit.inner) {
             (LegKind::Iterative { .. }, Some(inner)) if !inner.is_empty() => {
                 self.enter_loop(true, inner.clone());
@@ -61,15 +59,12 @@ impl Cursor {
         self.index = 0;
     }
 
-    fn perform_stage(&mut self, world: &World, notes: &mut Notes) {
-        let Some(stage) = self.current_stage(world) else {
-            return self.next_stage(world);
-        };
+    fn perform_stage(&mut self, stage: &Stage, world: &World, notes: &mut Notes) {
         let points = match stage.kind {
             StageKind::TakeOff => runway::take_off(stage, world),
             _ => runway::land(stage, &self.path, world),
         };
-        self.airspeed_mps = world.airspeed_mps(&[], stage);
+        self.airspeed_mps = world.airspeed_mps(&[], Some(stage));
         self.fly_or_refuse(&stage.id, points.map(Expansion::Points), notes);
     }
 
@@ -102,8 +97,8 @@ impl Cursor {
         if let Some(visit) = visit {
             self.level = visit.start.level;
             self.airspeed_mps = visit.start.airspeed_mps;
-        } else if let Some(stage) = self.current_stage(world) {
-            let chain = self.chain(world);
+        } else {
+            let (chain, stage) = (self.chain(world), self.current_stage(world));
             self.level = world.level(&chain, stage, self.path.last.level);
             self.airspeed_mps = world.airspeed_mps(&chain, stage);
         }
@@ -144,21 +139,37 @@ impl Cursor {
     ///
     /// # Errors
     /// The new values make no pattern; the old one stays.
-    pub fn refresh_pattern(&mut self, world: &World) -> Result<bool, ExpandError> {
-        let (Some(leg), Some(old)) = (self.leg(world), self.expansion.clone()) else {
+    pub fn refresh_pattern(&mut self, world: &World) -> Result<bool, Trouble> {
+        let leg = self.leg(world).filter(|_| self.doing == Doing::Flying);
+        let (Some(leg), Some(old)) = (leg, self.expansion.clone()) else {
             return Ok(false);
         };
-        if self.doing != Doing::Flying {
+        let refused = |why: ExpandError| Trouble::Leg { leg: leg.id.clone(), reason: why.to_string() };
+        let fresh = self.regenerated(leg, &old, world).map_err(refused)?;
+        let Some(fresh) = fresh.filter(|f| f != old.as_ref()) else {
             return Ok(false);
-        }
-        let inside = self.inside(world);
-        let here = self.approach(&self.path);
-        let fresh = match old.as_ref() {
-            Expansion::Scan(scan) => scan.regenerated(leg, self.given, &here, &inside)?.map(Expansion::Scan),
-            Expansion::Pattern(flight) => {
-                flight.regenerated(leg, self.given, &here, &inside)?.map(Expansion::Pattern)
+        };
+        self.given = fresh.goes_on_at(self.given);
+        self.expansion = Some(Arc::new(fresh));
+        Ok(true)
+    }
+
+    /// The pattern of a leg with the values of now, if they are others and it can be changed in flight.
+    fn regenerated(
+        &self,
+        leg: &Leg,
+        old: &Expansion,
+        world: &World,
+    ) -> Result<Option<Expansion>, ExpandError> {
+        let (here, inside) = (self.approach(&self.path), self.inside(world));
+        Ok(match (old, &leg.kind) {
+            (Expansion::Scan(sweeps), LegKind::Scan(scan)) => {
+                sweeps.regenerated(scan, self.given, &here, &inside)?.map(Expansion::Scan)
             }
-            Expansion::Orbit(_) => {
+            (Expansion::Pattern(flight), LegKind::Pattern(pattern)) => {
+                flight.regenerated(pattern, self.given, &here, &inside)?.map(Expansion::Pattern)
+            }
+            (Expansion::Orbit(_), _) => {
                 // seen from where it was entered, so that the same values give the same circle
                 let start = Cursor { path: self.leg_start, ..self.clone() };
                 let approach =
@@ -166,12 +177,6 @@ impl Cursor {
                 Some(expand(leg, &approach, &inside)?)
             }
             _ => None,
-        };
-        let Some(fresh) = fresh.filter(|f| f != old.as_ref()) else {
-            return Ok(false);
-        };
-        self.given = fresh.goes_on_at(self.given);
-        self.expansion = Some(Arc::new(fresh));
-        Ok(true)
+        })
     }
 }

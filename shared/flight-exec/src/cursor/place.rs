@@ -3,7 +3,7 @@
 use super::{Cursor, Doing, LoopFrame};
 use crate::api::{Branching, IterationPlace, PlacePointer};
 use crate::world::World;
-use flight_plan::{Id, LegKind, LegPath, Program};
+use flight_plan::{Id, LegPath, Program};
 use std::sync::Arc;
 
 impl Cursor {
@@ -33,9 +33,9 @@ impl Cursor {
     fn iterations(&self, world: &World) -> Vec<IterationPlace> {
         let chain = self.chain(world);
         let of = |frame: &LoopFrame, leg: &flight_plan::Leg| {
-            let LegKind::Iterative { count, .. } = &leg.kind else { return None };
+            let count = leg.as_loop().and_then(|l| l.count);
             let inside = world.in_iteration(frame.iteration);
-            let own = count.as_ref().and_then(|c| inside.number(c).ok()).map(|n| n.max(1.0) as u64);
+            let own = count.and_then(|c| inside.number(c).ok()).map(|n| n.max(1.0) as u64);
             world.count_of(&leg.id, frame.activation).or(own)
         };
         let named = self.loops.iter().zip(chain);

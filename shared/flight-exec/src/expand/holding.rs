@@ -6,7 +6,7 @@ use geometry::holding::Racetrack as Shape;
 use serde::{Deserialize, Serialize};
 
 /// The points of a racetrack.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Racetrack {
     /// To the fix, and the first lap with its entry; ends at the fix.
     pub entry: Vec<Point>,
@@ -29,8 +29,8 @@ impl Racetrack {
         let index = usize::try_from(index).ok()?;
         match index.checked_sub(self.entry.len()) {
             None => self.entry.get(index).copied(),
-            Some(_) if self.once || self.lap.is_empty() => None,
-            Some(later) => self.lap.get(later % self.lap.len()).copied(),
+            Some(_) if self.once => None,
+            Some(later) => self.lap.get(later % self.points_of_a_lap()).copied(),
         }
     }
 
@@ -41,8 +41,13 @@ impl Racetrack {
             return Some(0);
         }
         let after = flown.checked_sub(self.entry.len())?;
-        let complete = !self.lap.is_empty() && after.is_multiple_of(self.lap.len());
-        complete.then(|| 1 + (after / self.lap.len()) as u64)
+        let lap = self.points_of_a_lap();
+        after.is_multiple_of(lap).then(|| 1 + (after / lap) as u64)
+    }
+
+    /// At least one, whatever a snapshot says.
+    fn points_of_a_lap(&self) -> usize {
+        self.lap.len().max(1)
     }
 }
 

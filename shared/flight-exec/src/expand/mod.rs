@@ -9,6 +9,7 @@ mod course;
 pub mod holding;
 pub mod orbit;
 pub mod pattern;
+mod remade;
 pub mod runway;
 pub mod scan;
 mod spacing;
@@ -57,7 +58,7 @@ pub enum ExpandError {
 }
 
 /// The points of one passage of a leg.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expansion {
     /// A short list.
     Points(Vec<Point>),
@@ -132,12 +133,7 @@ impl Expansion {
 
     /// The same pattern backwards, ending at `start`; `with_last`: beginning with its last point, because the path isn't there.
     pub fn reversed(self: &Arc<Self>, start: Point, with_last: bool) -> Expansion {
-        match self.count() {
-            Some(points) => {
-                let points = points + u64::from(with_last);
-                Expansion::Reversed { pattern: self.clone(), points, start }
-            }
-            None => Expansion::Points(vec![start]),
-        }
+        let points = self.count().unwrap_or(0) + u64::from(with_last);
+        Expansion::Reversed { pattern: self.clone(), points, start }
     }
 }

@@ -111,7 +111,9 @@ mod tests {
 
     #[test]
     fn impossible_circles_are_refused() {
-        for (radius_m, turns) in [(0.0, 1.0), (-5.0, 1.0), (f64::NAN, 1.0), (100.0, 0.0), (100.0, 1e9)] {
+        for (radius_m, turns) in
+            [(0.0, 1.0), (-5.0, 1.0), (f64::NAN, 1.0), (f64::INFINITY, 1.0), (100.0, 0.0), (100.0, 1e9)]
+        {
             assert!(Circle::new((CENTRE, radius_m, turns, TurnDirection::Left), CENTRE, None, 3.0).is_err());
         }
     }

@@ -2,21 +2,21 @@
 
 mod recipe;
 
+use super::remade::Remade;
 use super::track::Approach;
 use super::{ExpandError, Point};
 use crate::path::distance_m;
 use crate::world::World;
-use flight_plan::{Leg, LegKind, Pattern as Plan};
+use flight_plan::Pattern as Plan;
 use geometry::{LatLon, LocalFrame, Pattern};
 use recipe::Recipe;
 use serde::{Deserialize, Serialize};
-use std::sync::{Arc, OnceLock};
 
 /// So near to a flown one a waypoint has not moved, metres.
 const UNMOVED_M: f64 = 2.0;
 
 /// A pattern being flown.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flight {
     recipe: Recipe,
     /// The pattern begins near here, where it can.
@@ -24,7 +24,7 @@ pub struct Flight {
     /// Waypoints of the pattern that are left out: flown already and not moved.
     first: u64,
     #[serde(skip)]
-    laid_out: OnceLock<Option<Arc<LaidOut>>>,
+    laid_out: Remade<LaidOut>,
 }
 
 /// The pattern itself: made again from the recipe after a restart.
@@ -40,12 +40,6 @@ impl LaidOut {
     }
 }
 
-impl PartialEq for Flight {
-    fn eq(&self, other: &Self) -> bool {
-        (&self.recipe, self.entry, self.first) == (&other.recipe, other.entry, other.first)
-    }
-}
-
 impl Flight {
     /// The whole pattern.
     ///
@@ -58,12 +52,16 @@ impl Flight {
 
     fn laid_out_from(recipe: Recipe, entry: LatLon) -> Result<Self, ExpandError> {
         let laid_out = recipe.lay_out(entry)?;
-        Ok(Self { recipe, entry, first: 0, laid_out: OnceLock::from(Some(Arc::new(laid_out))) })
+        Ok(Self { recipe, entry, first: 0, laid_out: Remade::of(laid_out) })
     }
 
     fn laid_out(&self) -> Option<&LaidOut> {
-        let made = self.laid_out.get_or_init(|| self.recipe.lay_out(self.entry).ok().map(Arc::new));
-        made.as_deref()
+        self.laid_out.get(|| self.recipe.lay_out(self.entry))
+    }
+
+    /// Where a waypoint of the whole pattern is.
+    fn at(&self, index: u64) -> Option<LatLon> {
+        self.laid_out()?.at(index)
     }
 
     /// How many points it has.
@@ -73,7 +71,7 @@ impl Flight {
 
     /// The point number `index`.
     pub fn point(&self, index: u64) -> Option<Point> {
-        self.laid_out()?.at(self.first.checked_add(index)?).map(Point::fly)
+        self.at(self.first.checked_add(index)?).map(Point::fly)
     }
 
     /// The point a regenerated one goes on at, when `given` points of the one before are given out: what goes round and
@@ -91,12 +89,11 @@ impl Flight {
     /// The new values can't be computed or make no pattern.
     pub fn regenerated(
         &self,
-        leg: &Leg,
+        pattern: &Plan,
         given: u64,
         approach: &Approach,
         world: &World,
     ) -> Result<Option<Box<Self>>, ExpandError> {
-        let LegKind::Pattern(pattern) = &leg.kind else { return Ok(None) };
         let recipe = Recipe::of(pattern, approach, world)?.with_turns_of(&self.recipe);
         if recipe == self.recipe {
             return Ok(None);
@@ -114,13 +111,12 @@ impl Flight {
 
     /// How many waypoints from the beginning can be left out, when `flown` of the old ones are flown.
     fn unmoved(&self, old: &Self, flown: u64) -> u64 {
-        let (Some(new), Some(old)) = (self.laid_out(), old.laid_out()) else { return 0 };
         let stayed = |i: &u64| {
-            let both = new.at(*i).zip(old.at(*i));
+            let both = self.at(*i).zip(old.at(*i));
             both.is_some_and(|(a, b)| distance_m(a, b) <= UNMOVED_M)
         };
         let same = (0..flown).take_while(stayed).count() as u64;
-        if same == flown { same } else { new.beginning_of_track(same) }
+        if same == flown { same } else { self.laid_out().map_or(0, |new| new.beginning_of_track(same)) }
     }
 }
 

@@ -10,13 +10,13 @@ mod sweeps;
 
 pub use sweeps::Sweeps;
 
+use super::remade::Remade;
 use super::{ExpandError, Point};
 use geometry::{LatLon, Vec2};
 use layout::{Ends, LaidOut};
 use recipe::Recipe;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
 
 /// So near to a flown one a track has not moved, metres.
 const UNMOVED_M: f64 = 2.0;
@@ -24,7 +24,7 @@ const UNMOVED_M: f64 = 2.0;
 const CHUNK: u64 = 64;
 
 /// Parallel tracks being flown.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Sweep {
     recipe: Recipe,
     /// The pattern begins near here.
@@ -40,26 +40,7 @@ struct Sweep {
     /// Tracks flown before the regeneration, the latest ones.
     flown: Vec<(LatLon, LatLon)>,
     #[serde(skip)]
-    laid_out: OnceLock<Option<Arc<LaidOut>>>,
-}
-
-impl Clone for Sweep {
-    fn clone(&self) -> Self {
-        Self {
-            recipe: self.recipe.clone(),
-            left_out: self.left_out.clone(),
-            flown: self.flown.clone(),
-            laid_out: self.laid_out.clone(),
-            ..*self
-        }
-    }
-}
-
-impl PartialEq for Sweep {
-    fn eq(&self, other: &Self) -> bool {
-        let key = |s: &Self| (s.entry, s.first, s.along_first, s.tracks);
-        self.recipe == other.recipe && key(self) == key(other) && self.left_out == other.left_out
-    }
+    laid_out: Remade<LaidOut>,
 }
 
 impl Sweep {
@@ -80,7 +61,7 @@ impl Sweep {
             left_out: Vec::new(),
             tracks,
             flown: Vec::new(),
-            laid_out: OnceLock::from(Some(Arc::new(laid_out))),
+            laid_out: Remade::of(laid_out),
         })
     }
 
@@ -92,9 +73,6 @@ impl Sweep {
     /// The point number `index`: two a track.
     fn point(&self, index: u64) -> Option<Point> {
         let place = index / 2;
-        if place >= self.tracks {
-            return None;
-        }
         let laid_out = self.laid_out()?;
         let (from, to) = self.turns_of(place, laid_out)?;
         let position = if index.is_multiple_of(2) { from } else { to };
@@ -102,8 +80,7 @@ impl Sweep {
     }
 
     fn laid_out(&self) -> Option<&LaidOut> {
-        let made = self.laid_out.get_or_init(|| self.recipe.lay_out(self.entry).ok().map(Arc::new));
-        made.as_deref()
+        self.laid_out.get(|| self.recipe.lay_out(self.entry))
     }
 
     /// Where the turns before and after a track are, in flight direction.

@@ -4,6 +4,7 @@ use super::pattern::Flight;
 use super::scan::Sweeps;
 use super::until_altitude::Track;
 use super::{ExpandError, Expansion, Point, arc, course, holding, orbit};
+use crate::api::FARTHEST_M;
 use crate::cursor::Visit;
 use crate::path::{Level, PathState};
 use crate::world::World;
@@ -14,9 +15,6 @@ use geometry::turn::Turn;
 
 /// Nearer than this two positions are the same place, metres.
 pub const SAME_PLACE_M: f64 = 1.0;
-
-/// Longest straight leg of a racetrack, metres.
-const LONGEST_LEG_M: f64 = 50_000.0;
 
 /// What a leg needs to know about its place in the path.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +65,11 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
             racetrack(holding, 0.0, false, approach, world)?
         }
         LegKind::Scan(scan) => Expansion::Scan(Box::new(Sweeps::new(scan, approach, world)?)),
-        LegKind::Orbit { .. } => circle(leg, approach, world)?,
+        LegKind::Orbit { centre, radius_m, turns, turn } => {
+            let values = (world.place(centre)?, world.number(radius_m)?, world.number(turns)?, *turn);
+            let tolerance_m = world.config.arc_tolerance_m;
+            Expansion::Orbit(orbit::Circle::new(values, from, approach.onward, tolerance_m)?)
+        }
         LegKind::Cf { to, course_deg } => {
             let (to, inbound_deg) = (waypoint(to, world)?, world.number(course_deg)?);
             Expansion::Points(course::to_fix(to, inbound_deg, approach, world)?)
@@ -115,10 +117,10 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
         LegKind::Ha(holding) | LegKind::Hm { holding, .. } => {
             racetrack(holding, 180.0, false, approach, world)?
         }
-        LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_) => match &visit.flown {
-            Some(flown) => flown.reversed(back, connection.is_some()),
-            None => Expansion::Points(vec![back]),
-        },
+        LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_) => {
+            let reversed = visit.flown.as_ref().map(|flown| flown.reversed(back, connection.is_some()));
+            reversed.unwrap_or_else(|| Expansion::Points(vec![back]))
+        }
     })
 }
 
@@ -142,26 +144,17 @@ fn racetrack(
         HoldingLength::Distance(metres) => world.number(metres)?,
         HoldingLength::Time(seconds) => world.number(seconds)? * approach.airspeed_mps,
     };
+    let radius_m = world.turn_radius_m(approach.airspeed_mps);
     let shape = Shape {
         fix: fix.position,
         inbound_course_deg: inbound_deg,
         turn: side(holding.turn),
-        leg_m: leg_m.clamp(0.0, LONGEST_LEG_M),
-        radius_m: world.turn_radius_m(approach.airspeed_mps),
+        // an entry's straight line may be two radii longer, and the corners around its turns stand out by up to one each
+        leg_m: leg_m.min(FARTHEST_M - 4.0 * radius_m).max(0.0),
+        radius_m,
     };
     let tolerance_m = world.config.arc_tolerance_m;
     Ok(Expansion::Holding(holding::Racetrack::new(&shape, fix, arrival_deg, once, tolerance_m)))
-}
-
-fn circle(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
-    let LegKind::Orbit { centre, radius_m, turns, turn } = &leg.kind else {
-        return Ok(Expansion::Points(Vec::new()));
-    };
-    let centre = world.place(centre)?;
-    let values = (centre, world.number(radius_m)?, world.number(turns)?, *turn);
-    let from = approach.path.last.position;
-    let circle = orbit::Circle::new(values, from, approach.onward, world.config.arc_tolerance_m)?;
-    Ok(Expansion::Orbit(circle))
 }
 
 /// The full turn at the end of a pass of a form-A loop.

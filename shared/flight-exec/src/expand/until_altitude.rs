@@ -1,7 +1,6 @@
 //! A track from a fix, flown until an altitude is reached: points one after the other, as far as they are wanted.
 
 use super::Point;
-use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
 /// Time between two points, seconds: so much later than the altitude the track may be left.
@@ -39,16 +38,12 @@ impl Track {
     pub fn passing(&self, flown: u64) -> Option<u64> {
         flown.checked_sub(u64::from(self.to_fix))
     }
-
-    /// Where it begins.
-    pub fn fix(&self) -> LatLon {
-        self.fix.position
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::LatLon;
 
     #[test]
     fn it_leaves_the_fix_on_its_course_and_is_bounded() {

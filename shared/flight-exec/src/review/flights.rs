@@ -207,7 +207,7 @@ fn variants(program: &Program) -> u64 {
 fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Executor {
     let mut executor = Executor::new(Config::default(), terrain.clone(), profile.clone());
     executor.state.variables = Variables::initial(program.flown());
-    executor.program = Some(program.clone());
+    executor.program = program.clone();
     executor
 }
 

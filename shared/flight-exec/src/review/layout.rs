@@ -103,8 +103,7 @@ pub(super) fn lay_out(
     decisions: &[Decision],
 ) -> Layout {
     let mut layout = Layout::default();
-    let Some(world) = executor.world() else { return layout };
-    let mut world = World { counts, decisions, ..world };
+    let mut world = World { counts, decisions, ..executor.world() };
     let mut cursor = Cursor::start(section, from, 0);
     while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from.time_s < MOST_S {
         release(&mut world, &cursor);

@@ -1,14 +1,12 @@
 //! Is a waypoint fit to be flown after another? What the gateway asks of every waypoint it takes, and the review of every
 //! waypoint a plan makes. One rule, one function.
 
-use crate::api::{Action, Waypoint};
+use crate::api::{Action, FARTHEST_M, Waypoint};
 use aircraft::Profile;
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 use terrain::Terrain;
 
-/// Farther apart than this, two waypoints are a mistake, metres.
-pub const FARTHEST_M: f64 = 50_000.0;
 /// Highest and lowest altitudes that make sense at all, metres AMSL.
 pub const ALTITUDES_M: std::ops::RangeInclusive<f64> = -500.0..=12_000.0;
 /// Height that an en-route waypoint keeps above the ground, metres.

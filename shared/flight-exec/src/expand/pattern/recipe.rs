@@ -61,77 +61,14 @@ impl Recipe {
     /// # Errors
     /// There is none.
     pub fn lay_out(&self, from: LatLon) -> Result<LaidOut, ExpandError> {
-        match &self.shape {
-            Shape::TrackLine { route, .. } | Shape::Corridor { route, .. } => self.along(route, from),
-            Shape::Contour { area, .. } => self.round(area, from),
-            Shape::Spiral { centre, .. }
-            | Shape::ExpandingSquare { centre, .. }
-            | Shape::Sector { centre, .. }
-            | Shape::FigureEight { centre, .. } => {
-                let frame = LocalFrame::new(*centre);
-                let pattern = self.about_the_origin(frame.to_local(from))?;
-                Ok(LaidOut { pattern, frame })
-            }
-        }
-    }
-
-    fn about_the_origin(&self, from: Vec2) -> Result<Pattern, ExpandError> {
         let centre = Vec2::default();
-        let pattern = match self.shape {
-            Shape::Spiral { inner_m, outer_m, spacing_m, inward, turn, .. } => {
-                let p = shapes::SpiralParameters {
-                    centre,
-                    radius_m: outer_m,
-                    inner_radius_m: inner_m,
-                    spacing_m,
-                    start_bearing_deg: 0.0,
-                    turn,
-                    inward,
-                    tolerance_m: self.tolerance_m,
-                };
-                begun_near(p, from).map(Pattern::Spiral)
-            }
-            Shape::ExpandingSquare { spacing_m, heading_deg, radius_m, turn, .. } => {
-                let legs = shapes::ExpandingSquare::legs_to_cover(radius_m, spacing_m).map_err(geometric)?;
-                let p = shapes::SquareParameters { centre, spacing_m, heading_deg, turn, legs };
-                shapes::ExpandingSquare::new(&p).map(Pattern::ExpandingSquare)
-            }
-            Shape::Sector { radius_m, sectors, heading_deg, passes, turn, .. } => {
-                let sectors = u32::try_from(sectors).unwrap_or(u32::MAX);
-                let p = shapes::SectorParameters { centre, radius_m, sectors, heading_deg, turn, passes };
-                shapes::SectorSearch::new(&p).map(Pattern::SectorSearch)
-            }
-            Shape::FigureEight { radius_m, heading_deg, turns, turn, .. } => {
-                let tolerance_m = self.tolerance_m;
-                let p = shapes::FigureEightParameters {
-                    centre,
-                    heading_deg,
-                    radius_m,
-                    turn,
-                    laps: turns,
-                    tolerance_m,
-                };
-                shapes::FigureEight::new(&p).map(Pattern::FigureEight)
-            }
-            Shape::TrackLine { .. } | Shape::Corridor { .. } | Shape::Contour { .. } => {
-                return Err(ExpandError::Geometry("this pattern has no centre".into()));
-            }
-        };
-        pattern.map_err(geometric)
-    }
-
-    fn along(&self, route: &[LatLon], from: LatLon) -> Result<LaidOut, ExpandError> {
-        let frame = LocalFrame::around(route)
-            .filter(|frame| route.iter().all(|p| frame.origin().distance_m(*p) <= frame.radius_m()));
-        let frame = frame.ok_or_else(|| {
-            let advice =
-                "give it two points or more, none of them beyond the pole, or divide it among several legs";
-            ExpandError::Geometry(format!("the route is too short or too long for one pattern: {advice}"))
-        })?;
-        let points: Vec<Vec2> = route.iter().map(|p| frame.to_local(*p)).collect();
-        let route = shapes::Route::new(&points).map_err(geometric)?;
-        let pattern = match self.shape {
-            Shape::Corridor { width_m, spacing_m, .. } => {
+        let tolerance_m = self.tolerance_m;
+        match self.shape {
+            Shape::TrackLine { ref route, spacing_m, returns } => along(route, |route, _| {
+                let p = shapes::TrackLineParameters { spacing_m, returns, pairs: 1, first_side: Turn::Right };
+                shapes::TrackLine::new(route, &p).map(Pattern::TrackLine)
+            }),
+            Shape::Corridor { ref route, width_m, spacing_m } => along(route, |route, frame| {
                 let p = shapes::CorridorParameters {
                     width_m,
                     spacing_m,
@@ -140,39 +77,79 @@ impl Recipe {
                     entry: Entry::Nearest(frame.to_local(from)),
                     turn_radius_m: self.turn_radius_m,
                 };
-                shapes::Corridor::new(&route, &p).map(Pattern::Corridor)
+                shapes::Corridor::new(route, &p).map(Pattern::Corridor)
+            }),
+            Shape::Contour { ref area, spacing_m, loops, inward, turn } => {
+                let (frame, polygon) = area.polygon()?;
+                let p = shapes::ContourParameters {
+                    spacing_m,
+                    first_m: 0.5 * spacing_m,
+                    side: if inward { shapes::Side::Inward } else { shapes::Side::Outward },
+                    levels: loops.unwrap_or(MOST_LOOPS),
+                    turn,
+                    entry: frame.to_local(from),
+                    tolerance_m,
+                };
+                // without a number of loops the area is to be filled
+                let lay_out =
+                    if loops.is_none() { shapes::Contours::covering } else { shapes::Contours::new };
+                laid_out(lay_out(&polygon, &p).map(Pattern::Contours), frame)
             }
-            Shape::TrackLine { spacing_m, returns, .. } => {
-                let p = shapes::TrackLineParameters { spacing_m, returns, pairs: 1, first_side: Turn::Right };
-                shapes::TrackLine::new(&route, &p).map(Pattern::TrackLine)
+            Shape::Spiral { centre: at, inner_m, outer_m, spacing_m, inward, turn } => {
+                let p = shapes::SpiralParameters {
+                    centre,
+                    radius_m: outer_m,
+                    inner_radius_m: inner_m,
+                    spacing_m,
+                    start_bearing_deg: 0.0,
+                    turn,
+                    inward,
+                    tolerance_m,
+                };
+                let frame = LocalFrame::new(at);
+                laid_out(begun_near(p, frame.to_local(from)).map(Pattern::Spiral), frame)
             }
-            _ => return Err(ExpandError::Geometry("this pattern has no route".into())),
-        };
-        Ok(LaidOut { pattern: pattern.map_err(geometric)?, frame })
+            Shape::ExpandingSquare { centre: at, spacing_m, heading_deg, radius_m, turn } => {
+                let legs = shapes::ExpandingSquare::legs_to_cover(radius_m, spacing_m).map_err(geometric)?;
+                let p = shapes::SquareParameters { centre, spacing_m, heading_deg, turn, legs };
+                laid_out(shapes::ExpandingSquare::new(&p).map(Pattern::ExpandingSquare), LocalFrame::new(at))
+            }
+            Shape::Sector { centre: at, radius_m, sectors, heading_deg, passes, turn } => {
+                let sectors = u32::try_from(sectors).unwrap_or(u32::MAX);
+                let p = shapes::SectorParameters { centre, radius_m, sectors, heading_deg, turn, passes };
+                laid_out(shapes::SectorSearch::new(&p).map(Pattern::SectorSearch), LocalFrame::new(at))
+            }
+            Shape::FigureEight { centre: at, radius_m, heading_deg, turns: laps, turn } => {
+                let p =
+                    shapes::FigureEightParameters { centre, heading_deg, radius_m, turn, laps, tolerance_m };
+                laid_out(shapes::FigureEight::new(&p).map(Pattern::FigureEight), LocalFrame::new(at))
+            }
+        }
     }
+}
 
-    fn round(&self, area: &Outline, from: LatLon) -> Result<LaidOut, ExpandError> {
-        let Shape::Contour { spacing_m, loops, inward, turn, .. } = self.shape else {
-            return Err(ExpandError::Geometry("this pattern has no edge".into()));
-        };
-        let (frame, polygon) = area.polygon()?;
-        let levels = loops.or(inward.then_some(MOST_LOOPS)).ok_or_else(|| {
-            ExpandError::Geometry("loops outside an area have no natural end: give their number".into())
-        })?;
-        let p = shapes::ContourParameters {
-            spacing_m,
-            first_m: 0.5 * spacing_m,
-            side: if inward { shapes::Side::Inward } else { shapes::Side::Outward },
-            levels,
-            turn,
-            entry: frame.to_local(from),
-            tolerance_m: self.tolerance_m,
-        };
-        // without a number of loops the area is to be filled
-        let lay_out = if loops.is_none() { shapes::Contours::covering } else { shapes::Contours::new };
-        let pattern = lay_out(&polygon, &p).map(Pattern::Contours).map_err(geometric)?;
-        Ok(LaidOut { pattern, frame })
-    }
+fn laid_out(
+    pattern: Result<Pattern, shapes::PatternError>,
+    frame: LocalFrame,
+) -> Result<LaidOut, ExpandError> {
+    Ok(LaidOut { pattern: pattern.map_err(geometric)?, frame })
+}
+
+/// A pattern along a route, in a frame around it.
+fn along(
+    route: &[LatLon],
+    pattern: impl FnOnce(&shapes::Route, &LocalFrame) -> Result<Pattern, shapes::PatternError>,
+) -> Result<LaidOut, ExpandError> {
+    let frame = LocalFrame::around(route)
+        .filter(|frame| route.iter().all(|p| frame.origin().distance_m(*p) <= frame.radius_m()));
+    let frame = frame.ok_or_else(|| {
+        let advice =
+            "give it two points or more, none of them beyond the pole, or divide it among several legs";
+        ExpandError::Geometry(format!("the route is too short or too long for one pattern: {advice}"))
+    })?;
+    let points: Vec<Vec2> = route.iter().map(|p| frame.to_local(*p)).collect();
+    let route = shapes::Route::new(&points).map_err(geometric)?;
+    laid_out(pattern(&route, &frame), frame)
 }
 
 impl Shape {

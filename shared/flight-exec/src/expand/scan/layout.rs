@@ -53,9 +53,8 @@ impl LaidOut {
         let mut ends = vec![None; usize::try_from(places.end - places.start).unwrap_or(0)];
         for segment in self.pattern.segments(places.clone()) {
             let index = usize::try_from(segment.track - places.start).unwrap_or(usize::MAX);
-            if let Some(slot) = ends.get_mut(index) {
-                *slot = Some(self.joined(*slot, segment.from, segment.to));
-            }
+            let slot = ends.iter_mut().skip(index).take(1);
+            slot.for_each(|slot| *slot = Some(self.joined(*slot, segment.from, segment.to)));
         }
         ends
     }

@@ -1,6 +1,7 @@
 //! A sweep with other values, in flight.
 
 use super::super::ExpandError;
+use super::super::remade::Remade;
 use super::super::track::Approach;
 use super::Sweep;
 use super::layout::LaidOut;
@@ -8,7 +9,6 @@ use super::recipe::Recipe;
 use crate::world::World;
 use flight_plan::Scan;
 use geometry::LatLon;
-use std::sync::{Arc, OnceLock};
 
 /// Most tracks flown before a regeneration that are remembered, the latest ones.
 const MOST_FLOWN: u64 = 512;
@@ -61,7 +61,7 @@ impl Sweep {
             along_first: nearer_low,
             left_out,
             flown,
-            laid_out: OnceLock::from(Some(Arc::new(laid_out))),
+            laid_out: Remade::of(laid_out),
         }
     }
 
@@ -70,11 +70,14 @@ impl Sweep {
         let complete = (given / 2).min(self.tracks);
         let latest = complete.saturating_sub(MOST_FLOWN)..complete;
         let old = (MOST_FLOWN - (latest.end - latest.start)) as usize;
-        let mut flown: Vec<_> = self.flown.iter().rev().take(old).rev().copied().collect();
-        if let Some(laid_out) = self.laid_out() {
-            let ends = latest.filter_map(|place| self.ends(place, laid_out));
-            flown.extend(ends.map(|(a, b)| (laid_out.frame.to_geo(a), laid_out.frame.to_geo(b))));
-        }
-        flown
+        let before = self.flown.iter().skip(self.flown.len().saturating_sub(old)).copied();
+        before.chain(latest.filter_map(|place| self.track_at(place))).collect()
+    }
+
+    /// The ends of the track at a place of the flight order.
+    fn track_at(&self, place: u64) -> Option<(LatLon, LatLon)> {
+        let laid_out = self.laid_out()?;
+        let (a, b) = self.ends(place, laid_out)?;
+        Some((laid_out.frame.to_geo(a), laid_out.frame.to_geo(b)))
     }
 }

@@ -5,18 +5,19 @@ use super::super::{ExpandError, Point};
 use super::Sweep;
 use super::recipe::Recipe;
 use crate::world::World;
-use flight_plan::{Leg, LegKind, Scan, ScanStyle};
+use flight_plan::{Scan, ScanStyle};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// Sweeps in flight order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweeps {
     sweeps: Vec<Numbered>,
 }
 
 /// A sweep, and whether it is the second one of its scan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Numbered {
     second: bool,
     sweep: Sweep,
@@ -70,24 +71,23 @@ impl Sweeps {
     /// The new values can't be computed or make no pattern.
     pub fn regenerated(
         &self,
-        leg: &Leg,
+        scan: &Scan,
         given: u64,
         approach: &Approach,
         world: &World,
     ) -> Result<Option<Box<Self>>, ExpandError> {
-        let LegKind::Scan(scan) = &leg.kind else { return Ok(None) };
         // between the last point and what follows, the last sweep counts as being flown
         let last = self.sweeps.len().saturating_sub(1);
         let (current, within) =
             self.locate(given).unwrap_or((last, self.sweeps.get(last).map_or(0, |s| s.sweep.count())));
         let mut at = approach.path.last.position;
         let mut sweeps = Vec::new();
-        for number in (current..=last).chain(0..current) {
-            let Some(old) = self.sweeps.get(number) else { continue };
-            let flown = match number {
-                n if n < current => old.sweep.count(),
-                n if n == current => within,
-                _ => 0,
+        let numbered = || self.sweeps.iter().enumerate();
+        for (number, old) in numbered().skip(current).chain(numbered().take(current)) {
+            let flown = match number.cmp(&current) {
+                Ordering::Less => old.sweep.count(),
+                Ordering::Equal => within,
+                Ordering::Greater => 0,
             };
             let fresh = old.sweep.regenerated((scan, old.second), (flown, at), approach, world)?;
             let Some(sweep) = fresh else { return Ok(None) };
