@@ -275,6 +275,119 @@ fn a_flight_that_never_ends_is_reviewed_all_the_same() {
     assert!(found.iter().find(after).is_some(), "what comes after the loop is reviewed: {:?}", shown(&found));
 }
 
+/// Six passes of a loop, of which the review flies two.
+const SIX_PASSES: &str = r#"<iterative id="loop" form="forward" count="6"><TF id="e1" fix="A"/><TF id="e2" fix="B"/><TF id="e3" fix="C"/></iterative>
+    <TF id="g" lat="36.38" lon="-84.20"/>"#;
+
+fn active_zone(lat: f64, lon: f64, minutes: (u32, u32)) -> String {
+    let (from, until) = minutes;
+    format!(
+        r#"<keepOut id="z" lat="{lat}" lon="{lon}" radius="200"><active from="2026-06-01T06:{from:02}:00Z" until="2026-06-01T06:{until:02}:00Z"/></keepOut>"#
+    )
+}
+
+const SIX_O_CLOCK: i64 = 1_780_293_600;
+
+#[test]
+fn a_zone_that_is_active_in_a_late_pass_of_a_loop() {
+    let at_six = Conditions { start_unix_s: Some(SIX_O_CLOCK), ..Conditions::default() };
+    assert_eq!(broken(&active_zone(36.315, -84.16, (35, 45)), SIX_PASSES, at_six), on("keep-out", "e3"));
+}
+
+/// The review comes to the leg after the loop a quarter of an hour early.
+#[test]
+fn a_zone_that_is_over_when_the_flight_comes_there() {
+    let at_six = Conditions { start_unix_s: Some(SIX_O_CLOCK), ..Conditions::default() };
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let found = |minutes| {
+        let document = rectangle(&active_zone(36.37, -84.194, minutes), SIX_PASSES);
+        let program = compile_document(&document, &Profile::default(), flat.as_ref()).unwrap();
+        let mut found = review(&Arc::new(program), &Profile::default(), &flat, at_six.clone());
+        found.retain(|p| p.code == "keep-out");
+        found.iter().map(Problem::is_error).collect::<Vec<_>>()
+    };
+    assert_eq!(found((45, 59)), [true], "when it comes there");
+    assert_eq!(found((22, 30)), [false], "perhaps, if the loop is left early");
+    assert_eq!(found((0, 2)), [false; 0], "before");
+}
+
+#[test]
+fn an_emergency_plan_that_nobody_ends() {
+    for (legs, at) in [
+        (r#"<HM id="h" fix="A" course="90" turn="right" length="600" until="wind &lt; -1.0"/>"#, "h"),
+        (
+            r#"<iterative id="ring" form="forward" until="wind &lt; -1.0"><TF id="l1" fix="B"/><TF id="l2" fix="A"/></iterative>"#,
+            "l1",
+        ),
+        (
+            r#"<intersection id="i"><branch id="x" next="x1"/><branch id="y" next="x1"/></intersection><TF id="x1" fix="B"/>"#,
+            "ed",
+        ),
+    ] {
+        let document = String::from_utf8(rectangle("", "")).unwrap();
+        let first = r#"<DF id="ed" fix="A" altitude="450" altitudeReference="amsl"/>"#;
+        let document = document.replace(first, &format!("{first}{legs}"));
+        let found = over_flat_ground(document.as_bytes(), Conditions::default());
+        let subject =
+            found.iter().find(|(code, _)| *code == "emergency-endless").map(|(_, leg)| leg.as_str());
+        assert!(subject.is_some(), "{legs}: {found:?}");
+        assert!(at == "l1" || subject == Some(at), "{legs}: {found:?}");
+    }
+    assert_eq!(over_flat_ground(&rectangle("", ""), Conditions::default()), []);
+}
+
+/// The default leads home, the other branch around until nothing is left.
+#[test]
+fn a_branch_for_which_the_energy_does_not_last() {
+    let fork = |default: &str| {
+        format!(
+            r#"<intersection id="i" default="{default}"><branch id="home" next="z"/><branch id="around" next="ring"/></intersection>
+            <iterative id="ring" form="forward" count="40" next="z"><TF id="r1" fix="C"/><TF id="r2" fix="A"/></iterative>
+            <DF id="z" fix="A"/>"#
+        )
+    };
+    for default in ["home", "around"] {
+        let found = over_flat_ground(&rectangle("", &fork(default)), Conditions::default());
+        assert!(found.iter().any(|(code, _)| *code == "energy"), "{default}: {found:?}");
+    }
+}
+
+/// Nothing is known east of 84.17° west.
+struct Edge;
+impl Terrain for Edge {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        (p.lon_deg < -84.17).then_some(300.0)
+    }
+}
+
+#[test]
+fn ground_of_which_nothing_is_known() {
+    let edge: Arc<dyn Terrain> = Arc::new(Edge);
+    let found = |altitude: &str| {
+        let leg = format!(r#"<TF id="far" fix="B" {altitude}/>"#);
+        let program = compile_document(&rectangle("", &leg), &Profile::default(), edge.as_ref()).unwrap();
+        let mut found = review(&Arc::new(program), &Profile::default(), &edge, Conditions::default());
+        found.retain(|p| p.code == "unknown-terrain");
+        found.iter().map(|p| p.subject.clone().unwrap().to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(found(""), [""; 0]);
+    assert_eq!(found(r#"altitude="200" altitudeReference="agl""#), ["far"]);
+}
+
+/// A zone above ground that nobody knows is taken as high as the sky.
+#[test]
+fn limits_above_unknown_ground() {
+    let zone =
+        r#"<keepOut id="z" lat="36.315" lon="-84.16" radius="200" ceiling="20" ceilingReference="agl"/>"#;
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let edge: Arc<dyn Terrain> = Arc::new(Edge);
+    for (ground, expected) in [(flat, 0), (edge, 1)] {
+        let program = compile_document(&rectangle(zone, ""), &Profile::default(), ground.as_ref()).unwrap();
+        let found = review(&Arc::new(program), &Profile::default(), &ground, Conditions::default());
+        assert_eq!(found.iter().filter(|p| p.code == "keep-out").count(), expected, "{:?}", shown(&found));
+    }
+}
+
 /// Something that a person or a program does to a plan.
 #[derive(Debug, Clone)]
 enum Change {

@@ -3,7 +3,8 @@
 //! ahead of time does not begin or end.
 
 use super::View;
-use crate::preview::PreviewError;
+use super::flights::Choice;
+use crate::preview::{Preview, PreviewError};
 use flight_plan::{Id, LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
@@ -19,6 +20,20 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
             Some(Problem::warning("endless-flight", error.to_string()).of(leg))
         }
     });
+    let others = view.flights.chosen.iter();
+    problems.extend(others.filter_map(|(choices, flight)| chosen(view, choices, flight)));
+}
+
+/// What is wrong with the energy if somebody chooses other branches.
+fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError>) -> Option<Problem> {
+    let mut problem = match flight {
+        Ok(flight) => low_reserve(view, flight.battery_left)?,
+        Err(PreviewError::OutOfEnergy { seconds, leg }) => out_of_energy(view, *seconds, leg),
+        Err(_) => return None,
+    };
+    let choices: Vec<_> = choices.iter().map(|c| format!("`{}` at `{}`", c.branch, c.leg)).collect();
+    problem.message = format!("with {}: {}", choices.join(", "), problem.message);
+    Some(problem)
 }
 
 fn low_reserve(view: &View, left: f64) -> Option<Problem> {

@@ -2,19 +2,20 @@
 //!
 //! The main plan once for each branch of the intersection that has most, then once for each branch that was not taken so far, at
 //! most [`MOST_FLIGHTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
-//! once, from the point of those flights that is farthest from where it leads; and the plan as it stands, with its real counts
-//! and conditions, by the preview.
+//! once, from the point of those flights that is farthest from where it leads. By the preview, with real counts, conditions and energy:
+//! the plan as it stands, the plan with the branches of each of those flights, and each of those emergency plans from that point.
 
 use super::alternates::Origin;
 use super::flown::{Flown, Point, fly, tireless};
 use super::in_force::InForce;
 use super::layout::{Way, counts, decisions, lay_out};
+use crate::api::{Command, Event};
 use crate::config::Config;
 use crate::executor::Executor;
 use crate::path::{Level, Passing, PathState};
-use crate::preview::{Options, Preview, PreviewError, Scenario, Start, preview};
+use crate::preview::{Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview};
 use aircraft::{Aircraft, Profile, Wind};
-use flight_plan::{AltitudeReference, EmergencyPlan, Id, LegKind, Program, Variables};
+use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Variables};
 use geometry::LatLon;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -33,12 +34,44 @@ pub(super) struct Flights {
     pub emergencies: BTreeMap<usize, Flown>,
     /// The plan as it stands.
     pub planned: Result<Preview, PreviewError>,
+    /// The plan as it stands, but for the branches that somebody chooses where there is a choice.
+    pub chosen: Vec<(Vec<Choice>, Result<Preview, PreviewError>)>,
+    /// By emergency plan: as it stands.
+    pub landings: BTreeMap<usize, Result<Preview, PreviewError>>,
     /// Branches taken, with their intersections.
     pub taken: HashSet<(Id, Id)>,
     /// Legs that can't be flown, and why.
     pub refused: Vec<(Id, String)>,
     /// Every flight of the main plan came to its end.
     pub complete: bool,
+}
+
+/// A branch that is chosen at the first crossing of an intersection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Choice {
+    pub leg: Id,
+    pub branch: Id,
+}
+
+/// What every flight has in common.
+struct Circumstances<'a> {
+    program: &'a Arc<Program>,
+    profile: &'a Profile,
+    /// The same aircraft with energy for everything.
+    tireless: Profile,
+    terrain: &'a Arc<dyn Terrain>,
+    wind: Wind,
+    executor: Executor,
+}
+
+impl Circumstances<'_> {
+    /// A flight with real counts, conditions and energy.
+    fn preview(&self, start: Start, commands: Vec<Command>) -> Result<Preview, PreviewError> {
+        let then = commands.into_iter().map(Act::Command).collect();
+        let scenario = Scenario { triggers: vec![Trigger { at: When::After { seconds: 0.0 }, then }] };
+        let options = Options { most_s: 6.0 * 3600.0, step_s: 0.2, ..Options::default() };
+        preview(self.program, self.profile, self.terrain, self.wind, start, &scenario, &options)
+    }
 }
 
 /// Where a flight begins.
@@ -52,22 +85,22 @@ struct Beginning {
 
 impl Flights {
     pub fn of(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>, wind: Wind) -> Self {
-        let tireless = tireless(profile);
         let executor = executor(program, profile, terrain);
+        let given = Circumstances { program, profile, tireless: tireless(profile), terrain, wind, executor };
         let beginning = beginning(program, terrain.as_ref());
-        let start = start(beginning);
-        let options = Options { most_s: 6.0 * 3600.0, step_s: 0.2, ..Options::default() };
-        let planned = preview(program, profile, terrain, wind, start, &Scenario::default(), &options);
+        let planned = given.preview(beginning.start(), Vec::new());
         let mut flights = Self {
             main: Vec::new(),
             emergencies: BTreeMap::new(),
             planned,
+            chosen: Vec::new(),
+            landings: BTreeMap::new(),
             taken: HashSet::new(),
             refused: Vec::new(),
             complete: true,
         };
-        flights.fly_main(program, &executor, &tireless, beginning, wind);
-        flights.fly_emergencies(program, &executor, &tireless, wind);
+        flights.fly_main(&given, beginning);
+        flights.fly_emergencies(&given);
         flights
     }
 
@@ -76,26 +109,38 @@ impl Flights {
         self.main.iter().chain(self.emergencies.values())
     }
 
-    fn fly_main(
-        &mut self,
-        program: &Program,
-        executor: &Executor,
-        tireless: &Profile,
-        beginning: Beginning,
-        wind: Wind,
-    ) {
+    /// The plan as it stands and with other branches, as far as these end; at least one of them does, or there are none.
+    pub fn whole(&self) -> impl Iterator<Item = &Preview> {
+        self.planned.iter().chain(self.chosen.iter().filter_map(|(_, preview)| preview.as_ref().ok()))
+    }
+
+    fn fly_main(&mut self, given: &Circumstances, beginning: Beginning) {
+        let program = given.program;
         let counts = counts(program);
         let mut ways: Vec<Way> = (0..variants(program).min(MOST_FLIGHTS as u64)).map(Way::all).collect();
         let mut flown: Vec<(Way, HashSet<Id>)> = Vec::new();
         while let Some(way) = ways.pop().or_else(|| self.unseen(program, &flown)) {
-            let path = beginning.path(tireless);
-            let layout = lay_out(executor, None, path, &counts, &decisions(program, &way));
+            let path = beginning.path(&given.tireless);
+            let layout = lay_out(&given.executor, None, path, &counts, &decisions(program, &way));
             self.complete &= layout.complete;
+            self.fly_chosen(given, beginning, choices(program, &way, &layout.taken));
             flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
-            self.taken.extend(layout.taken);
-            self.refused.extend(layout.refused);
-            self.main.push(fly(beginning.aircraft(tireless), layout.waypoints, wind, None, 0.0));
+            self.taken.extend(layout.taken.iter().cloned());
+            self.refused.extend(layout.refused.iter().cloned());
+            self.main.push(fly(beginning.aircraft(&given.tireless), layout, given.wind, None, 0.0));
         }
+    }
+
+    /// The plan with the branches of a way; not if it has no choice, or if the plan as it stands takes them anyway.
+    fn fly_chosen(&mut self, given: &Circumstances, beginning: Beginning, choices: Vec<Choice>) {
+        let known = self.chosen.iter().any(|(known, _)| *known == choices);
+        let anyway = self.planned.as_ref().is_ok_and(|planned| takes(planned, &choices));
+        if choices.is_empty() || known || anyway {
+            return;
+        }
+        let decide = |c: &Choice| Command::Decide { leg: c.leg.clone(), branch: c.branch.clone() };
+        let preview = given.preview(beginning.start(), choices.iter().map(decide).collect());
+        self.chosen.push((choices, preview));
     }
 
     /// A way to a branch that was not taken yet: one that came to its intersection, but there another branch.
@@ -118,7 +163,8 @@ impl Flights {
         })
     }
 
-    fn fly_emergencies(&mut self, program: &Program, executor: &Executor, tireless: &Profile, wind: Wind) {
+    fn fly_emergencies(&mut self, given: &Circumstances) {
+        let program = given.program;
         let counts = counts(program);
         let in_force = InForce::of(program);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MOST_EMERGENCY_PLANS) {
@@ -129,12 +175,15 @@ impl Flights {
                 heading_deg: worst.course_deg,
                 on_ground: false,
             };
-            let path = beginning.path(tireless);
-            let layout = lay_out(executor, Some(index), path, &counts, &decisions(program, &Way::default()));
-            self.refused.extend(layout.refused);
-            let aircraft = beginning.aircraft(tireless);
-            let flown = fly(aircraft, layout.waypoints, wind, Some(index), worst.time_s);
+            let path = beginning.path(&given.tireless);
+            let decisions = decisions(program, &Way::default());
+            let layout = lay_out(&given.executor, Some(index), path, &counts, &decisions);
+            self.refused.extend(layout.refused.iter().cloned());
+            let aircraft = beginning.aircraft(&given.tireless);
+            let flown = fly(aircraft, layout, given.wind, Some(index), worst.time_s);
             self.emergencies.insert(index, flown);
+            let alarm = Command::Emergency { cause: Cause::Operator, plan: Some(plan.id.clone()) };
+            self.landings.insert(index, given.preview(beginning.start(), vec![alarm]));
         }
     }
 
@@ -236,15 +285,33 @@ fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
     Beginning { position, altitude_amsl_m: metres + ground_m, heading_deg: 0.0, on_ground: false }
 }
 
-fn start(beginning: Beginning) -> Start {
-    if beginning.on_ground {
-        return Start::Runway;
-    }
-    let Beginning { position, altitude_amsl_m, heading_deg, .. } = beginning;
-    Start::InFlight { position, altitude_amsl_m, heading_deg }
+/// The branches of a way at the intersections that it comes to, in the plan's order.
+fn choices(program: &Program, way: &Way, taken: &HashSet<(Id, Id)>) -> Vec<Choice> {
+    let first = decisions(program, way).into_iter().filter(|decision| decision.crossing == 1);
+    let choices = first.map(|decision| Choice { leg: decision.leg, branch: decision.branch });
+    choices.filter(|c| taken.contains(&(c.leg.clone(), c.branch.clone()))).collect()
+}
+
+/// A flight takes these branches where it comes to their intersections first.
+fn takes(planned: &Preview, choices: &[Choice]) -> bool {
+    choices.iter().all(|choice| {
+        let first = planned.events.iter().find_map(|(_, event)| match event {
+            Event::DecisionTaken { leg, branch, .. } if *leg == choice.leg => Some(branch),
+            _ => None,
+        });
+        first == Some(&choice.branch)
+    })
 }
 
 impl Beginning {
+    fn start(&self) -> Start {
+        if self.on_ground {
+            return Start::Runway;
+        }
+        let Beginning { position, altitude_amsl_m, heading_deg, .. } = *self;
+        Start::InFlight { position, altitude_amsl_m, heading_deg }
+    }
+
     fn aircraft(&self, profile: &Profile) -> Aircraft {
         if self.on_ground {
             return Aircraft::on_runway(

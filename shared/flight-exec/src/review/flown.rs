@@ -1,6 +1,7 @@
 //! Waypoints, flown by the simulated aircraft in the wind: the path as it will be.
 
-use super::layout::LaidOut;
+use super::layout::{LaidOut, Layout};
+use super::prepared::When;
 use crate::api::Action;
 use aircraft::{Aircraft, Guidance, Profile, Target, Wind};
 use flight_plan::Id;
@@ -41,6 +42,8 @@ pub(super) struct Flown {
     pub emergency: Option<usize>,
     /// When it starts, seconds since the start of the main plan.
     pub start_s: f64,
+    /// Index of the first waypoint that a real flight may come to later than this one.
+    pub hurried_from: Option<usize>,
 }
 
 impl Flown {
@@ -48,6 +51,15 @@ impl Flown {
     pub fn enters(&self, point: &Point) -> bool {
         let passage = |index: usize| self.waypoints.get(index).map(|w| w.passage);
         self.emergency.is_some() && passage(point.waypoint) == passage(0)
+    }
+
+    /// When a real flight is at a point.
+    pub fn when(&self, point: &Point) -> When {
+        let time_s = self.start_s + point.time_s;
+        // an emergency comes when it likes
+        let later =
+            self.emergency.is_some() || self.hurried_from.is_some_and(|first| point.waypoint >= first);
+        if later { When::From(time_s) } else { When::At(time_s) }
     }
 
     /// The altitude that the leg asks for at the waypoint that is steered to at a point, metres AMSL.
@@ -69,12 +81,14 @@ pub(super) fn tireless(profile: &Profile) -> Profile {
 /// Flies waypoints from where the aircraft is to the last of them.
 pub(super) fn fly(
     aircraft: Aircraft,
-    waypoints: Vec<LaidOut>,
+    layout: Layout,
     wind: Wind,
     emergency: Option<usize>,
     start_s: f64,
 ) -> Flown {
-    let flown = Flown { waypoints, points: Vec::new(), reached: Vec::new(), emergency, start_s };
+    let Layout { waypoints, hurried_from, .. } = layout;
+    let (points, reached) = (Vec::new(), Vec::new());
+    let flown = Flown { waypoints, points, reached, emergency, start_s, hurried_from };
     let guidance = Guidance::new(aircraft.profile().clone());
     Flight { aircraft, guidance, wind, steps: 0, steered_s: 0.0, flown }.flown()
 }

@@ -7,7 +7,7 @@ use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::path::PathState;
 use crate::world::{LoopCount, World};
-use flight_plan::{Id, LegKind, Program};
+use flight_plan::{AltitudeReference, Id, LegKind, Program};
 use std::collections::{HashMap, HashSet};
 
 /// Passes of each loop: the first is entered from outside, the second from the loop's own end.
@@ -25,6 +25,8 @@ pub(super) struct LaidOut {
     pub wanted_amsl_m: f64,
     /// The passage of a leg that it belongs to.
     pub passage: u64,
+    /// Its altitude counts from the ground, and nothing is known of the ground there.
+    pub over_unknown_ground: bool,
 }
 
 /// A way through the plan.
@@ -37,6 +39,8 @@ pub(super) struct Layout {
     pub refused: Vec<(Id, String)>,
     /// It came to the plan's end.
     pub complete: bool,
+    /// Index of the first waypoint that a real flight may come to later than this one: a loop was left early, a holding or a wait.
+    pub hurried_from: Option<usize>,
 }
 
 /// Every leg of a program.
@@ -56,6 +60,16 @@ pub(super) fn counts(program: &Program) -> Vec<LoopCount> {
     let count_of =
         |leg: &flight_plan::Leg| LoopCount { leg: leg.id.clone(), activation: None, count: count(leg) };
     legs(program).filter(is_loop).map(count_of).collect()
+}
+
+/// Loops that are flown less often here than they may be in flight.
+fn shortened(program: &Program) -> HashSet<Id> {
+    let is_cut = |leg: &&flight_plan::Leg| match &leg.kind {
+        LegKind::Iterative { count: Some(flight_plan::Value::Constant(n)), .. } => *n > PASSES as f64,
+        LegKind::Iterative { .. } => true,
+        _ => false,
+    };
+    legs(program).filter(is_cut).map(|leg| leg.id.clone()).collect()
 }
 
 /// A way through the plan's intersections: the number of the branch that is taken at the first crossing of each.
@@ -105,13 +119,19 @@ pub(super) fn lay_out(
     let mut layout = Layout::default();
     let mut world = World { counts, decisions, ..executor.world() };
     let mut cursor = Cursor::start(section, from, 0);
+    let endless = shortened(world.program);
     while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from.time_s < MOST_S {
-        release(&mut world, &cursor);
+        let released = release(&mut world, &cursor);
+        let loops = cursor.place(&world).iterations;
+        if released || loops.iter().any(|iteration| endless.contains(&iteration.leg)) {
+            layout.hurry();
+        }
         match cursor.next(&world) {
             Step::Waypoint(emission) => {
                 let waits = emission.wait_s.is_some();
                 layout.take(*emission, &cursor, &world);
                 if waits {
+                    layout.hurry();
                     go_on(&mut world, &mut cursor);
                 }
             }
@@ -133,16 +153,23 @@ fn go_on(world: &mut World, cursor: &mut Cursor) {
     cursor.given = cursor.given.saturating_sub(1);
 }
 
-/// A holding that only its condition or a command ends is left after [`PASSES`] laps.
-fn release(world: &mut World, cursor: &Cursor) {
+/// A holding that only its condition or a command ends is left after [`PASSES`] laps; true: now.
+fn release(world: &mut World, cursor: &Cursor) -> bool {
     let open = cursor.leg(world).is_some_and(|leg| matches!(leg.kind, LegKind::Hm { .. }));
     let lap = cursor.expansion.as_ref().filter(|_| open).and_then(|e| e.crossing(cursor.given));
-    if lap.is_some_and(|lap| lap >= PASSES) {
+    let enough = lap.is_some_and(|lap| lap >= PASSES);
+    if enough {
         world.released = Some(cursor.passage);
     }
+    enough
 }
 
 impl Layout {
+    /// From here on a real flight may be later.
+    fn hurry(&mut self) {
+        self.hurried_from.get_or_insert(self.waypoints.len());
+    }
+
     fn take(&mut self, emission: crate::cursor::Emission, cursor: &Cursor, world: &World) {
         let leg = cursor.place(world).leg;
         let last = &cursor.path.last;
@@ -160,7 +187,11 @@ impl Layout {
             Action::TakeOff { .. } | Action::Land { .. } => emission.altitude_amsl_m,
             Action::Fly | Action::Loiter { .. } => world.amsl_m(last.level, last.position),
         };
-        self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage: cursor.passage });
+        let over_unknown_ground = matches!(emission.action, Action::Fly | Action::Loiter { .. })
+            && last.level.reference == AltitudeReference::Agl
+            && world.terrain.elevation_m(last.position).is_none();
+        let passage = cursor.passage;
+        self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage, over_unknown_ground });
         self.note(emission.notes);
     }
 

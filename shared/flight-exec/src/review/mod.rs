@@ -15,12 +15,14 @@ mod flights;
 mod flown;
 mod glide;
 mod in_force;
+mod landings;
 mod layout;
 pub mod plausibility;
 mod powered;
 mod prepared;
 mod refused;
 mod terrain_clearance;
+mod unknown_terrain;
 mod unseen;
 mod waypoints;
 mod ways;
@@ -81,15 +83,17 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 13] = [
     refused::check,
     unseen::check,
     zones::check,
+    unknown_terrain::check,
     terrain_clearance::check,
     ceiling::check,
     altitudes::check,
     waypoints::check,
     endurance::check,
+    landings::check,
     ways::check,
     powered::check,
     glide::check,
@@ -110,7 +114,7 @@ pub fn review(
         terrain: terrain.as_ref(),
         conditions,
         flights: Flights::of(program, profile, terrain, conditions.wind),
-        zones: Zones::of(program, conditions),
+        zones: Zones::of(program, profile, conditions),
         in_force: InForce::of(program),
     };
     let mut problems = Vec::new();
@@ -163,13 +167,15 @@ impl View<'_> {
         })
     }
 
-    /// Points of the plan as it stands, with the energy used by then; where it does not end, those of the bounded flights.
+    /// Points of the plan as it stands and with other branches, with the energy used by then; where it ends in none of these ways,
+    /// those of the bounded flights.
     fn origins_with_energy(&self) -> Vec<Origin> {
         const EVERY_S: f64 = 5.0;
-        let mut points = match &self.flights.planned {
-            Ok(planned) => flights::points(planned, EVERY_S),
-            Err(_) => self.origins(EVERY_S).collect(),
-        };
+        let whole = self.flights.whole();
+        let mut points: Vec<Origin> = whole.flat_map(|preview| flights::points(preview, EVERY_S)).collect();
+        if points.is_empty() {
+            points = self.origins(EVERY_S).collect();
+        }
         points.retain(|point| self.is_steered(&point.leg));
         points
     }

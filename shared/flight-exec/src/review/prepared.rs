@@ -1,18 +1,24 @@
 //! The plan's zones, ready to be held against a track.
 
 use super::Conditions;
-use flight_plan::{AltitudeReference, Id, Program, Value, Zone, ZoneKind, ZoneShape};
-use geometry::zone::{Band, Breach, Rule, Shape, Stretch, Zone as Ground};
+use aircraft::Profile;
+use aircraft::power::demanded_power_w;
+use flight_plan::{AltitudeReference, Id, Program, Value, Zone, ZoneKind, ZoneShape, ZoneTime};
+use geometry::zone::{Band, Breach, Rule, Shape, Stretch, Zone as Ground, ZoneError};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
 
 /// Pieces of path shorter than this are not cut further when they lie in no zone to stay in, metres.
 const FINEST_M: f64 = 2.0;
 
-/// Zones, and when the flight starts.
+/// Zones, and when the flight is.
 pub(super) struct Zones {
     zones: Vec<Prepared>,
+    /// Zones that can't be held against anything, and why.
+    pub refused: Vec<(Id, String)>,
     start_unix_s: Option<i64>,
+    /// When no flight lasts any longer, seconds since the start.
+    latest_s: f64,
 }
 
 /// One zone.
@@ -21,7 +27,9 @@ pub(super) struct Prepared {
     pub kind: ZoneKind,
     /// Its limits above mean sea level and those above the ground: it is where both of them are.
     parts: Vec<(Datum, Ground)>,
-    active: Vec<flight_plan::ZoneTime>,
+    /// The zone without its limits: what counts of those above the ground where nothing is known of it.
+    outline: Ground,
+    active: Vec<ZoneTime>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,17 +43,35 @@ enum Datum {
 pub(super) struct At {
     pub position: LatLon,
     pub altitude_amsl_m: f64,
-    /// Since the start of the main plan, seconds; `None`: at any time.
-    pub time_s: Option<f64>,
+    /// When it is flown.
+    pub when: When,
+}
+
+/// A time of the flight, seconds since the start of the main plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum When {
+    At(f64),
+    /// Then, or later in the flight.
+    From(f64),
 }
 
 impl Zones {
-    /// A zone that geometry refuses is not there: the check of the plan has refused it before.
-    pub fn of(program: &Program, conditions: Conditions) -> Self {
+    pub fn of(program: &Program, profile: &Profile, conditions: Conditions) -> Self {
         let home_m = program.plan.home().map_or(0.0, |r| r.elevation_amsl_m);
-        let prepared = |zone: &Zone| prepared(zone, home_m, conditions.margins.zone_m);
-        let zones = program.plan.zones.iter().filter_map(prepared).collect();
-        Self { zones, start_unix_s: conditions.start_unix_s }
+        let power_w = demanded_power_w(profile, profile.cruise_airspeed_mps, 0.0, 1.0);
+        let mut zones = Self {
+            zones: Vec::new(),
+            refused: Vec::new(),
+            start_unix_s: conditions.start_unix_s,
+            latest_s: profile.energy_j / power_w.max(1.0),
+        };
+        for zone in &program.plan.zones {
+            match prepared(zone, home_m, conditions.margins.zone_m) {
+                Ok(prepared) => zones.zones.push(prepared),
+                Err(error) => zones.refused.push((zone.id.clone(), error.to_string())),
+            }
+        }
+        zones
     }
 
     /// There is nothing to hold a track against.
@@ -58,49 +84,53 @@ impl Zones {
         self.start_unix_s.is_none() && !zone.active.is_empty()
     }
 
-    /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in.
-    pub fn breaches(&self, from: At, to: At, terrain: &dyn Terrain) -> Vec<(&Prepared, Breach)> {
-        let active = |zone: &&Prepared| self.is_active(zone, from.time_s);
-        let keep_out = self.zones.iter().filter(|z| z.kind == ZoneKind::KeepOut).filter(active);
+    /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in; true: it
+    /// may be that the zone is not active then.
+    pub fn breaches(&self, from: At, to: At, terrain: &dyn Terrain) -> Vec<(&Prepared, Breach, bool)> {
+        let keep_out = self.active(ZoneKind::KeepOut, from.when);
         let piece = Piece::new(from, to, terrain);
-        let mut found: Vec<_> =
-            keep_out.filter_map(|z| z.intrusion(&piece).map(|breach| (z, breach))).collect();
-        let keep_in: Vec<&Prepared> =
-            self.zones.iter().filter(|z| z.kind == ZoneKind::KeepIn).filter(active).collect();
+        let intrusion = |(zone, perhaps)| Some((zone, Prepared::intrusion(zone, &piece)?, perhaps));
+        let mut found: Vec<_> = keep_out.filter_map(intrusion).collect();
+        let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from.when).collect();
         if !keep_in.is_empty() {
             found.extend(outside_all(&keep_in, from, to, terrain));
         }
         found
     }
 
-    fn is_active(&self, zone: &Prepared, time_s: Option<f64>) -> bool {
-        let Some((start, time_s)) = self.start_unix_s.zip(time_s) else { return true };
-        let now = start.saturating_add(time_s as i64);
-        zone.active.is_empty() || zone.active.iter().any(|t| (t.from_unix_s..t.until_unix_s).contains(&now))
+    /// The zones of a kind that are active, or may be; true: it may be that they are not.
+    fn active(&self, kind: ZoneKind, when: When) -> impl Iterator<Item = (&Prepared, bool)> {
+        self.zones.iter().filter(move |zone| zone.kind == kind).filter_map(move |zone| {
+            let Some(start) = self.start_unix_s.filter(|_| !zone.active.is_empty()) else {
+                return Some((zone, false));
+            };
+            let unix_s = |time_s: f64| start.saturating_add(time_s as i64);
+            let (first, last) = match when {
+                When::At(time_s) => (unix_s(time_s), unix_s(time_s)),
+                When::From(time_s) => (unix_s(time_s), unix_s(time_s.max(self.latest_s))),
+            };
+            let overlaps = |t: &&ZoneTime| t.from_unix_s <= last && first < t.until_unix_s;
+            let covers = |t: &ZoneTime| t.from_unix_s <= first && last < t.until_unix_s;
+            let certain = zone.active.iter().any(covers);
+            zone.active.iter().find(overlaps).map(|_| (zone, !certain))
+        })
     }
 }
 
 /// A straight piece of track, with its altitudes above mean sea level and above the ground at its ends.
 struct Piece {
     amsl: Stretch,
-    agl: Stretch,
+    /// `None`: nothing is known of the ground.
+    agl: Option<Stretch>,
 }
 
 impl Piece {
     fn new(from: At, to: At, terrain: &dyn Terrain) -> Self {
         let element = PathElement::Line { from: from.position, to: to.position };
-        let ground_m = |at: At| terrain.elevation_m(at.position).unwrap_or(0.0);
-        let (a_m, b_m) = (from.altitude_amsl_m, to.altitude_amsl_m);
+        let height_m = |at: At| Some(at.altitude_amsl_m - terrain.elevation_m(at.position)?);
         Self {
-            amsl: Stretch::new(element, (a_m, b_m)),
-            agl: Stretch::new(element, (a_m - ground_m(from), b_m - ground_m(to))),
-        }
-    }
-
-    fn above(&self, datum: Datum) -> &Stretch {
-        match datum {
-            Datum::Amsl => &self.amsl,
-            Datum::Agl => &self.agl,
+            amsl: Stretch::new(element, (from.altitude_amsl_m, to.altitude_amsl_m)),
+            agl: height_m(from).zip(height_m(to)).map(|heights_m| Stretch::new(element, heights_m)),
         }
     }
 }
@@ -108,31 +138,39 @@ impl Piece {
 impl Prepared {
     /// Inside, by all its limits.
     fn intrusion(&self, piece: &Piece) -> Option<Breach> {
-        let mut breaches = self.parts.iter().map(|(datum, zone)| zone.breach(piece.above(*datum)));
+        let mut breaches = self.parts.iter().map(|part| self.breach(part, piece));
         let first = breaches.next()??;
         breaches.try_fold(first, |worst, breach| breach.map(|_| worst))
     }
 
     /// Outside, by one of its limits.
     fn excursion(&self, piece: &Piece) -> Option<Breach> {
-        self.parts.iter().find_map(|(datum, zone)| zone.breach(piece.above(*datum)))
+        self.parts.iter().find_map(|part| self.breach(part, piece))
+    }
+
+    fn breach(&self, (datum, zone): &(Datum, Ground), piece: &Piece) -> Option<Breach> {
+        match (datum, &piece.agl) {
+            (Datum::Amsl, _) => zone.breach(&piece.amsl),
+            (Datum::Agl, Some(agl)) => zone.breach(agl),
+            (Datum::Agl, None) => self.outline.breach(&piece.amsl),
+        }
     }
 }
 
 /// The part of a piece that lies in none of the zones to stay in: halved until each part lies in one or is very short.
 fn outside_all<'z>(
-    zones: &[&'z Prepared],
+    zones: &[(&'z Prepared, bool)],
     from: At,
     to: At,
     terrain: &dyn Terrain,
-) -> Option<(&'z Prepared, Breach)> {
+) -> Option<(&'z Prepared, Breach, bool)> {
     let piece = Piece::new(from, to, terrain);
-    let mut nearest: Option<(&Prepared, Breach)> = None;
-    for zone in zones {
+    let mut nearest: Option<(&Prepared, Breach, bool)> = None;
+    for (zone, perhaps) in zones {
         let breach = zone.excursion(&piece)?;
         let off_m = |b: &Breach| b.horizontal_m + b.vertical_m;
-        if nearest.as_ref().is_none_or(|(_, best)| off_m(&breach) < off_m(best)) {
-            nearest = Some((zone, breach));
+        if nearest.as_ref().is_none_or(|(_, best, _)| off_m(&breach) < off_m(best)) {
+            nearest = Some((zone, breach, *perhaps));
         }
     }
     let lone = zones.len() == 1;
@@ -143,12 +181,12 @@ fn outside_all<'z>(
         position: PathElement::Line { from: from.position, to: to.position }
             .point_at(0.5 * from.position.distance_m(to.position)),
         altitude_amsl_m: 0.5 * (from.altitude_amsl_m + to.altitude_amsl_m),
-        time_s: from.time_s,
+        when: from.when,
     };
     outside_all(zones, from, middle, terrain).or_else(|| outside_all(zones, middle, to, terrain))
 }
 
-fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Option<Prepared> {
+fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneError> {
     let shape = match &zone.shape {
         ZoneShape::Circle { centre, radius_m } => Shape::Circle { centre: *centre, radius_m: *radius_m },
         ZoneShape::Polygon(corners) => Shape::Polygon { outer: corners.clone(), holes: Vec::new() },
@@ -157,10 +195,11 @@ fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Option<Prepared> {
         ZoneKind::KeepIn => Rule::KeepIn,
         ZoneKind::KeepOut => Rule::KeepOut,
     };
-    let band = |datum| Some((datum, Ground::new(&shape, limits(zone, datum, home_m), rule, margin_m).ok()?));
-    let parts: Vec<_> = data(zone).into_iter().filter_map(band).collect();
-    let active = zone.active.clone();
-    (!parts.is_empty()).then(|| Prepared { id: zone.id.clone(), kind: zone.kind, parts, active })
+    let ground = |band| Ground::new(&shape, band, rule, margin_m);
+    let part = |datum| Ok((datum, ground(limits(zone, datum, home_m))?));
+    let parts = data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()?;
+    let (outline, active) = (ground(Band::ALL)?, zone.active.clone());
+    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, outline, active })
 }
 
 /// The data in which a zone has limits; without any: sea level.

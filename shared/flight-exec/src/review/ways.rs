@@ -4,7 +4,7 @@
 
 use super::View;
 use super::alternates::{Alternate, Origin, alternates, flying_s};
-use super::prepared::At;
+use super::prepared::{At, When};
 use flight_plan::{Id, Problem};
 use geometry::PathElement;
 use std::collections::HashSet;
@@ -48,14 +48,14 @@ fn through_zones(
     let Some(time_s) = flying_s(view.profile, from.position, alternate.entry, view.conditions.wind) else {
         return;
     };
-    let start =
-        At { position: from.position, altitude_amsl_m: from.altitude_amsl_m, time_s: Some(from.time_s) };
+    let when = When::At(from.time_s);
+    let start = At { position: from.position, altitude_amsl_m: from.altitude_amsl_m, when };
     let end = At {
         position: alternate.entry,
         altitude_amsl_m: altitude_m(view, alternate, from, 1.0, time_s),
-        time_s: start.time_s,
+        when,
     };
-    for (zone, breach) in view.zones.breaches(start, end, view.terrain) {
+    for (zone, breach, _) in view.zones.breaches(start, end, view.terrain) {
         if !seen.insert(zone.id.clone()) {
             continue;
         }

@@ -1,55 +1,91 @@
-//! `keep-out`: the path, turns and holdings included, goes into a zone to keep out of; `keep-in`: it leaves those to stay in.
+//! `keep-out`: the path, turns and holdings included, goes into a zone to keep out of; `keep-in`: it leaves those to stay in;
+//! `bad-zone`: one that no path can be held against.
+//!
+//! The plan as it stands is looked at with its real times. A flight that was cut short, or an emergency, may be later: it is told as a
+//! warning if it meets a zone only then.
 
 use super::View;
 use super::flown::Flown;
-use super::prepared::{At, Prepared};
+use super::prepared::{At, Prepared, When};
+use crate::preview::Preview;
 use flight_plan::{Id, Problem, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    for (zone, error) in &view.zones.refused {
+        let message = format!("change this zone, no path can be held against it: {error}");
+        problems.push(Problem::error("bad-zone", message).of(zone));
+    }
     if view.zones.is_empty() {
         return;
     }
-    let mut worst: HashMap<(Id, Id), Found> = HashMap::new();
-    let mut order = Vec::new();
-    for flown in view.flights.all() {
-        track(view, flown, &mut worst, &mut order);
-    }
-    problems.extend(order.iter().filter_map(|key| worst.get(key)).map(|found| found.problem(view)));
+    let mut found = Findings::default();
+    view.flights.planned.iter().for_each(|planned| found.take(view, planned_track(planned)));
+    view.flights.all().for_each(|flown| found.take(view, bounded_track(flown)));
+    problems.extend(found.problems(view));
+}
+
+/// Points of the plan as it stands, with their legs.
+fn planned_track(planned: &Preview) -> impl Iterator<Item = (&Id, At)> {
+    planned.track.iter().filter_map(|point| {
+        let leg = &planned.legs.get(point.passage?)?.place.leg;
+        let when = When::At(point.time_s);
+        Some((leg, At { position: point.position, altitude_amsl_m: point.altitude_amsl_m, when }))
+    })
+}
+
+/// Points of a bounded flight, with their legs.
+fn bounded_track(flown: &Flown) -> impl Iterator<Item = (&Id, At)> {
+    flown.points.iter().filter(|point| !flown.enters(point)).filter_map(|point| {
+        let when = flown.when(point);
+        Some((
+            flown.leg(point)?,
+            At { position: point.position, altitude_amsl_m: point.altitude_amsl_m, when },
+        ))
+    })
 }
 
 /// The deepest breach of a zone on a leg.
 struct Found<'a> {
-    leg: Id,
+    leg: &'a Id,
     zone: &'a Prepared,
     breach: Breach,
+    /// Only if the flight comes there while the zone is active.
+    perhaps: bool,
 }
 
-fn track<'a>(
-    view: &'a View,
-    flown: &Flown,
-    worst: &mut HashMap<(Id, Id), Found<'a>>,
-    order: &mut Vec<(Id, Id)>,
-) {
-    for pair in flown.points.windows(2) {
-        let [from, to] = pair else { continue };
-        let at = |p: &super::flown::Point| At {
-            position: p.position,
-            altitude_amsl_m: p.altitude_amsl_m,
-            time_s: Some(flown.start_s + p.time_s),
-        };
-        let Some(leg) = flown.leg(from).filter(|_| !flown.enters(from)) else { continue };
-        for (zone, breach) in view.zones.breaches(at(from), at(to), view.terrain) {
-            let key = (leg.clone(), zone.id.clone());
-            let deeper = |old: &Found| depth_m(&breach) > depth_m(&old.breach);
-            if worst.get(&key).is_none_or(deeper) {
-                let found = Found { leg: leg.clone(), zone, breach };
-                if worst.insert(key.clone(), found).is_none() {
-                    order.push(key);
+/// Breaches, each once for a leg and a zone, in the order in which they were found.
+#[derive(Default)]
+struct Findings<'a> {
+    worst: HashMap<(&'a Id, &'a Id), usize>,
+    found: Vec<Found<'a>>,
+}
+
+impl<'a> Findings<'a> {
+    fn take(&mut self, view: &'a View, track: impl Iterator<Item = (&'a Id, At)>) {
+        let mut before: Option<(&Id, At)> = None;
+        for (leg, to) in track {
+            if let Some((leg, from)) = before {
+                for (zone, breach, perhaps) in view.zones.breaches(from, to, view.terrain) {
+                    self.add(Found { leg, zone, breach, perhaps });
                 }
             }
+            before = Some((leg, to));
         }
+    }
+
+    fn add(&mut self, found: Found<'a>) {
+        let index = *self.worst.entry((found.leg, &found.zone.id)).or_insert(self.found.len());
+        match self.found.get_mut(index) {
+            None => self.found.push(found),
+            Some(old) if found.outweighs(old) => *old = found,
+            Some(_) => {}
+        }
+    }
+
+    fn problems(self, view: &View) -> Vec<Problem> {
+        self.found.iter().map(|found| found.problem(view)).collect()
     }
 }
 
@@ -58,6 +94,11 @@ fn depth_m(breach: &Breach) -> f64 {
 }
 
 impl Found<'_> {
+    /// What is certain weighs more than what may be, then the deeper one.
+    fn outweighs(&self, old: &Self) -> bool {
+        (old.perhaps, depth_m(&self.breach)) > (self.perhaps, depth_m(&old.breach))
+    }
+
     fn problem(&self, view: &View) -> Problem {
         let Breach { position, altitude_m, horizontal_m, vertical_m, .. } = self.breach;
         let (lat, lon) = (position.lat_deg, position.lon_deg);
@@ -86,6 +127,10 @@ impl Found<'_> {
         } else {
             ""
         };
-        Problem::error(code, format!("{what}{timeless}")).of(&self.leg)
+        if self.perhaps {
+            let message = format!("{what} if the flight comes there when the zone is active");
+            return Problem::warning(code, message).of(self.leg);
+        }
+        Problem::error(code, format!("{what}{timeless}")).of(self.leg)
     }
 }

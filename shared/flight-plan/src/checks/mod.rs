@@ -11,6 +11,7 @@ mod expression_bounds;
 mod expressions;
 mod gradients;
 mod holdings;
+mod home;
 mod identifiers;
 mod inspection;
 mod intersections;
@@ -51,7 +52,7 @@ use terrain::Terrain;
 type Rule = fn(&Inspection, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 30] = [
+const RULES: [Rule; 31] = [
     empty::check,
     identifiers::check,
     references::check,
@@ -79,6 +80,7 @@ const RULES: [Rule; 30] = [
     speeds::check,
     gradients::check,
     altitudes::check,
+    home::check,
     terrain_clearance::check,
     emergency_plans::check,
     emergency_coverage::check,

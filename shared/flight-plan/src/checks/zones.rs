@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::scans::not_simple;
-use crate::{Altitude, Edit, Problem, Thing, Value, Zone, ZoneShape};
+use crate::{Altitude, AltitudeReference, Edit, Problem, Thing, Value, Zone, ZoneShape};
 
 /// Greatest radius of a zone, metres.
 const LARGEST_M: f64 = 200_000.0;
@@ -55,14 +55,31 @@ fn limits(view: &Inspection, zone: &Zone, problems: &mut Vec<Problem>) {
         return;
     }
     let Some((floor, ceiling)) = zone.floor.as_ref().zip(zone.ceiling.as_ref()) else { return };
-    // limits above different data depend on the ground: the review of the path sees them
-    let below = view.number(&floor.metres).zip(view.number(&ceiling.metres)).is_none_or(|(f, c)| f < c);
-    if floor.reference == ceiling.reference && !below {
+    // above ground and above the sea at once: the review of the path sees them
+    let comparable = heights_m(view, floor, ceiling);
+    if comparable.is_some_and(|(floor_m, ceiling_m)| floor_m >= ceiling_m) {
         let message = "make the zone's floor lower than its ceiling: as it is, it is nowhere";
         let swapped = Zone { floor: Some(ceiling.clone()), ceiling: Some(floor.clone()), ..zone.clone() };
         let fix = (floor.metres != ceiling.metres).then(|| replaced(zone, swapped));
         problems.push(Problem::error("zone-altitudes", message).of(&zone.id).perhaps_fixed_by(fix));
     }
+}
+
+/// Both limits above one datum, metres, if that doesn't depend on the ground below.
+fn heights_m(view: &Inspection, floor: &Altitude, ceiling: &Altitude) -> Option<(f64, f64)> {
+    if floor.reference == ceiling.reference {
+        return view.number(&floor.metres).zip(view.number(&ceiling.metres));
+    }
+    let home_m = view.home().map(|runway| runway.elevation_amsl_m);
+    let amsl_m = |limit: &Altitude| {
+        let datum_m = match limit.reference {
+            AltitudeReference::Amsl => Some(0.0),
+            AltitudeReference::Home => home_m,
+            AltitudeReference::Agl => None,
+        };
+        Some(view.number(&limit.metres)? + datum_m?)
+    };
+    amsl_m(floor).zip(amsl_m(ceiling))
 }
 
 fn times(zone: &Zone, problems: &mut Vec<Problem>) {
@@ -135,6 +152,9 @@ mod tests {
         assert_eq!(codes(&band(900, "amsl", 300)), ["zone-altitudes"]);
         assert_eq!(codes(&band(300, "amsl", 300)), ["zone-altitudes"]);
         assert_eq!(codes(&band(900, "agl", 300)), [""; 0]);
+        // home is at 300 m
+        assert_eq!(codes(&band(599, "home", 900)), [""; 0]);
+        assert_eq!(codes(&band(600, "home", 900)), ["zone-altitudes"]);
         fixed(&band(900, "amsl", 300), "zone-altitudes");
     }
 
