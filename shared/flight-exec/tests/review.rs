@@ -321,7 +321,7 @@ fn an_emergency_plan_that_nobody_ends() {
         ),
         (
             r#"<intersection id="i"><branch id="x" next="x1"/><branch id="y" next="x1"/></intersection><TF id="x1" fix="B"/>"#,
-            "ed",
+            "i",
         ),
     ] {
         let document = String::from_utf8(rectangle("", "")).unwrap();
