@@ -302,7 +302,7 @@ fn a_zone_that_is_over_when_the_flight_comes_there() {
     let found = |minutes| {
         let document = rectangle(&active_zone(36.37, -84.194, minutes), SIX_PASSES);
         let program = compile_document(&document, &Profile::default(), flat.as_ref()).unwrap();
-        let mut found = review(&Arc::new(program), &Profile::default(), &flat, at_six.clone());
+        let mut found = review(&Arc::new(program), &Profile::default(), &flat, at_six);
         found.retain(|p| p.code == "keep-out");
         found.iter().map(Problem::is_error).collect::<Vec<_>>()
     };
