@@ -134,6 +134,44 @@ impl Aircraft {
         &self.engine
     }
 
+    /// Moves alike from here on, as long as there is energy.
+    pub fn moves_as(&self, other: &Self) -> bool {
+        (self.state, self.frame, self.local) == (other.state, other.frame, other.local)
+            && self.engine.healthy == other.engine.healthy
+            && self.profile == other.profile
+    }
+
+    /// Uses energy (joules), or gives it back.
+    pub fn use_energy(&mut self, joules: f64) {
+        self.battery.energy_left_j =
+            (self.battery.energy_left_j - joules).clamp(0.0, self.battery.capacity_j);
+    }
+
+    /// Goes back in time by a part of the last step and rounds the motion to what an autopilot tells of it: position to
+    /// 1e-7 degrees (1 cm), altitude and speeds to centimetres, angles to a thousandth of a radian. On the
+    /// ground nothing is done.
+    ///
+    /// A preview does this at each waypoint: what happened before differs by less than nothing after a while, and two flights
+    /// that differ only there are one and the same from then on.
+    pub fn settle(&mut self, back_s: f64, wind: &Wind) {
+        if self.state.on_ground {
+            return;
+        }
+        let s = &mut self.state;
+        let position = self.frame.to_geo(self.local - s.ground_velocity_mps * back_s);
+        let turn_rate = power::turn_rate_rad_s(s.bank_rad, s.airspeed_mps);
+        s.position = LatLon::new(rounded(position.lat_deg, 1e7), rounded(position.lon_deg, 1e7));
+        s.altitude_amsl_m = rounded(s.altitude_amsl_m - s.climb_mps * back_s, 1e2);
+        s.heading_rad = rounded(wrap_pi(s.heading_rad - turn_rate * back_s), 1e3);
+        s.bank_rad = rounded(s.bank_rad, 1e3);
+        s.airspeed_mps = rounded(s.airspeed_mps, 1e2);
+        s.climb_mps = rounded(s.climb_mps, 1e2);
+        s.ground_velocity_mps = over_ground(s, wind);
+        self.frame = LocalFrame::new(s.position);
+        self.local = Vec2::default();
+        self.battery.draw(-back_s, self.engine.power_w + power::avionics_power_w());
+    }
+
     /// Fails the engine, or repairs it.
     pub fn set_engine_healthy(&mut self, healthy: bool) {
         self.engine.healthy = healthy;
@@ -190,8 +228,7 @@ impl Aircraft {
         self.change_airspeed(dt_s, demand.airspeed_mps);
         self.change_altitude(dt_s, demand.climb_mps);
         let s = &mut self.state;
-        let air = Vec2::from_bearing_rad(s.heading_rad) * horizontal(s.airspeed_mps, s.climb_mps);
-        s.ground_velocity_mps = air + wind.vector();
+        s.ground_velocity_mps = over_ground(s, wind);
         if let Some(ground) = demand.ground_amsl_m {
             self.touch_down(ground);
         }
@@ -271,6 +308,16 @@ impl Aircraft {
     }
 }
 
+/// To the nearest part of one.
+fn rounded(x: f64, parts: f64) -> f64 {
+    (x * parts).round() / parts
+}
+
+/// The sum of the way through the air and the wind, m/s.
+fn over_ground(s: &State, wind: &Wind) -> Vec2 {
+    Vec2::from_bearing_rad(s.heading_rad) * horizontal(s.airspeed_mps, s.climb_mps) + wind.vector()
+}
+
 /// Horizontal part of the airspeed while climbing.
 fn horizontal(airspeed_mps: f64, climb_mps: f64) -> f64 {
     (airspeed_mps * airspeed_mps - climb_mps * climb_mps).max(0.0).sqrt()
@@ -348,6 +395,27 @@ mod tests {
         let expected = Vec2::new(20.0, 8.0) * 600.0;
         assert!((to.distance_m - expected.length()).abs() < 10.0, "{}", to.distance_m);
         assert!((to.bearing_start_deg - expected.bearing_rad().to_degrees()).abs() < 0.2);
+    }
+
+    #[test]
+    fn what_is_settled_is_where_it_was_to_the_centimetre() {
+        let wind = Wind { east_mps: 3.0, north_mps: -4.0 };
+        let mut a = cruising();
+        fly(&mut a, 20.0, &demand(20.0, 1.0), &wind);
+        let before = a.clone();
+        fly(&mut a, 0.1, &demand(20.0, 1.0), &wind);
+        a.settle(0.1, &wind);
+        let (was, is) = (before.state(), a.state());
+        assert!(was.position.distance_m(is.position) < 0.02);
+        assert!((was.altitude_amsl_m - is.altitude_amsl_m).abs() < 0.02);
+        assert!(wrap_pi(was.heading_rad - is.heading_rad).abs() < 1e-3);
+        assert!((before.battery().energy_left_j - a.battery().energy_left_j).abs() < 0.1);
+        // an aircraft that was a millimetre beside it is in the same place now
+        let mut beside = before.clone();
+        beside.local = beside.local + Vec2::new(1e-4, -1e-4);
+        fly(&mut beside, 0.1, &demand(20.0, 1.0), &wind);
+        beside.settle(0.1, &wind);
+        assert!(beside.moves_as(&a));
     }
 
     #[test]

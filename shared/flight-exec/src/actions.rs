@@ -18,22 +18,22 @@ pub(crate) use trigger::Moment;
 /// A passage of a leg, or an activation of a loop, whose actions are looked after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Passage {
-    leg: Id,
+    pub leg: Id,
     /// Of the passage; of a loop: of its activation.
-    number: u64,
+    pub number: u64,
     /// Pass of the innermost loop when it began: what `iteration` is in its expressions.
-    iteration: u64,
+    pub iteration: u64,
     /// Path length when it began, metres.
-    began_m: f64,
+    pub began_m: f64,
     /// Seconds flown on it.
-    flown_s: f64,
+    pub flown_s: f64,
     /// As many as the leg has actions.
-    done: Vec<Done>,
+    pub done: Vec<Done>,
 }
 
 /// What became of an action on this passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-struct Done {
+pub(crate) struct Done {
     times: u64,
     /// Of one that is due abeam of a position: it lay beyond the end of the last piece of the path.
     ahead: bool,
@@ -42,7 +42,7 @@ struct Done {
 /// Circling at the end of a leg for a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wait {
-    passage: u64,
+    pub passage: u64,
     /// By the executor's clock.
     pub due_s: f64,
 }

@@ -64,6 +64,13 @@ pub enum Choice {
 }
 
 impl Choice {
+    /// The leg at which it is made.
+    pub fn leg(&self) -> &Id {
+        match self {
+            Choice::Loop { leg, .. } | Choice::Branch { leg, .. } | Choice::Hold { leg, .. } => leg,
+        }
+    }
+
     /// The same way on: who decided doesn't matter.
     pub fn leads_as(&self, other: &Choice) -> bool {
         match (self, other) {

@@ -4,7 +4,7 @@ use crate::api::{Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, 
 use crate::config::Config;
 use crate::path::{Level, Passing, PathState, distance_m};
 use crate::state::State;
-use crate::world::World;
+use crate::world::{Seen, World};
 use aircraft::Profile;
 use flight_plan::{AltitudeReference, FlightState, Program, Variables};
 use geometry::LatLon;
@@ -22,6 +22,8 @@ pub struct Executor {
     pub(crate) proposed: Option<Arc<Program>>,
     pub(crate) state: State,
     pub(crate) last_step: Option<Time>,
+    /// What has been read of the plan, for who wants to know (see [`Seen`]).
+    pub(crate) seen: Option<Seen>,
 }
 
 /// A refusal.
@@ -33,7 +35,7 @@ impl Executor {
     /// An executor without a plan.
     pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
         let state = State::default();
-        Self { config, terrain, profile, program: Arc::default(), proposed: None, state, last_step: None }
+        Self { config, terrain, profile, program: Arc::default(), proposed: None, state, last_step: None, seen: None }
     }
 
     /// One thing happened at `now`; what has to be done about it is appended to `out`.
@@ -179,6 +181,7 @@ impl Executor {
             counts: &self.state.counts,
             arriving: false,
             looking_ahead: false,
+            seen: self.seen.as_ref(),
         }
     }
 

@@ -105,7 +105,8 @@ fn bookmarks(state: &State) -> impl Iterator<Item = &Cursor> {
     handed.flatten().chain(&state.tail)
 }
 
-fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
+/// Every bookmark, and the place where the path goes on.
+pub(crate) fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
     let handed = state.handed.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
     handed.flatten().chain(&mut state.tail)
 }

@@ -11,6 +11,7 @@ use flight_plan::{
 };
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use terrain::Terrain;
 
 /// Steps in which a wind above the design wind widens turns, m/s.
@@ -25,6 +26,22 @@ pub struct LoopCount {
     pub activation: Option<u64>,
     /// The count.
     pub count: u64,
+}
+
+/// Stages and legs that cursors came to: what the path laid out so far depends on, taken or only looked at.
+#[derive(Debug, Clone, Default)]
+pub struct Seen(RefCell<Vec<Id>>);
+
+impl Seen {
+    /// Takes one down.
+    pub fn note(&self, id: &Id) {
+        self.0.borrow_mut().push(id.clone());
+    }
+
+    /// Everything since the last time, with repetitions.
+    pub fn take(&self) -> Vec<Id> {
+        self.0.take()
+    }
 }
 
 /// Everything that expansion depends on besides the cursor itself: the same world gives the same path.
@@ -54,6 +71,8 @@ pub struct World<'a> {
     pub arriving: bool,
     /// A look ahead from inside an expansion: no further one.
     pub looking_ahead: bool,
+    /// Takes down what is read, if somebody wants to know.
+    pub seen: Option<&'a Seen>,
 }
 
 impl World<'_> {

@@ -15,7 +15,7 @@ const ALIGNED_DEG: f64 = 30.0;
 const SHORTEST_M: f64 = 0.5;
 
 /// The leg being flown.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Leg {
     pub(super) target: Target,
     plane: Plane,

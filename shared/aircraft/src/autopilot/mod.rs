@@ -66,6 +66,8 @@ pub struct Guided {
     pub demand: Demand,
     /// The current target is reached: go on to the next.
     pub reached: bool,
+    /// How long ago it was, seconds, at the present speed; 0 where that is not known.
+    pub late_s: f64,
     /// Off the line or circle, metres, positive to the right of (outside) it.
     pub cross_track_m: f64,
     /// To the target, metres.
@@ -77,7 +79,7 @@ pub struct Guided {
 }
 
 /// The follower: the leg being flown and the aircraft's limits.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Guidance {
     profile: Profile,
     leg: Option<Leg>,
@@ -145,6 +147,7 @@ impl Guidance {
         Guided {
             demand: if state.on_ground { Demand::default() } else { demand },
             reached: false,
+            late_s: 0.0,
             cross_track_m: 0.0,
             distance_m: 0.0,
             course_deg: state.track_deg(),
@@ -171,8 +174,10 @@ impl Guidance {
         let along_mps = place.velocity.dot(leg.along).max(0.0);
         let mut demand = self.demand(leg, state, altitude_m, slope * along_mps);
         demand.bank_rad = self.follow_line(leg, place);
-        self.guided(leg, place, demand, altitude_m - state.altitude_amsl_m)
-            .reached_if(leg.is_a_point() || place.remaining_m <= early_m)
+        let late_s = if leg.is_a_point() { 0.0 } else { (early_m - place.remaining_m) / along_mps.max(1.0) };
+        let mut guided = self.guided(leg, place, demand, altitude_m - state.altitude_amsl_m);
+        guided.late_s = late_s.max(0.0);
+        guided.reached_if(leg.is_a_point() || place.remaining_m <= early_m)
     }
 
     fn circle(&self, leg: &Leg, place: &Place, state: &State, radius_m: f64) -> Guided {
@@ -221,6 +226,7 @@ impl Guidance {
         Guided {
             demand,
             reached: false,
+            late_s: 0.0,
             cross_track_m: place.cross_track_m,
             distance_m: place.from_end.length(),
             course_deg: leg.course_deg(place),

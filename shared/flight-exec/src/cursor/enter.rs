@@ -12,6 +12,7 @@ use std::sync::Arc;
 impl Cursor {
     /// At the beginning of a stage or a leg: what is it?
     pub(super) fn arrive(&mut self, world: &World, notes: &mut Notes) {
+        self.note_seen(world);
         if let Some(stage) = self.performed_stage(world) {
             return self.perform_stage(stage, world, notes);
         }
@@ -33,8 +34,16 @@ impl Cursor {
         }
     }
 
+    /// Takes down the stage and the legs from the outermost loop on.
+    fn note_seen(&self, world: &World) {
+        let Some(seen) = world.seen else { return };
+        self.current_stage(world).iter().for_each(|stage| seen.note(&stage.id));
+        self.chain(world).iter().for_each(|leg| seen.note(&leg.id));
+    }
+
     fn begin_backward(&mut self, leg: &Leg, visit: &Visit, world: &World, notes: &mut Notes) {
         self.index = visit.index;
+        self.note_seen(world);
         match (&leg.kind, &visit.inner) {
             (LegKind::Iterative { .. }, Some(inner)) if !inner.is_empty() => {
                 self.enter_loop(true, inner.clone());

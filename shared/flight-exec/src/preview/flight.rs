@@ -1,74 +1,70 @@
 //! One simulated flight: aircraft, guidance and a waypoint list in the place of gateway and autopilot.
+//!
+//! Time begins anew at each waypoint: the aircraft is there at the instant at which it reaches it and not at the end of a step,
+//! its motion is rounded (see [`Aircraft::settle`]), it is reported and its place recorded, and reports and track go on from then.
+//! So what follows doesn't depend on how the steps before happened to fall, which is what [`super::Rehearsal`] lives by.
+//!
+//! [`Aircraft::settle`]: aircraft::Aircraft::settle
 
-use super::scenario::{Act, Moment};
+use super::scenario::Act;
+use super::situation::{Renumbering, Situation, microseconds, seconds};
 use super::{
     Advance, FlownWaypoint, LegPassage, Options, Preview, PreviewError, Scenario, Start, TrackPoint,
 };
 use crate::api::{
     Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, RequestId, Time,
-    Waypoint,
+    Token, Waypoint,
 };
-use crate::executor::Executor;
-use aircraft::{Aircraft, Guidance, Profile, Target, Wind};
+use aircraft::{Guided, Profile, Target, Wind};
 use flight_plan::{Id, Program};
-use std::collections::VecDeque;
 use std::sync::Arc;
 use terrain::Terrain;
 
-/// The executor hears about the aircraft so often, seconds.
-const REPORT_EVERY_S: f64 = 0.5;
-/// The callback is called so often, seconds of simulated time.
-const ADVANCE_EVERY_S: f64 = 10.0;
-/// Waiting longer than this for nobody, seconds.
-const PATIENCE_S: f64 = 600.0;
+/// The executor hears about the aircraft so often, microseconds.
+const REPORT_EVERY_US: u64 = 500_000;
+/// The callback is called so often, microseconds of simulated time.
+const ADVANCE_EVERY_US: u64 = 10_000_000;
+/// Waiting longer than this for nobody, microseconds.
+const PATIENCE_US: u64 = 600_000_000;
+
+/// Told how far it is; says whether to go on.
+pub(super) type Progress<'a> = &'a mut dyn FnMut(&Advance) -> bool;
+
+/// What doesn't change in flight.
+#[derive(Clone, Copy)]
+pub(super) struct Circumstances<'a> {
+    pub wind: Wind,
+    pub scenario: &'a Scenario,
+    pub options: &'a Options,
+}
 
 pub(super) struct Flight<'a> {
-    executor: Executor,
-    aircraft: Aircraft,
-    guidance: Guidance,
-    wind: Wind,
-    buffer: VecDeque<Waypoint>,
+    given: Circumstances<'a>,
+    pub at: Situation,
     out: Vec<Output>,
-    scenario: &'a Scenario,
-    fired: Vec<bool>,
-    options: &'a Options,
-    moment: Moment,
-    steps: u64,
-    waiting_s: f64,
-    requests: u64,
-    /// The scenario says so.
-    ended: bool,
-    result: Preview,
+    /// What is over: the present passage and waypoint are not in it yet.
+    pub result: Preview,
 }
 
 impl<'a> Flight<'a> {
+    /// A flight in the middle.
+    pub(super) fn resumed(given: Circumstances<'a>, at: Situation) -> Self {
+        Self { given, at, out: Vec::new(), result: empty() }
+    }
+
+    /// Begins a flight. `watched`: what is read of the plan is taken down.
     pub(super) fn new(
         program: &Arc<Program>,
         profile: &Profile,
         terrain: &Arc<dyn Terrain>,
-        wind: Wind,
         start: Start,
-        scenario: &'a Scenario,
-        options: &'a Options,
+        given: Circumstances<'a>,
+        watched: bool,
     ) -> Result<Self, PreviewError> {
-        let aircraft = placed(program, profile, start)?;
-        let mut flight = Self {
-            executor: Executor::new(options.config.clone(), terrain.clone(), profile.clone()),
-            aircraft,
-            guidance: Guidance::new(profile.clone()),
-            wind,
-            buffer: VecDeque::new(),
-            out: Vec::new(),
-            scenario,
-            fired: vec![false; scenario.triggers.len()],
-            options,
-            moment: Moment::default(),
-            steps: 0,
-            waiting_s: 0.0,
-            requests: 0,
-            ended: false,
-            result: empty(),
-        };
+        let triggers = given.scenario.triggers.len();
+        let mut at = Situation::new(program, profile, terrain, start, triggers, given.options)?;
+        at.executor.seen = watched.then(Default::default);
+        let mut flight = Self::resumed(given, at);
         flight.start(program)?;
         Ok(flight)
     }
@@ -83,102 +79,147 @@ impl<'a> Flight<'a> {
         }
     }
 
-    pub(super) fn fly(&mut self, progress: &mut dyn FnMut(&Advance) -> bool) -> Result<(), PreviewError> {
-        let step_s = self.options.step_s.clamp(0.02, 0.2);
-        let every = |seconds: f64| ((seconds / step_s).round() as u64).max(1);
-        let (report, track) = (every(REPORT_EVERY_S), every(self.options.track_every_s));
-        let advance = every(ADVANCE_EVERY_S);
-        while self.executor.status_phase() != Phase::Finished && !self.ended {
-            if self.steps.is_multiple_of(track) {
-                self.record();
+    /// Flies until a waypoint is reached at which a leg begins; false: it is over before.
+    pub(super) fn on_to_the_next_leg(&mut self, progress: Progress) -> Result<bool, PreviewError> {
+        let step_us = microseconds(self.given.options.step_s.clamp(0.02, 0.2));
+        self.at.entered = false;
+        while !self.is_over() {
+            let next = self.at.buffer.get(1).map(Target::from);
+            let guided = self.at.guidance.step(self.at.aircraft.state(), next.as_ref());
+            if guided.reached && !self.at.buffer.is_empty() {
+                self.reached(&guided, step_us)?;
+                if self.at.entered {
+                    return Ok(true);
+                }
+            } else if !self.attend(progress)? {
+                self.move_on(step_us, &guided);
             }
-            if self.steps.is_multiple_of(report) {
-                self.report();
-                self.fire();
-                self.check_limits(REPORT_EVERY_S)?;
-            }
-            if self.steps.is_multiple_of(advance) && !progress(&self.advance()) {
+        }
+        Ok(false)
+    }
+
+    fn is_over(&self) -> bool {
+        self.at.executor.status_phase() == Phase::Finished || self.at.ended
+    }
+
+    /// What is due by now; true: the executor was told, and may have changed its mind.
+    fn attend(&mut self, progress: Progress) -> Result<bool, PreviewError> {
+        let now_us = self.at.now_us;
+        if now_us >= self.at.due.advance_us {
+            self.at.due.advance_us = now_us + ADVANCE_EVERY_US;
+            if !progress(&self.advance()) {
                 return Err(PreviewError::Cancelled);
             }
-            self.move_on(step_s);
         }
+        if now_us >= self.at.due.track_us {
+            self.record();
+        }
+        if now_us < self.at.due.report_us {
+            return Ok(false);
+        }
+        self.report();
+        self.fire();
+        self.check_limits()?;
+        Ok(true)
+    }
+
+    /// The flight is over: what is under way is closed.
+    pub(super) fn close(&mut self) {
         self.record();
-        Ok(())
-    }
-
-    pub(super) fn finished(mut self) -> Preview {
+        self.close_waypoint();
         self.close_passage();
-        let battery = self.aircraft.battery();
-        self.result.time_s = self.moment.time_s;
-        self.result.energy_j = battery.capacity_j - battery.energy_left_j;
-        self.result.battery_left = battery.share();
-        self.result.landed = self.aircraft.state().on_ground;
-        let fired = self.fired.iter().enumerate();
-        self.result.not_fired = fired.filter(|(_, fired)| !**fired).map(|(i, _)| i).collect();
-        self.result
+        let (battery, result) = (self.at.aircraft.battery(), &mut self.result);
+        result.time_s = self.at.time_s();
+        result.distance_m = self.at.distance_m;
+        result.energy_j = self.at.used_j();
+        result.battery_left = battery.share();
+        result.landed = self.at.aircraft.state().on_ground;
+        let fired = self.at.fired.iter().enumerate();
+        result.not_fired = fired.filter(|(_, fired)| !**fired).map(|(i, _)| i).collect();
     }
 
-    /// One step of guidance and dynamics.
-    fn move_on(&mut self, step_s: f64) {
-        let next = self.buffer.get(1).map(Target::from);
-        let guided = self.guidance.step(self.aircraft.state(), next.as_ref());
-        if guided.reached && !self.buffer.is_empty() {
-            self.reached();
-        } else {
-            self.aircraft.step(step_s, &guided.demand, &self.wind);
-            self.steps += 1;
-            self.moment.time_s = self.steps as f64 * step_s;
-            let moved_m = self.aircraft.state().ground_speed_mps() * step_s;
-            self.result.distance_m += moved_m;
-        }
+    /// One step of dynamics.
+    fn move_on(&mut self, step_us: u64, guided: &Guided) {
+        let step_s = seconds(step_us);
+        self.at.aircraft.step(step_s, &guided.demand, &self.given.wind);
+        self.at.distance_m += self.at.aircraft.state().ground_speed_mps() * step_s;
+        self.pass(self.at.now_us + step_us);
     }
 
-    fn reached(&mut self) {
-        self.buffer.pop_front();
-        self.moment.waypoints += 1;
-        if let Some(passage) = self.result.legs.last_mut() {
+    fn pass(&mut self, now_us: u64) {
+        self.at.now_us = now_us;
+        self.at.moment.time_s = self.at.time_s();
+    }
+
+    /// The aircraft is at its waypoint, or was within the last step.
+    fn reached(&mut self, guided: &Guided, step_us: u64) -> Result<(), PreviewError> {
+        let since_us = self.at.now_us.saturating_sub(self.at.told_us).min(step_us);
+        let late_us = microseconds(guided.late_s).min(since_us);
+        self.at.distance_m -= self.at.aircraft.state().ground_speed_mps() * seconds(late_us);
+        self.pass(self.at.now_us - late_us);
+        self.at.aircraft.settle(seconds(late_us), &self.given.wind);
+        self.report();
+        self.at.buffer.pop_front();
+        self.at.moment.waypoints += 1;
+        if let Some(passage) = &mut self.at.passage {
             passage.waypoints += 1;
         }
-        let next = self.buffer.front().cloned();
+        let next = self.at.buffer.front().cloned();
         if let Some(waypoint) = &next {
-            self.guidance.proceed(self.aircraft.state(), Target::from(waypoint));
+            self.at.guidance.proceed(self.at.aircraft.state(), Target::from(waypoint));
         }
         self.tell(Input::Progress { current: next.as_ref().map(|w| w.token) });
         self.note_current();
+        self.record();
         self.fire();
+        self.check_limits()
     }
 
-    /// Keeps the waypoint now steered to, once.
+    /// Takes down the waypoint now steered to, once.
     fn note_current(&mut self) {
-        let Some(waypoint) = self.buffer.front() else { return };
-        if self.result.waypoints.last().is_some_and(|w| w.waypoint.token == waypoint.token) {
+        let Some(waypoint) = self.at.buffer.front() else { return };
+        if self.at.steered.as_ref().is_some_and(|w| w.waypoint.token == waypoint.token) {
             return;
         }
-        let passage = self.result.legs.len().checked_sub(1);
-        let (waypoint, from_s) = (waypoint.clone(), self.moment.time_s);
-        self.result.waypoints.push(FlownWaypoint { waypoint, passage, from_s, replaced: false });
+        let waypoint = waypoint.clone();
+        self.close_waypoint();
+        let (passage, from_s) = (self.at.passage_index(), self.at.time_s());
+        self.at.steered = Some(FlownWaypoint { waypoint, passage, from_s, replaced: false });
+    }
+
+    fn close_waypoint(&mut self) {
+        if let Some(mut steered) = self.at.steered.take() {
+            steered.waypoint.token = Token(self.at.renumbering.token(steered.waypoint.token.0));
+            self.result.waypoints.push(steered);
+            self.at.waypoints += 1;
+        }
     }
 
     fn report(&mut self) {
-        let state = self.aircraft.state();
+        let state = self.at.aircraft.state();
         let state = AircraftState {
             position: state.position,
             altitude_amsl_m: state.altitude_amsl_m,
             track_deg: state.track_deg(),
             ground_speed_mps: state.ground_speed_mps(),
             airspeed_mps: state.airspeed_mps,
-            wind_east_mps: self.wind.east_mps,
-            wind_north_mps: self.wind.north_mps,
-            battery: self.aircraft.battery().share(),
+            wind_east_mps: self.given.wind.east_mps,
+            wind_north_mps: self.given.wind.north_mps,
+            battery: self.at.aircraft.battery().share(),
             on_ground: state.on_ground,
         };
+        let waits = matches!(self.at.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
+        let since_us = self.at.now_us - self.at.told_us;
+        self.at.waiting_us = if waits { self.at.waiting_us + since_us } else { 0 };
+        self.at.due.report_us = self.at.now_us + REPORT_EVERY_US;
         self.tell(Input::Aircraft(state));
     }
 
     fn tell(&mut self, input: Input) {
-        let now = Time::from_secs_f64(self.moment.time_s);
+        self.at.told_us = self.at.now_us;
+        let now = Time::from_micros(self.at.now_us);
         let mut out = std::mem::take(&mut self.out);
-        self.executor.step(now, input, &mut out);
+        self.at.executor.step(now, input, &mut out);
         for output in out.drain(..) {
             self.heed(output);
         }
@@ -190,10 +231,10 @@ impl<'a> Flight<'a> {
             Output::Feed { cancel_after, waypoints } => self.take_feed(cancel_after, waypoints),
             Output::Hold => self.hold(),
             Output::Answer { result: Err(refusal), .. } => {
-                self.result.refusals.push((self.moment.time_s, refusal));
+                self.result.refusals.push((self.at.time_s(), refusal));
             }
             Output::Answer { result: Ok(Answer::Proposal(report)), .. } => {
-                self.result.proposals.push((self.moment.time_s, *report));
+                self.result.proposals.push((self.at.time_s(), *report));
             }
             // an action is told by its event as well
             Output::Answer { .. } | Output::Act { .. } => {}
@@ -201,95 +242,96 @@ impl<'a> Flight<'a> {
                 if let Event::LegEntered { place } = &event {
                     self.enter(place.clone());
                 }
-                self.result.events.push((self.moment.time_s, event));
+                let event = renumbered(event, self.at.renumbering);
+                self.result.events.push((self.at.time_s(), event));
             }
         }
     }
 
-    fn take_feed(&mut self, cancel_after: Option<crate::api::Token>, waypoints: Vec<Waypoint>) {
-        let steered_to = self.buffer.front().map(|w| w.token);
+    fn take_feed(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>) {
+        let steered_to = self.at.buffer.front().map(|w| w.token);
         if let Some(last) = cancel_after {
-            self.buffer.retain(|w| w.token <= last);
+            self.at.buffer.retain(|w| w.token <= last);
         }
-        self.buffer.extend(waypoints);
-        let now = self.buffer.front().map(|w| w.token);
+        self.at.buffer.extend(waypoints);
+        let now = self.at.buffer.front().map(|w| w.token);
         if now == steered_to {
             return;
         }
         if steered_to.is_some()
-            && let Some(flown) = self.result.waypoints.last_mut()
+            && let Some(flown) = &mut self.at.steered
         {
             flown.replaced = true;
         }
-        if let Some(waypoint) = self.buffer.front() {
+        if let Some(waypoint) = self.at.buffer.front() {
             let first = Target::from(waypoint);
-            self.guidance.direct(self.aircraft.state(), first);
+            self.at.guidance.direct(self.at.aircraft.state(), first);
             self.tell(Input::Progress { current: now });
             self.note_current();
         }
     }
 
     fn hold(&mut self) {
-        let state = self.aircraft.state();
+        let state = self.at.aircraft.state();
         let here = Target {
             position: state.position,
             altitude_amsl_m: state.altitude_amsl_m,
-            airspeed_mps: self.aircraft.profile().cruise_airspeed_mps,
+            airspeed_mps: self.at.aircraft.profile().cruise_airspeed_mps,
             action: aircraft::Action::Loiter { radius_m: 0.0 },
             fly_over: false,
         };
-        self.buffer.clear();
-        self.guidance.direct(state, here);
+        self.at.buffer.clear();
+        self.at.guidance.direct(state, here);
     }
 
     fn enter(&mut self, place: PlacePointer) {
         self.close_passage();
-        self.moment.place = Some(place.clone());
-        self.moment.waypoints = 0;
-        let battery = self.aircraft.battery();
-        self.result.legs.push(LegPassage {
+        self.at.entered = true;
+        self.at.moment.place = Some(place.clone());
+        self.at.moment.waypoints = 0;
+        self.at.passage = Some(LegPassage {
             place,
-            start_s: self.moment.time_s,
-            end_s: self.moment.time_s,
+            start_s: self.at.time_s(),
+            end_s: self.at.time_s(),
             // what was flown and used before it; made a difference when it ends
-            distance_m: self.result.distance_m,
-            energy_j: battery.capacity_j - battery.energy_left_j,
+            distance_m: self.at.distance_m,
+            energy_j: self.at.used_j(),
             waypoints: 0,
         });
     }
 
     fn close_passage(&mut self) {
-        let battery = self.aircraft.battery();
-        let used_j = battery.capacity_j - battery.energy_left_j;
-        if let Some(passage) = self.result.legs.last_mut() {
-            passage.end_s = self.moment.time_s;
-            passage.distance_m = self.result.distance_m - passage.distance_m;
-            passage.energy_j = used_j - passage.energy_j;
-        }
+        let Some(mut passage) = self.at.passage.take() else { return };
+        passage.end_s = self.at.time_s();
+        passage.distance_m = self.at.distance_m - passage.distance_m;
+        passage.energy_j = self.at.used_j() - passage.energy_j;
+        self.result.legs.push(passage);
+        self.at.passages += 1;
     }
 
     fn record(&mut self) {
-        let state = self.aircraft.state();
-        let innermost = self.moment.place.as_ref().and_then(|p| p.iterations.last());
+        self.at.due.track_us = self.at.now_us + microseconds(self.given.options.track_every_s);
+        let state = self.at.aircraft.state();
+        let innermost = self.at.moment.place.as_ref().and_then(|p| p.iterations.last());
         self.result.track.push(TrackPoint {
-            time_s: self.moment.time_s,
+            time_s: self.at.time_s(),
             position: state.position,
             altitude_amsl_m: state.altitude_amsl_m,
             airspeed_mps: state.airspeed_mps,
-            passage: self.result.legs.len().checked_sub(1),
+            passage: self.at.passage_index(),
             iteration: innermost.map_or(0, |i| i.iteration),
         });
     }
 
     /// Triggers whose time has come.
     fn fire(&mut self) {
-        for index in 0..self.fired.len() {
-            let Some(trigger) = self.scenario.triggers.get(index) else { continue };
-            let due = self.fired.get(index) == Some(&false) && trigger.at.is_now(&self.moment);
+        for index in 0..self.at.fired.len() {
+            let Some(trigger) = self.given.scenario.triggers.get(index) else { continue };
+            let due = self.at.fired.get(index) == Some(&false) && trigger.at.is_now(&self.at.moment);
             if !due {
                 continue;
             }
-            if let Some(fired) = self.fired.get_mut(index) {
+            if let Some(fired) = self.at.fired.get_mut(index) {
                 *fired = true;
             }
             for act in &trigger.then {
@@ -297,7 +339,7 @@ impl<'a> Flight<'a> {
                     Act::Command(command) => self.command(command.clone()),
                     Act::Update { program, entry } => self.update(program, entry.clone()),
                     Act::Propose { program } => self.propose(program),
-                    Act::End => self.ended = true,
+                    Act::End => self.at.ended = true,
                 }
             }
         }
@@ -309,8 +351,8 @@ impl<'a> Flight<'a> {
     }
 
     fn propose(&mut self, program: &Arc<Program>) {
-        self.requests += 1;
-        let request = RequestId(self.requests);
+        self.at.requests += 1;
+        let request = RequestId(self.at.requests);
         self.tell(Input::Propose {
             request,
             program: program.clone(),
@@ -320,44 +362,40 @@ impl<'a> Flight<'a> {
     }
 
     fn command(&mut self, command: Command) {
-        self.requests += 1;
-        let request = RequestId(self.requests);
+        self.at.requests += 1;
+        let request = RequestId(self.at.requests);
         self.tell(Input::Command { request, by: "operator".into(), command });
     }
 
-    fn check_limits(&mut self, since_s: f64) -> Result<(), PreviewError> {
-        let (seconds, leg) = (self.moment.time_s, self.current_leg());
-        if seconds > self.options.most_s {
-            return Err(PreviewError::TooLong { seconds, leg });
+    fn check_limits(&mut self) -> Result<(), PreviewError> {
+        if let Some(error) = self.at.exceeded(self.given.options) {
+            return Err(error);
         }
-        if self.result.waypoints.len() > self.options.most_waypoints {
-            return Err(PreviewError::TooManyWaypoints { waypoints: self.options.most_waypoints, leg });
-        }
-        if self.aircraft.battery().energy_left_j <= 0.0 {
-            return Err(PreviewError::OutOfEnergy { seconds, leg });
-        }
-        let waits = matches!(self.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
-        self.waiting_s = if waits { self.waiting_s + since_s } else { 0.0 };
-        if self.waiting_s > PATIENCE_S && self.fired.iter().all(|fired| *fired) {
-            return Err(PreviewError::Waiting { seconds, leg });
+        if self.at.waiting_us > PATIENCE_US && self.at.fired.iter().all(|fired| *fired) {
+            return Err(PreviewError::Waiting { seconds: self.at.time_s(), leg: self.at.leg() });
         }
         Ok(())
     }
 
-    fn current_leg(&self) -> Id {
-        self.moment.place.as_ref().map_or_else(|| Id::new("start"), |p| p.leg.clone())
-    }
-
     fn advance(&self) -> Advance {
         Advance {
-            time_s: self.moment.time_s,
-            place: self.moment.place.clone(),
-            waypoints: self.result.waypoints.len(),
+            time_s: self.at.time_s(),
+            place: self.at.moment.place.clone(),
+            waypoints: self.at.waypoints,
         }
     }
 }
 
-fn empty() -> Preview {
+/// The number of a passage as a flight from the start would count it.
+fn renumbered(mut event: Event, by: Renumbering) -> Event {
+    if let Event::ActionDone { passage, .. } | Event::ActionRefused { passage, .. } = &mut event {
+        *passage = by.passage(*passage);
+    }
+    event
+}
+
+/// No flight at all.
+pub(super) fn empty() -> Preview {
     Preview {
         track: Vec::new(),
         waypoints: Vec::new(),
@@ -371,19 +409,6 @@ fn empty() -> Preview {
         energy_j: 0.0,
         battery_left: 1.0,
         landed: false,
-    }
-}
-
-fn placed(program: &Program, profile: &Profile, start: Start) -> Result<Aircraft, PreviewError> {
-    match start {
-        Start::InFlight { position, altitude_amsl_m, heading_deg } => {
-            Ok(Aircraft::in_flight(profile.clone(), position, altitude_amsl_m, heading_deg))
-        }
-        Start::Runway => {
-            let runway = program.plan.home().ok_or(PreviewError::NoStart)?;
-            let (elevation_m, heading_deg) = (runway.elevation_amsl_m, runway.heading_deg);
-            Ok(Aircraft::on_runway(profile.clone(), runway.threshold, elevation_m, heading_deg))
-        }
     }
 }
 

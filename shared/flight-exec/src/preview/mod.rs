@@ -3,14 +3,21 @@
 //! The same `step` as aboard, the same guidance and dynamics as the simulator, no sockets and no clock: what is seen here is what
 //! will be sent.
 
+mod alike;
+mod changes;
 mod flight;
+mod rehearsal;
 mod scenario;
+mod shift;
+mod situation;
 
+pub use rehearsal::{Kept, Rehearsal};
 pub use scenario::{Act, Scenario, Trigger, When};
 
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::config::Config;
 use aircraft::{Profile, Wind};
+use flight::{Circumstances, Flight};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -230,7 +237,9 @@ pub fn preview_with(
     options: &Options,
     progress: &mut dyn FnMut(&Advance) -> bool,
 ) -> Result<Preview, PreviewError> {
-    let mut flight = flight::Flight::new(program, profile, terrain, wind, start, scenario, options)?;
-    flight.fly(progress)?;
-    Ok(flight.finished())
+    let given = Circumstances { wind, scenario, options };
+    let mut flight = Flight::new(program, profile, terrain, start, given, false)?;
+    while flight.on_to_the_next_leg(progress)? {}
+    flight.close();
+    Ok(flight.result)
 }

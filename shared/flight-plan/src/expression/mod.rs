@@ -74,6 +74,13 @@ pub struct Expression {
     node: Node,
 }
 
+impl Expression {
+    /// Its value depends on the flight: on time, energy, motion, wind or place (not on the iteration, which is the plan's).
+    pub fn reads_flight(&self) -> bool {
+        self.node.reads_flight()
+    }
+}
+
 /// A name whose value the flight gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FlightName {
@@ -201,6 +208,20 @@ enum Node {
     Choose(Box<Node>, Box<Node>, Box<Node>),
     Binary(Operator, Box<Node>, Box<Node>),
     Call(Function, Vec<Node>),
+}
+
+impl Node {
+    fn reads_flight(&self) -> bool {
+        match self {
+            Node::Flight(name) => *name != FlightName::Iteration,
+            Node::Bool(_) | Node::Int(_) | Node::Number(_) | Node::Text(_) => false,
+            Node::Position(_) | Node::Variable(_) => false,
+            Node::Not(a) | Node::Negate(a) => a.reads_flight(),
+            Node::And(a, b) | Node::Or(a, b) | Node::Binary(_, a, b) => a.reads_flight() || b.reads_flight(),
+            Node::Choose(a, b, c) => [a, b, c].iter().any(|node| node.reads_flight()),
+            Node::Call(_, arguments) => arguments.iter().any(Node::reads_flight),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,159 @@
+//! Everything about a previewed flight at one instant: a clone goes on as the original does.
+
+use super::scenario::Moment;
+use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
+use crate::api::Waypoint;
+use crate::executor::Executor;
+use aircraft::{Aircraft, Guidance, Profile};
+use flight_plan::{Id, Program};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// A flight at one instant.
+#[derive(Clone)]
+pub(super) struct Situation {
+    pub executor: Executor,
+    pub aircraft: Aircraft,
+    pub guidance: Guidance,
+    /// Waypoints fed and not reached yet.
+    pub buffer: VecDeque<Waypoint>,
+    pub moment: Moment,
+    /// Since the start, microseconds: whole numbers, so that two flights that differ by a shift in time tell the same time.
+    pub now_us: u64,
+    pub due: Due,
+    /// What the executor was told last happened then.
+    pub told_us: u64,
+    /// Holding or waiting for so long.
+    pub waiting_us: u64,
+    pub requests: u64,
+    pub fired: Vec<bool>,
+    /// The scenario says so.
+    pub ended: bool,
+    /// A leg was begun since somebody looked.
+    pub entered: bool,
+    /// Over the ground, metres.
+    pub distance_m: f64,
+    /// The passage being flown, its distance and energy still those at its beginning.
+    pub passage: Option<LegPassage>,
+    /// The waypoint steered to.
+    pub steered: Option<FlownWaypoint>,
+    /// Passages that are over, and waypoints that were steered to before.
+    pub passages: usize,
+    pub waypoints: usize,
+    pub renumbering: Renumbering,
+}
+
+/// When something is due by itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Due {
+    pub report_us: u64,
+    pub track_us: u64,
+    pub advance_us: u64,
+}
+
+/// What the executor's numbers have to be raised by: it may have counted before legs were put into the plan, or taken out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Renumbering {
+    pub tokens: i64,
+    pub passages: i64,
+}
+
+impl Renumbering {
+    pub fn token(self, n: u64) -> u64 {
+        n.saturating_add_signed(self.tokens)
+    }
+    pub fn passage(self, n: u64) -> u64 {
+        n.saturating_add_signed(self.passages)
+    }
+}
+
+impl Situation {
+    pub fn new(
+        program: &Program,
+        profile: &Profile,
+        terrain: &Arc<dyn Terrain>,
+        start: Start,
+        triggers: usize,
+        options: &Options,
+    ) -> Result<Self, PreviewError> {
+        Ok(Self {
+            executor: Executor::new(options.config.clone(), terrain.clone(), profile.clone()),
+            aircraft: placed(program, profile, start)?,
+            guidance: Guidance::new(profile.clone()),
+            buffer: VecDeque::new(),
+            moment: Moment::default(),
+            now_us: 0,
+            due: Due::default(),
+            told_us: 0,
+            waiting_us: 0,
+            requests: 0,
+            fired: vec![false; triggers],
+            ended: false,
+            entered: false,
+            distance_m: 0.0,
+            passage: None,
+            steered: None,
+            passages: 0,
+            waypoints: 0,
+            renumbering: Renumbering::default(),
+        })
+    }
+
+    /// Since the start, seconds.
+    pub fn time_s(&self) -> f64 {
+        seconds(self.now_us)
+    }
+
+    pub fn used_j(&self) -> f64 {
+        let battery = self.aircraft.battery();
+        battery.capacity_j - battery.energy_left_j
+    }
+
+    /// Index of the passage being flown, among all of the flight.
+    pub fn passage_index(&self) -> Option<usize> {
+        self.passage.as_ref().map(|_| self.passages)
+    }
+
+    /// The leg being flown.
+    pub fn leg(&self) -> Id {
+        self.moment.place.as_ref().map_or_else(|| Id::new("start"), |p| p.leg.clone())
+    }
+
+    /// It has flown longer or farther than it may, or has no energy left.
+    pub fn exceeded(&self, options: &Options) -> Option<PreviewError> {
+        let (seconds, leg) = (self.time_s(), self.leg());
+        if seconds > options.most_s {
+            return Some(PreviewError::TooLong { seconds, leg });
+        }
+        if self.waypoints > options.most_waypoints {
+            return Some(PreviewError::TooManyWaypoints { waypoints: options.most_waypoints, leg });
+        }
+        let empty = self.aircraft.battery().energy_left_j <= 0.0;
+        empty.then_some(PreviewError::OutOfEnergy { seconds, leg })
+    }
+}
+
+/// Microseconds as seconds.
+pub(super) fn seconds(us: u64) -> f64 {
+    us as f64 / 1e6
+}
+
+/// Seconds as microseconds.
+pub(super) fn microseconds(seconds: f64) -> u64 {
+    // a cast of a negative number gives 0
+    (seconds * 1e6).round() as u64
+}
+
+fn placed(program: &Program, profile: &Profile, start: Start) -> Result<Aircraft, PreviewError> {
+    match start {
+        Start::InFlight { position, altitude_amsl_m, heading_deg } => {
+            Ok(Aircraft::in_flight(profile.clone(), position, altitude_amsl_m, heading_deg))
+        }
+        Start::Runway => {
+            let runway = program.plan.home().ok_or(PreviewError::NoStart)?;
+            let (elevation_m, heading_deg) = (runway.elevation_amsl_m, runway.heading_deg);
+            Ok(Aircraft::on_runway(profile.clone(), runway.threshold, elevation_m, heading_deg))
+        }
+    }
+}
