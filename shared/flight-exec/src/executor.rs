@@ -35,7 +35,16 @@ impl Executor {
     /// An executor without a plan.
     pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
         let state = State::default();
-        Self { config, terrain, profile, program: Arc::default(), proposed: None, state, last_step: None, seen: None }
+        Self {
+            config,
+            terrain,
+            profile,
+            program: Arc::default(),
+            proposed: None,
+            state,
+            last_step: None,
+            seen: None,
+        }
     }
 
     /// One thing happened at `now`; what has to be done about it is appended to `out`.

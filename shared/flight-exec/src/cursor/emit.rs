@@ -51,7 +51,7 @@ impl Cursor {
         let profile = world.profile;
         let (descent_m, climb_m) = (profile.max_descent_mps * time_s, profile.max_climb_mps * time_s);
         let towards = |from_m: f64, lead_m: f64| {
-            from_m + (altitude_amsl_m - from_m).clamp(-descent_m - lead_m, climb_m + lead_m)
+            altitude_amsl_m.max(from_m - descent_m - lead_m).min(from_m + climb_m + lead_m)
         };
         let (commanded_amsl_m, predicted_amsl_m) = match point.action {
             Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),

@@ -13,7 +13,7 @@ pub use sweeps::Sweeps;
 use super::remade::Remade;
 use super::{ExpandError, Point};
 use geometry::{LatLon, Vec2};
-use layout::{Ends, LaidOut};
+use layout::{Ends, LaidOut, Line};
 use recipe::Recipe;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -21,7 +21,7 @@ use std::ops::Range;
 /// So near to a flown one a track has not moved, metres.
 const UNMOVED_M: f64 = 2.0;
 /// Tracks computed at a time.
-const CHUNK: u64 = 64;
+const CHUNK: u64 = 256;
 
 /// Parallel tracks being flown.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -74,45 +74,46 @@ impl Sweep {
     fn point(&self, index: u64) -> Option<Point> {
         let place = index / 2;
         let laid_out = self.laid_out()?;
-        let (from, to) = self.turns_of(place, laid_out)?;
-        let position = if index.is_multiple_of(2) { from } else { to };
-        Some(Point::fly(laid_out.frame.to_geo(position)))
+        let (from, to) = laid_out.cached(place, || {
+            let start = place - place % CHUNK;
+            (start, self.lines(start..(start + CHUNK).min(self.tracks), laid_out))
+        })?;
+        Some(Point::fly(if index.is_multiple_of(2) { from } else { to }))
     }
 
     fn laid_out(&self) -> Option<&LaidOut> {
         self.laid_out.get(|| self.recipe.lay_out(self.entry))
     }
 
-    /// Where the turns before and after a track are, in flight direction.
-    fn turns_of(&self, place: u64, laid_out: &LaidOut) -> Option<Ends> {
-        let ends = |place| self.ends(place, laid_out);
-        let (low, high) = ends(place)?;
-        let before = place.checked_sub(1).and_then(ends);
-        let after = ends(place + 1);
+    /// Where the turns before and after tracks are, in flight direction.
+    fn lines(&self, places: Range<u64>, laid_out: &LaidOut) -> Vec<Option<Line>> {
+        let first = places.start.saturating_sub(1);
+        let ends = self.compute(first..(places.end + 1).min(self.tracks), laid_out);
+        let of = |place: u64| ends.get(usize::try_from(place - first).ok()?).copied().flatten();
+        let line = |place: u64| {
+            let before = if place > first { of(place - 1) } else { None };
+            let (from, to) = self.turns(place, [before, of(place), of(place + 1)], laid_out.along)?;
+            Some((laid_out.frame.to_geo(from), laid_out.frame.to_geo(to)))
+        };
+        places.map(line).collect()
+    }
+
+    /// Where the turns before and after a track are, in flight direction, given the ends of the one before it, its own and those
+    /// of the one after it.
+    fn turns(&self, place: u64, [before, own, after]: [Option<Ends>; 3], direction: Vec2) -> Option<Ends> {
+        let (low, high) = own?;
         let forward = self.along_first == place.is_multiple_of(2);
-        let along = |p: Vec2| p.dot(laid_out.along);
+        let along = |p: Vec2| p.dot(direction);
         let lead_m = self.recipe.lead_m();
         // neighbours that turn on the same side share the farther of both ends
         let (at_low, at_high) = if forward { (before, after) } else { (after, before) };
         let low_m = at_low.map_or(0.0, |(l, _)| (along(low) - along(l)).max(0.0)) + lead_m;
         let high_m = at_high.map_or(0.0, |(_, h)| (along(h) - along(high)).max(0.0)) + lead_m;
-        let (low, high) = (low - laid_out.along * low_m, high + laid_out.along * high_m);
+        let (low, high) = (low - direction * low_m, high + direction * high_m);
         Some(if forward { (low, high) } else { (high, low) })
     }
 
-    /// The ends of the track at a place of the flight order, as they lie along the heading.
-    fn ends(&self, place: u64, laid_out: &LaidOut) -> Option<Ends> {
-        if place >= self.tracks {
-            return None;
-        }
-        laid_out.cached(place, |place| {
-            // one before, for the turn that leads to the first of them
-            let start = place.saturating_sub(1);
-            let end = (start + CHUNK).min(self.tracks);
-            (start, self.compute(start..end, laid_out))
-        })
-    }
-
+    /// The ends of tracks at places of the flight order, as they lie along the heading.
     fn compute(&self, places: Range<u64>, laid_out: &LaidOut) -> Vec<Option<Ends>> {
         let plain = self.left_out.is_empty() && self.first == 0;
         if plain {

@@ -50,6 +50,8 @@ pub struct Kept {
 
 struct Flown {
     program: Arc<Program>,
+    /// What is in the place of the plan where it isn't kept.
+    none: Arc<Program>,
     start: Start,
     reads_flight: bool,
     stretches: Vec<Stretch>,
@@ -126,6 +128,7 @@ impl Flown {
     ) -> Result<Self, PreviewError> {
         let mut flown = Self {
             program: program.clone(),
+            none: Arc::default(),
             start,
             reads_flight: reads_flight(program),
             stretches: vec![Stretch { begin: None, before: Marks::default(), reads: Vec::new() }],
@@ -215,7 +218,7 @@ impl Flown {
         let flight = match begin {
             Some(begin) => {
                 let mut at = begin.as_ref().clone();
-                at.executor.program = Some(self.program.clone());
+                at.executor.program = self.program.clone();
                 Flight::resumed(given, at)
             }
             None => {
@@ -254,7 +257,7 @@ impl Flown {
             if flight.at.waypoints >= since + self.every {
                 since = flight.at.waypoints;
                 note_reads(&mut new, &flight.at);
-                new.push(Stretch::beginning(&flight.at, base.after(&flight.result)));
+                new.push(Stretch::beginning(&flight.at, base.after(&flight.result), &self.none));
             }
         };
         flight.close();
@@ -340,9 +343,9 @@ impl Flown {
 }
 
 impl Stretch {
-    fn beginning(at: &Situation, before: Marks) -> Self {
+    fn beginning(at: &Situation, before: Marks, none: &Arc<Program>) -> Self {
         let mut begin = Box::new(at.clone());
-        begin.executor.program = None;
+        begin.executor.program = none.clone();
         begin.executor.proposed = None;
         Self { begin: Some(begin), before, reads: ahead_of(at) }
     }
@@ -368,7 +371,8 @@ fn ahead_of(at: &Situation) -> Vec<Id> {
         ids.extend(handed.choices.iter().map(|choice| choice.leg().clone()));
     }
     ids.extend(state.passages.iter().map(|passage| passage.leg.clone()));
-    if let (Some(tail), Some(world)) = (&state.tail, at.executor.world()) {
+    if let Some(tail) = &state.tail {
+        let world = at.executor.world();
         ids.extend(tail.current_stage(&world).map(|stage| stage.id.clone()));
         ids.extend(tail.chain(&world).iter().map(|leg| leg.id.clone()));
     }

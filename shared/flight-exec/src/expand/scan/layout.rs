@@ -18,11 +18,14 @@ pub struct LaidOut {
 /// Ends of a track, both seen along the heading.
 pub type Ends = (Vec2, Vec2);
 
-/// The ends of some tracks in flight order.
+/// A track in flight direction: where the turns before and after it are.
+pub type Line = (LatLon, LatLon);
+
+/// Some tracks in flight order.
 #[derive(Debug, Default)]
 struct Chunk {
     start: u64,
-    ends: Vec<Option<Ends>>,
+    lines: Vec<Option<Line>>,
 }
 
 impl LaidOut {
@@ -36,16 +39,16 @@ impl LaidOut {
         self.pattern.heading_deg()
     }
 
-    /// The ends at a place of the flight order; a whole chunk is computed when it is not at hand.
-    pub fn cached(&self, place: u64, chunk_of: impl Fn(u64) -> (u64, Vec<Option<Ends>>)) -> Option<Ends> {
+    /// The track at a place of the flight order; the whole chunk around it is computed when it is not at hand.
+    pub fn cached(&self, place: u64, chunk: impl Fn() -> (u64, Vec<Option<Line>>)) -> Option<Line> {
         // a poisoned cache is still a cache: its content is replaced as a whole
-        let mut chunk = self.chunk.lock().unwrap_or_else(PoisonError::into_inner);
-        if place < chunk.start || place >= chunk.start + chunk.ends.len() as u64 {
-            let (start, ends) = chunk_of(place);
-            *chunk = Chunk { start, ends };
+        let mut known = self.chunk.lock().unwrap_or_else(PoisonError::into_inner);
+        if place < known.start || place >= known.start + known.lines.len() as u64 {
+            let (start, lines) = chunk();
+            *known = Chunk { start, lines };
         }
-        let index = usize::try_from(place - chunk.start).ok()?;
-        chunk.ends.get(index).copied().flatten()
+        let index = usize::try_from(place - known.start).ok()?;
+        known.lines.get(index).copied().flatten()
     }
 
     /// Tracks in the pattern's own order: one pass over the outline for all of them.

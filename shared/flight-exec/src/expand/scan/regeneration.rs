@@ -9,6 +9,7 @@ use super::recipe::Recipe;
 use crate::world::World;
 use flight_plan::Scan;
 use geometry::LatLon;
+use std::ops::Range;
 
 /// Most tracks flown before a regeneration that are remembered, the latest ones.
 const MOST_FLOWN: u64 = 512;
@@ -71,13 +72,13 @@ impl Sweep {
         let latest = complete.saturating_sub(MOST_FLOWN)..complete;
         let old = (MOST_FLOWN - (latest.end - latest.start)) as usize;
         let before = self.flown.iter().skip(self.flown.len().saturating_sub(old)).copied();
-        before.chain(latest.filter_map(|place| self.track_at(place))).collect()
+        before.chain(self.ends_of(latest)).collect()
     }
 
-    /// The ends of the track at a place of the flight order.
-    fn track_at(&self, place: u64) -> Option<(LatLon, LatLon)> {
-        let laid_out = self.laid_out()?;
-        let (a, b) = self.ends(place, laid_out)?;
-        Some((laid_out.frame.to_geo(a), laid_out.frame.to_geo(b)))
+    /// The ends of the tracks at places of the flight order.
+    fn ends_of(&self, places: Range<u64>) -> Vec<(LatLon, LatLon)> {
+        let Some(laid_out) = self.laid_out() else { return Vec::new() };
+        let ends = self.compute(places, laid_out).into_iter().flatten();
+        ends.map(|(a, b)| (laid_out.frame.to_geo(a), laid_out.frame.to_geo(b))).collect()
     }
 }
