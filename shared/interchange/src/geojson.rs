@@ -16,7 +16,10 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
         Error::malformed("file", format!("this is no complete GeoJSON document: {error}"))
     })?;
     let features = match file {
-        GeoJson::FeatureCollection(collection) => collection.features,
+        GeoJson::FeatureCollection(collection) => {
+            coordinates_are_wgs84(collection.foreign_members.as_ref())?;
+            collection.features
+        }
         GeoJson::Feature(feature) => vec![feature],
         GeoJson::Geometry(geometry) => vec![geojson::Feature::from(geometry)],
     };
@@ -28,6 +31,23 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
         self::feature(index, feature, &mut drawing);
     }
     Ok(drawing)
+}
+
+/// Since RFC 7946 there is no other reference system; older files may name one.
+fn coordinates_are_wgs84(members: Option<&JsonObject>) -> Result<(), Error> {
+    let Some(crs) = members.and_then(|members| members.get("crs")).filter(|crs| !crs.is_null()) else {
+        return Ok(());
+    };
+    let name =
+        crs.get("properties").and_then(|p| p.get("name")).and_then(JsonValue::as_str).unwrap_or("unnamed");
+    if ["CRS84", "4326", "WGS84"].iter().any(|known| name.ends_with(known)) {
+        return Ok(());
+    }
+    let name: String = name.chars().take(60).collect();
+    let reason = format!(
+        "the coordinates are in the reference system `{name}`: save the file in WGS 84, longitude and latitude in degrees"
+    );
+    Err(Error::malformed("crs", reason))
 }
 
 fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) {

@@ -18,6 +18,8 @@ pub struct Kept {
     pub actions: bool,
     /// Airspeeds.
     pub speeds: bool,
+    /// Where emergency plans are entered.
+    pub rally: bool,
 }
 
 /// Tells everything of the plan that is not `kept`; `whole` are the legs that are written as patterns.
@@ -45,7 +47,7 @@ pub fn tell(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes
     }
     for emergency in &plan.emergency_plans {
         let is_flown = emergency.stages.iter().flat_map(|s| &s.legs).any(|l| flown.contains(l.id.as_str()));
-        if !is_flown {
+        if !is_flown && !kept.rally {
             let message = "this emergency plan is left out: write its waypoints to another file";
             notes.push("emergency-not-carried", emergency.id.as_str(), message);
         }

@@ -37,20 +37,24 @@ pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
         }
         items.push(item(number, line, &mut notes)?);
     }
-    Ok(mission::read(assembled(items), assumptions, notes))
+    Ok(mission::read(assembled(items)?, assumptions, notes))
 }
 
-/// Item 0 is home.
-fn assembled(items: Vec<Item>) -> Mission {
+/// Item 0 is home, and comes first.
+fn assembled(items: Vec<Item>) -> Result<Mission, Error> {
     let mut mission = Mission::default();
-    for item in items {
-        if item.number == 0 {
-            mission.home = item.position().map(|p| (p, finite(item.param(7))));
-        } else {
-            mission.entries.push(Entry::Item(item));
+    for (index, item) in items.into_iter().enumerate() {
+        match (item.number, index) {
+            (0, 0) => mission.home = item.position().map(|p| (p, finite(item.param(7)))),
+            (0, _) => {
+                let reason =
+                    "item 0 is the home position and comes first, once: give this one another number";
+                return Err(Error::malformed(item.place, reason));
+            }
+            _ => mission.entries.push(Entry::Item(item)),
         }
     }
-    mission
+    Ok(mission)
 }
 
 fn finite(metres: f64) -> f64 {
@@ -89,7 +93,7 @@ fn short(field: &str) -> String {
 /// Writes a list.
 pub fn write(export: &Export<'_>, notes: &mut Notes) -> Vec<u8> {
     losses::tell(export, Kept { actions: true, speeds: true, ..Kept::default() }, &|_| false, notes);
-    let (home, elevation_m) = mission::home(export);
+    let (home, elevation_m) = mission::home(export, notes);
     let mut text = "QGC WPL 110\n".to_owned();
     line(
         &mut text,

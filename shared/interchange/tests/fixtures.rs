@@ -49,6 +49,7 @@ fn a_qgc_plan() {
             ("pattern-not-carried", "item 7"),
             ("pattern-setting", "item 8"),
             ("runway-made-up", "item 1"),
+            ("loiter-as-racetrack", "item 8"),
             ("runway-made-up", "item 8"),
             ("rally-as-emergency", "rally point 1"),
             ("rally-without-runway", "rally point 2"),
@@ -226,6 +227,7 @@ fn a_gpx_file() {
             ("element-not-carried", "line 14"),
             ("element-not-carried", "line 14"),
             ("bad-altitude", "line 15"),
+            ("altitude-not-carried", "line 4"),
             ("no-altitude", "line 5"),
         ]
     );
@@ -280,4 +282,58 @@ fn a_camera_that_does_not_fit_its_footprint_gives_way() {
     let survey = import.plan.leg(&"survey".into()).unwrap().leg;
     let flight_plan::LegKind::Scan(scan) = &survey.kind else { panic!("{survey:?}") };
     assert_eq!(scan.spacing, flight_plan::Spacing::Metres(Value::Constant(50.0)));
+}
+
+fn list(items: &str) -> String {
+    format!("QGC WPL 110\n0 1 0 16 0 0 0 0 36.319 -84.173 60 1\n{items}")
+}
+
+/// Home is at 60 m, the waypoints 100 m above it; there is no take-off in the plan that `home` could mean.
+#[test]
+fn heights_above_home_without_a_take_off_to_count_from() {
+    let late = list(
+        "1 0 3 16 0 0 0 0 36.33 -84.16 100 1\n2 0 3 22 0 0 0 0 0 0 60 1\n3 0 3 16 0 0 0 0 36.34 -84.16 100 1\n",
+    );
+    let import = import(Format::Waypoints, late.as_bytes());
+    assert_eq!(codes(&import), [("second-take-off", "line 4")]);
+    let altitudes: Vec<_> = import.plan.stages[0].legs.iter().map(|l| l.altitude.clone().unwrap()).collect();
+    for altitude in altitudes {
+        assert_eq!((altitude.metres, altitude.reference), (Value::Constant(160.0), AltitudeReference::Amsl));
+    }
+}
+
+#[test]
+fn speeds_of_climb_and_descent_are_no_airspeeds() {
+    let climb = list("1 0 2 178 2 3 -1 0 0 0 0 1\n2 0 3 16 0 0 0 0 36.33 -84.16 100 1\n");
+    let import = import(Format::Waypoints, climb.as_bytes());
+    assert_eq!(import.plan.stages[0].legs[0].speed_mps, None);
+    assert_eq!(codes(&import), [("command-not-carried", "line 3")]);
+}
+
+#[test]
+fn a_jump_that_does_not_say_how_often() {
+    let jump = list("1 0 3 16 0 0 0 0 36.33 -84.16 100 1\n2 0 2 177 1 nan 0 0 0 0 0 1\n");
+    let import = import(Format::Waypoints, jump.as_bytes());
+    assert_eq!(codes(&import), [("jump", "line 4")]);
+    assert_eq!(import.plan.stages[0].legs.len(), 1);
+}
+
+#[test]
+fn a_second_home_position() {
+    let text = list("1 0 3 16 0 0 0 0 36.33 -84.16 100 1\n0 0 0 16 0 0 0 0 36.33 -84.16 900 1\n");
+    let error = read(Format::Waypoints, text.as_bytes(), &Assumptions::default()).unwrap_err().to_string();
+    assert!(error.contains("line 4") && error.contains("item 0 is the home position"), "{error}");
+}
+
+#[test]
+fn coordinates_in_another_reference_system() {
+    let file = |crs: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"{crs}"}}}},"features":[{{"type":"Feature","properties":{{}},"geometry":{{"type":"Point","coordinates":[60.0,40.0]}}}}]}}"#
+        )
+    };
+    let read = |crs: &str| read(Format::GeoJson, file(crs).as_bytes(), &Assumptions::default());
+    assert!(read("urn:ogc:def:crs:OGC:1.3:CRS84").is_ok());
+    let error = read("urn:ogc:def:crs:EPSG::3857").unwrap_err().to_string();
+    assert!(error.contains("EPSG::3857"), "{error}");
 }

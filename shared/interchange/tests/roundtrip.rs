@@ -262,10 +262,113 @@ fn surveys_and_corridors_come_back_as_patterns() {
     // the items that fly them are in the file, numbered on
     let json: serde_json::Value = serde_json::from_slice(&written.bytes).unwrap();
     let items = json["mission"]["items"].as_array().unwrap();
-    let inside = items[0]["TransectStyleComplexItem"]["Items"].as_array().unwrap();
+    let inside = items[1]["TransectStyleComplexItem"]["Items"].as_array().unwrap();
     let commands: Vec<_> = inside.iter().map(|i| i["command"].as_u64().unwrap()).collect();
-    assert_eq!(commands, [206, 178, 16, 16, 206]);
-    assert_eq!(items[1]["TransectStyleComplexItem"]["Items"][0]["doJumpId"], 6);
+    // QGC makes them anew, and would forget the speed
+    assert_eq!((commands, items[0]["command"].as_u64()), (vec![206, 16, 16, 206], Some(178)));
+    assert_eq!(items[2]["TransectStyleComplexItem"]["Items"][0]["doJumpId"], 6);
+}
+
+fn scan_over(corners: &[LatLon]) -> Scan {
+    Scan {
+        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
+        style: ScanStyle::Parallel,
+        spacing: Spacing::Metres(Value::Constant(40.0)),
+        heading_deg: Some(Value::Constant(75.0)),
+        overshoot_m: Value::Constant(30.0),
+        entry: ScanEntry::StartRight,
+    }
+}
+
+fn triangle() -> [LatLon; 3] {
+    [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon))
+}
+
+fn surveyed(leg: &Leg, stage_altitude: Option<Altitude>) -> (interchange::Written, FlightPlan) {
+    let mut plan = plan(vec![leg.clone()]);
+    plan.stages[1].altitude = stage_altitude;
+    let steps = triangle().map(|at| step("survey", 0, at, 500.0, 21.0, Action::Fly));
+    let written = write(Format::Plan, &Export { plan: &plan, steps: &steps }).unwrap();
+    let found = read(Format::Plan, &written.bytes, &Assumptions::default()).unwrap().plan;
+    (written, found)
+}
+
+#[test]
+fn a_survey_takes_the_altitude_of_its_stage_along() {
+    let leg = leg("survey", LegKind::Scan(scan_over(&triangle())));
+    let level = |metres| Some(Altitude { metres, reference: AltitudeReference::Amsl });
+    let (_, found) = surveyed(&leg, level(Value::Constant(500.0)));
+    assert_eq!(found.stages[0].legs[0].altitude, level(Value::Constant(500.0)));
+    for unknown in [None, level(Value::Expression("height".into()))] {
+        let (written, found) = surveyed(&leg, unknown);
+        assert!(written.notes.iter().any(|n| n.code == "flattened"), "{:?}", written.notes);
+        assert!(found.stages[0].legs.iter().all(|l| matches!(l.kind, LegKind::Tf(_) | LegKind::Df { .. })));
+    }
+}
+
+#[test]
+fn speed_and_video_of_a_survey_come_back() {
+    let mut leg = leg("survey", LegKind::Scan(scan_over(&triangle())));
+    let video = |trigger, act| LegAction { trigger, act };
+    leg.actions = vec![video(Trigger::Start, Act::VideoStart), video(Trigger::End, Act::VideoStop)];
+    let height = Altitude { metres: Value::Constant(120.0), reference: AltitudeReference::Agl };
+    let (_, found) = surveyed(&leg, Some(height));
+    let found = &found.stages[0].legs[0];
+    assert_eq!((&found.speed_mps, &found.actions), (&Some(Value::Constant(21.0)), &leg.actions));
+}
+
+#[test]
+fn what_qgc_has_no_word_for_is_told() {
+    let mut scan = scan_over(&triangle());
+    scan.entry = ScanEntry::Nearest;
+    scan.spacing = Spacing::Camera {
+        field_of_view_deg: Value::Constant(60.0),
+        overlap: Value::Constant(0.7),
+        height_m: Some(Value::Constant(120.0)),
+    };
+    let height = Altitude { metres: Value::Constant(120.0), reference: AltitudeReference::Agl };
+    let (written, _) = surveyed(&leg("survey", LegKind::Scan(scan)), Some(height));
+    let codes: Vec<_> = written.notes.iter().map(|n| n.code).collect();
+    assert!(codes.contains(&"camera") && codes.contains(&"entry-point"), "{codes:?}");
+}
+
+/// Approach and touch-down as one pattern; emergency plans as rally points.
+#[test]
+fn landings_and_rally_points_of_a_qgc_plan() {
+    let (far, gate) = (LatLon::new(36.33, -84.16), LatLon::new(36.315, -84.18));
+    let mut plan = plan(vec![leg("far", LegKind::Tf(to(far))), leg("gate", LegKind::Tf(to(gate)))]);
+    let mut way = leg("out", LegKind::Df { to: to(far), turn: None });
+    way.altitude = Some(Altitude { metres: Value::Constant(500.0), reference: AltitudeReference::Amsl });
+    let mut arrival = plan.stages[1].clone();
+    (arrival.id, arrival.kind, arrival.legs) = ("e".into(), StageKind::Arrival, vec![way]);
+    let emergency = |legs: Stage| flight_plan::EmergencyPlan {
+        id: "out".into(),
+        name: String::new(),
+        runway: "R05".into(),
+        stages: vec![legs],
+    };
+    plan.emergency_plans.push(emergency(arrival));
+    let steps = [
+        step("far", 0, far, 500.0, 25.0, Action::Fly),
+        step("gate", 1, gate, 420.0, 25.0, Action::Fly),
+        step("l", 2, RUNWAY, 349.0, 25.0, Action::Land { heading_deg: 52.0 }),
+    ];
+    let written = write(Format::Plan, &Export { plan: &plan, steps: &steps }).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&written.bytes).unwrap();
+    let items = json["mission"]["items"].as_array().unwrap();
+    let kinds: Vec<_> = items.iter().map(|i| i["complexItemType"].as_str().unwrap_or("item")).collect();
+    assert_eq!(kinds, ["item", "item", "fwLandingPattern"]);
+    assert_eq!(json["rallyPoints"]["points"], serde_json::json!([[36.33, -84.16, 151.0]]));
+    let found = read(Format::Plan, &written.bytes, &Assumptions::default()).unwrap().plan;
+    let amsl = |m| Some(Altitude { metres: Value::Constant(m), reference: AltitudeReference::Amsl });
+    let legs = &found.stages[0].legs;
+    assert_eq!((legs.len(), &legs[1].altitude), (2, &amsl(420.0)));
+    assert!(near(found.runways[0].threshold, RUNWAY) && found.runways[0].elevation_amsl_m == 349.0);
+    let emergency = &found.emergency_plans[0].stages[0].legs[0];
+    assert_eq!(
+        (&emergency.kind, &emergency.altitude),
+        (&LegKind::Df { to: to(far), turn: None }, &amsl(500.0))
+    );
 }
 
 #[test]

@@ -93,6 +93,13 @@ impl Importer<'_> {
     }
 
     fn fix(&mut self, feature: &Feature, at: &Vertex) {
+        if at.altitude.is_some() {
+            self.notes.again(
+                "altitude-not-carried",
+                &feature.place,
+                "a fix has no altitude: that of this point is left out",
+            );
+        }
         let id = self.names.take(&feature.name, "fix");
         let (name, description) = (feature.name.clone(), feature.description.clone());
         self.plan.fixes.push(Fix { id, position: at.position, name, description });

@@ -100,6 +100,8 @@ impl Importer<'_> {
         let kind = match approach.loiter_radius_m {
             Some(signed_m) => {
                 let turn = if signed_m < 0.0 { TurnDirection::Left } else { TurnDirection::Right };
+                let message = "a circle to an altitude becomes a holding to that altitude (HA)";
+                self.notes.again("loiter-as-racetrack", at, message);
                 LegKind::Ha(racetrack(approach.position, turn, signed_m.abs()))
             }
             None => LegKind::Tf(waypoint(approach.position, false)),

@@ -50,13 +50,17 @@ pub fn items(export: &Export<'_>, notes: &mut Notes) -> Vec<Flown> {
     writer.items
 }
 
-/// The runway the plan takes off from, else its first runway, else where the waypoints begin.
-pub fn home(export: &Export<'_>) -> (LatLon, f64) {
+/// The runway the plan takes off from, else its first runway, else, with a note, where the waypoints begin.
+pub fn home(export: &Export<'_>, notes: &mut Notes) -> (LatLon, f64) {
     let runway = export.plan.home().or(export.plan.runways.first());
     let first = export.steps.first().map(|s| &s.waypoint);
     match (runway, first) {
         (Some(runway), _) => (runway.threshold, runway.elevation_amsl_m),
-        (None, Some(waypoint)) => (waypoint.position, waypoint.altitude_amsl_m),
+        (None, Some(waypoint)) => {
+            let message = "the plan has no runway: home is put where the waypoints begin, and as high";
+            notes.push("home-made-up", "file", message);
+            (waypoint.position, waypoint.altitude_amsl_m)
+        }
         (None, None) => (LatLon::new(0.0, 0.0), 0.0),
     }
 }
@@ -74,7 +78,7 @@ impl Writer {
                 self.push(of, cmd::FRAME_MISSION, command, params);
             }
         }
-        let wait_s = actions.iter().find_map(wait_s);
+        let wait_s = actions.iter().filter_map(wait_s).reduce(|all_s, wait_s| all_s + wait_s);
         for (index, step) in passage.iter().enumerate() {
             let wait_s = wait_s.filter(|_| index + 1 == passage.len());
             self.waypoint(of, &step.waypoint, wait_s);

@@ -24,7 +24,7 @@ const RACETRACK_M: f64 = 500.0;
 pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
     let mut names = Names::default();
     let runways = Runways::new(assumptions, &mut names);
-    let has_take_off = mission.entries.iter().any(|e| matches!(e, Entry::Item(i) if is_take_off(i)));
+    let has_take_off = takes_off(&mission);
     let home_amsl_m = mission.home.map(|h| h.1).or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
     let mut importer = Importer {
         assumptions,
@@ -49,15 +49,23 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         zone.id = names.take(zone.id.as_str(), "zone");
         plan.zones.push(zone);
     }
-    rally::add(&mut plan, &mission.rally, &mut names, &mut notes);
+    rally::add(&mut plan, &mission.rally, home_amsl_m, &mut names, &mut notes);
     if plan.stages.is_empty() {
         notes.push("empty", "file", "there is no mission in this file");
     }
     Import { plan, notes: notes.into_vec() }
 }
 
-fn is_take_off(item: &Item) -> bool {
-    matches!(item.command, cmd::TAKEOFF | cmd::VTOL_TAKEOFF)
+/// The mission begins with a take-off that becomes one of the plan: nothing is flown before it, and it is somewhere.
+fn takes_off(mission: &Mission) -> bool {
+    let flies = |entry: &Entry| !matches!(entry, Entry::Item(item) if item.command >= 100);
+    let Some(index) = mission.entries.iter().position(flies) else { return false };
+    let Some(Entry::Item(first)) = mission.entries.get(index) else { return false };
+    let somewhere = || {
+        let ahead = || mission.entries.iter().skip(index).find_map(where_to);
+        mission.home.is_some() || ahead().is_some()
+    };
+    matches!(first.command, cmd::TAKEOFF | cmd::VTOL_TAKEOFF) && somewhere()
 }
 
 /// Where the aircraft goes with an entry, if it goes anywhere.
@@ -261,6 +269,10 @@ impl Importer<'_> {
 
     fn speed(&mut self, item: &Item) {
         let (kind, speed_mps) = (item.param(1), item.param(2));
+        // 2 and 3: climb and descent
+        if kind.is_finite() && kind > 1.0 {
+            return self.not_carried(item);
+        }
         if item.param(3) > 0.0 {
             self.notes.again("throttle", &item.place, "a throttle setting is left out");
         }

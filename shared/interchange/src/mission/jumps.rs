@@ -36,6 +36,9 @@ pub fn close(
     if depth > MAX_DEPTH {
         return Err(format!("the jump to item {target} would nest {depth} loops and is left out"));
     }
+    if !repeats.is_finite() {
+        return Err(format!("the jump to item {target} is left out: it doesn't say how often"));
+    }
     if repeats == 0.0 {
         return Ok(());
     }

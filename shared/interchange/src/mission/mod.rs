@@ -9,7 +9,7 @@ mod export;
 mod import;
 mod jumps;
 pub mod placed;
-mod rally;
+pub mod rally;
 mod runways;
 
 pub use export::{Flown, home, items};

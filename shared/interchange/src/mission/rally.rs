@@ -4,14 +4,23 @@ use super::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
 use crate::synthetic::{altitude, stage};
-use flight_plan::{AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, StageKind};
+use flight_plan::{
+    Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, Place, StageKind, Value,
+};
 use geometry::LatLon;
 
 /// A rally point belongs to a runway at most so far away, metres.
 const NEAR_M: f64 = 2000.0;
 
-/// Adds an emergency plan for each rally point near a runway; the others are noted.
-pub fn add(plan: &mut FlightPlan, rally: &[(String, LatLon, f64)], names: &mut Names, notes: &mut Notes) {
+/// Adds an emergency plan for each rally point near a runway; the others are noted. Their heights count from home, or from that runway
+/// if home is not known.
+pub fn add(
+    plan: &mut FlightPlan,
+    rally: &[(String, LatLon, f64)],
+    home_amsl_m: Option<f64>,
+    names: &mut Names,
+    notes: &mut Notes,
+) {
     for (place, position, height_m) in rally {
         let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
         let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -27,7 +36,8 @@ pub fn add(plan: &mut FlightPlan, rally: &[(String, LatLon, f64)], names: &mut N
             names.take("rally-to", "rally-to"),
             LegKind::Df { to: waypoint(*position, false), turn: None },
         );
-        way.altitude = Some(altitude(runway.elevation_amsl_m + height_m, AltitudeReference::Amsl));
+        let home_amsl_m = home_amsl_m.unwrap_or(runway.elevation_amsl_m);
+        way.altitude = Some(altitude(home_amsl_m + height_m, AltitudeReference::Amsl));
         let mut arrival =
             stage(names.take("rally-arrival", "arrival"), "To the rally point", StageKind::Arrival);
         arrival.legs.push(way);
@@ -45,4 +55,22 @@ pub fn add(plan: &mut FlightPlan, rally: &[(String, LatLon, f64)], names: &mut N
     if let Some(first) = plan.emergency_plans.first() {
         plan.emergency = EmergencyChoice { by_cause: vec![(None, first.id.clone())] };
     }
+}
+
+/// The rally point that an emergency plan is: where it is entered, and how high above home, metres; `None` if that depends on
+/// variables or on the ground.
+pub fn of(emergency: &EmergencyPlan, plan: &FlightPlan, home_amsl_m: f64) -> Option<(LatLon, f64)> {
+    let stage = emergency.stages.iter().find(|s| !s.legs.is_empty())?;
+    let first = stage.legs.first()?;
+    let position = match first.place()? {
+        Place::Fix(id) => plan.fix(id)?.position,
+        Place::Position(Value::Constant(position)) => *position,
+        Place::Position(Value::Expression(_)) => return None,
+    };
+    let height_m = match first.altitude.as_ref().or(stage.altitude.as_ref())? {
+        Altitude { metres: Value::Constant(m), reference: AltitudeReference::Home } => *m,
+        Altitude { metres: Value::Constant(m), reference: AltitudeReference::Amsl } => m - home_amsl_m,
+        _ => return None,
+    };
+    Some((position, height_m))
 }

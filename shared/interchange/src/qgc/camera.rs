@@ -82,20 +82,17 @@ fn reference(calc: &Json, follows_terrain: bool) -> AltitudeReference {
     }
 }
 
-/// A calculation without a known camera: distances only.
-pub fn write(spacing_m: f64, every_m: Option<f64>, altitude: Option<&Altitude>) -> Json {
-    let (height_m, mode) = match altitude {
-        Some(Altitude { metres: Value::Constant(m), reference }) => (*m, mode(*reference)),
-        _ => (0.0, 1),
-    };
-    json!({
+/// A calculation without a known camera: distances only. `None` for an altitude that is no constant.
+pub fn write(spacing_m: f64, every_m: Option<f64>, altitude: &Altitude) -> Option<Json> {
+    let Value::Constant(height_m) = altitude.metres else { return None };
+    Some(json!({
         "AdjustedFootprintFrontal": every_m.unwrap_or(0.0),
         "AdjustedFootprintSide": spacing_m,
         "CameraName": "Manual (no camera specs)",
-        "DistanceMode": mode,
+        "DistanceMode": mode(altitude.reference),
         "DistanceToSurface": height_m,
         "version": 2,
-    })
+    }))
 }
 
 fn mode(reference: AltitudeReference) -> u64 {

@@ -17,7 +17,7 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
         }
         let corners: Option<Vec<_>> = points.iter().map(position).collect();
         match corners.filter(|c| c.len() >= 3) {
-            Some(corners) => zones.push(zone(polygon, ZoneShape::Polygon(corners))),
+            Some(corners) => zones.push(zone(polygon, ZoneShape::Polygon(corners), &place, notes)),
             None => notes.push("bad-fence", place, "this polygon is left out: it has no three good corners"),
         }
     }
@@ -27,7 +27,7 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
         let centre = shape.get("center").and_then(position);
         match (centre, number(shape, "radius").filter(|r| *r > 0.0)) {
             (Some(centre), Some(radius_m)) => {
-                zones.push(zone(circle, ZoneShape::Circle { centre, radius_m }))
+                zones.push(zone(circle, ZoneShape::Circle { centre, radius_m }, &place, notes))
             }
             _ => notes.push("bad-fence", place, "this circle is left out: it has no good centre and radius"),
         }
@@ -42,7 +42,11 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
     Ok(zones)
 }
 
-fn zone(fence: &Value, shape: ZoneShape) -> Zone {
+fn zone(fence: &Value, shape: ZoneShape, place: &str, notes: &mut Notes) -> Zone {
+    if fence.get("inclusion").and_then(Value::as_bool).is_none() {
+        let message = "this fence doesn't say whether to stay inside: it is taken as one to keep out of";
+        notes.push("fence-kind", place, message);
+    }
     let kind = if flag(fence, "inclusion") { ZoneKind::KeepIn } else { ZoneKind::KeepOut };
     let name = if kind == ZoneKind::KeepIn { "keep-in" } else { "keep-out" };
     let (floor, ceiling) = (None, None);

@@ -6,8 +6,8 @@ use crate::note::Notes;
 use crate::synthetic::{Assumptions, altitude};
 use crate::{Error, MAX_POINTS};
 use flight_plan::{
-    Act, Area, Id, Leg, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing, Trigger,
-    Value,
+    Act, Altitude, Area, Id, Leg, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing,
+    Trigger, Value,
 };
 use geometry::LatLon;
 use serde_json::{Value as Json, json};
@@ -106,6 +106,24 @@ fn along(
     Pattern::Corridor { route, width_m: Value::Constant(width_m), spacing }
 }
 
+/// What of a leg that is written as a pattern QGC has no word for.
+pub fn tell(leg: &Leg, notes: &mut Notes) {
+    let (spacing, entry) = match &leg.kind {
+        LegKind::Scan(scan) => (&scan.spacing, scan.entry),
+        LegKind::Pattern(Pattern::Corridor { spacing, .. }) => (spacing, ScanEntry::EndLeft),
+        _ => return,
+    };
+    if matches!(spacing, Spacing::Camera { .. }) {
+        let message =
+            "field of view and overlap of the camera are left out: the distance between tracks stays";
+        notes.push("camera", leg.id.as_str(), message);
+    }
+    if entry == ScanEntry::Nearest {
+        let message = "the pattern begins at its top left and no more where it is nearest";
+        notes.push("entry-point", leg.id.as_str(), message);
+    }
+}
+
 /// Settings that have no counterpart.
 fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
     let cases = [
@@ -127,10 +145,14 @@ fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
             notes.again("pattern-setting", place, message);
         }
     }
+    if transect.get("CameraTriggerInTurnAround").and_then(Json::as_bool) == Some(false) {
+        let message = "pictures are taken in the turns, too: a series lasts as long as its leg";
+        notes.again("pattern-setting", place, message);
+    }
 }
 
-/// The pattern as QGC knows it, around the items that fly it; `None` if this leg is none.
-pub fn write(leg: &Leg, items: &[Json], visual: Vec<Json>) -> Option<Json> {
+/// The pattern as QGC knows it, at the altitude in force, around the items that fly it; `None` if this leg is none.
+pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec<Json>) -> Option<Json> {
     let turnaround_m = match &leg.kind {
         LegKind::Scan(scan) => constant(&scan.overshoot_m)?,
         _ => 0.0,
@@ -145,7 +167,7 @@ pub fn write(leg: &Leg, items: &[Json], visual: Vec<Json>) -> Option<Json> {
         _ => None,
     });
     let transect = json!({
-        "CameraCalc": camera::write(metres(spacing)?, every_m, leg.altitude.as_ref()),
+        "CameraCalc": camera::write(metres(spacing)?, every_m, altitude?)?,
         "CameraShots": 0,
         "CameraTriggerInTurnAround": every_m.is_some(),
         "HoverAndCapture": false,
