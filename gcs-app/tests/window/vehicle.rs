@@ -13,6 +13,7 @@ pub fn status(phase: Phase) -> Status {
         plan: None,
         revision: 0,
         place: None,
+        emergency: None,
         emergency_in_force: None,
         current: None,
         outstanding: 0,

@@ -10,7 +10,7 @@ use super::liaison::Liaison;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
-use flight_exec::{Answer, Branching, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
+use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
 use flight_plan::{Id, Problem, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -289,8 +289,7 @@ impl Manager {
     }
 
     fn is_in_emergency(&self) -> bool {
-        let place = self.executor.status().place;
-        place.is_some_and(|place| matches!(place.plan, Branching::Emergency(_)))
+        self.executor.status().emergency.is_some()
     }
 
     /// The answer to [`Effect::Request`].

@@ -240,6 +240,17 @@ async fn alarm_without_an_emergency_plan_asks_the_gateway_for_safe_mode() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn emergency_plan_refused_by_the_gateway_leaves_the_flight_to_safe_mode() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
+    flight.gateway.refuse_leg = Some("r1".into());
+    flight.gateway.alarm(Cause::Energy);
+    flight.step_until(|g| g.requests.contains(&GatewayRequest::Safe)).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn a_plan_calls_a_service_once_where_it_says_so() {
     let mut flight = Flight::new(None).await;
     let invocation: usal::topics::Invocation<serde_json::Value, Empty> =

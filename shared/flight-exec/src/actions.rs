@@ -21,7 +21,7 @@ pub(crate) struct Passage {
     pub leg: Id,
     /// Of the passage; of a loop: of its activation.
     pub number: u64,
-    /// Pass of the innermost loop when it began: what `iteration` is in its expressions.
+    /// Pass of the innermost loop; of a loop: its own, the one being flown. What `iteration` is in its expressions.
     pub iteration: u64,
     /// Path length when it began, metres.
     pub began_m: f64,
@@ -51,6 +51,9 @@ impl Executor {
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
     pub(crate) fn change_passage(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
         self.end_passages(|p| !p.is_around(handed), out);
+        for passage in &mut self.state.passages {
+            passage.iteration = iteration_of(&passage.leg, handed);
+        }
         self.pass_silently(marks, handed, out);
         out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
         let loops: Vec<_> = loops_of(handed).map(|(leg, number)| (leg.clone(), number)).collect();
@@ -84,7 +87,7 @@ impl Executor {
         let mut passage = Passage {
             leg: leg.clone(),
             number,
-            iteration: handed.place.iterations.last().map_or(0, |i| i.iteration),
+            iteration: iteration_of(leg, handed),
             began_m: handed.leg_start_m,
             flown_s: 0.0,
             done: vec![Done::default(); actions],
@@ -201,6 +204,12 @@ impl Passage {
     fn is_around(&self, handed: &Handed) -> bool {
         loops_of(handed).any(|l| l == (&self.leg, self.number))
     }
+}
+
+/// The pass that a leg's actions see at a waypoint: a loop's own, else that of the innermost loop.
+fn iteration_of(leg: &Id, handed: &Handed) -> u64 {
+    let around = &handed.place.iterations;
+    around.iter().find(|i| i.leg == *leg).or(around.last()).map_or(0, |i| i.iteration)
 }
 
 /// Activations of the loops around a waypoint, outermost first.

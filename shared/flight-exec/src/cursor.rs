@@ -62,6 +62,8 @@ pub enum Doing {
     Arriving,
     /// Giving out its points.
     Flying,
+    /// Done with them by a choice that has been made: it is left, when it has waited.
+    Leaving,
     /// On the full turn at the end of a pass of the innermost loop.
     Turning,
     /// Circling, for a decision or a time.
@@ -176,7 +178,7 @@ impl Cursor {
                 Doing::Ended => return Step::Ended { notes },
                 Doing::Waiting => return Step::Waiting,
                 Doing::Arriving => self.arrive(world, &mut notes),
-                Doing::Flying => match self.wait_due(world, &mut notes) {
+                Doing::Flying | Doing::Leaving => match self.wait_due(world, &mut notes) {
                     Some(seconds) => return self.wait(seconds, notes, world),
                     None => self.leave(world, &mut notes),
                 },

@@ -4,7 +4,7 @@ use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::Cursor;
 use crate::executor::{Executor, refusal};
 use crate::state::Emergency;
-use flight_plan::{Cause, Id};
+use flight_plan::{Cause, EmergencyPlan, Id, Program};
 
 impl Executor {
     pub(crate) fn emergency(
@@ -58,8 +58,7 @@ impl Executor {
             let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
             return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
         }
-        let in_force = leg.and_then(|leg| program.emergency_for(leg, cause));
-        Ok(in_force.and_then(|plan| index_of(&plan.id)))
+        Ok(in_force(&program, leg, cause).and_then(|plan| index_of(&plan.id)))
     }
 
     fn switch_to(&mut self, index: usize, emergency: Emergency, out: &mut Vec<Output>) {
@@ -98,9 +97,13 @@ impl Executor {
         Ok(())
     }
 
-    /// Leg of the main plan that is being flown.
+    /// Leg (or stage) of the main plan that is being flown; where nothing is handed out, or only what an earlier plan had, the
+    /// one that comes next.
     fn main_leg(&self) -> Option<Id> {
-        self.state.handed.front().map(|h| h.place.leg.clone())
+        let world = self.world();
+        let tail = self.state.tail.as_ref().map(|t| t.place(&world).leg);
+        let legs = self.state.handed.iter().map(|h| h.place.leg.clone()).chain(tail);
+        legs.into_iter().find(|leg| world.program.path(leg).is_some())
     }
 
     /// The plan an emergency without a particular cause would fly now.
@@ -109,6 +112,14 @@ impl Executor {
             Some(running) => running.from_leg.clone(),
             None => self.main_leg(),
         };
-        Some(self.program.emergency_for(&leg?, Cause::Operator)?.id.clone())
+        Some(in_force(&self.program, leg.as_ref(), Cause::Operator)?.id.clone())
+    }
+}
+
+/// The plan that answers a cause on a leg (or stage); on none that the plan has, the one that the document names for all.
+fn in_force<'p>(program: &'p Program, leg: Option<&Id>, cause: Cause) -> Option<&'p EmergencyPlan> {
+    match leg.filter(|leg| program.path(leg).is_some()) {
+        Some(leg) => program.emergency_for(leg, cause),
+        None => program.flown().emergency_plan(program.plan.emergency.plan_for(cause)?),
     }
 }

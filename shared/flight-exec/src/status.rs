@@ -16,6 +16,7 @@ impl Executor {
             plan: self.program().map(|p| p.hash.clone()),
             revision: self.state.revision,
             place: self.place(),
+            emergency: self.state.emergency.as_ref().map(|e| e.plan.clone()),
             emergency_in_force: self.emergency_in_force(),
             current: self.state.handed.front().map(|h| h.waypoint.token),
             outstanding: self.state.handed.len(),

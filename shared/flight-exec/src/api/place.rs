@@ -73,6 +73,9 @@ pub struct Status {
     pub revision: u64,
     /// Where in the plan.
     pub place: Option<PlacePointer>,
+    /// Emergency plan being flown.
+    #[serde(default)]
+    pub emergency: Option<Id>,
     /// Emergency plan in force for this place (what a fallback-cause emergency would fly).
     pub emergency_in_force: Option<Id>,
     /// Next token to be flown.

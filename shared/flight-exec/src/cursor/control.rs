@@ -122,6 +122,8 @@ impl Cursor {
         self.index = 0;
         self.doing = Doing::Arriving;
         if passes.form == IterativeForm::Reverse {
+            // the leg's own may be others than those of its end (see `set_level_and_speed`)
+            (self.level, self.airspeed_mps) = (self.path.last.level, self.path.last.airspeed_mps);
             let round = turn_round(&self.path, passes.turn, self.airspeed_mps, world);
             self.expansion = Some(Arc::new(round));
             self.begin_passage(Doing::Turning);

@@ -2,6 +2,7 @@
 
 use super::{Cursor, Doing, Emission, Notes, Step};
 use crate::api::Action;
+use crate::choice::Choice;
 use crate::expand::Point;
 use crate::path::{Passing, PathState, distance_and_course};
 use crate::world::World;
@@ -29,23 +30,35 @@ impl Cursor {
     }
 
     pub(super) fn wait(&mut self, seconds: f64, notes: Notes, world: &World) -> Step {
-        let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
+        // what was left for the wait stays left, whatever its condition says afterwards
+        let leaves = notes.choices.iter().any(|c| matches!(c, Choice::Hold { .. }));
+        let doing = if leaves { Doing::Leaving } else { self.doing };
+        let sealed = (!notes.is_empty()).then(|| Box::new(Cursor { doing, ..self.clone() }));
         let emission = self.emit(self.circle_here(world), world);
         Step::Waypoint(Box::new(Emission { wait_s: Some(seconds), notes, sealed, ..emission }))
     }
 
-    /// Circling at the end of the path.
+    /// Circling at the end of the path, as high and as fast as it was passed; where the leg has passed nothing, at its own
+    /// altitude and speed.
     pub(super) fn circle_here(&self, world: &World) -> Point {
-        let action = Action::Loiter { radius_m: world.turn_radius_m(self.airspeed_mps) };
-        Point { action, ..Point::fly(self.path.last.position) }
+        let last = &self.path.last;
+        let own = (self.level, self.airspeed_mps);
+        let (level, mps) = if self.given == 0 { own } else { (last.level, last.airspeed_mps) };
+        Point {
+            action: Action::Loiter { radius_m: world.turn_radius_m(mps) },
+            level: Some(level),
+            airspeed_mps: Some(mps),
+            ..Point::fly(last.position)
+        }
     }
 
     pub(super) fn emit(&mut self, point: Point, world: &World) -> Emission {
         let level = point.level.unwrap_or(self.level);
+        let airspeed_mps = point.airspeed_mps.unwrap_or(self.airspeed_mps);
         let altitude_amsl_m = world.amsl_m(level, point.position);
         let from = self.path.last.position;
         let (length_m, course_deg) = distance_and_course(from, point.position);
-        let time_s = length_m / self.airspeed_mps.max(1.0);
+        let time_s = length_m / airspeed_mps.max(1.0);
         // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
         // such a gradient
         let profile = world.profile;
@@ -62,12 +75,7 @@ impl Cursor {
             }
         };
         self.path = PathState {
-            last: Passing {
-                position: point.position,
-                level,
-                airspeed_mps: self.airspeed_mps,
-                fly_over: point.fly_over,
-            },
+            last: Passing { position: point.position, level, airspeed_mps, fly_over: point.fly_over },
             course_deg: if length_m > 0.5 { course_deg } else { self.path.course_deg },
             predicted_amsl_m,
             commanded_amsl_m,
@@ -81,7 +89,7 @@ impl Cursor {
         Emission {
             position: point.position,
             altitude_amsl_m: commanded_amsl_m,
-            airspeed_mps: self.airspeed_mps,
+            airspeed_mps,
             action: point.action,
             fly_over: point.fly_over,
             wait_s: None,

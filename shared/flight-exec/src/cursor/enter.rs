@@ -79,7 +79,7 @@ impl Cursor {
 
     fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, notes: &mut Notes) {
         let inside = self.inside(world);
-        self.set_level_and_speed(visit, &inside);
+        self.set_level_and_speed(leg, visit, &inside);
         let onward = self.onward(leg, world);
         let approach = Approach { reversed: visit, onward, ..self.approach(&self.path) };
         let expansion = expand(leg, &approach, &inside);
@@ -101,11 +101,12 @@ impl Cursor {
         self.begin_passage(Doing::Flying);
     }
 
-    /// Backwards, altitude and speed are those of the waypoint that is flown to.
-    fn set_level_and_speed(&mut self, visit: Option<&Visit>, world: &World) {
+    /// Altitude and speed belong to the waypoint that is flown to: backwards, what is made of many waypoints keeps those it
+    /// was flown with, up to the one that the way out came from.
+    fn set_level_and_speed(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World) {
         if let Some(visit) = visit {
-            self.level = visit.start.level;
-            self.airspeed_mps = visit.start.airspeed_mps;
+            let of = if has_own_waypoints(leg) { &visit.end } else { &visit.start };
+            (self.level, self.airspeed_mps) = (of.level, of.airspeed_mps);
         } else {
             let (chain, stage) = (self.chain(world), self.current_stage(world));
             self.level = world.level(&chain, stage, self.path.last.level);
@@ -188,4 +189,10 @@ impl Cursor {
             _ => None,
         })
     }
+}
+
+/// It is more than the way to one waypoint: a pattern, a holding, a track on from its fix.
+fn has_own_waypoints(leg: &Leg) -> bool {
+    use LegKind::{Fa, Ha, Hf, Hm, Orbit, Pattern, Scan};
+    matches!(leg.kind, Scan(_) | Orbit { .. } | Pattern(_) | Hf(_) | Ha(_) | Hm { .. } | Fa { .. })
 }

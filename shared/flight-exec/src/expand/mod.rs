@@ -34,12 +34,15 @@ pub struct Point {
     pub action: Action,
     /// Its own altitude, when it is not the leg's.
     pub level: Option<Level>,
+    /// Its own airspeed, when it is not the leg's, m/s.
+    #[serde(default)]
+    pub airspeed_mps: Option<f64>,
 }
 
 impl Point {
-    /// A fly-by point at the leg's altitude.
+    /// A fly-by point at the leg's altitude and speed.
     pub fn fly(position: LatLon) -> Self {
-        Self { position, fly_over: false, action: Action::Fly, level: None }
+        Self { position, fly_over: false, action: Action::Fly, level: None, airspeed_mps: None }
     }
 }
 

@@ -6,7 +6,7 @@ use super::until_altitude::Track;
 use super::{ExpandError, Expansion, Point, arc, course, holding, orbit};
 use crate::api::FARTHEST_M;
 use crate::cursor::Visit;
-use crate::path::{Level, PathState};
+use crate::path::{Level, Passing, PathState};
 use crate::world::World;
 use flight_plan::{Holding, HoldingLength, Leg, LegKind, PlanWaypoint, TurnDirection};
 use geometry::LatLon;
@@ -89,9 +89,9 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
 
 fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Result<Expansion, ExpandError> {
     let start = visit.start;
-    let back = Point { fly_over: start.fly_over, ..Point::fly(start.position) };
+    let back = passed(&start);
     // the way back starts where the way out ended, wherever a loop in between has led
-    let end = Point { level: Some(visit.end.level), ..Point::fly(visit.end.position) };
+    let end = Point { fly_over: false, ..passed(&visit.end) };
     let elsewhere = crate::path::distance_m(end.position, approach.path.last.position) > SAME_PLACE_M;
     let connection = elsewhere.then_some(end);
     Ok(match &leg.kind {
@@ -122,6 +122,16 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
             reversed.unwrap_or_else(|| Expansion::Points(vec![back]))
         }
     })
+}
+
+/// A point of the way out, as it was passed there.
+fn passed(passing: &Passing) -> Point {
+    Point {
+        fly_over: passing.fly_over,
+        level: Some(passing.level),
+        airspeed_mps: Some(passing.airspeed_mps),
+        ..Point::fly(passing.position)
+    }
 }
 
 fn racetrack(

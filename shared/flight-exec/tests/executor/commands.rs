@@ -215,6 +215,37 @@ fn an_emergency_without_a_plan_is_left_to_the_gateway() {
     rig.fly_to_the_end();
 }
 
+/// Nothing is handed out any more, and the place is none: the plan's own answer is there all the same.
+#[test]
+fn an_emergency_after_a_refused_batch_finds_its_plan() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    let first = rig.buffer[0].token;
+    rig.step(Input::Rejected { first, reason: "too steep".into() });
+    assert_eq!(rig.executor.status().emergency_in_force.unwrap().as_str(), "back");
+    rig.command(Command::Emergency { cause: Cause::Energy, plan: None }).unwrap();
+    rig.buffer.retain(|w| w.leg.as_str().starts_with('b'));
+    assert_eq!(rig.buffer[0].leg.as_str(), "b-df");
+}
+
+/// What is too near to be taken back may be of a leg that the new plan doesn't have.
+#[test]
+fn an_emergency_on_a_leg_of_the_old_plan_finds_its_plan() {
+    let near = fix("B2").destination(45.0, 100.0);
+    let n = format!(r#"<TF id="n" lat="{}" lon="{}"/><TF id="c""#, near.lat_deg, near.lon_deg);
+    let mut rig = Rig::started(&LEGS.replace(r#"<TF id="c""#, &n));
+    rig.fly_to("b");
+    rig.position = fix("B2").destination(270.0, 20.0);
+    rig.report();
+    rig.update(&program(&document(LEGS))).unwrap();
+    rig.fly_one();
+    assert_eq!(rig.leg(), "n");
+    assert_eq!(rig.executor.status().emergency_in_force.unwrap().as_str(), "back");
+    rig.command(Command::Emergency { cause: Cause::Energy, plan: None }).unwrap();
+    assert_eq!(rig.buffer[0].leg.as_str(), "b-df");
+}
+
 /// Kills the executor at every waypoint and compares what the restored one does with what the first one does.
 #[test]
 fn killed_and_restored_anywhere_it_flies_the_same() {

@@ -332,3 +332,51 @@ fn a_wait_of_a_loop_is_refused_with_advice() {
     assert_eq!(refusals(&rig).len(), 1);
     assert!(refusals(&rig)[0].contains("last leg inside"));
 }
+
+/// The end of a holding is where its condition is read for the last time: not again when it has waited there.
+#[test]
+fn a_holding_left_for_a_wait_is_not_flown_again_after_it() {
+    let wait = r#"<action on="end"><set variable="go" to="= false"/></action><action on="end"><wait seconds="40"/></action>"#;
+    let until = r#"<HM id="h" fix="C2" course="0" turn="right" length="600" until="go">"#;
+    let climb = r#"<HA id="h" fix="C2" course="0" turn="right" length="600" altitude="700" altitudeReference="amsl">"#;
+    for (holding, end) in [(until, "</HM>"), (climb, "</HA>")] {
+        let legs = format!(r#"<TF id="a" fix="B2"/>{holding}{wait}{end}<TF id="z" fix="D2"/>"#);
+        let mut rig = flying(&legs);
+        rig.fly_to("h");
+        let go = Command::SetVariable { name: "go".into(), value: VariableValue::Bool(true) };
+        rig.command(go).unwrap();
+        while rig.executor.status().wait_left_s.is_none() {
+            rig.fly_one();
+            assert!(rig.executor.status().phase != Phase::Finished, "{holding}: it never waited");
+        }
+        // during the wait it sinks again, and nobody wants to go any more
+        rig.altitude_amsl_m = Some(600.0);
+        rig.report();
+        let waiting = rig.flown.len();
+        rig.now += Time::from_secs(41);
+        rig.report();
+        rig.altitude_amsl_m = None;
+        rig.fly_to("z");
+        let again = rig.flown[waiting..].iter().filter(|w| w.leg.as_str() == "h").count();
+        assert_eq!(again, 0, "{holding}");
+    }
+}
+
+/// A loop's own actions see the pass that is flown, not the one in which the loop was begun.
+#[test]
+fn at_the_end_of_a_loop_its_iteration_is_the_last() {
+    let legs = r#"<TF id="s" fix="A1"/><iterative id="o" form="forward" count="2"><iterative id="l" form="forward" count="3">
+        <action on="end"><set variable="n" to="= double(iteration)"/></action>
+        <TF id="a" fix="B1"/><TF id="b" fix="B2"/></iterative></iterative><TF id="z" fix="A3"/>"#;
+    let mut rig = flying(legs);
+    rig.fly_to_the_end();
+    let written: Vec<_> = rig
+        .events
+        .iter()
+        .filter_map(|e| match e {
+            Event::VariableChanged { value, by, .. } if &**by == "plan" => Some(value.clone()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(written, [VariableValue::Number(3.0), VariableValue::Number(3.0)]);
+}

@@ -103,6 +103,37 @@ fn backwards_a_pattern_is_its_waypoints_backwards() {
     }
 }
 
+/// Altitude and speed belong to the waypoint flown to: only the last one back is that of the leg before.
+#[test]
+fn backwards_a_pattern_keeps_its_altitude_and_speed() {
+    let others = [
+        (
+            "orbit",
+            r#"<orbit id="p" radius="500" turns="1" turn="left"><centre at="= offset(datum, 90.0, e)"/></orbit>"#,
+        ),
+        ("holding", r#"<HM id="p" fix="C4" course="0" turn="right" length="600" maxLaps="1"/>"#),
+        ("racetrack", r#"<HF id="p" fix="C4" course="0" turn="right" length="600"/>"#),
+    ];
+    for (name, pattern) in PATTERNS.into_iter().chain(others) {
+        let own = r#"id="p" altitude="515" altitudeReference="amsl" speed="20""#;
+        let pattern = pattern.replace(r#"id="p""#, own);
+        let before = r#"<TF id="b" fix="B2" altitude="505" altitudeReference="amsl" speed="28"/>"#;
+        let around = (&*format!(r#"<iterative id="l" form="reverse" count="2">{before}"#), "</iterative>");
+        let mut rig = Rig::flying(&document_with(&legs(&pattern, around), VARIABLES, ""));
+        rig.fly_to_the_end();
+        let runs = rig.flown.chunk_by(|a, b| a.leg == b.leg);
+        let back = runs.filter(|run| run[0].leg.as_str() == "p").nth(1).unwrap();
+        let (last, own) = back.split_last().unwrap();
+        let is_holding = pattern.starts_with("<H");
+        for w in own.iter().chain(is_holding.then_some(last)) {
+            assert_eq!((w.altitude_amsl_m, w.airspeed_mps), (515.0, 20.0), "{name}: {w:?}");
+        }
+        if !is_holding {
+            assert_eq!((last.altitude_amsl_m, last.airspeed_mps), (505.0, 28.0), "{name}: {last:?}");
+        }
+    }
+}
+
 #[test]
 fn killed_and_restored_in_a_pattern_the_rest_is_flown_as_it_would_have_been() {
     for (name, pattern) in PATTERNS {

@@ -88,15 +88,23 @@ fn is_answered(trace: &Trace, found: &mut Findings) {
         let unanswered = step.events().any(|e| *e == Event::EmergencyUnanswered { cause: *cause });
         let answered = match step.refused() {
             None => started(step).is_some_and(|(c, plan, _)| c == *cause && flies(step.after, plan)),
-            Some((_, why)) => unanswered == (why.code == "no-emergency-plan"),
+            // the document's own answer is there wherever the flight is
+            Some((_, why)) if why.code == "no-emergency-plan" => unanswered && !answers(step.before, *cause),
+            Some(_) => !unanswered,
         };
         found.expect(step, answered, || format!("{:?}", step.moment.outputs));
     }
 }
 
-/// Where nothing at all is ahead (refused, or not fed while the gateway controls) there is no place to tell.
+/// Where nothing at all is ahead (refused, or not fed while the gateway controls) there is no place to tell it.
 fn flies(seen: &Seen, plan: &Id) -> bool {
-    seen.place().is_none() || emergency_flown(seen) == Some(plan)
+    let there = seen.place().is_none() || emergency_flown(seen) == Some(plan);
+    there && seen.status.emergency.as_ref() == Some(plan)
+}
+
+/// The document names a plan for this cause anywhere in the main plan.
+fn answers(seen: &Seen, cause: Cause) -> bool {
+    seen.program.as_ref().is_some_and(|p| p.plan.emergency.plan_for(cause).is_some())
 }
 
 fn cancels_everything(trace: &Trace, found: &mut Findings) {
@@ -166,7 +174,10 @@ fn most_specific(trace: &Trace, found: &mut Findings) {
         found.expect(step, expected == Some(plan), || format!("{plan} instead of {expected:?}"));
         if running(trace, step.at).is_none() {
             let here = step.before.place().map(|p| &p.leg);
-            found.expect(step, from == here, || format!("raised on {from:?}, flown was {here:?}"));
+            let told = here.filter(|leg| program.path(leg).is_some());
+            found.expect(step, told.is_none() || from == told, || {
+                format!("raised on {from:?}, flown was {here:?}")
+            });
         }
     }
 }
@@ -176,12 +187,14 @@ fn in_force(trace: &Trace, found: &mut Findings) {
         let (Some(program), Some(place)) = (step.after.program.as_deref(), step.after.place()) else {
             continue;
         };
+        let told = step.after.status.emergency_in_force.as_ref();
         // what is near when the plan changes may belong to the old one
         if program.path(&place.leg).is_none() {
+            let answered = told.is_some() || !answers(step.after, Cause::Operator);
+            found.expect(step, answered, || format!("nothing is in force on {}", place.leg));
             continue;
         }
         let expected = resolve(program, &place.leg, Cause::Operator);
-        let told = step.after.status.emergency_in_force.as_ref();
         found.expect(step, told == expected, || format!("{told:?} instead of {expected:?} on {}", place.leg));
     }
 }
