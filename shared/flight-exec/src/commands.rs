@@ -3,7 +3,7 @@
 use crate::api::{Command, Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing};
 use crate::executor::{Executor, refusal};
-use crate::handed::Handed;
+use crate::handed::{Handed, Onward};
 use crate::world::LoopCount;
 use flight_plan::{Id, Leg, LegKind, VariableValue};
 
@@ -80,7 +80,16 @@ impl Executor {
             self.state.handed.push_front(rejoin);
         }
         self.state.held_at = None;
+        if self.state.handed.is_empty() {
+            // what flew nothing may do so by now
+            self.state.onward = Onward::Open;
+        }
         self.refeed(out);
+        if self.state.phase == Phase::Holding {
+            let reason =
+                "what comes next flies no waypoint: go to another leg, or change the plan by an update";
+            return Err(refusal("nothing-to-fly", reason));
+        }
         Ok(())
     }
 

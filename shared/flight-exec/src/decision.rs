@@ -1,6 +1,6 @@
 //! Intersections: who is asked, until when, and what was decided.
 
-use crate::api::{BranchOption, Command, DecisionRequest, Event, Output, Refusal};
+use crate::api::{BranchOption, DecisionRequest, Event, Output, Refusal};
 use crate::choice::{By, Choice};
 use crate::cursor::Step;
 use crate::executor::{Executor, refusal};
@@ -256,23 +256,4 @@ fn leads(list: &[Leg], from: usize, to: usize) -> bool {
         }
     }
     reached.get(to) == Some(&true)
-}
-
-impl Command {
-    /// What it is called in messages.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Command::Start => "start",
-            Command::Hold => "hold",
-            Command::Resume => "resume",
-            Command::SkipLeg => "skip-leg",
-            Command::GoTo { .. } => "go-to",
-            Command::SetCount { .. } => "set-count",
-            Command::Decide { .. } => "decide",
-            Command::SetVariable { .. } => "set-variable",
-            Command::Emergency { .. } => "emergency",
-            Command::ReturnToMain { .. } => "return-to-main",
-            Command::Commit { .. } => "commit",
-        }
-    }
 }

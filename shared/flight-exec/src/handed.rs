@@ -139,8 +139,9 @@ impl Stretch {
             action: Action::Fly,
             fly_over: true,
             wait_s: None,
-            notes: std::mem::take(&mut self.tail_notes),
-            sealed: Some(Box::new(self.tail.clone())),
+            // what led to the end is told there
+            notes: Notes::default(),
+            sealed: None,
         };
         let mut last = handed(emission, self.tail.clone(), &self.tail, world, &mut self.troubles);
         last.waypoint.end_of_plan = true;
@@ -234,5 +235,84 @@ impl Handed {
     /// The aircraft circles here until somebody decides.
     pub fn waits_for_decision(&self) -> bool {
         self.is_loiter() && self.wait_s.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::{Level, Passing, PathState};
+    use flight_plan::AltitudeReference;
+    use geometry::LatLon;
+
+    fn at_rest() -> Handed {
+        let level = Level { metres: 500.0, reference: AltitudeReference::Amsl };
+        let last = Passing { position: LatLon::new(36.5, -84.2), level, airspeed_mps: 25.0, fly_over: false };
+        let path = PathState {
+            last,
+            course_deg: 0.0,
+            predicted_amsl_m: 500.0,
+            commanded_amsl_m: 500.0,
+            distance_m: 0.0,
+            time_s: 0.0,
+        };
+        let cursor = Cursor::start(None, path, 1);
+        let waypoint = Waypoint {
+            token: Token(1),
+            position: last.position,
+            altitude_amsl_m: 500.0,
+            airspeed_mps: 25.0,
+            action: Action::Fly,
+            fly_over: false,
+            leg: "a".into(),
+            end_of_plan: false,
+        };
+        let place = PlacePointer {
+            plan: crate::api::Branching::Main,
+            stage: "m".into(),
+            leg: "a".into(),
+            iterations: Vec::new(),
+            reverse: false,
+            distance_m: 0.0,
+        };
+        Handed {
+            waypoint,
+            place,
+            before: cursor,
+            choices: Vec::new(),
+            marks: Vec::new(),
+            wait_s: None,
+            sealed: None,
+            passage: 1,
+            activations: Vec::new(),
+            leg_start_m: 0.0,
+            end_m: 0.0,
+            end_s: 0.0,
+            pinned: false,
+        }
+    }
+
+    /// Each of them is something that the autopilot or the plan would do otherwise; a token is no difference.
+    #[test]
+    fn one_difference_makes_another_waypoint() {
+        type Change = fn(&mut Handed);
+        let changes: [(&str, Change, bool); 11] = [
+            ("token", |h| h.waypoint.token = Token(9), true),
+            ("a hand's breadth", |h| h.waypoint.position.lat_deg += 1e-6, true),
+            ("leg", |h| h.waypoint.leg = "b".into(), false),
+            ("action", |h| h.waypoint.action = Action::Loiter { radius_m: 80.0 }, false),
+            ("fly-over", |h| h.waypoint.fly_over = true, false),
+            ("end of the plan", |h| h.waypoint.end_of_plan = true, false),
+            ("altitude", |h| h.waypoint.altitude_amsl_m += 1.0, false),
+            ("airspeed", |h| h.waypoint.airspeed_mps += 0.1, false),
+            ("passage", |h| h.passage += 1, false),
+            ("wait", |h| h.wait_s = Some(30.0), false),
+            ("position", |h| h.waypoint.position.lat_deg += 1e-5, false),
+        ];
+        for (what, change, same) in changes {
+            let mut other = at_rest();
+            change(&mut other);
+            assert_eq!(at_rest().is_same_as(&other), same, "{what}");
+        }
     }
 }

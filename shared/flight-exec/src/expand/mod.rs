@@ -55,9 +55,9 @@ pub enum ExpandError {
     /// Its geometry is impossible.
     #[error("{0}")]
     Geometry(String),
-    /// A name that the plan should have.
-    #[error("the plan has no runway for this stage: name one in its `runway` attribute")]
-    NoRunway,
+    /// A take-off or landing lacks what it is performed with.
+    #[error("give this stage a `runway` of the plan, and a take-off an `altitude`")]
+    Incomplete,
 }
 
 /// The points of one passage of a leg.

@@ -7,26 +7,21 @@ use crate::world::World;
 use flight_plan::{AltitudeReference, Runway, Stage};
 use geometry::geodesy::normalise_180;
 
-/// Altitude above the runway to climb to, when the stage gives none, metres.
-const CLIMB_OUT_M: f64 = 100.0;
 /// Off the runway's heading by more than this, the final approach gets a point to line up at first, degrees.
 const ALIGNED_DEG: f64 = 30.0;
 
 /// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
 ///
 /// # Errors
-/// The stage names no runway of the plan, or its altitude has no value.
+/// The stage names no runway of the plan, or has no altitude with a value.
 pub fn take_off(stage: &Stage, world: &World) -> Result<Vec<Point>, ExpandError> {
     let runway = runway(stage, world)?;
-    let above = |metres| Level { metres, reference: AltitudeReference::Amsl };
-    let level = match &stage.altitude {
-        // the ground that a climb-out altitude is above is the runway, not what lies below its end
-        Some(a) => match (world.number(&a.metres)?, a.reference) {
-            (metres, AltitudeReference::Amsl) => above(metres),
-            (metres, _) => above(runway.elevation_amsl_m + metres),
-        },
-        None => above(runway.elevation_amsl_m + CLIMB_OUT_M),
-    };
+    let altitude = stage.altitude.as_ref().ok_or(ExpandError::Incomplete)?;
+    // the ground that a climb-out altitude is above is the runway, not what lies below its end
+    let is_amsl = altitude.reference == AltitudeReference::Amsl;
+    let ground_m = if is_amsl { 0.0 } else { runway.elevation_amsl_m };
+    let metres = ground_m + world.number(&altitude.metres)?;
+    let level = Level { metres, reference: AltitudeReference::Amsl };
     let climb_m = (level.metres - runway.elevation_amsl_m).max(0.0);
     let speed_mps = world.profile.cruise_airspeed_mps;
     let way_m = runway.length_m + climb_m / world.profile.max_climb_mps.max(0.1) * speed_mps;
@@ -70,6 +65,6 @@ fn on_final(runway: &Runway, before_m: f64, world: &World) -> Point {
 }
 
 fn runway<'a>(stage: &Stage, world: &World<'a>) -> Result<&'a Runway, ExpandError> {
-    let id = stage.runway.as_ref().ok_or(ExpandError::NoRunway)?;
-    world.program.plan.runway(id).ok_or(ExpandError::NoRunway)
+    let id = stage.runway.as_ref().ok_or(ExpandError::Incomplete)?;
+    world.program.plan.runway(id).ok_or(ExpandError::Incomplete)
 }

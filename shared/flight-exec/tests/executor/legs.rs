@@ -135,3 +135,18 @@ fn the_phase_is_told() {
     rig.flown.clear();
     rig.fly_to_the_end();
 }
+
+/// What a climb-out is above: the runway's ground, or the sea.
+#[test]
+fn a_take_off_climbs_to_its_altitude_whatever_it_is_above() {
+    let text = crate::rig::document(r#"<TF id="a" fix="B1" altitude="150" altitudeReference="home"/>"#);
+    for (reference, climbed_m) in [("agl", 100.0), ("home", 100.0), ("amsl", 480.0 - GROUND_M)] {
+        let altitude = if reference == "amsl" { 480 } else { 100 };
+        let stage = format!(r#"altitude="{altitude}" altitudeReference="{reference}"/>"#);
+        let text = text.replacen(r#"altitude="100" altitudeReference="agl"/>"#, &stage, 1);
+        let mut rig = Rig::flying(&text);
+        assert!((rig.buffer[0].altitude_amsl_m - GROUND_M - climbed_m).abs() < 1e-6, "{reference}");
+        rig.fly_to("a");
+        assert!((rig.flown.last().unwrap().altitude_amsl_m - GROUND_M - 150.0).abs() < 1e-6, "above home");
+    }
+}

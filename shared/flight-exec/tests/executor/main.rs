@@ -3,13 +3,19 @@
 
 mod changes;
 mod commands;
+mod damaged;
+mod endings;
 #[path = "../common/grid.rs"]
 mod grid;
 mod legs;
 mod legs_actions;
+mod legs_actions_edges;
 mod legs_changes;
 mod legs_courses;
 mod legs_flown;
 mod legs_patterns;
+mod legs_refused;
+mod legs_turned;
 mod loops;
 mod rig;
+mod updates;

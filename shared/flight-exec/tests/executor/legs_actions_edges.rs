@@ -1,0 +1,150 @@
+//! Actions where one might be lost or done twice: at corners, with values that change, where plans change, when legs are skipped.
+
+use crate::rig::{Rig, document_with, fix, program};
+use flight_exec::{Command, Event, ResolvedAct, Time};
+
+const VARIABLES: &str = r#"<variable name="n" type="number" initial="100" min="0" max="9000"/>"#;
+
+fn flying(legs: &str) -> Rig {
+    Rig::flying(&document_with(legs, VARIABLES, ""))
+}
+
+/// What was done, as `leg:act`.
+fn done(rig: &Rig) -> Vec<String> {
+    rig.acts.iter().map(|(leg, _, act)| format!("{leg}:{act}")).collect()
+}
+
+fn two_legs(actions: &str) -> String {
+    format!(r#"<TF id="a" fix="B1"/><TF id="p" fix="C1">{actions}</TF><TF id="z" fix="D1"/>"#)
+}
+
+/// On leg `p`, so many metres from its begin.
+fn at(rig: &mut Rig, metres: f64) {
+    rig.position = fix("B1").destination(90.0, metres);
+    rig.now += Time::from_secs(2);
+    rig.report();
+}
+
+/// Outside a corner it is abeam of neither piece: ahead of the end of one, behind the beginning of the next.
+#[test]
+fn outside_a_corner_an_action_is_done_once_the_corner_is_flown() {
+    let corner = fix("C3").destination(90.0, 600.0).destination(0.0, 600.0);
+    let outside = corner.destination(45.0, 200.0);
+    let legs = format!(
+        r#"<TF id="a" fix="B1"/><expandingSquare id="p" spacing="600" heading="0" radius="900" turn="right"><centre fix="C3"/>
+           <action on="abeam" lat="{}" lon="{}"><photo/></action></expandingSquare><TF id="z" fix="A3"/>"#,
+        outside.lat_deg, outside.lon_deg
+    );
+    let mut rig = flying(&legs);
+    while rig.buffer[0].position.distance_m(corner) > 1.0 {
+        rig.fly_one();
+        assert_eq!(done(&rig).len(), 0, "still ahead");
+    }
+    rig.fly_one();
+    rig.now += Time::from_secs(1);
+    rig.report();
+    assert_eq!(done(&rig), ["p:photo"], "as soon as the next piece is flown");
+    rig.fly_to_the_end();
+    assert_eq!(done(&rig).len(), 1);
+}
+
+/// The loop's own actions are not those of the end that is circled at.
+#[test]
+fn while_the_last_leg_of_a_loop_waits_the_loop_goes_on() {
+    let action = |when: &str, act: &str| format!(r#"<action on="{when}"><{act}/></action>"#);
+    let legs = format!(
+        r#"<iterative id="l" form="forward" count="2">{}{}<TF id="a" fix="B1"/>
+           <TF id="b" fix="B2">{}<action on="end"><wait seconds="30"/></action></TF></iterative><TF id="z" fix="A3"/>"#,
+        action("start", "videoStart"),
+        action("end", "videoStop"),
+        action("end", "photo")
+    );
+    let mut rig = flying(&legs);
+    for passes in 1..=2 {
+        while rig.fly_one() {}
+        assert_eq!(done(&rig).len(), 1 + passes, "the photo before the wait");
+        assert!(rig.executor.status().wait_left_s.is_some());
+        rig.now += Time::from_secs(30);
+        rig.report();
+    }
+    rig.fly_to_the_end();
+    assert_eq!(done(&rig), ["l:video on", "b:photo", "b:photo", "l:video off"]);
+}
+
+#[test]
+fn an_interval_that_becomes_too_small_is_told_once_and_nothing_is_done() {
+    let mut rig = flying(&two_legs(r#"<action every="= n"><photo/></action>"#));
+    rig.fly_to("p");
+    at(&mut rig, 150.0);
+    rig.set("n", 0.5).unwrap();
+    for metres in [400.0, 800.0, 1200.0] {
+        at(&mut rig, metres);
+    }
+    assert_eq!(done(&rig).len(), 1, "that before the change");
+    let told = |e: &&Event| matches!(e, Event::ExpressionFailed { leg, reason } if leg.as_str() == "p" && reason.contains("give it 1 m or more"));
+    assert_eq!(rig.events.iter().filter(told).count(), 1, "{:?}", rig.events);
+    rig.set("n", 1000.0).unwrap();
+    at(&mut rig, 1400.0);
+    assert_eq!(done(&rig).len(), 1, "one was due by 1000 m, and one is done");
+}
+
+#[test]
+fn a_wait_that_a_new_plan_puts_on_the_leg_being_flown_is_circled() {
+    let mut rig = flying(&two_legs(""));
+    rig.fly_to("p");
+    at(&mut rig, 300.0);
+    let wait = two_legs(r#"<action on="end"><wait seconds="45"/></action>"#);
+    rig.update(&program(&document_with(&wait, VARIABLES, ""))).unwrap();
+    while rig.fly_one() {}
+    let begun = rig.events.iter().filter_map(|e| match e {
+        Event::ActionDone { leg, act, .. } => Some(format!("{leg}:{act}")),
+        _ => None,
+    });
+    assert_eq!(Vec::from_iter(begun), ["p:waiting for 45 s"]);
+    assert!(rig.executor.status().wait_left_s.is_some_and(|s| s <= 45.0));
+    rig.now += Time::from_secs(45);
+    rig.report();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a p z");
+}
+
+#[test]
+fn a_leg_is_skipped_together_with_the_wait_at_its_end() {
+    let mut rig = flying(&two_legs(r#"<action on="end"><wait seconds="45"/></action>"#));
+    rig.fly_to("p");
+    at(&mut rig, 300.0);
+    rig.command(Command::SkipLeg).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a p z");
+    assert!(!rig.events.iter().any(|e| matches!(e, Event::ActionDone { .. })), "{:?}", rig.events);
+}
+
+/// An intersection with one way on is nothing to decide; what hangs on it is done all the same.
+#[test]
+fn a_merge_leads_on_and_its_actions_are_done() {
+    let action = r#"<action on="start"><photo/></action>"#;
+    for (merge, entered) in [
+        (format!(r#"<intersection id="x">{action}<branch id="only" next="d"/></intersection>"#), "a d"),
+        (format!(r#"<intersection id="x">{action}</intersection>"#), "a c d"),
+    ] {
+        let mut rig =
+            flying(&format!(r#"<TF id="a" fix="B1"/>{merge}<TF id="c" fix="B3"/><TF id="d" fix="C2"/>"#));
+        rig.fly_to_the_end();
+        assert_eq!((rig.legs().as_str(), done(&rig)), (entered, vec!["x:photo".to_owned()]));
+        let asked = |e: &Event| matches!(e, Event::DecisionRequested(_) | Event::DecisionTaken { .. });
+        assert!(!rig.events.iter().any(asked));
+    }
+}
+
+#[test]
+fn each_act_says_in_words_what_it_is() {
+    let (variable, service, operation) = ("n".into(), "camera".into(), "zoom".into());
+    let value = flight_plan::VariableValue::Number(2.0);
+    for (act, words) in [
+        (ResolvedAct::PhotoSeries { every_m: 20.5 }, "photos every 20.5 m"),
+        (ResolvedAct::Set { variable, value }, "n set"),
+        (ResolvedAct::Invoke { service, operation, argument: "{}".into() }, "camera/zoom called"),
+    ] {
+        assert_eq!(act.to_string(), words);
+    }
+}

@@ -1,0 +1,221 @@
+//! Patterns whose values change in flight: what is new is flown, what makes no pattern is refused with advice, what is the same stays.
+
+use crate::rig::{Rig, document_with, fix};
+use flight_exec::{Command, Event};
+use flight_plan::VariableValue;
+use geometry::{LatLon, LocalFrame, Vec2};
+
+const VARIABLES: &str = r#"<variable name="v" type="number" initial="3" min="-5000" max="5000"/>
+    <variable name="p" type="position" initial="36.57190 -84.15533"/>"#;
+
+fn flying(pattern: &str) -> Rig {
+    let legs = format!(r#"<TF id="a" fix="B1"/>{pattern}<TF id="z" fix="A3"/>"#);
+    let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
+    rig.fly_to("p");
+    rig
+}
+
+fn flown(rig: &Rig) -> Vec<LatLon> {
+    rig.flown.iter().filter(|w| w.leg.as_str() == "p").map(|w| w.position).collect()
+}
+
+fn reasons(rig: &Rig) -> Vec<String> {
+    let of = |e: &Event| match e {
+        Event::PatternRefused { reason, .. } => Some(reason.clone()),
+        _ => None,
+    };
+    rig.events.iter().filter_map(of).collect()
+}
+
+fn ahead(rig: &Rig) -> Vec<flight_exec::Waypoint> {
+    rig.buffer.iter().filter(|w| w.leg.as_str() == "p").cloned().collect()
+}
+
+const CENTRE: &str = r#"<centre fix="C4"/>"#;
+
+#[test]
+fn what_is_counted_must_be_whole() {
+    for (pattern, what) in [
+        (format!(r#"<sector id="p" radius="1200" sectors="= v" turn="right">{CENTRE}</sector>"#), "sectors"),
+        (format!(r#"<sector id="p" radius="1200" passes="= v" turn="right">{CENTRE}</sector>"#), "passes"),
+        (format!(r#"<figureEight id="p" radius="400" turns="= v" turn="left">{CENTRE}</figureEight>"#), "turns"),
+        (
+            r#"<contour id="p" spacing="100" direction="outward" loops="= v" turn="left"><area fix="C4" radius="500"/></contour>"#.into(),
+            "loops",
+        ),
+    ] {
+        for value in [2.5, 0.0, -3.0] {
+            let mut rig = flying(&pattern);
+            rig.fly_one();
+            let before = ahead(&rig);
+            rig.set("v", value).unwrap();
+            assert_eq!(reasons(&rig), [format!("{value} {what}: give a whole number from 1 on")]);
+            assert_eq!(ahead(&rig), before, "{what} {value}");
+        }
+    }
+}
+
+#[test]
+fn loops_round_an_area_lie_inside_or_outside_as_many_as_asked() {
+    for (direction, radii_m) in [("inward", [550.0, 450.0, 350.0]), ("outward", [650.0, 750.0, 850.0])] {
+        let mut rig = flying(&format!(
+            r#"<contour id="p" spacing="100" direction="{direction}" loops="= v" turn="left"><area fix="C4" radius="600"/></contour>"#
+        ));
+        rig.fly_to_the_end();
+        let from_centre: Vec<f64> = flown(&rig).iter().map(|p| fix("C4").distance_m(*p)).collect();
+        // corners stand out by the tolerance of circles and arcs, and lie in by that of the circle
+        let near = |m: f64, radius_m: f64| (-6.0..6.0).contains(&(m - radius_m));
+        assert!(
+            from_centre.iter().all(|m| radii_m.iter().any(|r| near(*m, *r))),
+            "{direction}: {from_centre:?}"
+        );
+        for radius_m in radii_m {
+            assert!(
+                from_centre.iter().filter(|m| near(**m, radius_m)).count() >= 8,
+                "{direction} {radius_m}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_route_that_becomes_too_long_for_one_pattern_is_refused() {
+    let mut rig = flying(
+        r#"<trackLine id="p" spacing="300" returns="true"><route><point fix="B2"/><point fix="C3"/><point at="= p"/></route></trackLine>"#,
+    );
+    rig.fly_one();
+    let before = ahead(&rig);
+    let value = VariableValue::Position(LatLon::new(-40.0, 100.0));
+    rig.command(Command::SetVariable { name: "p".into(), value }).unwrap();
+    assert!(
+        reasons(&rig).len() == 1 && reasons(&rig)[0].contains("too short or too long"),
+        "{:?}",
+        reasons(&rig)
+    );
+    assert_eq!(ahead(&rig), before);
+}
+
+/// Its level falls back to the one before, which is no height above ground.
+#[test]
+fn a_camera_whose_height_is_not_known_sees_no_tracks() {
+    let legs = r#"<TF id="a" fix="B1" altitude="500" altitudeReference="amsl"/>
+        <scan id="p" fieldOfView="60" overlap="0.5" heading="0" altitude="= 600.0 / v" altitudeReference="agl"><area fix="C4" radius="570"/></scan>
+        <TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("p");
+    rig.command(Command::GoTo { leg: "a".into() }).unwrap();
+    rig.set("v", 0.0).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a p a z");
+    assert!(reasons(&rig)[0].contains("give the camera a height"), "{:?}", reasons(&rig));
+}
+
+#[test]
+fn a_variable_that_a_pattern_does_not_read_changes_nothing() {
+    for pattern in [
+        format!(
+            r#"<spiral id="p" spacing="200" outerRadius="700" direction="outward" turn="left">{CENTRE}</spiral>"#
+        ),
+        r#"<scan id="p" spacing="200" heading="0"><area fix="C4" radius="700"/></scan>"#.into(),
+        format!(r#"<orbit id="p" radius="400" turns="3" turn="left">{CENTRE}</orbit>"#),
+    ] {
+        let mut rig = flying(&pattern);
+        rig.fly_one();
+        let (buffer, feeds) = (rig.buffer.clone(), rig.feeds);
+        rig.set("v", 100.0).unwrap();
+        assert_eq!((rig.buffer.clone(), rig.feeds), (buffer, feeds), "{pattern}");
+    }
+}
+
+/// Direction of each track flown, degrees in 0..180.
+fn directions_deg(points: &[LatLon]) -> Vec<f64> {
+    let frame = LocalFrame::new(fix("C4"));
+    let local: Vec<Vec2> = points.iter().map(|p| frame.to_local(*p)).collect();
+    let long = local.windows(2).map(|w| w[1] - w[0]).filter(|way| way.length() > 400.0);
+    long.map(|way| way.bearing_rad().to_degrees().rem_euclid(180.0)).collect()
+}
+
+#[test]
+fn with_another_heading_the_tracks_are_new() {
+    let mut rig = flying(
+        r#"<scan id="p" spacing="200" heading="= v * 10.0" overshoot="30"><area fix="C4" radius="890"/></scan>"#,
+    );
+    while flown(&rig).len() < 7 {
+        rig.fly_one();
+    }
+    rig.set("v", 7.0).unwrap();
+    let before = flown(&rig).len();
+    rig.fly_to_the_end();
+    let all = flown(&rig);
+    let frame = LocalFrame::new(fix("C4"));
+    let near = |deg: &f64, wanted_deg: f64| (deg - wanted_deg).abs() < 0.5;
+    let old = directions_deg(&all[..before]);
+    assert!(old.iter().all(|deg| near(deg, 30.0) || near(deg, 120.0)), "{old:?}");
+    let new = Vec2::from_bearing_rad(70.0_f64.to_radians());
+    let points: Vec<Vec2> = all[before..].iter().map(|p| frame.to_local(*p)).collect();
+    let along = points.windows(2).filter(|w| (w[1] - w[0]).cross(new).abs() < 2.0);
+    let mut tracks: Vec<i64> = along.map(|w| (w[0].cross(new) / 200.0).round() as i64).collect();
+    tracks.sort_unstable();
+    assert_eq!(tracks, Vec::from_iter(-4..=4), "1780 m in tracks of 200 m, each once");
+}
+
+/// Tracks that stay where they are aren't flown again, on whichever side of the path they lie.
+#[test]
+fn beyond_the_middle_of_a_scan_only_what_is_left_of_it_is_flown() {
+    for flown_tracks in [2, 4, 6, 7] {
+        let mut rig = flying(
+            r#"<scan id="p" spacing="200" heading="0" overshoot="= v * 10.0"><area fix="C4" radius="900"/></scan>"#,
+        );
+        while flown(&rig).len() < 2 * flown_tracks {
+            rig.fly_one();
+        }
+        rig.set("v", 1.0).unwrap();
+        rig.fly_to_the_end();
+        let frame = LocalFrame::new(fix("C4"));
+        let points: Vec<Vec2> = flown(&rig).iter().map(|p| frame.to_local(*p)).collect();
+        let along =
+            points.windows(2).filter(|w| (w[1] - w[0]).length() > 400.0 && (w[1].e - w[0].e).abs() < 1.0);
+        let mut tracks: Vec<i64> = along.map(|w| (w[0].e / 200.0).round() as i64).collect();
+        tracks.sort_unstable();
+        assert_eq!(tracks, Vec::from_iter(-4..=4), "changed after {flown_tracks} tracks");
+    }
+}
+
+/// All of its corners but the first move.
+#[test]
+fn with_another_spacing_an_expanding_square_begins_anew() {
+    let mut rig = flying(&format!(
+        r#"<expandingSquare id="p" spacing="= v * 100.0" radius="900" turn="right">{CENTRE}</expandingSquare>"#
+    ));
+    while flown(&rig).len() < 5 {
+        rig.fly_one();
+    }
+    let before = flown(&rig).len();
+    rig.set("v", 4.0).unwrap();
+    rig.fly_to_the_end();
+    let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
+    assert!(again[0].distance_m(fix("C4")) < 0.1, "{again:?}");
+    let lengths: Vec<i64> =
+        again.windows(2).map(|w| (w[0].distance_m(w[1]) / 400.0).round() as i64).collect();
+    assert!(lengths.starts_with(&[1, 1, 2, 2, 3]), "{lengths:?}");
+}
+
+/// The beginning of its first track is where it was, its end isn't.
+#[test]
+fn with_another_second_point_a_track_line_begins_anew() {
+    let line = r#"<trackLine id="p" spacing="300" returns="true">
+        <route><point fix="B2"/><point at="= offset(p, 90.0, v)"/><point fix="D4"/></route></trackLine>"#;
+    let mut rig = flying(line);
+    while flown(&rig).len() < 3 {
+        rig.fly_one();
+    }
+    let before = flown(&rig).len();
+    rig.set("v", 800.0).unwrap();
+    rig.fly_to_the_end();
+    let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
+    let legs = format!(r#"<TF id="a" fix="B1"/>{line}<TF id="z" fix="A3"/>"#);
+    let variables = VARIABLES.replace(r#"initial="3""#, r#"initial="800""#);
+    let mut fresh = Rig::flying(&document_with(&legs, &variables, ""));
+    fresh.fly_to_the_end();
+    assert_eq!(again, flown(&fresh));
+}

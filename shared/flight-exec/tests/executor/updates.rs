@@ -1,0 +1,162 @@
+//! What a new plan may change about the leg being flown, and around it.
+
+use crate::rig::{Rig, document, document_with, fix, program};
+use flight_exec::{Command, Event, Refusal};
+use flight_plan::Cause;
+
+const BASE: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
+
+fn code(result: Result<(), Refusal>) -> String {
+    result.err().map_or_else(|| "done".into(), |r| r.code)
+}
+
+/// Proposes a document and commits it with an entry leg.
+fn enter(rig: &mut Rig, text: &str, entry: &str) -> String {
+    let new = program(text);
+    rig.propose(&new);
+    code(rig.command(Command::Commit { hash: new.hash.clone(), entry: Some(entry.into()) }))
+}
+
+#[test]
+fn a_loop_put_around_the_leg_being_flown_begins_with_its_first_pass() {
+    let mut rig = Rig::started(BASE);
+    rig.fly_to("b");
+    let looped = BASE
+        .replace(r#"<TF id="b""#, r#"<iterative id="l" form="forward" count="2"><TF id="b""#)
+        .replace(r#"<TF id="d""#, r#"</iterative><TF id="d""#);
+    rig.update(&program(&document(&looped))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c b c d");
+}
+
+#[test]
+fn a_loop_taken_away_around_the_leg_being_flown_is_not_flown_again() {
+    let body = r#"<TF id="b" fix="B2"/><TF id="c" fix="C2"/>"#;
+    let plan = |body: &str| document(&format!(r#"<TF id="a" fix="A2"/>{body}<TF id="d" fix="C4"/>"#));
+    let mut rig =
+        Rig::flying(&plan(&format!(r#"<iterative id="l" form="reverse" count="3">{body}</iterative>"#)));
+    rig.fly_to("b");
+    rig.update(&program(&plan(body))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+}
+
+#[test]
+fn a_commit_may_name_another_leg_to_enter_than_the_one_being_flown() {
+    for (entry, expected, entered) in
+        [("d", "done", "a b d"), ("b", "done", "a b c d"), ("?", "unknown-leg", "a b c d")]
+    {
+        let mut rig = Rig::started(BASE);
+        rig.fly_to("b");
+        let text = document(&BASE.replace(r#"id="c" "#, r#"id="c" name="C" "#));
+        assert_eq!(enter(&mut rig, &text, entry), expected, "{entry}");
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), entered, "{entry}");
+    }
+}
+
+/// The emergency being flown may go on elsewhere in its new plan, or be left for the main plan; no other one is entered by an update.
+#[test]
+fn a_commit_enters_no_emergency_plan_but_the_one_being_flown() {
+    let renamed = document(BASE).replace("b-df", "b-new");
+    for (emergency, entry, expected, entered) in [
+        (false, "b-new", "unknown-leg", "a b c d"),
+        (true, "b-new", "done", "a b b-df b-new b-land"),
+        (true, "o-df", "unknown-leg", "a b b-df b-land"),
+        (true, "d", "done", "a b b-df d"),
+    ] {
+        let mut rig = Rig::started(BASE);
+        rig.fly_to("b");
+        if emergency {
+            rig.command(Command::Emergency { cause: Cause::Link, plan: None }).unwrap();
+            rig.steer();
+        }
+        assert_eq!(enter(&mut rig, &renamed, entry), expected, "{emergency} {entry}");
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), entered, "{emergency} {entry}");
+    }
+}
+
+#[test]
+fn a_new_plan_whose_pattern_can_not_be_flown_now_lets_the_old_one_go_on() {
+    let variables = r#"<variable name="r" type="number" initial="590" min="10" max="3000"/>"#;
+    let legs = r#"<TF id="a" fix="B1"/><scan id="s" spacing="150" heading="0"><area fix="C4" radius="590"/></scan><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, variables, ""));
+    rig.fly_to("s");
+    rig.fly_one();
+    rig.set("r", 300.0).unwrap();
+    let ahead = rig.buffer.clone();
+    let new = legs.replace(r#"spacing="150""#, r#"spacing="= r - 400.0""#);
+    rig.update(&program(&document_with(&new, variables, ""))).unwrap();
+    assert!(rig.events.iter().any(|e| matches!(e, Event::PatternRefused { leg, .. } if leg.as_str() == "s")));
+    let scan = |buffer: &std::collections::VecDeque<flight_exec::Waypoint>| {
+        Vec::from_iter(buffer.iter().filter(|w| w.leg.as_str() == "s").map(|w| w.position))
+    };
+    assert_eq!(scan(&rig.buffer), scan(&ahead));
+}
+
+/// The turn-round at the near end of a loop belongs to no arrival.
+#[test]
+fn on_either_turn_round_an_update_goes_on_with_it() {
+    let legs = |extra: &str| {
+        document(&format!(
+            r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="3"><TF id="a" fix="B1"/><TF id="b" fix="B2"/></iterative>{extra}<TF id="z" fix="A3"/>"#
+        ))
+    };
+    for turn_rounds in 1..=4 {
+        let mut rig = Rig::flying(&legs(""));
+        let entered = |rig: &Rig| rig.legs().split(' ').filter(|l| l.ends_with('l')).count();
+        while entered(&rig) < turn_rounds {
+            rig.fly_one();
+        }
+        rig.update(&program(&legs(r#"<TF id="n" fix="A2"/>"#))).unwrap();
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), "s a b <l <b <a l a b <l <b <a l a b n z", "at turn-round {turn_rounds}");
+    }
+}
+
+/// What is kept by an update is too near to be laid out anew, wherever the aircraft is blown.
+#[test]
+fn what_an_update_has_kept_is_not_decided_about_any_more() {
+    let near = fix("B3").destination(90.0, 60.0);
+    let fork = format!(
+        r#"<TF id="a" fix="A3"/><TF id="b" fix="B3"/><intersection id="x" default="left" decideBefore="1s">
+           <branch id="left" label="Left" next="l"/><branch id="right" label="Right" next="r" when="n &gt; 5.0"/></intersection>
+           <TF id="l" lat="{}" lon="{}" next="z"/><TF id="r" fix="C4" next="z"/><TF id="z" fix="A4"/>"#,
+        near.lat_deg, near.lon_deg
+    );
+    let plan = |z: &str| {
+        document_with(&fork.replace("A4", z), r#"<variable name="n" type="number" initial="0"/>"#, "")
+    };
+    let mut rig = Rig::flying(&plan("A4"));
+    rig.fly_to("b");
+    rig.position = fix("B3").destination(270.0, 30.0);
+    rig.report();
+    rig.update(&program(&plan("A5"))).unwrap();
+    rig.position = fix("B3").destination(270.0, 900.0);
+    rig.report();
+    let decide = Command::Decide { leg: "x".into(), branch: "right".into() };
+    assert_eq!(code(rig.command(decide)), "too-late");
+    rig.set("n", 9.0).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b l z");
+}
+
+#[test]
+fn a_count_is_told_for_the_waypoints_of_its_loop_alone() {
+    let near = fix("B2").destination(90.0, 60.0);
+    let legs = format!(
+        r#"<TF id="s" fix="A1"/><iterative id="l" form="forward" count="1"><TF id="a" fix="B1"/><TF id="b" fix="B2"/></iterative>
+           <iterative id="k" form="forward" count="1"><TF id="y" lat="{}" lon="{}"/></iterative><TF id="z" fix="A3"/>"#,
+        near.lat_deg, near.lon_deg
+    );
+    let mut rig = Rig::started(&legs);
+    rig.fly_to("b");
+    rig.position = fix("B2").destination(180.0, 30.0);
+    rig.report();
+    rig.command(Command::SetCount { leg: "l".into(), count: 3 }).unwrap();
+    let of = |rig: &Rig| rig.executor.status().place.unwrap().iterations[0].of;
+    assert_eq!(of(&rig), Some(3));
+    rig.fly_to("y");
+    assert_eq!(of(&rig), Some(1));
+}
