@@ -200,22 +200,26 @@ fn with_another_spacing_an_expanding_square_begins_anew() {
     assert!(lengths.starts_with(&[1, 1, 2, 2, 3]), "{lengths:?}");
 }
 
-/// The beginning of its first track is where it was, its end isn't.
+/// The beginning of the first track is where it was, its end isn't.
 #[test]
-fn with_another_second_point_a_track_line_begins_anew() {
+fn a_pattern_whose_first_track_ends_elsewhere_begins_anew() {
     let line = r#"<trackLine id="p" spacing="300" returns="true">
         <route><point fix="B2"/><point at="= offset(p, 90.0, v)"/><point fix="D4"/></route></trackLine>"#;
-    let mut rig = flying(line);
-    while flown(&rig).len() < 3 {
-        rig.fly_one();
+    let search =
+        format!(r#"<sector id="p" radius="1200" sectors="= v" heading="10" turn="right">{CENTRE}</sector>"#);
+    for (pattern, value) in [(line, 800.0), (&search, 4.0)] {
+        let mut rig = flying(pattern);
+        while flown(&rig).len() < 4 {
+            rig.fly_one();
+        }
+        let before = flown(&rig).len();
+        rig.set("v", value).unwrap();
+        rig.fly_to_the_end();
+        let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
+        let legs = format!(r#"<TF id="a" fix="B1"/>{pattern}<TF id="z" fix="A3"/>"#);
+        let variables = VARIABLES.replace(r#"initial="3""#, &format!(r#"initial="{value}""#));
+        let mut fresh = Rig::flying(&document_with(&legs, &variables, ""));
+        fresh.fly_to_the_end();
+        assert_eq!(again, flown(&fresh), "{pattern}");
     }
-    let before = flown(&rig).len();
-    rig.set("v", 800.0).unwrap();
-    rig.fly_to_the_end();
-    let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
-    let legs = format!(r#"<TF id="a" fix="B1"/>{line}<TF id="z" fix="A3"/>"#);
-    let variables = VARIABLES.replace(r#"initial="3""#, r#"initial="800""#);
-    let mut fresh = Rig::flying(&document_with(&legs, &variables, ""));
-    fresh.fly_to_the_end();
-    assert_eq!(again, flown(&fresh));
 }
