@@ -112,7 +112,7 @@ fn without_window(args: &Args, prepared: &Prepared, speed: f64) -> anyhow::Resul
 fn with_window(args: &Args, prepared: Prepared, speed: f64) -> anyhow::Result<ExitCode> {
     let watcher = Arc::new(Watcher::someone());
     let (sender, endpoint) = channel();
-    let document = Document::new(prepared.program.plan.clone(), None, Vec::new());
+    let document = Document::new(prepared.program.plan.as_ref().clone(), None, Vec::new());
     let planned_s = prepared.planned.duration_s();
     let (for_flight, beside) = (args.clone(), watcher.clone());
     let flight = std::thread::Builder::new()
@@ -186,7 +186,7 @@ async fn fly_with(
     let began = Instant::now();
     let progress = Progress::new(prepared.planned.duration_s());
     let script = mission::Script::new(prepared.steps.clone());
-    let plan = prepared.program.plan.clone();
+    let plan = prepared.program.plan.as_ref().clone();
     let mut flight =
         Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, watcher)
             .await?;

@@ -138,7 +138,7 @@ impl Prepared {
             notes: vec![
                 format!("{}, simulated", self.program.plan.aircraft),
                 format!("wind {}", wind::shown(wind)),
-                format!("plan {}", self.program.hash.get(..12).unwrap_or(&self.program.hash)),
+                format!("plan {}", self.program.hash().get(..12).unwrap_or(self.program.hash())),
             ],
             planned: self.planned.clone(),
             authored: authored::paths(&self.program, &plans, &flown, &ending.events, turn_radius_m),

@@ -154,9 +154,9 @@ fn analyse(
     let plan = &question.plan;
     let profile = profile_of(plan);
     let (program, problems, hash) =
-        match flight_plan::compile(plan.as_ref().clone(), &profile, terrain.as_ref()) {
+        match flight_plan::compile(plan.clone(), &profile, terrain.as_ref()) {
             Ok(program) => {
-                let (problems, hash) = (program.warnings.clone(), program.hash.to_string());
+                let (problems, hash) = (program.warnings.clone(), program.hash().to_string());
                 (Some(Arc::new(program)), problems, hash)
             }
             Err(problems) => (None, problems, flight_plan::hash(plan)),

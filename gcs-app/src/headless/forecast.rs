@@ -96,7 +96,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         notes: vec![
             format!("preview for {}", program.plan.aircraft),
             format!("wind {}", super::wind::shown(wind)),
-            format!("plan {}", program.hash.get(..12).unwrap_or(&program.hash)),
+            format!("plan {}", program.hash().get(..12).unwrap_or(program.hash())),
         ],
         places: assemble::places(&program.plan),
         areas: assemble::areas(program, &planned, &preview.events),

@@ -101,7 +101,7 @@ impl Selection {
 
 /// Where a loop is entered.
 fn innermost(leg: &flight_plan::Leg) -> &Id {
-    leg.body().first().map_or(&leg.id, innermost)
+    leg.body().first().map_or(&leg.id, |first| innermost(first))
 }
 
 /// A leg's identifier, if there is such a leg.

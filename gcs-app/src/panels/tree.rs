@@ -6,6 +6,7 @@ use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind, ZoneKind};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// One line of the tree.
 #[derive(Debug, Clone)]
@@ -143,7 +144,7 @@ impl Builder<'_> {
         }
     }
 
-    fn legs(&mut self, legs: &[Leg], depth: usize) {
+    fn legs(&mut self, legs: &[Arc<Leg>], depth: usize) {
         for leg in legs {
             self.leg(leg, depth);
         }

@@ -384,7 +384,7 @@ impl Manager {
         self.note(now, out);
         if self.liaison.should_join(now) {
             out.push(Effect::Join(Join {
-                plan: self.executor.program().map(|p| p.hash.to_string()),
+                plan: self.executor.program().map(|p| p.hash().to_string()),
                 last_token: self.executor.last_token(),
             }));
         }
@@ -418,7 +418,7 @@ fn recorded(input: &Input) -> Record {
     match input {
         Input::Propose { request, program, based_on, objections } => Record::Propose {
             request: *request,
-            plan: program.hash.clone(),
+            plan: program.hash().clone(),
             based_on: *based_on,
             forbidden: objections.iter().any(Problem::is_error),
         },

@@ -90,10 +90,10 @@ impl Publishers {
     /// Offers the active plan as a file, whenever it is another one.
     fn file(&mut self, now: Time, executor: &Executor) {
         let Some(program) = executor.program() else { return };
-        if self.plan_filed.as_deref() == Some(&*program.hash) {
+        if self.plan_filed.as_deref() == Some(&**program.hash()) {
             return;
         }
-        self.plan_filed = Some(program.hash.to_string());
+        self.plan_filed = Some(program.hash().to_string());
         let xml = flight_plan::write(&program.plan);
         if let Err(error) = self.plan_file.set(now.as_secs_f64(), xml.into()) {
             tracing::warn!("the plan cannot be fetched as a file: {error}");
@@ -102,7 +102,7 @@ impl Publishers {
 
     fn signs_of_life(&mut self, now: Time, executor: &Executor) {
         self.beats += 1;
-        let plan = executor.program().map(|p| p.hash.to_string());
+        let plan = executor.program().map(|p| p.hash().to_string());
         self.heartbeat.set(now.as_secs_f64(), VALID_S, &Heartbeat { count: self.beats, plan });
         self.status.set(now.as_secs_f64(), VALID_S, &executor.status());
     }
@@ -137,7 +137,7 @@ pub fn plan_info(executor: &Executor) -> PlanInfo {
     let program = executor.program();
     PlanInfo {
         name: program.map(|p| p.plan.name.clone()).unwrap_or_default(),
-        hash: program.map(|p| p.hash.to_string()),
+        hash: program.map(|p| p.hash().to_string()),
         revision: executor.status().revision,
     }
 }

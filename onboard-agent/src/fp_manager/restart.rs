@@ -183,7 +183,7 @@ impl<S: Storage> Plans<'_, S> {
         }
         let xml = self.log.plan(hash).ok_or_else(|| format!("the document of plan {hash} is missing"))?;
         let program = compile(&xml, self.config).map_err(|p| format!("plan {hash}: {}", listed(&p)))?;
-        if *program.hash != *hash {
+        if **program.hash() != *hash {
             return Err(format!("the document of plan {hash} is damaged"));
         }
         let program = Arc::new(program);
@@ -199,7 +199,7 @@ impl Manager {
         let saved = Saved {
             snapshot: self.executor.snapshot(),
             last_step: self.executor.last_step(),
-            proposed: self.executor.proposed().map(|p| p.hash.clone()),
+            proposed: self.executor.proposed().map(|p| p.hash().clone()),
             steered: self.steered,
             last_request: self.last_request,
             notes: self.noted.clone(),

@@ -38,7 +38,7 @@ fn main() {
     let program = Arc::new(program.unwrap_or_else(|problems| panic!("{problems:?}")));
     let mut executor = Executor::new(Config::default(), Arc::new(Flat(300.0)), Profile::default());
     let mut out: Vec<Output> = Vec::new();
-    let hash = program.hash.clone();
+    let hash = program.hash().clone();
     let objections = Vec::new();
     let mut step = |executor: &mut Executor, input| {
         out.clear();

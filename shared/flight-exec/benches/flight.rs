@@ -46,7 +46,7 @@ impl Flying {
         let at = LatLon::new(36.5, -84.2);
         let mut flying = Self { executor, now: Time::ZERO, out: Vec::new(), at };
         let program = program(legs);
-        let hash = program.hash.clone();
+        let hash = program.hash().clone();
         flying.step(Input::Propose {
             request: RequestId(1),
             program,

@@ -176,7 +176,7 @@ impl Executor {
         };
         let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
         let now = self.bookmark(1);
-        let mut cursor = now.moved_to(target, &self.world());
+        let mut cursor = now.moved_to(&target, &self.world());
         cursor.move_path_to(self.here_at_level_of(&now));
         Ok(cursor)
     }

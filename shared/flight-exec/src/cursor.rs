@@ -214,17 +214,17 @@ impl Cursor {
     }
 
     /// The innermost list of legs.
-    pub fn list<'a>(&self, world: &World<'a>) -> &'a [Leg] {
+    pub fn list<'a>(&self, world: &World<'a>) -> &'a [Arc<Leg>] {
         let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
         for frame in &self.loops {
-            list = list.get(frame.index).map_or(&[][..], Leg::body);
+            list = list.get(frame.index).map_or(&[][..], |leg| leg.body());
         }
         list
     }
 
     /// The leg it is at; `None` at a take-off, a landing or the end of a list.
     pub fn leg<'a>(&self, world: &World<'a>) -> Option<&'a Leg> {
-        self.list(world).get(self.index)
+        self.list(world).get(self.index).map(Arc::as_ref)
     }
 
     /// True while it gives out points backwards.

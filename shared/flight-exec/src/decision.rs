@@ -8,6 +8,7 @@ use crate::world::World;
 use flight_plan::{Branch, DecideBefore, Fork, Id, Leg, LegPath, Program};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Most decisions kept for intersections ahead.
 const MOST_DECISIONS: usize = 64;
@@ -204,7 +205,7 @@ impl Executor {
     fn check_ahead(&self, leg: &Id) -> Result<(), Refusal> {
         let program = self.flying_program()?;
         let now = self.state.handed.front().and_then(|h| program.path(&h.place.leg));
-        if now.zip(program.path(leg)).is_none_or(|(now, target)| may_lead(&program, now, target)) {
+        if now.zip(program.path(leg)).is_none_or(|(now, target)| may_lead(&program, &now, &target)) {
             return Ok(());
         }
         let advice = "it is behind the flight, or in another plan, and isn't passed again; use go-to";
@@ -239,7 +240,7 @@ fn may_lead(program: &Program, from: &LegPath, to: &LegPath) -> bool {
 }
 
 /// In a list, by its successors, jumps and branches included.
-fn leads(list: &[Leg], from: usize, to: usize) -> bool {
+fn leads(list: &[Arc<Leg>], from: usize, to: usize) -> bool {
     let index_of = |id: &Id| list.iter().position(|l| l.id == *id);
     let mut reached = vec![false; list.len()];
     let mut open = vec![from];

@@ -85,7 +85,7 @@ impl Executor {
     /// The active plan.
     pub fn program(&self) -> Option<&Arc<Program>> {
         // whatever was compiled has a hash
-        Some(&self.program).filter(|program| !program.hash.is_empty())
+        Some(&self.program).filter(|program| !program.plan.stages.is_empty())
     }
 
     /// The plan that was proposed last and may be committed.

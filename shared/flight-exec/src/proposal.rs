@@ -37,7 +37,7 @@ impl Executor {
         let problems = program.warnings.iter().chain(objections).map(|w| w.message.clone()).collect();
         let forbidden = objections.iter().any(Problem::is_error);
         let mut report = ProposalReport {
-            hash: program.hash.clone(),
+            hash: program.hash().clone(),
             acceptable: !forbidden,
             problems,
             entry_needed: false,
@@ -57,7 +57,7 @@ impl Executor {
     fn outcome(&self, program: &Arc<Program>) -> Result<Executor, Refusal> {
         let mut copy = self.clone();
         let mut unheard = Vec::new();
-        copy.commit(&program.hash, None, &mut unheard)?;
+        copy.commit(program.hash(), None, &mut unheard)?;
         if !copy.is_flying() {
             copy.command(Command::Start, NOBODY, &mut unheard)?;
         }

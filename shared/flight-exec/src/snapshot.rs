@@ -46,7 +46,7 @@ impl Executor {
         let mut expansions: Vec<Arc<Expansion>> = Vec::new();
         let in_expansion = bookmarks(&self.state).map(|c| index_in(&mut expansions, c)).collect();
         let sealed = self.state.handed.iter().map(|h| h.sealed.clone()).collect();
-        let plan = self.program().map(|p| p.hash.clone());
+        let plan = self.program().map(|p| p.hash().clone());
         Snapshot { plan, state: self.state.clone(), expansions, in_expansion, sealed }
     }
 
@@ -61,7 +61,7 @@ impl Executor {
         program: Option<Arc<Program>>,
         snapshot: Snapshot,
     ) -> Result<Self, RestoreError> {
-        let given = program.as_ref().map(|p| p.hash.clone());
+        let given = program.as_ref().map(|p| p.hash().clone());
         if given != snapshot.plan {
             let name = |hash: Option<Arc<str>>| hash.map_or_else(|| "none".into(), |h| h.to_string());
             return Err(RestoreError::OtherPlan { wanted: name(snapshot.plan), given: name(given) });

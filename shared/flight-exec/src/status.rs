@@ -13,7 +13,7 @@ impl Executor {
     pub fn status(&self) -> Status {
         Status {
             phase: self.state.phase,
-            plan: self.program().map(|p| p.hash.clone()),
+            plan: self.program().map(|p| p.hash().clone()),
             revision: self.state.revision,
             place: self.place(),
             emergency: self.state.emergency.as_ref().map(|e| e.plan.clone()),
@@ -21,7 +21,7 @@ impl Executor {
             current: self.state.handed.front().map(|h| h.waypoint.token),
             outstanding: self.state.handed.len(),
             decision: self.open_decision(),
-            proposed: self.proposed.as_ref().map(|p| p.hash.clone()),
+            proposed: self.proposed.as_ref().map(|p| p.hash().clone()),
             wait_left_s: self.state.wait.map(|w| (w.due_s - self.state.clock_s).max(0.0)),
         }
     }

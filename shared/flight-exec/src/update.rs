@@ -15,7 +15,7 @@ impl Executor {
         entry: Option<&Id>,
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
-        let proposed = self.proposed.clone().filter(|p| *p.hash == *hash).ok_or_else(|| {
+        let proposed = self.proposed.clone().filter(|p| **p.hash() == *hash).ok_or_else(|| {
             let advice = "was not the last acceptable one proposed: propose it first";
             refusal("not-proposed", format!("plan {hash} {advice}"))
         })?;
@@ -39,7 +39,7 @@ impl Executor {
     fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
         self.state.variables = self.state.variables.carried_over(&program.plan);
         self.state.revision += 1;
-        let event = Event::PlanActivated { hash: program.hash.clone(), revision: self.state.revision };
+        let event = Event::PlanActivated { hash: program.hash().clone(), revision: self.state.revision };
         let before = std::mem::replace(&mut self.program, program);
         self.proposed = None;
         // what couldn't be flown in the old plan may come to be told again in the new one
@@ -100,7 +100,7 @@ impl Executor {
                 format!("leg `{entry}` is of an emergency plan that is not being flown: name another leg");
             return Err(refusal("unknown-leg", reason));
         }
-        let mut cursor = now.placed_at(target, &now.loop_ids(&world), new);
+        let mut cursor = now.placed_at(&target, &now.loop_ids(&world), new);
         let mut here = self.here();
         here.last.level = now.path.last.level;
         cursor.move_path_to(here);
@@ -162,8 +162,8 @@ fn translated(
         }
         return placed;
     };
-    let mut moved = cursor.placed_at(target, &known, new);
-    restore_trails(&mut moved, cursor, &known, world, new, target);
+    let mut moved = cursor.placed_at(&target, &known, new);
+    restore_trails(&mut moved, cursor, &known, world, new, &target);
     Cursor {
         doing: cursor.doing,
         given: cursor.given,

@@ -6,6 +6,7 @@ use flight_plan::{Edit, Env, FlightState, Variables};
 use geometry::LatLon;
 use quick_xml::{Reader, events::Event};
 use std::fmt::Write;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use terrain::Flat;
 
@@ -93,14 +94,15 @@ fn edit_one_of_10_000_legs(bencher: Bencher) {
 #[divan::bench]
 fn edit_and_compile_10_000_legs_again(bencher: Bencher) {
     let mut plan = flight_plan::read(document(EDITED_LEGS)).plan;
-    let (profile, mut memory, mut lat_deg) = (Profile::default(), flight_plan::Memory::default(), 36.41);
+    let ground = Arc::new(Flat(300.0));
+    let (mut memory, mut lat_deg) = (flight_plan::Memory::new(Profile::default(), ground), 36.41);
     bencher.bench_local(|| {
         lat_deg += 0.00001;
         let edit = Edit::MoveWaypoint { leg: "leg-5000".into(), to: LatLon::new(lat_deg, -84.21) };
         if let Ok(edited) = edit.apply(&plan) {
             plan = edited;
         }
-        flight_plan::compile_again(plan.clone(), &profile, &Flat(300.0), &mut memory).is_ok()
+        flight_plan::compile_again(plan.clone(), &mut memory).is_ok()
     });
 }
 

@@ -11,6 +11,7 @@ use crate::{
     PlanWaypoint, Procedure, Runway, Stage, Value, Variable, VariableError, VariableValue, Zone,
 };
 use geometry::LatLon;
+use std::sync::Arc;
 
 /// A change of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -352,7 +353,7 @@ impl Edit {
             Edit::SetEmergency { of, cause, plan: to } => {
                 associate(emergency_mut(plan, of.as_ref())?, *cause, to.as_ref())
             }
-            Edit::InsertLeg { leg, at } => return lists::insert(plan, leg.as_ref().clone(), at),
+            Edit::InsertLeg { leg, at } => return lists::insert(plan, leg.as_ref().clone().into(), at),
             Edit::PasteLeg { leg, at } => return lists::paste(plan, leg.as_ref().clone(), at),
             Edit::DeleteLeg { leg } => drop(lists::remove(plan, leg)?),
             Edit::MoveLeg { leg, at } => {
@@ -395,7 +396,7 @@ fn stages_mut(plan: &mut FlightPlan) -> impl Iterator<Item = &mut crate::Stage> 
 
 fn leg_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Leg, EditError> {
     let (list, index) = lists::list_in_plan(plan, id)?;
-    found(list.get_mut(index), id)
+    found(list.get_mut(index).map(Arc::make_mut), id)
 }
 
 /// A property that legs and stages both have.

@@ -5,6 +5,7 @@ pub mod diff;
 pub mod edit;
 pub mod expression;
 pub mod history;
+mod ids;
 pub mod model;
 pub mod problem;
 pub mod procedure;

@@ -211,8 +211,8 @@ pub struct Stage {
     pub altitude: Option<Altitude>,
     /// Default airspeed of its legs, m/s.
     pub speed_mps: Option<Value<f64>>,
-    /// Its legs, in order; empty for take-off and land.
-    pub legs: Vec<Leg>,
+    /// Its legs, in order; empty for take-off and land. Plans that were edited share what is the same in them.
+    pub legs: Vec<Arc<Leg>>,
 }
 
 /// An alternative that ends on a runway.
@@ -440,7 +440,7 @@ pub enum LegKind {
         /// Turn direction of form A's full turns.
         turn: TurnDirection,
         /// The legs.
-        body: Vec<Leg>,
+        body: Vec<Arc<Leg>>,
     },
     /// Fork and/or merge.
     Intersection {

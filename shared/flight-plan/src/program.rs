@@ -1,37 +1,35 @@
 //! A checked plan, ready for the executor.
 
-use crate::checks::{Memory, checked};
-use crate::expression::{self, Env, EvalError, Expression, Names};
+use crate::checks::{Checked, Expressions, Memory, checked, checked_again};
+use crate::expression::{Env, EvalError, Expression};
+use crate::ids::Ids;
 use crate::{
     Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage,
     Value, xml,
 };
 use aircraft::Profile;
 use geometry::LatLon;
-use std::borrow::Cow;
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use terrain::Terrain;
 
-/// A plan without errors, its expressions compiled and its lookups resolved; immutable. The default, without a hash, is no plan
-/// at all.
+/// A plan without errors, its expressions compiled and its lookups resolved; immutable. The default, without a stage, is no
+/// plan at all.
 #[derive(Debug, Default)]
 pub struct Program {
     /// The plan it was made from, as it was written: with its calls.
-    pub plan: FlightPlan,
+    pub plan: Arc<FlightPlan>,
     /// The same with its calls instantiated; `None`: it has no calls.
     flown: Option<FlightPlan>,
-    /// Hex SHA-256 of the plan's canonical XML.
-    pub hash: Arc<str>,
+    hash: OnceLock<Arc<str>>,
     /// What the checks said that does not forbid flying.
     pub warnings: Vec<Problem>,
-    paths: HashMap<Id, LegPath>,
-    expressions: HashMap<Arc<str>, Expression>,
+    ids: Arc<Ids>,
+    expressions: Arc<Expressions>,
 }
 
 impl PartialEq for Program {
     fn eq(&self, other: &Self) -> bool {
-        self.hash == other.hash
+        Arc::ptr_eq(&self.plan, &other.plan) || self.hash() == other.hash()
     }
 }
 
@@ -50,35 +48,24 @@ pub struct LegPath {
 ///
 /// # Errors
 /// Every problem of the plan, if one of them forbids flying.
-pub fn compile(plan: FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Result<Program, Vec<Problem>> {
-    compile_again(plan, profile, terrain, &mut Memory::default())
+pub fn compile(
+    plan: impl Into<Arc<FlightPlan>>,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+) -> Result<Program, Vec<Problem>> {
+    let plan = plan.into();
+    let checked = checked(&plan, profile, terrain);
+    Program::of(plan, checked)
 }
 
 /// As [`compile`], for a plan that is compiled again and again while it is edited (see [`crate::checks::check_again`]).
 ///
 /// # Errors
 /// As [`compile`].
-pub fn compile_again(
-    plan: FlightPlan,
-    profile: &Profile,
-    terrain: &dyn Terrain,
-    memory: &mut Memory,
-) -> Result<Program, Vec<Problem>> {
-    let (flown, problems) = checked(&plan, profile, terrain, memory);
-    if problems.iter().any(Problem::is_error) {
-        return Err(problems);
-    }
-    Ok(Program {
-        hash: xml::hash(&plan).into(),
-        warnings: problems,
-        paths: paths(&flown),
-        expressions: compiled(&flown),
-        flown: match flown {
-            Cow::Owned(flown) => Some(flown),
-            Cow::Borrowed(_) => None,
-        },
-        plan,
-    })
+pub fn compile_again(plan: impl Into<Arc<FlightPlan>>, memory: &mut Memory) -> Result<Program, Vec<Problem>> {
+    let plan = plan.into();
+    let checked = checked_again(&plan, memory);
+    Program::of(plan, checked)
 }
 
 /// Reads, checks and compiles a document.
@@ -116,14 +103,28 @@ pub fn compile_reading(
 }
 
 impl Program {
+    fn of(plan: Arc<FlightPlan>, checked: Checked) -> Result<Self, Vec<Problem>> {
+        let Checked { flown, problems, expressions, ids } = checked;
+        if problems.iter().any(Problem::is_error) {
+            return Err(problems);
+        }
+        Ok(Self { plan, flown, hash: OnceLock::new(), warnings: problems, ids, expressions })
+    }
+
+    /// Hex SHA-256 of the plan's canonical XML: its identity. Computed when it is first asked for, because a plan that is being
+    /// edited needs none.
+    pub fn hash(&self) -> &Arc<str> {
+        self.hash.get_or_init(|| xml::hash(&self.plan).into())
+    }
+
     /// The plan that is flown: its calls are the legs they stand for (see [`crate::procedure`]).
     pub fn flown(&self) -> &FlightPlan {
         self.flown.as_ref().unwrap_or(&self.plan)
     }
 
     /// Where a leg (or a stage) is.
-    pub fn path(&self, id: &Id) -> Option<&LegPath> {
-        self.paths.get(id)
+    pub fn path(&self, id: &Id) -> Option<LegPath> {
+        self.ids.path(id)
     }
 
     /// The stages of the main plan (`None`) or of an emergency plan (its index).
@@ -140,7 +141,7 @@ impl Program {
     }
 
     /// The list that contains the leg of a path (of a stage: its legs).
-    pub fn list(&self, path: &LegPath) -> Option<&[Leg]> {
+    pub fn list(&self, path: &LegPath) -> Option<&[Arc<Leg>]> {
         let mut list = self.stage(path)?.legs.as_slice();
         let outer = path.indices.split_last().map_or(&[][..], |(_, outer)| outer);
         for index in outer {
@@ -152,7 +153,7 @@ impl Program {
     /// The legs from the outermost loop down to the leg itself; empty for a stage.
     pub fn chain(&self, path: &LegPath) -> Vec<&Leg> {
         let mut list = self.stage(path).map_or(&[][..], |s| &s.legs);
-        let mut chain = Vec::with_capacity(path.indices.len());
+        let mut chain: Vec<&Leg> = Vec::with_capacity(path.indices.len());
         for index in &path.indices {
             let Some(leg) = list.get(*index) else { break };
             chain.push(leg);
@@ -163,7 +164,7 @@ impl Program {
 
     /// A leg by its identifier.
     pub fn leg(&self, id: &Id) -> Option<&Leg> {
-        self.chain(self.path(id)?).last().copied()
+        self.chain(&self.path(id)?).last().copied()
     }
 
     /// The emergency plan of a leg (or stage) for a cause.
@@ -180,9 +181,9 @@ impl Program {
     /// The association that answers a cause on a leg (or stage): see [`Program::emergency_for`].
     pub fn emergency_choice(&self, id: &Id, cause: Cause) -> Option<&EmergencyChoice> {
         let path = self.path(id)?;
-        let chain = self.chain(path);
+        let chain = self.chain(&path);
         let levels = chain.iter().rev().map(|leg| &leg.emergency);
-        let mut levels = levels.chain(self.stage(path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
+        let mut levels = levels.chain(self.stage(&path).map(|s| &s.emergency)).chain([&self.plan.emergency]);
         levels.find(|level| level.plan_for(cause).is_some())
     }
 
@@ -234,7 +235,8 @@ impl Program {
     /// # Errors
     /// The plan has no such expression.
     pub fn expression(&self, source: &str) -> Result<&Expression, EvalError> {
-        self.expressions.get(source).ok_or_else(|| EvalError::NotCompiled(source.into()))
+        let compiled = self.expressions.get(source).and_then(|compiled| compiled.as_ref().ok());
+        compiled.ok_or_else(|| EvalError::NotCompiled(source.into()))
     }
 
     /// True if a leg's geometry, altitude or speed reads this variable (not the legs inside it).
@@ -255,42 +257,6 @@ impl EmergencyChoice {
     }
 }
 
-fn paths(plan: &FlightPlan) -> HashMap<Id, LegPath> {
-    let mut paths = HashMap::new();
-    let main = plan.stages.iter().enumerate().map(|(i, s)| (None, i, s));
-    let others = plan.emergency_plans.iter().enumerate();
-    let others = others.flat_map(|(e, p)| p.stages.iter().enumerate().map(move |(i, s)| (Some(e), i, s)));
-    for (emergency_plan, index, stage) in main.chain(others) {
-        let mut path = LegPath { emergency_plan, stage: index, indices: Vec::new() };
-        paths.insert(stage.id.clone(), path.clone());
-        add_paths(&stage.legs, &mut path, &mut paths);
-    }
-    paths
-}
-
-fn add_paths(legs: &[Leg], path: &mut LegPath, paths: &mut HashMap<Id, LegPath>) {
-    for (index, leg) in legs.iter().enumerate() {
-        path.indices.push(index);
-        paths.insert(leg.id.clone(), path.clone());
-        add_paths(leg.body(), path, paths);
-        path.indices.pop();
-    }
-}
-
-/// Every expression of the plan; those that don't compile have been found by the checks.
-fn compiled(plan: &FlightPlan) -> HashMap<Arc<str>, Expression> {
-    let names = Names::of(plan);
-    let mut compiled = HashMap::new();
-    let mut add = |source: &Arc<str>, _| {
-        if !compiled.contains_key(source) {
-            compiled.extend(expression::compile_with(source, &names).ok().map(|e| (source.clone(), e)));
-        }
-    };
-    plan.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut add));
-    plan.all_legs().iter().for_each(|c| c.leg.for_each_expression(&mut add));
-    compiled
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -309,13 +275,13 @@ mod tests {
         for context in program.plan.all_legs() {
             let path = program.path(&context.leg.id).unwrap();
             assert_eq!(program.leg(&context.leg.id), Some(context.leg));
-            assert_eq!(program.stage(path), Some(context.stage));
-            assert_eq!(program.list(path), Some(context.siblings));
+            assert_eq!(program.stage(&path), Some(context.stage));
+            assert_eq!(program.list(&path), Some(context.siblings));
             let around: Vec<_> = context.loops.iter().copied().chain([context.leg]).collect();
-            assert_eq!(program.chain(path), around);
+            assert_eq!(program.chain(&path), around);
         }
         let stage = program.path(&"watch".into()).unwrap();
-        assert_eq!((stage.stage, stage.indices.len(), program.chain(stage).len()), (3, 0, 0));
+        assert_eq!((stage.stage, stage.indices.len(), program.chain(&stage).len()), (3, 0, 0));
         assert_eq!(program.leg(&"watch".into()), None);
     }
 

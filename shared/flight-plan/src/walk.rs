@@ -27,7 +27,7 @@ pub struct LegContext<'a> {
     /// Iterative legs around it, outermost first.
     pub loops: Vec<&'a Leg>,
     /// The list it is in: its stage's legs or the innermost loop's body.
-    pub siblings: &'a [Leg],
+    pub siblings: &'a [Arc<Leg>],
     /// Its index in that list.
     pub index: usize,
 }
@@ -39,6 +39,7 @@ impl<'a> LegContext<'a> {
             Some(next) => self.siblings.iter().find(|l| l.id == *next),
             None => self.siblings.get(self.index + 1),
         }
+        .map(Arc::as_ref)
     }
 }
 
@@ -88,7 +89,7 @@ impl Leg {
     }
 
     /// The legs inside it: the body of an iterative leg, else none.
-    pub fn body(&self) -> &[Leg] {
+    pub fn body(&self) -> &[Arc<Leg>] {
         match &self.kind {
             LegKind::Iterative { body, .. } => body,
             _ => &[],
@@ -174,6 +175,23 @@ impl Pattern {
     }
 }
 
+impl Stage {
+    /// The stage as it is by itself.
+    pub fn without_legs(&self) -> Stage {
+        let Stage { id, name, kind, emergency, runway, altitude, speed_mps, legs: _ } = self;
+        Stage {
+            id: id.clone(),
+            name: name.clone(),
+            kind: *kind,
+            emergency: emergency.clone(),
+            runway: runway.clone(),
+            altitude: altitude.clone(),
+            speed_mps: speed_mps.clone(),
+            legs: Vec::new(),
+        }
+    }
+}
+
 impl FlightPlan {
     /// Every stage in document order, with its section.
     pub fn all_stages(&self) -> impl Iterator<Item = (Section<'_>, &Stage)> {
@@ -242,7 +260,7 @@ impl FlightPlan {
 }
 
 fn collect<'a>(
-    legs: &'a [Leg],
+    legs: &'a [Arc<Leg>],
     stage: &'a Stage,
     section: Section<'a>,
     loops: &mut Vec<&'a Leg>,

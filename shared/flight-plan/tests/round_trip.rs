@@ -6,6 +6,7 @@ use geometry::LatLon;
 use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
+use std::sync::Arc;
 
 // The strategies are boxed: their types are too large for a test's stack otherwise.
 
@@ -247,7 +248,7 @@ fn procedure() -> BoxedStrategy<Procedure> {
             parameters,
             reference,
             bearing_deg,
-            legs,
+            legs: shared(legs),
         })
         .boxed()
 }
@@ -314,13 +315,23 @@ fn leg_of(kind: impl Strategy<Value = LegKind> + 'static) -> BoxedStrategy<Leg> 
         .boxed()
 }
 
+fn shared(legs: Vec<Leg>) -> Vec<Arc<Leg>> {
+    legs.into_iter().map(Arc::new).collect()
+}
+
 fn leg() -> BoxedStrategy<Leg> {
     let single = leg_of(simple_kind());
     single
         .prop_recursive(3, 12, 4, |inner| {
             let form = prop_oneof![Just(IterativeForm::Forward), Just(IterativeForm::Reverse)];
             let kind = (form, of(value()), of(source()), turn(), vec(inner, 0..4)).prop_map(
-                |(form, count, until, turn, body)| LegKind::Iterative { form, count, until, turn, body },
+                |(form, count, until, turn, body)| LegKind::Iterative {
+                    form,
+                    count,
+                    until,
+                    turn,
+                    body: shared(body),
+                },
             );
             leg_of(kind)
         })
@@ -339,7 +350,7 @@ fn stage() -> BoxedStrategy<Stage> {
             runway,
             altitude,
             speed_mps,
-            legs,
+            legs: shared(legs),
         })
         .boxed()
 }
@@ -430,7 +441,7 @@ proptest! {
 }
 
 fn has_duplicates(plan: &FlightPlan) -> bool {
-    fn add<'a>(legs: &'a [Leg], ids: &mut Vec<&'a Id>) {
+    fn add<'a>(legs: &'a [Arc<Leg>], ids: &mut Vec<&'a Id>) {
         for leg in legs {
             ids.push(&leg.id);
             add(leg.body(), ids);

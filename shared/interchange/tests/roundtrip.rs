@@ -10,6 +10,7 @@ use flight_plan::{
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Import, Step, read, write};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 /// Formats that hold a path.
 const PATHS: [Format; 6] =
@@ -58,7 +59,7 @@ fn plan(legs: Vec<Leg>) -> FlightPlan {
         }],
         stages: vec![
             stage("to", StageKind::TakeOff, vec![]),
-            stage("m", StageKind::Mission, legs),
+            stage("m", StageKind::Mission, legs.into_iter().map(Arc::new).collect()),
             stage("l", StageKind::Land, vec![]),
         ],
         ..FlightPlan::default()
@@ -88,7 +89,7 @@ fn step(
 
 /// Waypoints of the legs that were read: position, metres AMSL and speed.
 fn flown(import: &Import) -> Vec<(LatLon, f64, Option<f64>)> {
-    fn walk(legs: &[Leg], into: &mut Vec<(LatLon, f64, Option<f64>)>) {
+    fn walk(legs: &[Arc<Leg>], into: &mut Vec<(LatLon, f64, Option<f64>)>) {
         for leg in legs {
             let (LegKind::Tf(to) | LegKind::Df { to, .. }) = &leg.kind else { panic!("{leg:?}") };
             let Place::Position(Value::Constant(position)) = &to.place else { panic!("{to:?}") };

@@ -177,18 +177,18 @@ impl<S: Storage> Log<S> {
     pub fn keep_plan(&mut self, program: &Program) -> io::Result<()> {
         let outcome = self.write_plan(program);
         if let Some(open) = &mut self.open {
-            open.plans.insert(program.hash.to_string());
+            open.plans.insert(program.hash().to_string());
         }
         outcome.inspect_err(|_| self.stop())
     }
 
     fn write_plan(&mut self, program: &Program) -> io::Result<()> {
-        if self.plans.contains(&*program.hash) {
+        if self.plans.contains(&**program.hash()) {
             return Ok(());
         }
         let xml = flight_plan::write(&program.plan);
-        self.replace(&plan_name(&program.hash), PLAN_TEMPORARY, xml.as_bytes())?;
-        self.plans.insert(program.hash.to_string());
+        self.replace(&plan_name(program.hash()), PLAN_TEMPORARY, xml.as_bytes())?;
+        self.plans.insert(program.hash().to_string());
         Ok(())
     }
 

@@ -212,9 +212,9 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
         let (disk, config) = (Faulty::default(), config());
         let program = Arc::new(compile(xml.as_bytes(), &config).unwrap());
         let mut state = saved();
-        state.proposed = Some(program.hash.clone());
+        state.proposed = Some(program.hash().clone());
         clerk(&disk).perform(Time::ZERO, vec![Job::State(Box::new(state), vec![program.clone()])]);
-        disk.damage(&format!("plan-{}.xml", program.hash), |bytes| *bytes = change.to_vec());
+        disk.damage(&format!("plan-{}.xml", program.hash()), |bytes| *bytes = change.to_vec());
         let (mut log, found) = Log::open(disk.clone(), LIMITS);
         let past = restart(&mut log, &found.unwrap(), &config, Time::ZERO);
         assert!(past.troubles[0].contains(told), "{:?}", past.troubles);

@@ -224,11 +224,11 @@ impl Cursor {
     }
 }
 
-fn successor(list: &[Leg], leg: &Leg, index: usize) -> usize {
+fn successor(list: &[Arc<Leg>], leg: &Leg, index: usize) -> usize {
     leg.next.as_ref().and_then(|id| index_of(list, id)).unwrap_or(index + 1)
 }
 
-fn index_of(list: &[Leg], id: &Id) -> Option<usize> {
+fn index_of(list: &[Arc<Leg>], id: &Id) -> Option<usize> {
     list.iter().position(|l| l.id == *id)
 }
 

@@ -117,7 +117,7 @@ impl Cursor {
     /// Loops around the leg and the leg itself, outermost first.
     pub(crate) fn chain<'a>(&self, world: &World<'a>) -> Vec<&'a Leg> {
         let mut list = self.current_stage(world).map_or(&[][..], |s| &s.legs);
-        let mut chain = Vec::with_capacity(self.loops.len() + 1);
+        let mut chain: Vec<&Leg> = Vec::with_capacity(self.loops.len() + 1);
         for index in self.loops.iter().map(|f| f.index).chain([self.index]) {
             let Some(leg) = list.get(index) else { break };
             chain.push(leg);

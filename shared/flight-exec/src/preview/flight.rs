@@ -347,7 +347,7 @@ impl<'a> Flight<'a> {
 
     fn update(&mut self, program: &Arc<Program>, entry: Option<Id>) {
         self.propose(program);
-        self.command(Command::Commit { hash: program.hash.clone(), entry });
+        self.command(Command::Commit { hash: program.hash().clone(), entry });
     }
 
     fn propose(&mut self, program: &Arc<Program>) {

@@ -48,7 +48,7 @@ fn low_reserve(view: &View, left: f64) -> Option<Problem> {
 
 fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
     let minutes = seconds / 60.0;
-    let open = view.program.path(leg).map(|path| view.program.chain(path)).unwrap_or_default();
+    let open = view.program.path(leg).map(|path| view.program.chain(&path)).unwrap_or_default();
     if let Some(endless) = open.into_iter().find(|l| open_ended(&l.kind)) {
         let message = format!(
             "give `{}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min",

@@ -125,7 +125,7 @@ pub fn review(
 impl View<'_> {
     /// What the stage of a leg (or a stage itself) is for.
     fn stage_kind(&self, leg: &Id) -> Option<StageKind> {
-        Some(self.program.stage(self.program.path(leg)?)?.kind)
+        Some(self.program.stage(&self.program.path(leg)?)?.kind)
     }
 
     /// A leg that the aircraft flies by waypoints: take-off and landing are low, and the autopilot performs them.

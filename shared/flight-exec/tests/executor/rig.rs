@@ -91,7 +91,7 @@ impl Rig {
 
     pub fn update(&mut self, program: &Arc<Program>) -> Result<(), Refusal> {
         self.propose(program);
-        self.command(Command::Commit { hash: program.hash.clone(), entry: None })
+        self.command(Command::Commit { hash: program.hash().clone(), entry: None })
     }
 
     pub fn command(&mut self, command: Command) -> Result<(), Refusal> {

@@ -217,9 +217,9 @@ impl Flight {
     /// Proposed, and committed at the same instant; with an entry leg when the own one is gone.
     fn update(&mut self, which: usize) {
         let program = self.propose(which);
-        let hash = program.hash.clone();
+        let hash = program.hash().clone();
         self.command(Command::Commit { hash: hash.clone(), entry: None });
-        if self.executor.program().is_none_or(|p| p.hash != hash) {
+        if self.executor.program().is_none_or(|p| *p.hash() != hash) {
             let entry = self.random.pick(&["z", "s", "m", "nowhere"]);
             self.command(Command::Commit { hash, entry: Some(entry.into()) });
         }
@@ -265,7 +265,7 @@ impl Flight {
         let with = |plan, snapshot| {
             Executor::restore(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default(), plan, snapshot)
         };
-        let foreign = self.plans.iter().find(|p| plan.as_ref().is_none_or(|own| own.hash != p.hash));
+        let foreign = self.plans.iter().find(|p| plan.as_ref().is_none_or(|own| own.hash() != p.hash()));
         let foreign_refused = foreign.is_none_or(|f| with(Some(f.clone()), read.clone()).is_err());
         let mut restored = with(plan, read).unwrap();
         restored.go_on(self.executor.proposed().cloned(), self.executor.last_step());

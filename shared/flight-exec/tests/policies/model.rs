@@ -10,6 +10,7 @@ use crate::trace::{Step, Trace};
 use flight_exec::{IterationPlace, PlacePointer};
 use flight_plan::{Id, IterativeForm, Leg, LegKind, LegPath, Program, Stage, StageKind, Value};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 pub const POLICIES: &[Policy] = &[policy(
     "flown-as-the-model-says",
@@ -184,7 +185,7 @@ impl<'a> Model<'a, '_> {
             }
         };
         let program = self.program.ok_or(Stop::Over)?;
-        let Some(path) = program.path(&target).cloned() else { return Err(Stop::Over) };
+        let Some(path) = program.path(&target) else { return Err(Stop::Over) };
         let frames = self.frames_around(&path, after.is_some());
         self.counts.retain(|id, _| frames.iter().any(|f| f.id.as_ref() == Some(id)));
         self.fly_section(path.emergency_plan, &path, frames, after.is_some())
@@ -243,7 +244,7 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    fn forward(&mut self, list: &[Leg], mut entry: Option<Entry>) -> Flown {
+    fn forward(&mut self, list: &[Arc<Leg>], mut entry: Option<Entry>) -> Flown {
         let mut index = entry.as_ref().map_or(0, |e| e.indices[0]);
         while let Some(leg) = list.get(index) {
             let mut inside = Vec::new();
@@ -277,7 +278,7 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    fn backward(&mut self, list: &[Leg]) -> Flown {
+    fn backward(&mut self, list: &[Arc<Leg>]) -> Flown {
         let visited = self.stack.last().map_or(Vec::new(), |f| f.visited.clone());
         for visit in visited.into_iter().rev() {
             let Some(leg) = list.iter().find(|l| l.id == visit.id) else { continue };
@@ -372,7 +373,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The branch decided; nobody has: it waits. Gives the leg it leads to.
-    fn cross(&mut self, leg: &Leg, list: &[Leg]) -> Flown<Option<Id>> {
+    fn cross(&mut self, leg: &Leg, list: &[Arc<Leg>]) -> Flown<Option<Id>> {
         let LegKind::Intersection { branches, .. } = &leg.kind else { return Ok(None) };
         if branches.len() < 2 {
             return Ok(branches.first().and_then(|b| b.next.clone()));
@@ -436,7 +437,7 @@ fn deeper(entry: Option<Entry>) -> (Option<Frame>, Option<Entry>) {
     }
 }
 
-fn still_there(visited: &[Visit], body: &[Leg]) -> Vec<Visit> {
+fn still_there(visited: &[Visit], body: &[Arc<Leg>]) -> Vec<Visit> {
     let moved = |v: &Visit| {
         let leg = body.iter().find(|l| l.id == v.id)?;
         Some(Visit { id: v.id.clone(), inside: still_there(&v.inside, leg.body()) })

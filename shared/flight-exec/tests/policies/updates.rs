@@ -96,7 +96,8 @@ fn does_nothing(trace: &Trace, found: &mut Findings) {
 
 fn proposed_is_told(trace: &Trace, found: &mut Findings) {
     for (step, program, report) in proposals(trace) {
-        let told = step.after.status.proposed.as_ref() == Some(&program.hash) && report.hash == program.hash;
+        let told =
+            step.after.status.proposed.as_ref() == Some(program.hash()) && report.hash == *program.hash();
         found.expect(step, told, || format!("{:?}", step.after.status.proposed));
     }
 }
@@ -267,7 +268,7 @@ fn same_plan(trace: &Trace, found: &mut Findings) {
         let quiet = |c: &Command| matches!(c, Command::Commit { .. });
         let undisturbed =
             trace.accepted().filter(|(s, _)| (entered..step.at).contains(&s.at)).all(|(_, c)| quiet(c));
-        if old.hash == new.hash && step.before.is_fed() && undisturbed {
+        if old.hash() == new.hash() && step.before.is_fed() && undisturbed {
             let same = step.feeds().next().is_none() && step.before.tokens() == step.after.tokens();
             found.expect(step, same, || format!("{:?}", step.moment.outputs));
         }

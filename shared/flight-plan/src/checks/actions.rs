@@ -3,7 +3,7 @@
 //! variable does not take at the start. (`wrong-type`: a value of another type than its variable's.)
 
 use super::Inspection;
-use super::inspection::Step;
+use super::step::Step;
 use crate::expression::Type;
 use crate::{Act, Edit, Id, Leg, LegAction, LegKind, Problem, Trigger, Value, VariableValue};
 use std::sync::Arc;
@@ -13,16 +13,14 @@ const SHORTEST_M: f64 = 1.0;
 /// Longest text of an invocation's argument, bytes.
 const LONGEST_ARGUMENT: usize = 16_384;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        for (index, action) in step.context.leg.actions.iter().enumerate() {
-            one(view, step, index, action, problems);
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    for (index, action) in step.leg.actions.iter().enumerate() {
+        one(view, step, index, action, problems);
     }
 }
 
 fn one(view: &Inspection, step: &Step, index: usize, action: &LegAction, problems: &mut Vec<Problem>) {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     let sizes = trigger_fault(view, &action.trigger).into_iter().chain(act_fault(view, &action.act));
     problems.extend(sizes.map(|message| Problem::error("bad-action", message).of(&leg.id)));
     if matches!(action.act, Act::Wait { .. }) && action.trigger != Trigger::End {
@@ -84,7 +82,7 @@ fn invocation_fault(service: &str, operation: &str, argument: &str) -> Option<St
 
 /// Why no passage of the leg comes to a trigger.
 fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     if matches!(leg.kind, LegKind::Intersection { .. }) {
         return Some("move this action to a leg before or after: an intersection is not flown".into());
     }

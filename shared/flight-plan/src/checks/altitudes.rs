@@ -1,8 +1,8 @@
 //! `above-ceiling`: higher than the aircraft flies; `no-altitude`: nothing says how high a leg is flown.
 
 use super::Inspection;
-use super::inspection::{Step, altitude_of};
 use super::remedy::level;
+use super::step::Step;
 use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -13,20 +13,22 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at));
         ceiling(view, amsl_m, &stage.id, problems);
     }
-    for step in &view.steps {
-        ceiling(view, own_altitude_m(view, step), &step.context.leg.id, problems);
-    }
     // legs in document order: the first one is the main plan's first, if that has any
-    view.steps.first().into_iter().for_each(|step| unknown(view, step, problems));
+    view.steps().first().into_iter().for_each(|step| unknown(view, step, problems));
+}
+
+/// That of a leg itself.
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    ceiling(view, own_altitude_m(view, step), &step.leg.id, problems);
 }
 
 /// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
 fn own_altitude_m(view: &Inspection, step: &Step) -> Option<f64> {
-    let altitude: &Altitude = step.context.leg.altitude.as_ref()?;
+    let altitude: &Altitude = step.leg.altitude.as_ref()?;
     match (step.end, altitude.reference) {
         (Some(end), _) => view.altitude_amsl_m(altitude, end.position),
         (None, AltitudeReference::Amsl) => view.number(&altitude.metres),
-        (None, _) => view.place(step.context.leg.place()?).and_then(|at| view.altitude_amsl_m(altitude, at)),
+        (None, _) => view.place(step.leg.place()?).and_then(|at| view.altitude_amsl_m(altitude, at)),
     }
 }
 
@@ -43,11 +45,10 @@ fn ceiling(view: &Inspection, amsl_m: Option<f64>, of: &Id, problems: &mut Vec<P
 
 /// The first leg of a plan has no leg before it to take its altitude from.
 fn unknown(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     let moves = !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. });
-    let main = step.context.section == crate::Section::Main;
     let takes_off = view.home().is_some();
-    if moves && main && !takes_off && altitude_of(&step.context).is_none() {
+    if moves && step.around.main && !takes_off && step.altitude().is_none() {
         let message = "give this leg or its stage an `altitude`: nothing before it says how high it is flown";
         problems.push(Problem::error("no-altitude", message).of(&leg.id));
     }

@@ -2,8 +2,8 @@
 //! ends; `course-not-intercepted`: a CF whose course the aircraft can't be on before its fix.
 
 use super::Inspection;
-use super::inspection::{Step, altitude_of};
 use super::remedy::normal_deg;
+use super::step::Step;
 use crate::uses::SlotMut;
 use crate::{Edit, Leg, LegKind, PlanWaypoint, Problem, Value};
 use geometry::geodesy::normalise_180;
@@ -11,23 +11,21 @@ use geometry::geodesy::normalise_180;
 /// Attributes that are directions.
 const DIRECTIONS: [&str; 3] = ["course", "heading", "bearing"];
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let wrong = leg.numbers().into_iter().filter_map(|(name, value)| wrong_deg(name, value?));
-        for direction_deg in wrong {
-            let message = format!("write the direction as degrees true in 0..360, not {direction_deg}");
-            let problem = Problem::error("bad-course", message).of(&leg.id);
-            problems.push(problem.fixed_by(normalised(leg)));
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let wrong = leg.numbers().into_iter().filter_map(|(name, value)| wrong_deg(name, value?));
+    for direction_deg in wrong {
+        let message = format!("write the direction as degrees true in 0..360, not {direction_deg}");
+        let problem = Problem::error("bad-course", message).of(&leg.id);
+        problems.push(problem.fixed_by(normalised(leg)));
+    }
+    match &leg.kind {
+        LegKind::Fa { .. } if step.altitude().is_none() => {
+            let message = "give this leg an `altitude`: it ends when that is reached";
+            problems.push(Problem::error("fa-incomplete", message).of(&leg.id));
         }
-        match &leg.kind {
-            LegKind::Fa { .. } if altitude_of(&step.context).is_none() => {
-                let message = "give this leg an `altitude`: it ends when that is reached";
-                problems.push(Problem::error("fa-incomplete", message).of(&leg.id));
-            }
-            LegKind::Cf { to, course_deg } => problems.extend(not_intercepted(view, step, to, course_deg)),
-            _ => {}
-        }
+        LegKind::Cf { to, course_deg } => problems.extend(not_intercepted(view, step, to, course_deg)),
+        _ => {}
     }
 }
 
@@ -75,10 +73,10 @@ fn not_intercepted(
         "come from farther back, change the course or use DF: the path comes from {aside_m:.0} m beside the course and {before_m:.0} m before the fix, the turn onto it needs {needed_m:.0} m"
     );
     let fix = Edit::ReplaceLeg {
-        leg: step.context.leg.id.clone(),
-        with: Box::new(Leg { kind: LegKind::Df { to: to.clone(), turn: None }, ..step.context.leg.clone() }),
+        leg: step.leg.id.clone(),
+        with: Box::new(Leg { kind: LegKind::Df { to: to.clone(), turn: None }, ..step.leg.as_ref().clone() }),
     };
-    let problem = Problem::error("course-not-intercepted", message).of(&step.context.leg.id);
+    let problem = Problem::error("course-not-intercepted", message).of(&step.leg.id);
     (before_m < needed_m).then(|| problem.fixed_by(fix))
 }
 

@@ -2,7 +2,8 @@
 //! named for one cause at one place.
 
 use super::Inspection;
-use crate::{Edit, EmergencyChoice, Id, Problem, Section};
+use super::step::Step;
+use crate::{Edit, EmergencyChoice, Id, Problem};
 use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -10,21 +11,22 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
         duplicates(&stage.emergency, Some(&stage.id), problems);
     }
-    for step in &view.steps {
-        duplicates(&step.context.leg.emergency, Some(&step.context.leg.id), problems);
-    }
+}
+
+/// That of a leg itself.
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let (leg, around) = (&step.leg, &step.around);
+    duplicates(&leg.emergency, Some(&leg.id), problems);
     let covers = |choice: &EmergencyChoice| choice.by_cause.iter().any(|(cause, _)| cause.is_none());
-    if covers(&view.plan.emergency) {
+    if !around.main || !leg.body().is_empty() || covers(&view.plan.emergency) {
         return;
     }
-    for step in view.steps.iter().filter(|s| s.context.section == Section::Main) {
-        let context = &step.context;
-        let around = context.loops.iter().chain([&context.leg]).any(|l| covers(&l.emergency));
-        if !around && !covers(&context.stage.emergency) && context.leg.body().is_empty() {
-            let message = "name an emergency plan here, on the stage or on the main plan: without one the gateway decides alone";
-            let problem = Problem::warning("no-emergency-plan", message).of(&context.leg.id);
-            problems.push(problem.perhaps_fixed_by(only_plan(view)));
-        }
+    let mut choices =
+        around.loops.iter().map(|l| &l.emergency).chain([&leg.emergency, &around.stage.emergency]);
+    if !choices.any(covers) {
+        let message = "name an emergency plan here, on the stage or on the main plan: without one the gateway decides alone";
+        let problem = Problem::warning("no-emergency-plan", message).of(&leg.id);
+        problems.push(problem.perhaps_fixed_by(only_plan(view)));
     }
 }
 

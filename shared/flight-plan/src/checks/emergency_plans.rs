@@ -11,7 +11,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         if !first.is_some_and(|leg| matches!(leg.kind, LegKind::Df { .. })) {
             let message = "begin this emergency plan with a DF leg: it must be enterable from anywhere";
             let problem = Problem::error("emergency-not-enterable", message).of(&plan.id);
-            problems.push(problem.perhaps_fixed_by(first.and_then(direct)));
+            problems.push(problem.perhaps_fixed_by(first.and_then(|leg| direct(leg))));
         }
         if !lands(plan) {
             let message =

@@ -21,8 +21,8 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
         stage.for_each_expression(&mut |source, used| trial.one(source, used, &stage.id));
     }
-    for step in &view.steps {
-        let leg = step.context.leg;
+    for step in view.steps().iter().filter(|step| step.marks.expressions) {
+        let leg = &step.leg;
         leg.for_each_expression(&mut |source, used| trial.one(source, used, &leg.id));
     }
 }

@@ -2,6 +2,7 @@
 //! something else than is needed; `no-value`: one that has no value at the variables' initial values.
 
 use super::Inspection;
+use super::step::Step;
 use crate::expression::Type;
 use crate::{Id, Problem, Use};
 
@@ -9,8 +10,12 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
         stage.for_each_expression(&mut |source, used| one(view, source, used, &stage.id, problems));
     }
-    for step in &view.steps {
-        let leg = step.context.leg;
+}
+
+/// Those of a leg itself.
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    if step.marks.expressions {
+        let leg = &step.leg;
         leg.for_each_expression(&mut |source, used| one(view, source, used, &leg.id, problems));
     }
 }

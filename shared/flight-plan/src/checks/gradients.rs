@@ -1,26 +1,25 @@
 //! `too-steep`: a climb or descent that the aircraft can't fly on the length of the leg.
 
 use super::Inspection;
-use super::inspection::{SHORTEST_M, Step};
+use super::path::SHORTEST_M;
 use super::remedy::level;
-use crate::{Edit, IterativeForm, LegKind, Problem};
+use super::step::Step;
+use crate::{Edit, IterativeForm, Problem};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let Some(rate_mps) = vertical_speed_mps(step) else { continue };
-        let (climb, descent) = (view.profile.max_climb_mps, view.profile.max_descent_mps);
-        // flown backwards, a climb is a descent
-        let (climb, descent) =
-            if flown_backwards(step) { (climb.min(descent), climb.min(descent)) } else { (climb, descent) };
-        if rate_mps > climb || -rate_mps > descent {
-            let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descent", descent) };
-            let message = format!(
-                "lengthen this leg, change its altitude or hold to {what} (HA): it takes {:.1} m/s, the aircraft does {limit:.1} m/s",
-                rate_mps.abs()
-            );
-            let problem = Problem::error("too-steep", message).of(&step.context.leg.id);
-            problems.push(problem.perhaps_fixed_by(gentler(step, limit)));
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let Some(rate_mps) = vertical_speed_mps(step) else { return };
+    let (climb, descent) = (view.profile.max_climb_mps, view.profile.max_descent_mps);
+    // flown backwards, a climb is a descent
+    let (climb, descent) =
+        if flown_backwards(step) { (climb.min(descent), climb.min(descent)) } else { (climb, descent) };
+    if rate_mps > climb || -rate_mps > descent {
+        let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descent", descent) };
+        let message = format!(
+            "lengthen this leg, change its altitude or hold to {what} (HA): it takes {:.1} m/s, the aircraft does {limit:.1} m/s",
+            rate_mps.abs()
+        );
+        let problem = Problem::error("too-steep", message).of(&step.leg.id);
+        problems.push(problem.perhaps_fixed_by(gentler(step, limit)));
     }
 }
 
@@ -30,7 +29,7 @@ fn gentler(step: &Step, limit_mps: f64) -> Option<Edit> {
     let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
     let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
     let whole_m = if to_m > from_m { reached_m.floor() } else { reached_m.ceil() };
-    Some(level(&step.context.leg.id, whole_m))
+    Some(level(&step.leg.id, whole_m))
 }
 
 fn vertical_speed_mps(step: &Step) -> Option<f64> {
@@ -42,8 +41,7 @@ fn vertical_speed_mps(step: &Step) -> Option<f64> {
 }
 
 fn flown_backwards(step: &Step) -> bool {
-    let reverse = |kind: &LegKind| matches!(kind, LegKind::Iterative { form: IterativeForm::Reverse, .. });
-    step.context.loops.iter().any(|l| reverse(&l.kind))
+    step.around.loops.iter().any(|l| l.form == IterativeForm::Reverse)
 }
 
 #[cfg(test)]

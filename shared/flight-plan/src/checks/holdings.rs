@@ -2,8 +2,8 @@
 //! than a lap or a part of one; `no-hold-end`: an HM that only a command ends.
 
 use super::Inspection;
-use super::inspection::altitude_of;
 use super::remedy::changed;
+use super::step::Step;
 use crate::{Holding, HoldingLength, Leg, LegKind, Problem, Value};
 
 /// Straight legs where the plan gives none that can be flown, metres.
@@ -11,25 +11,23 @@ const USUAL_LENGTH_M: f64 = 600.0;
 /// Laps where the plan gives none, or none that can be flown.
 const USUAL_LAPS: f64 = 10.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let (LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. }) = &leg.kind else {
-            continue;
-        };
-        if matches!(leg.kind, LegKind::Ha(_)) && altitude_of(&step.context).is_none() {
-            let message = "give this holding an `altitude`: it ends when that is reached";
-            problems.push(Problem::error("holding-incomplete", message).of(&leg.id));
-        }
-        let (HoldingLength::Distance(length) | HoldingLength::Time(length)) = &holding.leg;
-        if view.number(length).is_some_and(|x| x <= 0.0) {
-            let message = "make the straight legs of this holding longer than 0";
-            let problem = Problem::error("bad-holding", message).of(&leg.id);
-            problems.push(problem.perhaps_fixed_by(changed(leg, lengthened)));
-        }
-        if let LegKind::Hm { until, max_laps, .. } = &leg.kind {
-            laps(view, leg, max_laps.as_ref(), until.is_some(), problems);
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let (LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. }) = &leg.kind else {
+        return;
+    };
+    if matches!(leg.kind, LegKind::Ha(_)) && step.altitude().is_none() {
+        let message = "give this holding an `altitude`: it ends when that is reached";
+        problems.push(Problem::error("holding-incomplete", message).of(&leg.id));
+    }
+    let (HoldingLength::Distance(length) | HoldingLength::Time(length)) = &holding.leg;
+    if view.number(length).is_some_and(|x| x <= 0.0) {
+        let message = "make the straight legs of this holding longer than 0";
+        let problem = Problem::error("bad-holding", message).of(&leg.id);
+        problems.push(problem.perhaps_fixed_by(changed(leg, lengthened)));
+    }
+    if let LegKind::Hm { until, max_laps, .. } = &leg.kind {
+        laps(view, leg, max_laps.as_ref(), until.is_some(), problems);
     }
 }
 

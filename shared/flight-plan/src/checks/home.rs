@@ -1,22 +1,32 @@
 //! `no-home`: an altitude counts from the take-off runway, and the plan has no take-off stage that would name it.
 
 use super::Inspection;
+use super::step::Step;
 use crate::{Altitude, AltitudeReference, Id, Problem, StageKind};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    // a take-off stage without its runway is another rule's
-    if view.plan.stages.iter().any(|stage| stage.kind == StageKind::TakeOff) {
+    if takes_off(view) {
         return;
     }
     let stages = view.plan.all_stages().filter_map(|(_, stage)| Some((&stage.id, stage.altitude.as_ref()?)));
-    let legs = view.steps.iter().map(|step| step.context.leg);
-    let legs = legs.filter_map(|leg| Some((&leg.id, leg.altitude.as_ref()?)));
     let zones = view.plan.zones.iter().flat_map(|zone| {
         let limits = zone.floor.iter().chain(&zone.ceiling);
         limits.map(|limit| (&zone.id, limit))
     });
-    let homeless = stages.chain(legs).chain(zones).filter(|(_, a)| counts_from_home(a));
+    let homeless = stages.chain(zones).filter(|(_, a)| counts_from_home(a));
     problems.extend(homeless.map(|(of, _)| problem(of)));
+}
+
+/// The altitude of a leg itself.
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    if step.leg.altitude.as_ref().is_some_and(counts_from_home) && !takes_off(view) {
+        problems.push(problem(&step.leg.id));
+    }
+}
+
+/// A take-off stage without its runway is another rule's.
+fn takes_off(view: &Inspection) -> bool {
+    view.plan.stages.iter().any(|stage| stage.kind == StageKind::TakeOff)
 }
 
 fn counts_from_home(altitude: &Altitude) -> bool {

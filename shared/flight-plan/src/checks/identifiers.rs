@@ -1,6 +1,7 @@
 //! `bad-id`: an identifier is missing or has a character that it may not have; `duplicate-id`: it is there twice.
 
 use super::Inspection;
+use super::step::Step;
 use crate::{Edit, Id, LegKind, Problem, expression};
 use std::collections::HashSet;
 
@@ -12,41 +13,42 @@ const MOST_NUMBERS: usize = 1000;
 const MOST_RENAMED: usize = 64;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    let plan = view.plan;
-    let ids = plan.fixes.iter().map(|f| &f.id).chain(plan.runways.iter().map(|r| &r.id));
-    let ids = ids.chain(plan.zones.iter().map(|z| &z.id));
-    let ids = ids.chain(plan.procedures.iter().map(|p| &p.id));
-    let ids = ids.chain(plan.emergency_plans.iter().map(|e| &e.id));
-    let ids = ids.chain(plan.all_stages().map(|(_, s)| &s.id));
-    unique(ids.chain(view.steps.iter().map(|s| &s.context.leg.id)), problems);
-    unique(plan.variables.iter().map(|v| &v.name), problems);
-    plan.variables.iter().for_each(|v| variable_name(&v.name, problems));
-    for step in &view.steps {
-        if let LegKind::Intersection { branches, .. } = &step.context.leg.kind {
-            unique(branches.iter().map(|b| &b.id), problems);
-        }
+    let variables = view.plan.variables.iter().map(|v| &v.name);
+    view.ids.others().chain(variables.clone()).for_each(|id| well_formed(id, problems));
+    twice(view.ids.twice(), |id| view.ids.contains(id), problems);
+    unique(variables, problems);
+    view.plan.variables.iter().for_each(|v| variable_name(&v.name, problems));
+}
+
+/// A leg's own identifier, and those of its branches.
+pub(super) fn leg(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    well_formed(&step.leg.id, problems);
+    if let LegKind::Intersection { branches, .. } = &step.leg.kind {
+        branches.iter().for_each(|b| well_formed(&b.id, problems));
+        unique(branches.iter().map(|b| &b.id), problems);
+    }
+}
+
+fn well_formed(id: &Id, problems: &mut Vec<Problem>) {
+    if !is_identifier(id.as_str()) {
+        let message = format!(
+            "give this an id of 1 to {LONGEST} letters, digits, `-`, `_` or `.`, not \"{}\"",
+            id.as_str().escape_debug()
+        );
+        problems.push(Problem::error("bad-id", message).of(id));
     }
 }
 
 fn unique<'a>(ids: impl Iterator<Item = &'a Id>, problems: &mut Vec<Problem>) {
     let mut seen = HashSet::new();
-    let mut twice = Vec::new();
-    for id in ids {
-        if !is_identifier(id.as_str()) {
-            let message = format!(
-                "give this an id of 1 to {LONGEST} letters, digits, `-`, `_` or `.`, not \"{}\"",
-                id.as_str().escape_debug()
-            );
-            problems.push(Problem::error("bad-id", message).of(id));
-        }
-        if !seen.insert(id) {
-            twice.push(id);
-        }
-    }
-    for (index, id) in twice.into_iter().enumerate() {
+    let again: Vec<Id> = ids.filter(|id| !seen.insert(*id)).cloned().collect();
+    twice(&again, |id| seen.contains(id), problems);
+}
+
+fn twice(again: &[Id], taken: impl Fn(&Id) -> bool, problems: &mut Vec<Problem>) {
+    for (index, id) in again.iter().enumerate() {
         let message = format!("rename one of those that are called `{id}`");
-        let free = || free(id, |other| seen.contains(other));
-        let free = (index < MOST_RENAMED).then(free).flatten();
+        let free = (index < MOST_RENAMED).then(|| free(id, &taken)).flatten();
         let fix = free.map(|to| Edit::Distinguish { id: id.clone(), to });
         problems.push(Problem::error("duplicate-id", message).of(id).perhaps_fixed_by(fix));
     }

@@ -3,29 +3,27 @@
 
 use super::Inspection;
 use super::remedy::changed;
+use super::step::Step;
 use super::suggest::meant;
 use crate::{Branch, DecideBefore, Edit, Id, Leg, LegKind, Problem};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let LegKind::Intersection { branches, default, decide_before } = &leg.kind else { continue };
-        match default {
-            Some(id) if !branches.iter().any(|b| b.id == *id) => {
-                let message =
-                    format!("the default `{id}` is no branch of this intersection: name one of them");
-                let near = meant(id, branches.iter().map(|b| &b.id));
-                let problem = Problem::error("unknown-branch", message).of(&leg.id);
-                problems.push(problem.perhaps_fixed_by(near.map(|id| set_default(&leg.id, id))));
-            }
-            None if branches.len() > 1 => problems.push(undecided(leg, branches)),
-            _ => {}
+pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let LegKind::Intersection { branches, default, decide_before } = &leg.kind else { return };
+    match default {
+        Some(id) if !branches.iter().any(|b| b.id == *id) => {
+            let message = format!("the default `{id}` is no branch of this intersection: name one of them");
+            let near = meant(id, branches.iter().map(|b| &b.id));
+            let problem = Problem::error("unknown-branch", message).of(&leg.id);
+            problems.push(problem.perhaps_fixed_by(near.map(|id| set_default(&leg.id, id))));
         }
-        let (DecideBefore::Time(ahead) | DecideBefore::Distance(ahead)) = decide_before;
-        if *ahead < 0.0 {
-            let problem = Problem::error("bad-deadline", "make `decideBefore` 0 or more").of(&leg.id);
-            problems.push(problem.perhaps_fixed_by(changed(leg, at_the_intersection)));
-        }
+        None if branches.len() > 1 => problems.push(undecided(leg, branches)),
+        _ => {}
+    }
+    let (DecideBefore::Time(ahead) | DecideBefore::Distance(ahead)) = decide_before;
+    if *ahead < 0.0 {
+        let problem = Problem::error("bad-deadline", "make `decideBefore` 0 or more").of(&leg.id);
+        problems.push(problem.perhaps_fixed_by(changed(leg, at_the_intersection)));
     }
 }
 

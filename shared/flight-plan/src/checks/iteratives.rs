@@ -1,27 +1,25 @@
 //! `no-loop-end`: neither count nor condition; `bad-count`: a count below 1 or not whole; `empty-loop`: nothing to repeat.
 
 use super::Inspection;
+use super::step::Step;
 use crate::{Edit, Id, LegKind, Problem, Value};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let LegKind::Iterative { count, until, body, .. } = &leg.kind else { continue };
-        if count.is_none() && until.is_none() {
-            let message = "give this loop a `count` or an `until` condition: it would never end";
-            problems.push(Problem::error("no-loop-end", message).of(&leg.id).fixed_by(counted(&leg.id, 1.0)));
-        }
-        if let Some(n) = count.as_ref().and_then(|c| view.number(c)).filter(|n| *n < 1.0 || n.fract() != 0.0)
-        {
-            let message = format!("make the count a whole number of at least 1, not {n}");
-            let fix = counted(&leg.id, n.round().max(1.0));
-            problems.push(Problem::error("bad-count", message).of(&leg.id).fixed_by(fix));
-        }
-        if body.is_empty() {
-            let fix = Edit::DeleteLeg { leg: leg.id.clone() };
-            let message = "put legs into this loop or remove it";
-            problems.push(Problem::error("empty-loop", message).of(&leg.id).fixed_by(fix));
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let LegKind::Iterative { count, until, body, .. } = &leg.kind else { return };
+    if count.is_none() && until.is_none() {
+        let message = "give this loop a `count` or an `until` condition: it would never end";
+        problems.push(Problem::error("no-loop-end", message).of(&leg.id).fixed_by(counted(&leg.id, 1.0)));
+    }
+    if let Some(n) = count.as_ref().and_then(|c| view.number(c)).filter(|n| *n < 1.0 || n.fract() != 0.0) {
+        let message = format!("make the count a whole number of at least 1, not {n}");
+        let fix = counted(&leg.id, n.round().max(1.0));
+        problems.push(Problem::error("bad-count", message).of(&leg.id).fixed_by(fix));
+    }
+    if body.is_empty() {
+        let fix = Edit::DeleteLeg { leg: leg.id.clone() };
+        let message = "put legs into this loop or remove it";
+        problems.push(Problem::error("empty-loop", message).of(&leg.id).fixed_by(fix));
     }
 }
 

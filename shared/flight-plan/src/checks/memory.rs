@@ -1,122 +1,213 @@
-//! What one check leaves for the next: after an edit nearly every line of a plan is where it was.
+//! What one check leaves for the next: after an edit nearly every leg of a plan is what it was.
 
-use super::inspection::Path;
-use geometry::LatLon;
+use super::inspection::{Expressions, Inspection};
+use super::step::{Around, Point, Step};
+use crate::ids::Ids;
+use crate::{EmergencyChoice, Fix, FlightPlan, Id, Leg, Runway, StageKind, Variable};
+use aircraft::Profile;
+use std::sync::Arc;
+use terrain::Terrain;
 
-/// The lines of the plan that was checked last, in its order. Finding the geodesic between two positions is most of what checking
-/// costs, and depends on nothing else; so it does not matter which plan, aircraft or ground they are from.
-#[derive(Debug, Default)]
-pub struct Memory(Vec<Line>);
-
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    from: LatLon,
-    to: LatLon,
-    path: Path,
+/// What is remembered of the last check of a plan that is being edited, for one aircraft over one terrain.
+///
+/// Legs that both plans share (an edit copies only those that it changes), that are entered as before and have the same around them
+/// are not looked at again.
+pub struct Memory {
+    pub(super) profile: Profile,
+    pub(super) terrain: Arc<dyn Terrain>,
+    pub(super) last: Option<Last>,
 }
 
-/// A memory in use.
-pub(super) struct Recall<'m> {
-    memory: &'m mut Memory,
-    /// Where the old lines go on.
-    next: usize,
-    /// How many old lines the next search looks at: more after each one in vain.
+impl std::fmt::Debug for Memory {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Memory").field("profile", &self.profile.name).finish_non_exhaustive()
+    }
+}
+
+impl Memory {
+    /// Nothing is remembered yet. The terrain must stay as it is: with other elevations, make a new memory.
+    pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
+        Self { profile, terrain, last: None }
+    }
+}
+
+/// The last check.
+pub(super) struct Last {
+    setting: Setting,
+    steps: Vec<Step>,
+    expressions: Arc<Expressions>,
+    ids: Arc<Ids>,
+}
+
+/// Everything beside the legs and what is around them that the rules about one leg may look at.
+#[derive(PartialEq)]
+struct Setting {
+    fixes: Vec<Fix>,
+    runways: Vec<Runway>,
+    variables: Vec<Variable>,
+    emergency: EmergencyChoice,
+    emergency_plans: Vec<Id>,
+    /// The runway that the first take-off stage names, if there is one.
+    take_off: Option<Option<Id>>,
+}
+
+impl Setting {
+    fn of(plan: &FlightPlan) -> Self {
+        Self {
+            fixes: plan.fixes.clone(),
+            runways: plan.runways.clone(),
+            variables: plan.variables.clone(),
+            emergency: plan.emergency.clone(),
+            emergency_plans: plan.emergency_plans.iter().map(|e| e.id.clone()).collect(),
+            take_off: take_off(plan).map(Option::<&Id>::cloned),
+        }
+    }
+
+    fn is_of(&self, plan: &FlightPlan) -> bool {
+        self.fixes == plan.fixes
+            && self.runways == plan.runways
+            && self.variables == plan.variables
+            && self.emergency == plan.emergency
+            && self.take_off.as_ref().map(Option::as_ref) == take_off(plan)
+            && self.emergency_plans.iter().eq(plan.emergency_plans.iter().map(|e| &e.id))
+    }
+}
+
+fn take_off(plan: &FlightPlan) -> Option<Option<&Id>> {
+    plan.stages.iter().find(|stage| stage.kind == StageKind::TakeOff).map(|stage| stage.runway.as_ref())
+}
+
+impl Last {
+    /// Keeps a check for the next one.
+    pub fn of(inspection: Inspection) -> Self {
+        let setting = Setting::of(inspection.plan);
+        let (steps, expressions, ids) = inspection.into_parts();
+        Self { setting, steps, expressions, ids }
+    }
+}
+
+/// A memory in use: the last check's steps in their order, and how they fit a new plan.
+#[derive(Default)]
+pub(super) struct Recall {
+    old: std::vec::IntoIter<Step>,
+    /// How many there were.
+    total: usize,
+    /// How many old steps the next search looks at: more after each one in vain.
     ahead: usize,
     /// How many may still be looked at: the search costs no more than the plan.
     left: usize,
-    lines: Vec<Line>,
+    /// Of each new step: the old one of the same leg, and what followed that.
+    from: Vec<Option<Origin>>,
+    pub expressions: Arc<Expressions>,
+    pub ids: Arc<Ids>,
+}
+
+/// Where a step was in the last check.
+#[derive(Clone, Copy)]
+struct Origin {
+    number: usize,
+    after: Option<usize>,
+    /// It is what it was, as far as it goes by itself.
+    same: bool,
 }
 
 /// Looked at first: what a few deleted legs leave over.
 const AHEAD: usize = 8;
 
-impl<'m> Recall<'m> {
-    pub fn new(memory: &'m mut Memory) -> Self {
-        let left = 4 * memory.0.len();
-        let lines = Vec::with_capacity(memory.0.len());
-        Self { memory, next: 0, ahead: AHEAD, left, lines }
+impl Recall {
+    /// What may be remembered for a plan.
+    pub fn of(last: Option<Last>, plan: &FlightPlan) -> Self {
+        match last.filter(|last| last.setting.is_of(plan)) {
+            Some(Last { steps, expressions, ids, .. }) => {
+                let total = steps.len();
+                Self {
+                    old: steps.into_iter(),
+                    total,
+                    ahead: AHEAD,
+                    left: 4 * total,
+                    from: Vec::with_capacity(total),
+                    expressions,
+                    ids,
+                }
+            }
+            None => Self::default(),
+        }
     }
 
-    /// [`Path::line`], remembered or computed.
-    pub fn line(&mut self, from: LatLon, to: LatLon) -> Path {
-        let old = self.memory.0.get(self.next..).unwrap_or_default();
+    /// There is something to remember.
+    pub fn is_useful(&self) -> bool {
+        self.total > 0
+    }
+
+    pub fn total(&self) -> usize {
+        self.total
+    }
+
+    /// The step of the next leg, if it was there, in this setting.
+    pub fn step(
+        &mut self,
+        leg: &Arc<Leg>,
+        around: &Arc<Around>,
+        start: Option<Point>,
+        before: Option<usize>,
+    ) -> Option<Step> {
+        let Some(step) = self.find(leg) else {
+            self.from.push(None);
+            return None;
+        };
+        let number = self.total - self.old.len() - 1;
+        let before = before.map(|before| self.was(before));
+        let same =
+            Arc::ptr_eq(&step.around, around) && step.start == start && step.before.map(Some) == before;
+        self.from.push(Some(Origin { number, after: step.after, same }));
+        same.then_some(step)
+    }
+
+    /// The old step of a leg; those before it are given up.
+    fn find(&mut self, leg: &Arc<Leg>) -> Option<Step> {
         let ahead = self.ahead.min(self.left);
-        let found = old.iter().take(ahead).position(|line| line.from == from && line.to == to);
-        let line = match found.and_then(|n| old.get(n).map(|line| (n, *line))) {
-            Some((n, line)) => {
-                self.next += n + 1;
+        let found = self.old.as_slice().iter().take(ahead).position(|old| Arc::ptr_eq(&old.leg, leg));
+        match found {
+            Some(skipped) => {
                 self.ahead = AHEAD;
-                line
+                self.old.nth(skipped)
             }
             None => {
-                self.left -= ahead.min(old.len());
+                self.left -= ahead.min(self.old.len());
                 self.ahead = self.ahead.saturating_mul(2);
-                Line { from, to, path: Path::line(from, to) }
-            }
-        };
-        self.lines.push(line);
-        line.path
-    }
-
-    /// Keeps this check's lines for the next.
-    pub fn finish(self) {
-        self.memory.0 = self.lines;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn lines(recall: &mut Recall, positions: &[u8]) -> Vec<f64> {
-        let at = |n: u8| LatLon::new(f64::from(n) / 100.0, 0.0);
-        positions.windows(2).map(|pair| recall.line(at(pair[0]), at(pair[1])).length_m()).collect()
-    }
-
-    /// Legs edited, as `(position, removed, put in)`.
-    fn edited(plan: &[u8], edits: &[(usize, usize, Vec<u8>)]) -> Vec<u8> {
-        let mut plan = plan.to_vec();
-        for (at, removed, put_in) in edits {
-            let at = at % (plan.len() + 1);
-            let end = (at + removed).min(plan.len());
-            plan.splice(at..end, put_in.iter().copied());
-        }
-        plan
-    }
-
-    #[test]
-    fn after_an_edit_of_one_leg_two_lines_are_computed() {
-        let plan: Vec<u8> = (0..200).collect();
-        let mut memory = Memory::default();
-        let mut recall = Recall::new(&mut memory);
-        lines(&mut recall, &plan);
-        recall.finish();
-        let moved = edited(&plan, &[(100, 1, vec![250])]);
-        let mut recall = Recall::new(&mut memory);
-        lines(&mut recall, &moved);
-        // what was looked at in vain: eight, then sixteen
-        assert_eq!(recall.left, 4 * 199 - AHEAD - 2 * AHEAD);
-        assert_eq!(recall.next, 199);
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-
-        /// Whatever was checked before, the lines are those that there are.
-        #[test]
-        fn a_remembered_line_is_the_line(
-            plan in prop::collection::vec(any::<u8>(), 0..60),
-            edits in prop::collection::vec((any::<usize>(), 0..30_usize, prop::collection::vec(any::<u8>(), 0..4)), 0..5),
-        ) {
-            let mut memory = Memory::default();
-            for plan in [plan.clone(), edited(&plan, &edits)] {
-                let fresh = lines(&mut Recall::new(&mut Memory::default()), &plan);
-                let mut recall = Recall::new(&mut memory);
-                let remembered = lines(&mut recall, &plan);
-                recall.finish();
-                prop_assert_eq!(remembered, fresh);
+                None
             }
         }
+    }
+
+    /// What a list has around it: that of the last check, if it is the same.
+    pub fn around(&self, new: Around) -> Arc<Around> {
+        let old = self.old.as_slice().iter().take(AHEAD).map(|step| &step.around);
+        old.into_iter().find(|old| ***old == new).cloned().unwrap_or_else(|| Arc::new(new))
+    }
+
+    fn origin(&self, step: usize) -> Option<Origin> {
+        self.from.get(step).copied().flatten()
+    }
+
+    /// A step is what it was, as far as it goes by itself.
+    fn is_same(&self, step: usize) -> bool {
+        self.origin(step).is_some_and(|origin| origin.same)
+    }
+
+    /// The leg of a step was the one of this number before.
+    pub fn was(&self, step: usize) -> Option<usize> {
+        self.origin(step).map(|origin| origin.number)
+    }
+
+    /// Rules about one leg would say what they said: they look at its step, at two before it and at one after it.
+    pub fn holds(&self, number: usize, step: &Step, steps: &[Step]) -> bool {
+        let Some(origin) = self.origin(number) else { return false };
+        let before = step.before.and_then(|i| Some((i, steps.get(i)?)));
+        let near = before.map(|(i, _)| i).into_iter().chain(before.and_then(|(_, step)| step.before));
+        let after = step.after.map(|after| self.was(after));
+        origin.same
+            && origin.after.map(Some) == after
+            && near.chain(step.after).all(|neighbour| self.is_same(neighbour))
     }
 }

@@ -19,6 +19,7 @@ mod iteratives;
 mod memory;
 mod orbits;
 mod order;
+mod path;
 mod patterns;
 mod procedures;
 mod references;
@@ -30,8 +31,10 @@ mod segments;
 mod spacings;
 mod speeds;
 mod stages;
+mod step;
 mod suggest;
 mod terrain_clearance;
+mod trace;
 mod tracks;
 mod values;
 mod variables;
@@ -40,97 +43,177 @@ mod zones;
 #[cfg(test)]
 mod testing;
 
+pub(crate) use inspection::Expressions;
 pub use memory::Memory;
 
+use crate::ids::Ids;
 use crate::{FlightPlan, Id, Problem};
 use ::aircraft::Profile;
-use inspection::{Inspection, Step};
+use inspection::Inspection;
+use memory::{Last, Recall};
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::sync::Arc;
+use step::Step;
 use terrain::Terrain;
 
-type Rule = fn(&Inspection, &mut Vec<Problem>);
+/// What has to hold, of what.
+enum Rule {
+    /// Of the plan: everything that is not a leg, or that legs have to do with each other wherever they are.
+    Plan(fn(&Inspection, &mut Vec<Problem>)),
+    /// Of one leg. It looks at the leg's step, at two before it and at one after it, so that an edit elsewhere changes nothing.
+    Leg(fn(&Inspection, &Step, &mut Vec<Problem>)),
+}
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 31] = [
-    empty::check,
-    identifiers::check,
-    references::check,
-    values::check,
-    expressions::check,
-    expression_bounds::check,
-    variables::check,
-    zones::check,
-    aircraft::check,
-    runways::check,
-    stages::check,
-    order::check,
-    iteratives::check,
-    intersections::check,
-    tracks::check,
-    rf::check,
-    segments::check,
-    courses::check,
-    holdings::check,
-    orbits::check,
-    scans::check,
-    patterns::check,
-    spacings::check,
-    actions::check,
-    speeds::check,
-    gradients::check,
-    altitudes::check,
-    home::check,
-    terrain_clearance::check,
-    emergency_plans::check,
-    emergency_coverage::check,
-];
+const RULES: [Rule; 38] = {
+    use Rule::{Leg, Plan};
+    [
+        Plan(empty::check),
+        Plan(identifiers::check),
+        Leg(identifiers::leg),
+        Plan(references::check),
+        Plan(values::check),
+        Leg(values::leg),
+        Plan(expressions::check),
+        Leg(expressions::leg),
+        Plan(expression_bounds::check),
+        Plan(variables::check),
+        Plan(zones::check),
+        Plan(aircraft::check),
+        Plan(runways::check),
+        Plan(stages::check),
+        Plan(order::check),
+        Leg(iteratives::check),
+        Leg(intersections::check),
+        Leg(tracks::check),
+        Leg(rf::check),
+        Leg(segments::check),
+        Leg(courses::check),
+        Leg(holdings::check),
+        Leg(orbits::check),
+        Leg(scans::check),
+        Leg(patterns::check),
+        Leg(spacings::check),
+        Leg(actions::check),
+        Plan(speeds::check),
+        Leg(speeds::leg),
+        Leg(gradients::check),
+        Plan(altitudes::check),
+        Leg(altitudes::leg),
+        Plan(home::check),
+        Leg(home::leg),
+        Leg(terrain_clearance::check),
+        Plan(emergency_plans::check),
+        Plan(emergency_coverage::check),
+        Leg(emergency_coverage::leg),
+    ]
+};
 
 /// Every problem of a plan for an aircraft over a terrain; empty: nothing to complain about.
 ///
 /// Calls are checked as the legs they stand for. Geometry that depends on variables is checked at their initial values.
 pub fn check(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Vec<Problem> {
-    check_again(plan, profile, terrain, &mut Memory::default())
+    checked(plan, profile, terrain).problems
 }
 
 /// As [`check`], for a plan that is checked again and again while it is edited: much quicker where little has changed.
-pub fn check_again(
+pub fn check_again(plan: &FlightPlan, memory: &mut Memory) -> Vec<Problem> {
+    checked_again(plan, memory).problems
+}
+
+/// A plan that was checked, and what that found out.
+pub(crate) struct Checked {
+    /// The plan with its calls instantiated; `None`: it has none.
+    pub flown: Option<FlightPlan>,
+    pub problems: Vec<Problem>,
+    pub expressions: Arc<Expressions>,
+    pub ids: Arc<Ids>,
+}
+
+pub(crate) fn checked(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Checked {
+    look_at(plan, profile, terrain, None).0
+}
+
+pub(crate) fn checked_again(plan: &FlightPlan, memory: &mut Memory) -> Checked {
+    let terrain = memory.terrain.clone();
+    let (checked, last) = look_at(plan, &memory.profile, terrain.as_ref(), Some(memory.last.take()));
+    memory.last = last;
+    checked
+}
+
+/// `last`: the last check, if there was one; `None`: nobody will ask again.
+fn look_at(
     plan: &FlightPlan,
     profile: &Profile,
     terrain: &dyn Terrain,
-    memory: &mut Memory,
-) -> Vec<Problem> {
-    checked(plan, profile, terrain, memory).1
-}
-
-/// The plan with its calls instantiated, and every problem of it (see [`check`]).
-pub(crate) fn checked<'p>(
-    plan: &'p FlightPlan,
-    profile: &Profile,
-    terrain: &dyn Terrain,
-    memory: &mut Memory,
-) -> (Cow<'p, FlightPlan>, Vec<Problem>) {
+    last: Option<Option<Last>>,
+) -> (Checked, Option<Last>) {
     let (flown, mut problems) = crate::procedure::instantiate(plan);
     procedures::check(plan, &mut problems);
-    let inspection = Inspection::new(&flown, profile, terrain, memory);
-    RULES.iter().for_each(|rule| rule(&inspection, &mut problems));
+    let again = last.is_some();
+    let mut recall = Recall::of(last.flatten(), &flown);
+    let mut inspection = Inspection::new(&flown, profile, terrain, &mut recall);
+    if inspection.is_full() && recall.is_useful() {
+        // expressions that are not there any more may have taken the room
+        recall = Recall::default();
+        inspection = Inspection::new(&flown, profile, terrain, &mut recall);
+    }
+    problems.extend(apply_rules(&mut inspection, &recall));
     if matches!(flown, Cow::Owned(_)) {
         written_only(&inspection, &mut problems);
     }
-    drop(inspection);
-    (flown, problems)
+    let (expressions, ids) = (inspection.expressions().clone(), inspection.ids.clone());
+    let last = again.then(|| Last::of(inspection));
+    let flown = match flown {
+        Cow::Owned(flown) => Some(flown),
+        Cow::Borrowed(_) => None,
+    };
+    (Checked { flown, problems, expressions, ids }, last)
+}
+
+/// What each rule says, in the rules' order; what those about one leg said before, if it still holds.
+fn apply_rules(view: &mut Inspection, recall: &Recall) -> Vec<Problem> {
+    let mut said: [Vec<Problem>; RULES.len()] = std::array::from_fn(|_| Vec::new());
+    for (rule, said) in RULES.iter().zip(&mut said) {
+        if let Rule::Plan(check) = rule {
+            check(view, said);
+        }
+    }
+    for number in 0..view.steps().len() {
+        let Some(step) = view.steps().get(number) else { break };
+        if !recall.holds(number, step, view.steps()) {
+            let found = rules_about(view, step);
+            view.keep(number, found);
+        }
+        for (rule, problem) in view.steps().get(number).iter().flat_map(|step| &step.found) {
+            said.get_mut(*rule).into_iter().for_each(|said| said.push(problem.clone()));
+        }
+    }
+    said.into_iter().flatten().collect()
+}
+
+fn rules_about(view: &Inspection, step: &Step) -> Vec<(usize, Problem)> {
+    let (mut found, mut said) = (Vec::new(), Vec::new());
+    for (number, rule) in RULES.iter().enumerate() {
+        if let Rule::Leg(check) = rule {
+            check(view, step, &mut said);
+            found.extend(said.drain(..).map(|problem| (number, problem)));
+        }
+    }
+    found
 }
 
 /// Takes away the fixes of legs that calls have made: the plan as it is written has no such legs to edit.
 fn written_only(inspection: &Inspection, problems: &mut [Problem]) {
     let made = |step: &&Step| {
-        let leg = step.context.leg.id.as_str();
-        step.context
+        let leg = step.leg.id.as_str();
+        step.around
             .loops
             .iter()
             .any(|l| leg.strip_prefix(l.id.as_str()).is_some_and(|rest| rest.starts_with('.')))
     };
-    let made: HashSet<&Id> = inspection.steps.iter().filter(made).map(|s| &s.context.leg.id).collect();
+    let made: HashSet<&Id> = inspection.steps().iter().filter(made).map(|s| &s.leg.id).collect();
     for problem in problems.iter_mut().filter(|p| p.fix.is_some()) {
         if problem.subject.as_ref().is_some_and(|id| made.contains(id)) {
             problem.fix = None;

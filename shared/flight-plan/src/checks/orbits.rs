@@ -1,30 +1,27 @@
 //! `turn-too-tight`: a circle tighter than the aircraft's turn; `bad-orbit`: less than a quarter turn.
 
 use super::Inspection;
-use super::inspection::Step;
 use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::step::Step;
 use crate::{LegKind, Pattern, Problem, Value};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        if let LegKind::Orbit { radius_m, .. } | LegKind::Pattern(Pattern::FigureEight { radius_m, .. }) =
-            &leg.kind
-        {
-            too_tight(view, step, radius_m, problems);
-        }
-        if let LegKind::Orbit { turns, .. } = &leg.kind
-            && view.number(turns).is_some_and(|t| t < 0.25)
-        {
-            let problem =
-                Problem::error("bad-orbit", "fly at least a quarter turn (`turns` of 0.25 or more)");
-            problems.push(problem.of(&leg.id).perhaps_fixed_by(changed(leg, once)));
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    if let LegKind::Orbit { radius_m, .. } | LegKind::Pattern(Pattern::FigureEight { radius_m, .. }) =
+        &leg.kind
+    {
+        too_tight(view, step, radius_m, problems);
+    }
+    if let LegKind::Orbit { turns, .. } = &leg.kind
+        && view.number(turns).is_some_and(|t| t < 0.25)
+    {
+        let problem = Problem::error("bad-orbit", "fly at least a quarter turn (`turns` of 0.25 or more)");
+        problems.push(problem.of(&leg.id).perhaps_fixed_by(changed(leg, once)));
     }
 }
 
 fn too_tight(view: &Inspection, step: &Step, radius: &Value<f64>, problems: &mut Vec<Problem>) {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     let needed_m = view.turn_radius_m(step.speed_mps);
     let Some(radius_m) = view.number(radius).filter(|r| *r < needed_m) else { return };
     let message =

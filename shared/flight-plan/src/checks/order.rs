@@ -3,16 +3,15 @@
 use super::Inspection;
 use crate::{Edit, Leg, LegKind, Problem};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for (_, stage) in view.plan.all_stages() {
-        list(&stage.legs, problems);
-    }
-    view.steps.iter().for_each(|step| list(step.context.leg.body(), problems));
+    // where nothing names its successor, each leg leads to the next
+    view.lists.iter().for_each(|legs| list(legs, problems));
 }
 
 /// One list: a graph whose nodes are its legs and, last, its end.
-fn list(legs: &[Leg], problems: &mut Vec<Problem>) {
+fn list(legs: &[Arc<Leg>], problems: &mut Vec<Problem>) {
     let index: HashMap<&str, usize> = legs.iter().enumerate().map(|(i, l)| (l.id.as_str(), i)).collect();
     let forward: Vec<Vec<usize>> =
         legs.iter().enumerate().map(|(i, leg)| successors(i, leg, &index)).collect();

@@ -2,6 +2,7 @@
 
 use super::Inspection;
 use super::remedy::changed;
+use super::step::Step;
 use crate::{Edit, Leg, LegKind, Pattern, Place, Problem, Value};
 
 /// Radii and widths beyond this are mistakes, metres.
@@ -14,13 +15,11 @@ const MOST_TURNS: f64 = 1e6;
 /// Two points of a route that are nearer than this are one, metres.
 const SAME_PLACE_M: f64 = 1.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let LegKind::Pattern(pattern) = &step.context.leg.kind else { continue };
-        let leg = step.context.leg;
-        for (message, fix) in Faults::of(view, leg, pattern) {
-            problems.push(Problem::error("bad-pattern", message).of(&leg.id).perhaps_fixed_by(fix));
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let LegKind::Pattern(pattern) = &step.leg.kind else { return };
+    let leg = &step.leg;
+    for (message, fix) in Faults::of(view, leg, pattern) {
+        problems.push(Problem::error("bad-pattern", message).of(&leg.id).perhaps_fixed_by(fix));
     }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::{Edit, FlightPlan, Id, Leg, LegKind, Problem};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 pub(super) fn check(plan: &FlightPlan, problems: &mut Vec<Problem>) {
     let mut called = HashSet::new();
@@ -21,7 +22,7 @@ pub(super) fn check(plan: &FlightPlan, problems: &mut Vec<Problem>) {
     }
 }
 
-fn calls<'a>(legs: &'a [Leg], called: &mut HashSet<&'a Id>) {
+fn calls<'a>(legs: &'a [Arc<Leg>], called: &mut HashSet<&'a Id>) {
     for leg in legs {
         if let LegKind::Call(call) = &leg.kind {
             called.insert(&call.procedure);

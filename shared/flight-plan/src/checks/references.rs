@@ -4,8 +4,9 @@
 use super::Inspection;
 use super::suggest::meant;
 use crate::uses::Part;
-use crate::{Act, Edit, EmergencyChoice, Id, Leg, LegContext, LegKind, Place, Problem};
+use crate::{Act, Edit, EmergencyChoice, Id, Leg, LegAction, LegKind, Place, Problem};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
@@ -18,22 +19,24 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         found.emergencies(&stage.emergency, Some(&stage.id));
         stage.runway.iter().for_each(|id| found.runway(id, &stage.id));
     }
-    let known: Known = view.steps.iter().map(|s| (s.context.siblings.as_ptr(), &s.context.leg.id)).collect();
-    for step in &view.steps {
-        let leg = step.context.leg;
-        found.leg(leg);
-        found.next(&known, &step.context, leg.next.as_ref());
-        if let LegKind::Intersection { branches, .. } = &leg.kind {
-            branches.iter().for_each(|b| found.next(&known, &step.context, b.next.as_ref()));
-        }
+    for step in view.steps().iter().filter(|step| step.marks.strangers) {
+        found.leg(&step.leg);
     }
+    view.lists.iter().for_each(|list| found.list(list));
+}
+
+/// A leg names a fix, variable or emergency plan that is not there.
+pub(super) fn has_strangers(view: &Inspection, leg: &Leg) -> bool {
+    let mut strange = leg.emergency.by_cause.iter().any(|(_, id)| !view.emergency_plans.contains(id));
+    leg.for_each_part(&mut |part| {
+        strange |= matches!(part, Part::Place(Place::Fix(id)) if !view.fixes.contains_key(id));
+    });
+    let set = |action: &LegAction| matches!(&action.act, Act::Set { variable, .. } if view.plan.variable(variable).is_none());
+    strange || leg.actions.iter().any(set)
 }
 
 /// Most misspelt names for which another one is looked for.
 const MOST_SUGGESTIONS: usize = 64;
-
-/// Each leg with the list it is in.
-type Known<'a> = HashSet<(*const Leg, &'a Id)>;
 
 struct Found<'a, 'p> {
     view: &'a Inspection<'a>,
@@ -43,7 +46,7 @@ struct Found<'a, 'p> {
 }
 
 impl<'a> Found<'a, '_> {
-    fn leg(&mut self, leg: &'a Leg) {
+    fn leg(&mut self, leg: &Leg) {
         self.emergencies(&leg.emergency, Some(&leg.id));
         leg.for_each_part(&mut |part| {
             if let Part::Place(Place::Fix(id)) = part {
@@ -80,13 +83,25 @@ impl<'a> Found<'a, '_> {
         }
     }
 
-    fn next(&mut self, known: &Known, context: &LegContext<'a>, next: Option<&Id>) {
-        let Some(id) = next.filter(|id| !known.contains(&(context.siblings.as_ptr(), *id))) else { return };
+    /// What follows what in a list.
+    fn list(&mut self, list: &[Arc<Leg>]) {
+        let known: HashSet<&Id> = list.iter().map(|leg| &leg.id).collect();
+        for leg in list {
+            let branches = match &leg.kind {
+                LegKind::Intersection { branches, .. } => branches.as_slice(),
+                _ => &[],
+            };
+            let named = leg.next.iter().chain(branches.iter().filter_map(|b| b.next.as_ref()));
+            named.filter(|id| !known.contains(id)).for_each(|id| self.next(list, leg, id));
+        }
+    }
+
+    fn next(&mut self, list: &[Arc<Leg>], leg: &Leg, id: &Id) {
         let message = format!(
             "`next` names `{id}`, which is no leg of the same list: name a leg of this stage or loop"
         );
-        let problem = Problem::error("unknown-leg", message).of(&context.leg.id);
-        let fix = self.corrected(id, Some(&context.leg.id), context.siblings.iter().map(|l| &l.id));
+        let problem = Problem::error("unknown-leg", message).of(&leg.id);
+        let fix = self.corrected(id, Some(&leg.id), list.iter().map(|l| &l.id));
         self.problems.push(problem.perhaps_fixed_by(fix));
     }
 

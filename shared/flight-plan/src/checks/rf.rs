@@ -2,8 +2,9 @@
 //! more than 1° where the arc begins or ends; `turn-too-tight`: the radius is below the aircraft's at that speed.
 
 use super::Inspection;
-use super::inspection::{Path, SHORTEST_M, Step, course_change_deg};
+use super::path::{Path, course_change_deg};
 use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::step::Step;
 use crate::{Edit, LegKind, Problem, TurnDirection};
 use geometry::{LatLon, LocalFrame};
 
@@ -13,17 +14,15 @@ const TOLERANCE_SHARE: f64 = 0.005;
 /// Corner that is still called tangent, degrees.
 const TANGENT_DEG: f64 = 1.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for (index, step) in view.steps.iter().enumerate() {
-        if let LegKind::Rf { to, centre, .. } = &step.context.leg.kind
-            && centre.is_valid()
-            && let Some(end) = view.place(&to.place)
-        {
-            too_tight(view, step, centre.distance_m(end), problems);
-            circle(view, index, centre.distance_m(end), problems);
-        }
-        tangent(view, index, problems);
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    if let LegKind::Rf { to, centre, .. } = &step.leg.kind
+        && centre.is_valid()
+        && let Some(end) = view.place(&to.place)
+    {
+        too_tight(view, step, centre.distance_m(end), problems);
+        circle(view, step, centre.distance_m(end), problems);
     }
+    tangent(view, step, problems);
 }
 
 fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Problem>) {
@@ -33,59 +32,51 @@ fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<P
             "widen the arc to {needed_m:.0} m or fly it slower: its radius is {radius_m:.0} m, too tight at {:.0} m/s",
             step.speed_mps
         );
-        let leg = &step.context.leg.id;
+        let leg = &step.leg.id;
         let fix = slower(view, leg, speed_for_radius_mps(view, radius_m));
         problems.push(Problem::error("turn-too-tight", message).of(leg).perhaps_fixed_by(fix));
     }
 }
 
-fn circle(view: &Inspection, index: usize, radius_m: f64, problems: &mut Vec<Problem>) {
-    let Some(step) = view.steps.get(index) else { return };
-    let (Some(start), LegKind::Rf { centre, .. }) = (step.start, &step.context.leg.kind) else { return };
+fn circle(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Problem>) {
+    let (Some(start), LegKind::Rf { centre, .. }) = (step.start, &step.leg.kind) else { return };
     let start_m = centre.distance_m(start.position);
     if (start_m - radius_m).abs() > TOLERANCE_M.max(radius_m * TOLERANCE_SHARE) {
         let message = format!(
             "move the centre or an end: the arc starts {start_m:.1} m from its centre and ends {radius_m:.1} m from it"
         );
-        let fix = tangent_arc(view, index).or_else(|| on_circle(view, step));
-        let problem = Problem::error("rf-not-on-circle", message).of(&step.context.leg.id);
+        let fix = tangent_arc(view, step).or_else(|| on_circle(view, step));
+        let problem = Problem::error("rf-not-on-circle", message).of(&step.leg.id);
         problems.push(problem.perhaps_fixed_by(fix));
     }
 }
 
 /// Where this path meets the one before it, if one of the two is an arc.
-fn tangent(view: &Inspection, index: usize, problems: &mut Vec<Problem>) {
-    let Some(step) = view.steps.get(index) else { return };
-    let Some((earlier, before)) = step.before.and_then(|i| Some((i, view.steps.get(i)?))) else { return };
-    let (Some(here), Some(there)) = (directed(step), directed(before)) else { return };
-    let (culprit, blame) = match (here, there) {
-        (Path::Arc { .. }, _) => (index, step),
-        (_, Path::Arc { .. }) => (earlier, before),
+fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let Some(before) = view.before(step) else { return };
+    let (Some(here), Some(there)) = (step.directed(), before.directed()) else { return };
+    let culprit = match (here, there) {
+        (Path::Arc { .. }, _) => step,
+        (_, Path::Arc { .. }) => before,
         _ => return,
     };
     let corner_deg = course_change_deg(there.course_end_deg(), here.course_start_deg());
     if corner_deg > TANGENT_DEG {
         let message = format!(
             "move the centre or an end: between `{}` and `{}` the path turns by {corner_deg:.1}°, at most {TANGENT_DEG}° is tangent",
-            before.context.leg.id, step.context.leg.id
+            before.leg.id, step.leg.id
         );
-        let problem = Problem::error("rf-not-tangent", message).of(&blame.context.leg.id);
+        let problem = Problem::error("rf-not-tangent", message).of(&culprit.leg.id);
         problems.push(problem.perhaps_fixed_by(tangent_arc(view, culprit)));
     }
 }
 
-/// The path of a step that is long enough to have a direction.
-fn directed(step: &Step) -> Option<Path> {
-    step.path.filter(|p| p.length_m() >= SHORTEST_M)
-}
-
 /// The centre of the arc from the step's start to its end that begins tangent to the path before it, if it ends tangent to the
 /// path after it too, and is wide enough: on the normal of the path at the start, where it is equally far from both ends.
-fn tangent_arc(view: &Inspection, index: usize) -> Option<Edit> {
-    let step = view.steps.get(index)?;
-    let LegKind::Rf { turn, .. } = &step.context.leg.kind else { return None };
+fn tangent_arc(view: &Inspection, step: &Step) -> Option<Edit> {
+    let LegKind::Rf { turn, .. } = &step.leg.kind else { return None };
     let (start, end) = (step.start?.position, step.end?.position);
-    let course_deg = directed(view.steps.get(step.before?)?)?.course_end_deg();
+    let course_deg = view.before(step)?.directed()?.course_end_deg();
     let frame = LocalFrame::new(start);
     let chord = frame.to_local(end);
     let side_deg = if *turn == TurnDirection::Right { 90.0 } else { -90.0 };
@@ -95,8 +86,7 @@ fn tangent_arc(view: &Inspection, index: usize) -> Option<Edit> {
         return None;
     }
     let centre = frame.to_geo(normal * radius_m);
-    let follows = |s: &&Step| s.before == Some(index);
-    let after = view.steps.iter().skip(index + 1).take(2).find(follows).and_then(directed);
+    let after = view.after(step).and_then(Step::directed);
     let leaves_deg = Path::arc(start, end, centre, *turn).course_end_deg();
     let smooth = |path: Path| course_change_deg(leaves_deg, path.course_start_deg()) <= TANGENT_DEG;
     if !after.is_none_or(smooth) {
@@ -107,7 +97,7 @@ fn tangent_arc(view: &Inspection, index: usize) -> Option<Edit> {
 
 /// The centre moved the shortest way to where it is equally far from both ends.
 fn on_circle(view: &Inspection, step: &Step) -> Option<Edit> {
-    let LegKind::Rf { centre, .. } = &step.context.leg.kind else { return None };
+    let LegKind::Rf { centre, .. } = &step.leg.kind else { return None };
     let frame = LocalFrame::new(step.start?.position);
     let end = frame.to_local(step.end?.position);
     let off = frame.to_local(*centre);
@@ -118,7 +108,7 @@ fn on_circle(view: &Inspection, step: &Step) -> Option<Edit> {
 }
 
 fn moved_centre(step: &Step, to: LatLon) -> Option<Edit> {
-    changed(step.context.leg, |kind| {
+    changed(&step.leg, |kind| {
         let LegKind::Rf { centre, .. } = kind else { return None };
         *centre = to;
         Some(())

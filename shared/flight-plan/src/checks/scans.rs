@@ -2,20 +2,19 @@
 
 use super::Inspection;
 use super::remedy::changed;
+use super::step::Step;
 use crate::{Area, Edit, Leg, LegKind, Pattern, Problem, Scan, Value};
 use geometry::{LatLon, LocalFrame, Polygon};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        match &leg.kind {
-            LegKind::Scan(scan) => {
-                overshoot(view, leg, scan, problems);
-                area(view, leg, &scan.area, problems);
-            }
-            LegKind::Pattern(Pattern::Contour { area: outline, .. }) => area(view, leg, outline, problems),
-            _ => {}
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    match &leg.kind {
+        LegKind::Scan(scan) => {
+            overshoot(view, leg, scan, problems);
+            area(view, leg, &scan.area, problems);
         }
+        LegKind::Pattern(Pattern::Contour { area: outline, .. }) => area(view, leg, outline, problems),
+        _ => {}
     }
 }
 

@@ -1,8 +1,9 @@
 //! `segment-too-short`: a track is shorter than what the turns at its ends take of it.
 
 use super::Inspection;
-use super::inspection::{Path, SHORTEST_M, Step, course_change_deg};
+use super::path::{Path, course_change_deg};
 use super::remedy::slower;
+use super::step::Step;
 use crate::{Edit, LegKind, Problem};
 
 /// Turns up to this need no room, degrees (guidance: no fly-by for less).
@@ -12,28 +13,29 @@ const INTERCEPT_DEG: f64 = 30.0;
 /// Fly-by beyond this is flown as a fly-over, degrees.
 const STEEPEST_FLY_BY_DEG: f64 = 150.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    // what the turn at each step's end takes of the step that follows it
-    let mut turns = vec![Turns::default(); view.steps.len()];
-    for (index, step) in view.steps.iter().enumerate() {
-        let Some((before, from)) = step.before.and_then(|i| Some((i, view.steps.get(i)?))) else { continue };
-        let (Some(arriving), Some(leaving)) = (directed(from), directed(step)) else { continue };
-        let change_deg = course_change_deg(arriving.course_end_deg(), leaving.course_start_deg());
-        let (at_end_m, at_start_m) = room(view, from, change_deg);
-        turns.get_mut(before).into_iter().for_each(|t| (t.end_m, t.end_deg) = (at_end_m, change_deg));
-        turns.get_mut(index).into_iter().for_each(|t| t.start_m = at_start_m);
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let Some(Path::Line { length_m, .. }) = step.directed() else { return };
+    let mut turns = Turns::default();
+    if let Some(before) = view.before(step) {
+        turns.start_m = turn(view, before, step).map_or(0.0, |(_, (_, behind_m))| behind_m);
     }
-    for (step, turns) in view.steps.iter().zip(turns) {
-        let Some(Path::Line { length_m, .. }) = directed(step) else { continue };
-        let needed_m = turns.start_m + turns.end_m;
-        if length_m < needed_m {
-            let message = format!(
-                "lengthen this track to {needed_m:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more"
-            );
-            let problem = Problem::warning("segment-too-short", message).of(&step.context.leg.id);
-            problems.push(problem.perhaps_fixed_by(fitted(view, step, &turns, length_m)));
-        }
+    if let Some((deg, (ahead_m, _))) = view.after(step).and_then(|after| turn(view, step, after)) {
+        (turns.end_deg, turns.end_m) = (deg, ahead_m);
     }
+    let needed_m = turns.start_m + turns.end_m;
+    if length_m < needed_m {
+        let message = format!(
+            "lengthen this track to {needed_m:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more"
+        );
+        let problem = Problem::warning("segment-too-short", message).of(&step.leg.id);
+        problems.push(problem.perhaps_fixed_by(fitted(view, step, &turns, length_m)));
+    }
+}
+
+/// The track change between two steps, degrees, and what the turn takes of them, metres.
+fn turn(view: &Inspection, from: &Step, to: &Step) -> Option<(f64, (f64, f64))> {
+    let change_deg = course_change_deg(from.directed()?.course_end_deg(), to.directed()?.course_start_deg());
+    Some((change_deg, room(view, from, change_deg)))
 }
 
 /// What the turns at the ends of a track take of it, metres.
@@ -45,22 +47,17 @@ struct Turns {
     end_deg: f64,
 }
 
-/// The path of a step that is long enough to have a direction.
-fn directed(step: &Step) -> Option<Path> {
-    step.path.filter(|p| p.length_m() >= SHORTEST_M)
-}
-
 /// Fly-over instead of fly-by at the end, or a lower speed on this track and the one before it.
 fn fitted(view: &Inspection, step: &Step, turns: &Turns, length_m: f64) -> Option<Edit> {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     let turn_is_fly_by = turns.end_m > 0.0 && matches!(leg.kind, LegKind::Tf(_));
     if turn_is_fly_by && turns.start_m <= length_m && turns.end_deg <= STEEPEST_FLY_BY_DEG {
         return Some(Edit::SetFlyOver { leg: leg.id.clone(), fly_over: true });
     }
     // the room of a turn grows with the square of the speed, which rounds down to tenths
     let factor = (length_m / (turns.start_m + turns.end_m)).sqrt();
-    let before = step.before.and_then(|i| view.steps.get(i))?;
-    let both = [before, step].map(|s| slower(view, &s.context.leg.id, s.speed_mps * factor));
+    let before = view.before(step)?;
+    let both = [before, step].map(|s| slower(view, &s.leg.id, s.speed_mps * factor));
     Some(Edit::All(both.into_iter().collect::<Option<Vec<_>>>()?))
 }
 
@@ -70,7 +67,7 @@ fn room(view: &Inspection, step: &Step, change_deg: f64) -> (f64, f64) {
     if change_deg <= STRAIGHT_DEG {
         return (0.0, 0.0);
     }
-    let fly_over = matches!(&step.context.leg.kind, LegKind::Tf(to) | LegKind::Rf { to, .. } if to.fly_over);
+    let fly_over = matches!(&step.leg.kind, LegKind::Tf(to) | LegKind::Rf { to, .. } if to.fly_over);
     if fly_over || change_deg > STEEPEST_FLY_BY_DEG {
         return (0.0, fly_over_room_m(radius_m, change_deg.to_radians()));
     }

@@ -2,32 +2,29 @@
 //! pattern would never end; `tracks-too-close`: the aircraft can't turn from one into the next.
 
 use super::Inspection;
-use super::inspection::{Step, altitude_of};
 use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::step::Step;
 use crate::{AltitudeReference, Area, LegKind, Pattern, Problem, Spacing, Value};
 use geometry::LocalFrame;
 
 /// Most tracks beside each other: at 25 m/s and 1 km each that is a month.
 const MOST_TRACKS: f64 = 100_000.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let Some(spacing) = spacing_of(&leg.kind) else { continue };
-        if let Some(message) = wrong(view, step, spacing) {
-            problems.push(Problem::error("bad-spacing", message).of(&leg.id));
-            continue;
-        }
-        let Some(spacing_m) = metres(view, step, spacing) else { continue };
-        if let Some(width_m) = width_m(view, step).filter(|w| w / spacing_m > MOST_TRACKS) {
-            let least_m = width_m / MOST_TRACKS;
-            let message = format!(
-                "make the spacing at least {least_m:.2} m: {MOST_TRACKS} tracks are too many already"
-            );
-            problems.push(Problem::error("too-many-tracks", message).of(&leg.id));
-        }
-        problems.extend(too_close(view, step, spacing_m));
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let Some(spacing) = spacing_of(&leg.kind) else { return };
+    if let Some(message) = wrong(view, step, spacing) {
+        problems.push(Problem::error("bad-spacing", message).of(&leg.id));
+        return;
     }
+    let Some(spacing_m) = metres(view, step, spacing) else { return };
+    if let Some(width_m) = width_m(view, step).filter(|w| w / spacing_m > MOST_TRACKS) {
+        let least_m = width_m / MOST_TRACKS;
+        let message =
+            format!("make the spacing at least {least_m:.2} m: {MOST_TRACKS} tracks are too many already");
+        problems.push(Problem::error("too-many-tracks", message).of(&leg.id));
+    }
+    problems.extend(too_close(view, step, spacing_m));
 }
 
 fn spacing_of(kind: &LegKind) -> Option<&Spacing> {
@@ -59,7 +56,7 @@ fn wrong(view: &Inspection, step: &Step, spacing: &Spacing) -> Option<&'static s
             let fov = view.number(field_of_view_deg).is_some_and(|deg| deg <= 0.0 || deg >= 180.0);
             let low = height_m.as_ref().and_then(|h| view.number(h)).is_some_and(|h| h <= 0.0);
             let above_ground = |a: &crate::Altitude| a.reference == AltitudeReference::Agl;
-            let no_height = height_m.is_none() && !altitude_of(&step.context).is_some_and(above_ground);
+            let no_height = height_m.is_none() && !step.altitude().is_some_and(above_ground);
             match () {
                 () if fov => Some("make the camera's field of view more than 0° and less than 180°"),
                 () if outside(overlap, 0.0..1.0) => {
@@ -80,7 +77,7 @@ fn metres(view: &Inspection, step: &Step, spacing: &Spacing) -> Option<f64> {
     let metres = match spacing {
         Spacing::Metres(metres) => view.number(metres)?,
         Spacing::Camera { field_of_view_deg, overlap, height_m } => {
-            let height = height_m.as_ref().or(altitude_of(&step.context).map(|a| &a.metres))?;
+            let height = height_m.as_ref().or(step.altitude().map(|a| &a.metres))?;
             let half_rad = view.number(field_of_view_deg)?.to_radians() / 2.0;
             2.0 * view.number(height)? * half_rad.tan() * (1.0 - view.number(overlap)?)
         }
@@ -90,7 +87,7 @@ fn metres(view: &Inspection, step: &Step, spacing: &Spacing) -> Option<f64> {
 
 /// How wide a pattern is at most, metres.
 fn width_m(view: &Inspection, step: &Step) -> Option<f64> {
-    match &step.context.leg.kind {
+    match &step.leg.kind {
         LegKind::Scan(scan) => across_m(view, &scan.area),
         LegKind::Pattern(pattern) => match pattern {
             Pattern::Spiral { outer_radius_m: r, .. } | Pattern::ExpandingSquare { radius_m: r, .. } => {
@@ -117,7 +114,7 @@ fn across_m(view: &Inspection, area: &Area) -> Option<f64> {
 
 /// The square's turns of 90° need r·tan 45° at both ends of its first legs, which are as long as the spacing.
 fn too_close(view: &Inspection, step: &Step, spacing_m: f64) -> Option<Problem> {
-    let leg = step.context.leg;
+    let leg = &step.leg;
     let LegKind::Pattern(Pattern::ExpandingSquare { .. }) = &leg.kind else { return None };
     let needed_m = 2.0 * view.turn_radius_m(step.speed_mps);
     let message = format!(

@@ -1,15 +1,18 @@
 //! `speed-outside-envelope`: slower or faster than the aircraft flies.
 
 use super::Inspection;
+use super::step::Step;
 use crate::{Edit, Id, Problem, Value};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
         one(view, stage.speed_mps.as_ref(), &stage.id, problems);
     }
-    for step in &view.steps {
-        one(view, step.context.leg.speed_mps.as_ref(), &step.context.leg.id, problems);
-    }
+}
+
+/// That of a leg itself.
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    one(view, step.leg.speed_mps.as_ref(), &step.leg.id, problems);
 }
 
 fn one(view: &Inspection, speed: Option<&Value<f64>>, of: &Id, problems: &mut Vec<Problem>) {

@@ -1,8 +1,8 @@
 //! `below-terrain`: a leg goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
 
 use super::Inspection;
-use super::inspection::{Point, Step};
 use super::remedy::level;
+use super::step::{Point, Step};
 use crate::{Edit, Problem, StageKind};
 
 /// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
@@ -12,36 +12,34 @@ const SPACING_M: f64 = 45.0;
 /// Most looks on a leg.
 const MOST_LOOKS: f64 = 2_000.0;
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let Some((clearance_m, ground_m)) = lowest_clearance_m(view, step) else { continue };
-        let near_runway =
-            matches!(step.context.stage.kind, StageKind::Departure | StageKind::Approach | StageKind::Land);
-        let leg = &step.context.leg.id;
-        if clearance_m < 0.0 {
-            let message = format!(
-                "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high there",
-                MARGIN_M - clearance_m
-            );
-            let problem = Problem::error("below-terrain", message).of(leg);
-            problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
-        } else if clearance_m < MARGIN_M && !near_runway {
-            let message = format!(
-                "raise this leg by {:.0} m: it passes {clearance_m:.0} m above the ground",
-                MARGIN_M - clearance_m
-            );
-            let problem = Problem::warning("low-clearance", message).of(leg);
-            problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
-        }
+pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let Some((clearance_m, ground_m)) = lowest_clearance_m(view, step) else { return };
+    let near_runway =
+        matches!(step.around.stage.kind, StageKind::Departure | StageKind::Approach | StageKind::Land);
+    let leg = &step.leg.id;
+    if clearance_m < 0.0 {
+        let message = format!(
+            "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high there",
+            MARGIN_M - clearance_m
+        );
+        let problem = Problem::error("below-terrain", message).of(leg);
+        problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
+    } else if clearance_m < MARGIN_M && !near_runway {
+        let message = format!(
+            "raise this leg by {:.0} m: it passes {clearance_m:.0} m above the ground",
+            MARGIN_M - clearance_m
+        );
+        let problem = Problem::warning("low-clearance", message).of(leg);
+        problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
     }
 }
 
 /// The leg raised at both ends by what it lacks, to whole metres.
 fn raised(view: &Inspection, step: &Step, clearance_m: f64) -> Option<Edit> {
     let lacks_m = MARGIN_M - clearance_m;
-    let lift = |of: &Step| Some(level(&of.context.leg.id, (of.end?.altitude_amsl_m? + lacks_m).ceil()));
+    let lift = |of: &Step| Some(level(&of.leg.id, (of.end?.altitude_amsl_m? + lacks_m).ceil()));
     let end = lift(step)?;
-    let Some(before) = step.before.and_then(|i| view.steps.get(i)) else { return Some(end) };
+    let Some(before) = view.before(step) else { return Some(end) };
     let start = lift(before)?;
     Some(Edit::All(vec![start, end]))
 }

@@ -1,24 +1,23 @@
 //! `zero-length`: a track or arc ends where it begins, so that it has no direction.
 
 use super::Inspection;
-use super::inspection::{Path, SHORTEST_M};
+use super::path::{Path, SHORTEST_M};
+use super::step::Step;
 use crate::{Edit, LegKind, Problem};
 
-pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for step in &view.steps {
-        let leg = step.context.leg;
-        let Some((start, end)) = step.start.zip(step.end) else { continue };
-        let directed = matches!(leg.kind, LegKind::Tf(_) | LegKind::Rf { .. });
-        let apart_m = match step.path {
-            Some(Path::Line { length_m, .. }) => length_m,
-            _ if directed => start.position.distance_m(end.position),
-            _ => continue,
-        };
-        if directed && apart_m < SHORTEST_M {
-            let message = "remove this leg or move its waypoint: it ends where the leg before it ends";
-            let fix = Edit::DeleteLeg { leg: leg.id.clone() };
-            problems.push(Problem::error("zero-length", message).of(&leg.id).fixed_by(fix));
-        }
+pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
+    let Some((start, end)) = step.start.zip(step.end) else { return };
+    let directed = matches!(leg.kind, LegKind::Tf(_) | LegKind::Rf { .. });
+    let apart_m = match step.path {
+        Some(Path::Line { length_m, .. }) => length_m,
+        _ if directed => start.position.distance_m(end.position),
+        _ => return,
+    };
+    if directed && apart_m < SHORTEST_M {
+        let message = "remove this leg or move its waypoint: it ends where the leg before it ends";
+        let fix = Edit::DeleteLeg { leg: leg.id.clone() };
+        problems.push(Problem::error("zero-length", message).of(&leg.id).fixed_by(fix));
     }
 }
 

@@ -1,8 +1,9 @@
 //! `bad-value`: a number that is not finite or a position that is not on Earth.
 
 use super::Inspection;
+use super::step::Step;
 use crate::uses::Part;
-use crate::{Altitude, DecideBefore, Id, Leg, LegKind, Place, Problem, Value};
+use crate::{Altitude, DecideBefore, Id, LegKind, Place, Problem, Value};
 use geometry::LatLon;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
@@ -20,10 +21,11 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         altitude(stage.altitude.as_ref(), &stage.id, problems);
         value(stage.speed_mps.as_ref(), &stage.id, problems);
     }
-    view.steps.iter().for_each(|step| leg(step.context.leg, problems));
 }
 
-fn leg(leg: &Leg, problems: &mut Vec<Problem>) {
+/// Of a leg itself.
+pub(super) fn leg(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    let leg = &step.leg;
     leg.for_each_part(&mut |part| match part {
         Part::Number(x) => value(Some(x), &leg.id, problems),
         Part::Place(Place::Position(Value::Constant(p))) => position(*p, &leg.id, problems),
@@ -68,6 +70,7 @@ mod tests {
     use crate::{FlightPlan, LegKind, Place, Value, check, checks::testing::plan_with, read};
     use aircraft::Profile;
     use geometry::LatLon;
+    use std::sync::Arc;
     use terrain::Flat;
 
     fn broken(change: impl FnOnce(&mut FlightPlan)) -> Vec<&'static str> {
@@ -86,12 +89,16 @@ mod tests {
         assert_eq!(broken(|p| p.fixes[0].position = LatLon::new(91.0, 0.0)), ["bad-value"]);
         assert_eq!(broken(|p| p.runways[0].heading_deg = f64::NAN), ["bad-value"]);
         assert_eq!(
-            broken(|p| p.stages[1].legs[0].speed_mps = Some(Value::Constant(f64::INFINITY))),
+            broken(
+                |p| Arc::make_mut(&mut p.stages[1].legs[0]).speed_mps = Some(Value::Constant(f64::INFINITY))
+            ),
             ["bad-value"]
         );
         assert_eq!(
             broken(|p| {
-                let LegKind::Tf(to) = &mut p.stages[1].legs[1].kind else { panic!("a TF was expected") };
+                let LegKind::Tf(to) = &mut Arc::make_mut(&mut p.stages[1].legs[1]).kind else {
+                    panic!("a TF was expected")
+                };
                 to.place = Place::Position(Value::Constant(LatLon::new(f64::NAN, 0.0)));
             }),
             ["bad-value"]

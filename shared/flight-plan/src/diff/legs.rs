@@ -5,6 +5,7 @@ use crate::xml::Piece;
 use crate::{FlightPlan, Id, Leg, LegContext, Place};
 use geometry::LatLon;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A plan's legs, those of its procedures too.
 struct Legs<'p> {
@@ -41,7 +42,7 @@ impl<'p> Legs<'p> {
     }
 }
 
-fn add<'p>(legs: &'p [Leg], inside: &'p Id, places: &mut Vec<At<'p>>) {
+fn add<'p>(legs: &'p [Arc<Leg>], inside: &'p Id, places: &mut Vec<At<'p>>) {
     for leg in legs {
         places.push(At { leg, inside, context: None });
         add(leg.body(), &leg.id, places);

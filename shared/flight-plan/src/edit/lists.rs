@@ -3,35 +3,45 @@
 use super::{EditError, Spot, found, leg_mut, not_applicable, stages_mut};
 use crate::{FlightPlan, Id, Leg, LegKind, Stage};
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
-/// The list that holds a leg, and the leg's index in it.
-fn list_of<'a>(legs: &'a mut Vec<Leg>, id: &Id) -> Option<(&'a mut Vec<Leg>, usize)> {
+/// Legs in their order.
+type Legs = Vec<Arc<Leg>>;
+
+/// The list that holds a leg, and the leg's index in it. The loops around it become this plan's own; other legs stay shared.
+fn list_of<'a>(legs: &'a mut Legs, id: &Id) -> Option<(&'a mut Legs, usize)> {
     if let Some(index) = legs.iter().position(|l| l.id == *id) {
         return Some((legs, index));
     }
-    legs.iter_mut().find_map(|leg| match &mut leg.kind {
+    let around = legs.iter_mut().find(|leg| holds(leg, id))?;
+    match &mut Arc::make_mut(around).kind {
         LegKind::Iterative { body, .. } => list_of(body, id),
         _ => None,
-    })
+    }
+}
+
+/// A leg has another one inside, however deep.
+fn holds(leg: &Leg, id: &Id) -> bool {
+    leg.body().iter().any(|inner| inner.id == *id || holds(inner, id))
 }
 
 /// The same anywhere in a plan, procedures last.
 pub(super) fn list_in_plan<'a>(
     plan: &'a mut FlightPlan,
     id: &Id,
-) -> Result<(&'a mut Vec<Leg>, usize), EditError> {
+) -> Result<(&'a mut Legs, usize), EditError> {
     let alternates = plan.emergency_plans.iter_mut().flat_map(|e| e.stages.iter_mut());
     let stages = plan.stages.iter_mut().chain(alternates).map(|s| &mut s.legs);
     let mut lists = stages.chain(plan.procedures.iter_mut().map(|p| &mut p.legs));
     found(lists.find_map(|legs| list_of(legs, id)), id)
 }
 
-pub(super) fn remove(plan: &mut FlightPlan, id: &Id) -> Result<Leg, EditError> {
+pub(super) fn remove(plan: &mut FlightPlan, id: &Id) -> Result<Arc<Leg>, EditError> {
     let (list, index) = list_in_plan(plan, id)?;
     Ok(list.remove(index))
 }
 
-pub(super) fn insert(plan: &mut FlightPlan, leg: Leg, at: &Spot) -> Result<(), EditError> {
+pub(super) fn insert(plan: &mut FlightPlan, leg: Arc<Leg>, at: &Spot) -> Result<(), EditError> {
     match at {
         Spot::Before(id) => {
             let (list, index) = list_in_plan(plan, id)?;
@@ -47,7 +57,7 @@ pub(super) fn insert(plan: &mut FlightPlan, leg: Leg, at: &Spot) -> Result<(), E
 }
 
 /// The list that a stage, procedure or loop has inside.
-fn list_inside<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Vec<Leg>, EditError> {
+fn list_inside<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Legs, EditError> {
     if plan.stage(id).is_some() {
         return found(stages_mut(plan).find(|s| s.id == *id).map(|s| &mut s.legs), id);
     }
@@ -82,13 +92,13 @@ pub(super) fn paste(plan: &mut FlightPlan, mut leg: Leg, at: &Spot) -> Result<()
             branches.iter_mut().for_each(|b| follow(&mut b.next));
         }
     });
-    insert(plan, leg, at)
+    insert(plan, Arc::new(leg), at)
 }
 
 fn for_each(leg: &mut Leg, visit: &mut dyn FnMut(&mut Leg)) {
     visit(leg);
     if let LegKind::Iterative { body, .. } = &mut leg.kind {
-        body.iter_mut().for_each(|l| for_each(l, visit));
+        body.iter_mut().for_each(|l| for_each(Arc::make_mut(l), visit));
     }
 }
 
@@ -107,7 +117,7 @@ fn ids(plan: &FlightPlan) -> HashSet<Id> {
     ids
 }
 
-fn add_legs(legs: &[Leg], ids: &mut HashSet<Id>) {
+fn add_legs(legs: &[Arc<Leg>], ids: &mut HashSet<Id>) {
     for leg in legs {
         ids.insert(leg.id.clone());
         add_legs(leg.body(), ids);

@@ -4,6 +4,7 @@ use super::{EditError, found, not_applicable, stages_mut};
 use crate::uses::SlotMut;
 use crate::{Act, FlightPlan, Id, Leg, LegKind, Place, Stage};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Gives the last thing that is called `id` another identifier; what refers to `id` goes on meaning the first.
 pub(super) fn distinguish(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
@@ -52,7 +53,7 @@ impl<'a> Walk<'_, 'a> {
             let parameters = walk.next_group();
             procedure.parameters.iter_mut().for_each(|p| (walk.visit)(parameters, &mut p.name));
             let legs = walk.next_group();
-            procedure.legs.iter_mut().for_each(|leg| walk.leg(leg, legs));
+            procedure.legs.iter_mut().for_each(|leg| walk.leg(Arc::make_mut(leg), legs));
         }
     }
 
@@ -63,13 +64,15 @@ impl<'a> Walk<'_, 'a> {
 
     fn stage(&mut self, stage: &'a mut Stage) {
         (self.visit)(DOCUMENT, &mut stage.id);
-        stage.legs.iter_mut().for_each(|leg| self.leg(leg, DOCUMENT));
+        stage.legs.iter_mut().for_each(|leg| self.leg(Arc::make_mut(leg), DOCUMENT));
     }
 
     fn leg(&mut self, leg: &'a mut Leg, group: usize) {
         (self.visit)(group, &mut leg.id);
         match &mut leg.kind {
-            LegKind::Iterative { body, .. } => body.iter_mut().for_each(|inner| self.leg(inner, group)),
+            LegKind::Iterative { body, .. } => {
+                body.iter_mut().for_each(|inner| self.leg(Arc::make_mut(inner), group))
+            }
             LegKind::Intersection { branches, .. } => {
                 let of_branches = self.next_group();
                 branches.iter_mut().for_each(|b| (self.visit)(of_branches, &mut b.id));

@@ -1,6 +1,6 @@
 //! Where legs and zones go and what they cover.
 
-use super::{EditError, found, leg_mut, lists, not_applicable, set_variable};
+use super::{EditError, leg_mut, not_applicable, set_variable};
 use crate::{Area, FlightPlan, Id, Leg, LegKind, Pattern, Place, Value, VariableValue, Zone, ZoneShape};
 use geometry::LatLon;
 use std::sync::Arc;
@@ -220,8 +220,7 @@ pub(super) fn set_radius(plan: &mut FlightPlan, id: &Id, radius_m: f64) -> Resul
         *old = radius_m;
         return Ok(());
     }
-    let (list, index) = lists::list_in_plan(plan, id)?;
-    match radius_mut(found(list.get_mut(index), id)?).ok_or(missing)? {
+    match radius_mut(leg_mut(plan, id)?).ok_or(missing)? {
         Value::Constant(old) => *old = radius_m,
         Value::Expression(source) => {
             let variable = bound_to(id, source)?;

@@ -9,7 +9,7 @@ fn plan() -> FlightPlan {
     read(FIRE_WATCH).plan
 }
 
-fn ids(legs: &[Leg]) -> Vec<&str> {
+fn ids(legs: &[std::sync::Arc<Leg>]) -> Vec<&str> {
     legs.iter().map(|l| l.id.as_str()).collect()
 }
 
@@ -278,7 +278,7 @@ fn things_are_added_replaced_and_removed() {
 fn legs_of_procedures_are_edited_too() {
     let plan = Edit::MoveWaypoint { leg: "in".into(), to: TO }.apply(&language()).unwrap();
     assert_eq!(plan.procedures[0].legs[0].place(), Some(&Place::Position(Value::Constant(TO))));
-    let leg = Box::new(plan.procedures[0].legs[0].clone());
+    let leg = Box::new(plan.procedures[0].legs[0].as_ref().clone());
     let more = Edit::PasteLeg { leg, at: Spot::EndOf("gate".into()) }.apply(&plan).unwrap();
     assert_eq!(ids(&more.procedures[0].legs), ["in", "out", "in2"]);
 }

@@ -21,7 +21,7 @@ pub struct Procedure {
     /// The direction that a call's bearing stands for, degrees true.
     pub bearing_deg: f64,
     /// Its legs, in order.
-    pub legs: Vec<Leg>,
+    pub legs: Vec<Arc<Leg>>,
 }
 
 /// A parameter of a procedure.

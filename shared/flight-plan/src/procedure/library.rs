@@ -3,6 +3,7 @@
 use super::MAX_NESTING;
 use crate::{FlightPlan, Id, Leg, LegKind, Parameter, Problem, Procedure, expression, xml};
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// A procedure that can be called.
 #[derive(Clone, Copy)]
@@ -160,7 +161,7 @@ fn cycles<'p>(plan: &'p FlightPlan, waiting: &HashMap<&'p Id, Waiting<'p>>, prob
 }
 
 /// Every call in some legs: the leg, and what it calls.
-fn collect<'p>(legs: &'p [Leg], into: &mut Vec<(&'p Leg, &'p Id)>) {
+fn collect<'p>(legs: &'p [Arc<Leg>], into: &mut Vec<(&'p Leg, &'p Id)>) {
     for leg in legs {
         if let LegKind::Call(call) = &leg.kind {
             into.push((leg, &call.procedure));
@@ -169,7 +170,7 @@ fn collect<'p>(legs: &'p [Leg], into: &mut Vec<(&'p Leg, &'p Id)>) {
     }
 }
 
-fn count(legs: &[Leg]) -> usize {
+fn count(legs: &[Arc<Leg>]) -> usize {
     legs.iter().map(|leg| 1 + count(leg.body())).sum()
 }
 

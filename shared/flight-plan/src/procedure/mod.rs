@@ -44,13 +44,13 @@ pub fn instantiate(plan: &FlightPlan) -> (Cow<'_, FlightPlan>, Vec<Problem>) {
     let mut flown = plan.clone();
     let alternates = flown.emergency_plans.iter_mut().flat_map(|e| e.stages.iter_mut());
     for stage in flown.stages.iter_mut().chain(alternates) {
-        stage.legs.iter_mut().for_each(|leg| calls.leg(leg, None));
+        calls.legs_of(&mut stage.legs);
     }
     let problems = calls.problems;
     (Cow::Owned(flown), problems)
 }
 
-fn has_calls(legs: &[Leg]) -> bool {
+fn has_calls(legs: &[Arc<Leg>]) -> bool {
     legs.iter().any(|leg| matches!(leg.kind, LegKind::Call(_)) || has_calls(leg.body()))
 }
 
@@ -69,13 +69,23 @@ struct Calls<'p> {
 }
 
 impl Calls<'_> {
+    /// Replaces the calls in a list. Legs that have none stay shared with the plan.
+    fn legs_of(&mut self, legs: &mut [Arc<Leg>]) {
+        for leg in legs.iter_mut().filter(|leg| has_calls(std::slice::from_ref(leg))) {
+            self.leg(Arc::make_mut(leg), None);
+        }
+    }
+
     /// Replaces the calls in a leg. `around`: the call that the leg itself is made by.
     fn leg(&mut self, leg: &mut Leg, around: Option<&Frame>) {
         if let Some(frame) = around {
             self.rewrite(leg, frame);
         }
         match &mut leg.kind {
-            LegKind::Iterative { body, .. } => body.iter_mut().for_each(|l| self.leg(l, around)),
+            LegKind::Iterative { body, .. } => match around {
+                Some(_) => body.iter_mut().for_each(|l| self.leg(Arc::make_mut(l), around)),
+                None => self.legs_of(body),
+            },
             LegKind::Call(_) => match self.call(leg, around) {
                 Ok(Some(kind)) => leg.kind = kind,
                 // its problem is told elsewhere: at the procedure, or by the checks
@@ -112,7 +122,7 @@ impl Calls<'_> {
         };
         let frame = Frame { prefix: format!("{}.", leg.id), arguments, placing };
         let mut body = procedure.legs.clone();
-        body.iter_mut().for_each(|l| self.leg(l, Some(&frame)));
+        body.iter_mut().for_each(|l| self.leg(Arc::make_mut(l), Some(&frame)));
         self.has_room()?;
         let count = Some(Value::Constant(1.0));
         let (form, turn) = (IterativeForm::Forward, TurnDirection::Right);

@@ -269,9 +269,9 @@ fn a_program_flies_the_legs_and_keeps_the_plan_as_written() {
     assert_ne!(called, good);
     let document = called.replacen("</stage>", r#"<call id="trip" procedure="out-and-back"/></stage>"#, 1);
     let program = compile_document(document.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap();
-    assert_eq!(program.hash.as_ref(), crate::hash(&read(&document).plan));
+    assert_eq!(program.hash().as_ref(), crate::hash(&read(&document).plan));
     let path = program.path(&"trip.b".into()).unwrap();
-    assert_eq!(program.chain(path).iter().map(|l| l.id.as_str()).collect::<Vec<_>>(), ["trip", "trip.b"]);
+    assert_eq!(program.chain(&path).iter().map(|l| l.id.as_str()).collect::<Vec<_>>(), ["trip", "trip.b"]);
     assert!(matches!(program.plan.leg(&"trip".into()).unwrap().leg.kind, LegKind::Call(_)));
 }
 

@@ -8,6 +8,7 @@ use crate::{
     LegKind, Place, PlanWaypoint, Problem, TurnDirection, Value,
 };
 use geometry::LatLon;
+use std::sync::Arc;
 
 const LEGS: &str = "IF, TF, DF, RF, CF, FA, HF, HA, HM, iterative, intersection, call, scan, creepingLine, crissCross, \
                     spiral, expandingSquare, sector, trackLine, corridor, contour, orbit, figureEight, action, emergency";
@@ -15,7 +16,7 @@ const TURNS: [(&str, TurnDirection); 2] = [("left", TurnDirection::Left), ("righ
 
 impl<'a> Document<'a> {
     /// The legs of a stage, and its emergencies by cause.
-    pub fn legs(&mut self, parent: &Element<'a>, into: &mut Vec<Leg>, emergency: &mut EmergencyChoice) {
+    pub fn legs(&mut self, parent: &Element<'a>, into: &mut Vec<Arc<Leg>>, emergency: &mut EmergencyChoice) {
         while let Some(child) = self.cursor.child(parent) {
             match child.name {
                 "emergency" => self.emergency_child(child, emergency),
@@ -25,9 +26,9 @@ impl<'a> Document<'a> {
     }
 
     /// A leg, if it is one.
-    pub fn leg_of(&mut self, parent: &Element<'a>, child: Element<'a>, into: &mut Vec<Leg>) {
+    pub fn leg_of(&mut self, parent: &Element<'a>, child: Element<'a>, into: &mut Vec<Arc<Leg>>) {
         if is_leg(child.name) {
-            into.push(self.leg(child));
+            into.push(Arc::new(self.leg(child)));
         } else {
             self.cursor.unknown(child, parent.name, LEGS);
         }
@@ -181,7 +182,7 @@ impl<'a> Document<'a> {
             if !is_leg(child.name) {
                 return Some(child);
             }
-            body.push(document.leg(child));
+            body.push(Arc::new(document.leg(child)));
             None
         });
         LegKind::Iterative { form, count, until, turn, body }

@@ -20,6 +20,7 @@ pub use write::write;
 
 use crate::{FlightPlan, Leg};
 use sha2::{Digest, Sha256};
+use std::sync::Arc;
 
 /// The document's namespace.
 pub const NAMESPACE: &str = "urn:legwork:flight-plan:1";
@@ -37,7 +38,7 @@ pub(crate) fn attributes(text: &str) -> Vec<(&str, String)> {
 }
 
 /// How long legs are when they are written, bytes.
-pub(crate) fn size(legs: &[Leg]) -> usize {
+pub(crate) fn size(legs: &[Arc<Leg>]) -> usize {
     write::legs(legs).len()
 }
 

@@ -9,6 +9,7 @@ use crate::{
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};
+use std::sync::Arc;
 
 /// The canonical document of a plan. Reading it gives the plan back.
 pub fn write(plan: &FlightPlan) -> String {
@@ -67,7 +68,7 @@ pub(crate) fn text(piece: &Piece) -> String {
 }
 
 /// Legs by themselves.
-pub(super) fn legs(legs: &[Leg]) -> String {
+pub(super) fn legs(legs: &[Arc<Leg>]) -> String {
     let mut out = Writer { text: String::new(), depth: 0 };
     legs.iter().for_each(|l| leg(&mut out, l));
     out.text

@@ -173,7 +173,7 @@ impl Importer<'_> {
             };
             let mut way = leg(self.names.take(&wish, "leg"), kind);
             way.altitude = Some(self.altitude(vertex.altitude.as_ref(), &feature.place));
-            stage.legs.push(way);
+            stage.legs.push(way.into());
         }
         self.plan.stages.push(stage);
     }
@@ -238,11 +238,11 @@ impl Importer<'_> {
                 LegKind::Df { to: waypoint(*corner, false), turn: None },
             );
             way.altitude = altitude.clone();
-            stage.legs.push(way);
+            stage.legs.push(way.into());
         }
         let mut way = leg(id, LegKind::Scan(scan));
         (way.name, way.altitude) = (feature.name.clone(), altitude);
-        stage.legs.push(way);
+        stage.legs.push(way.into());
         self.plan.stages.push(stage);
     }
 }

@@ -326,14 +326,14 @@ impl Importer<'_> {
         if !self.legs.is_empty() {
             let mut mission =
                 synthetic::stage(self.names.take("mission", "mission"), "Mission", StageKind::Mission);
-            mission.legs = self.legs.into_iter().map(|l| l.leg).collect();
             // there is nothing to track from before the first leg
             if self.take_off.is_none()
-                && let Some(first) = mission.legs.first_mut()
-                && let LegKind::Tf(to) = &first.kind
+                && let Some(first) = self.legs.first_mut()
+                && let LegKind::Tf(to) = &first.leg.kind
             {
-                first.kind = LegKind::Df { to: to.clone(), turn: None };
+                first.leg.kind = LegKind::Df { to: to.clone(), turn: None };
             }
+            mission.legs = self.legs.into_iter().map(|l| l.leg.into()).collect();
             plan.stages.push(mission);
         }
         plan.stages.splice(0..0, self.take_off);

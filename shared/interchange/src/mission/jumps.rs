@@ -50,7 +50,7 @@ pub fn close(
         count: Some(Value::Constant(passes)),
         until: None,
         turn: TurnDirection::Right,
-        body: body.into_iter().map(|l| l.leg).collect(),
+        body: body.into_iter().map(|l| l.leg.into()).collect(),
     };
     let id = names.take(&format!("loop{first}"), "loop");
     legs.push(Placed { leg: leg(id, kind), first, last: number, depth });

@@ -40,7 +40,7 @@ pub fn add(
         way.altitude = Some(altitude(home_amsl_m + height_m, AltitudeReference::Amsl));
         let mut arrival =
             stage(names.take("rally-arrival", "arrival"), "To the rally point", StageKind::Arrival);
-        arrival.legs.push(way);
+        arrival.legs.push(way.into());
         let mut land = stage(names.take("rally-land", "land"), "Land", StageKind::Land);
         land.runway = Some(runway.id.clone());
         let id = names.take("rally", "rally");

@@ -1,0 +1,139 @@
+//! The way through a plan: from leg to leg in the order of the document, as far as that says what follows what.
+
+use super::inspection::Inspection;
+use super::memory::Recall;
+use super::path::Path;
+use super::step::{Around, Point, Step};
+use crate::ids::Spots;
+use crate::{Branch, Id, Leg, LegKind, Stage, StageKind};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// A walk through a plan, and what it found.
+pub(super) struct Trace<'i, 'a> {
+    view: &'i mut Inspection<'a>,
+    recall: &'i mut Recall,
+    pub steps: Vec<Step>,
+    pub lists: Vec<&'a [Arc<Leg>]>,
+    pub spots: Spots,
+}
+
+/// How the path gets to the next leg.
+#[derive(Debug, Clone, Copy, Default)]
+struct Arrival {
+    point: Option<Point>,
+    step: Option<usize>,
+}
+
+/// True if `leg` can follow the sibling before it in the document.
+fn leads_to(previous: &Leg, leg: &Leg) -> bool {
+    let names = |next: &Option<Id>| next.as_ref().is_none_or(|id| *id == leg.id);
+    match &previous.kind {
+        LegKind::Intersection { branches, .. } if !branches.is_empty() => {
+            branches.iter().any(|b: &Branch| names(&b.next))
+        }
+        _ => names(&previous.next),
+    }
+}
+
+impl<'i, 'a> Trace<'i, 'a> {
+    /// Through the main plan, then through each emergency plan.
+    pub fn of(view: &'i mut Inspection<'a>, recall: &'i mut Recall) -> Self {
+        let plan = view.plan;
+        let steps = Vec::with_capacity(recall.total());
+        let mut trace = Self { view, recall, steps, lists: Vec::new(), spots: Spots::default() };
+        trace.stages(&plan.stages, None);
+        for (index, emergency) in plan.emergency_plans.iter().enumerate() {
+            trace.stages(&emergency.stages, Some(index));
+        }
+        trace
+    }
+
+    fn stages(&mut self, stages: &'a [Stage], emergency_plan: Option<usize>) {
+        let mut arrival = Arrival::default();
+        for (index, stage) in stages.iter().enumerate() {
+            self.spots.stage(emergency_plan, index);
+            if stage.kind == StageKind::TakeOff {
+                arrival = Arrival { point: self.view.climb_out(stage), step: None };
+                continue;
+            }
+            let (main, stage_only) = (emergency_plan.is_none(), Arc::new(stage.without_legs()));
+            let around = self.recall.around(Around { main, loops: Vec::new(), stage: stage_only });
+            arrival = self.list(&stage.legs, &around, None, arrival);
+        }
+    }
+
+    fn list(
+        &mut self,
+        legs: &'a [Arc<Leg>],
+        around: &Arc<Around>,
+        parent: Option<usize>,
+        mut arrival: Arrival,
+    ) -> Arrival {
+        let mut jumps = false;
+        let mut previous: Option<&Leg> = None;
+        for (index, leg) in legs.iter().enumerate() {
+            let follows = previous.replace(leg).is_none_or(|previous| leads_to(previous, leg));
+            let entry = if follows { arrival } else { Arrival::default() };
+            let number = self.steps.len();
+            self.spots.leg(parent, index);
+            arrival = self.leg(leg, around, entry, &mut jumps);
+            if let LegKind::Iterative { body, form, .. } = &leg.kind {
+                let inside = self.recall.around(around.inside(leg, *form));
+                arrival = self.list(body, &inside, Some(number), entry);
+            }
+        }
+        if jumps {
+            self.lists.push(legs);
+        }
+        arrival
+    }
+
+    fn leg(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, entry: Arrival, jumps: &mut bool) -> Arrival {
+        let number = self.steps.len();
+        let known = self.recall.step(leg, around, entry.point, entry.step);
+        let step = known.unwrap_or_else(|| self.step(leg, around, entry.point));
+        let step = Step { before: entry.step, after: None, ..step };
+        *jumps |= step.marks.jumps;
+        if step.directed().is_some()
+            && let Some(before) = entry.step.and_then(|i| self.steps.get_mut(i))
+        {
+            before.after = Some(number);
+        }
+        let passes_through = matches!(leg.kind, LegKind::Intersection { .. });
+        let arrival =
+            Arrival { point: step.end, step: if passes_through { entry.step } else { Some(number) } };
+        self.steps.push(step);
+        arrival
+    }
+
+    fn step(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, start: Option<Point>) -> Step {
+        let marks = self.view.marks(leg);
+        let speed = around.speed_of(leg).and_then(|v| self.view.number(v));
+        let mut step = Step {
+            leg: leg.clone(),
+            around: around.clone(),
+            start,
+            end: start,
+            speed_mps: speed.filter(|v| *v > 0.0).unwrap_or(self.view.profile.cruise_airspeed_mps),
+            path: None,
+            before: None,
+            after: None,
+            marks,
+            found: Vec::new(),
+        };
+        if !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. }) {
+            step.end = self.view.end_of(&step);
+            step.path = start.zip(step.end).and_then(|(from, to)| path_of(leg, from.position, to.position));
+        }
+        step
+    }
+}
+
+fn path_of(leg: &Leg, from: LatLon, to: LatLon) -> Option<Path> {
+    match &leg.kind {
+        LegKind::Tf(_) => Some(Path::line(from, to)),
+        LegKind::Rf { centre, turn, .. } if centre.is_valid() => Some(Path::arc(from, to, *centre, *turn)),
+        _ => None,
+    }
+}
