@@ -80,7 +80,7 @@ impl Executor {
                 let kept = i.checked_sub(1).filter(|_| begun.is_none());
                 let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
                 let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
-                translated(&bookmark, leg, current, new, &world)
+                translated(&bookmark, leg, &current, new, &world)
             };
             let (kept, onward) = ((0..keep).map(translate).collect(), Box::new(translate(keep)));
             return Ok(Carried::On { kept, onward });
@@ -155,8 +155,8 @@ fn translated(
     let same_kind = |id: &&Id| kind_of(world.program, id) == kind_of(new, id);
     let target = own.filter(same_kind).and_then(|id| new.path(id));
     let Some(target) = target else {
-        let fallback = kept_leg.and_then(|id| new.path(id)).unwrap_or(current);
-        let mut placed = cursor.placed_at(fallback, &known, new);
+        let fallback = kept_leg.and_then(|id| new.path(id)).unwrap_or_else(|| current.clone());
+        let mut placed = cursor.placed_at(&fallback, &known, new);
         if kept_leg.is_some() {
             placed.doing = Doing::Flying;
         }

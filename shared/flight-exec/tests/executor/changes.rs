@@ -337,7 +337,7 @@ fn when_the_current_leg_is_gone_the_commit_names_the_entry() {
     assert!(report.entry_needed && report.acceptable);
     assert_eq!(report.removed, ["b".into()]);
     let commit =
-        |entry: Option<&str>| Command::Commit { hash: new.hash.clone(), entry: entry.map(Into::into) };
+        |entry: Option<&str>| Command::Commit { hash: new.hash().clone(), entry: entry.map(Into::into) };
     assert_eq!(rig.command(commit(None)).unwrap_err().code, "entry-needed");
     assert_eq!(rig.command(commit(Some("b"))).unwrap_err().code, "unknown-leg");
     rig.command(commit(Some("d"))).unwrap();
@@ -361,7 +361,7 @@ fn a_proposal_tells_what_it_would_do_and_does_nothing() {
     assert_eq!(report.next_leg.unwrap().as_str(), "b");
     assert!(report.next_position.unwrap().distance_m(fix("B2")) < 0.1);
     assert_eq!((rig.executor.status().plan, rig.feeds), before);
-    assert_eq!(rig.executor.status().proposed, Some(new.hash.clone()));
+    assert_eq!(rig.executor.status().proposed, Some(new.hash().clone()));
     let other = Command::Commit { hash: "abc".into(), entry: None };
     assert_eq!(rig.command(other).unwrap_err().code, "not-proposed");
 }

@@ -151,7 +151,7 @@ fn of_two_proposals_based_on_the_same_revision_the_later_commit_is_refused() {
     let (one, other) = (changed("C4", "D4"), changed("C4", "E4"));
     propose(&mut rig, &one, Some(revision), Vec::new()).unwrap();
     propose(&mut rig, &other, Some(revision), Vec::new()).unwrap();
-    let commit = |p: &Program| Command::Commit { hash: p.hash.clone(), entry: None };
+    let commit = |p: &Program| Command::Commit { hash: p.hash().clone(), entry: None };
     assert_eq!(code(rig.command(commit(&one))), "not-proposed", "another one was proposed since");
     rig.command(commit(&other)).unwrap();
     let refused = propose(&mut rig, &one, Some(revision), Vec::new()).unwrap_err();
@@ -174,7 +174,7 @@ fn an_objection_of_the_shell_forbids_the_commit_a_warning_does_not() {
         let report = propose(&mut rig, &plan, None, vec![problem]).unwrap();
         assert_eq!(report.acceptable, acceptable);
         assert!(report.problems.contains(&message));
-        let commit = Command::Commit { hash: plan.hash.clone(), entry: None };
+        let commit = Command::Commit { hash: plan.hash().clone(), entry: None };
         assert_eq!(code(rig.command(commit)), expected);
     }
 }
