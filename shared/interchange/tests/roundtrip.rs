@@ -341,7 +341,7 @@ fn landings_and_rally_points_of_a_qgc_plan() {
     let mut way = leg("out", LegKind::Df { to: to(far), turn: None });
     way.altitude = Some(Altitude { metres: Value::Constant(500.0), reference: AltitudeReference::Amsl });
     let mut arrival = plan.stages[1].clone();
-    (arrival.id, arrival.kind, arrival.legs) = ("e".into(), StageKind::Arrival, vec![way]);
+    (arrival.id, arrival.kind, arrival.legs) = ("e".into(), StageKind::Arrival, vec![way.into()]);
     let emergency = |legs: Stage| flight_plan::EmergencyPlan {
         id: "out".into(),
         name: String::new(),

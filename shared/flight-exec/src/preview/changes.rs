@@ -4,6 +4,7 @@ use crate::cursor::Cursor;
 use flight_plan::{Fix, Id, Leg, LegKind, Place, Program, Stage, Value};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What is another one, from the plan flown before to the plan to be flown.
 #[derive(Debug, Default)]
@@ -109,7 +110,7 @@ pub(super) fn reads_flight(program: &Program) -> bool {
     found
 }
 
-fn legs_read(legs: &[Leg], reads: &dyn Fn(&str) -> bool) -> bool {
+fn legs_read(legs: &[Arc<Leg>], reads: &dyn Fn(&str) -> bool) -> bool {
     legs.iter().any(|leg| {
         let mut found = false;
         leg.for_each_expression(&mut |source, _| found |= reads(source));
@@ -129,7 +130,7 @@ impl Comparison<'_> {
         self.lists(&place, &old.legs, &new.legs);
     }
 
-    fn lists(&mut self, place: &List, old: &[Leg], new: &[Leg]) {
+    fn lists(&mut self, place: &List, old: &[Arc<Leg>], new: &[Arc<Leg>]) {
         let pairs = || old.iter().zip(new);
         let head = pairs().take_while(|(a, b)| a.id == b.id).count();
         let most = old.len().min(new.len()) - head;

@@ -14,7 +14,7 @@ fn code(result: Result<(), Refusal>) -> String {
 fn enter(rig: &mut Rig, text: &str, entry: &str) -> String {
     let new = program(text);
     rig.propose(&new);
-    code(rig.command(Command::Commit { hash: new.hash.clone(), entry: Some(entry.into()) }))
+    code(rig.command(Command::Commit { hash: new.hash().clone(), entry: Some(entry.into()) }))
 }
 
 #[test]
