@@ -131,8 +131,13 @@ fn save(path: PathBuf, text: &str, version: u64) -> FileNews {
     }
 }
 
-/// Temporary file, fsync, rename, fsync of the folder: the old file or the new one, never half of it.
+/// Temporary file, fsync, rename, fsync of the folder: the old file or the new one, never half of it. A link stays one: what it leads
+/// to is written. What is no file (a device, a pipe) is written into.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let path = &std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if path.metadata().is_ok_and(|is| !is.is_file() && !is.is_dir()) {
+        return std::fs::write(path, bytes);
+    }
     let name = path.file_name().ok_or_else(|| std::io::Error::other("that is no file name"))?;
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let temporary = folder.join(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));

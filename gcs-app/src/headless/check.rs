@@ -51,9 +51,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
 
 /// Prints problems for people, and how many there are.
 pub fn print(file: &Path, problems: &[Problem]) {
-    for problem in problems {
-        say!("{}:{}{problem}", file.display(), if problem.location.is_some() { "" } else { " " });
-    }
+    problems.iter().for_each(|problem| say!("{}", line(file, problem)));
     let errors = problems.iter().filter(|p| p.is_error()).count();
     match (errors, problems.len() - errors) {
         (0, 0) => say!("{}: good, no problems", file.display()),
@@ -62,6 +60,17 @@ pub fn print(file: &Path, problems: &[Problem]) {
             say!("{}: must not be flown; {errors} errors, {warnings} warnings", file.display())
         }
     }
+}
+
+/// A problem as one line.
+pub fn line(file: &Path, problem: &Problem) -> String {
+    format!("{}:{}{problem}", file.display(), if problem.location.is_some() { "" } else { " " })
+}
+
+/// Complains about problems where something else is printed; gives the exit status.
+pub fn complain(file: &Path, problems: &[Problem]) -> ExitCode {
+    problems.iter().for_each(|problem| eprintln!("{}", line(file, problem)));
+    status(problems)
 }
 
 /// 0 if none of them forbids flying, else 1.

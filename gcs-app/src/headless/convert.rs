@@ -3,7 +3,7 @@
 use super::foreign::FileFormat;
 use super::output::Output;
 use super::select::Selection;
-use super::{Source, expand, foreign};
+use super::{Source, check, expand, foreign};
 use aircraft::Wind;
 use anyhow::bail;
 use interchange::{Export, Note};
@@ -47,8 +47,7 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
             let mut loaded = source.load()?;
             selection.prepare(&mut loaded)?;
             if loaded.reading.has_errors() {
-                loaded.reading.problems.iter().for_each(|p| eprintln!("{}:{p}", source.file.display()));
-                return Ok(ExitCode::from(1));
+                return Ok(check::complain(&source.file, &loaded.reading.problems));
             }
             (flight_plan::write(&loaded.reading.plan).into_bytes(), loaded.notes)
         }

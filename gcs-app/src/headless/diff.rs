@@ -6,7 +6,7 @@ use aircraft::Wind;
 use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
 use flight_exec::preview::{Act, Scenario, Trigger, When};
-use flight_plan::{Difference, FlightPlan, Id};
+use flight_plan::{Change, Problem};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -28,119 +28,96 @@ pub struct Moment {
 /// A file can't be read, or there is no such leg.
 pub fn run(old: &Source, new: &Path, moment: &Moment, wind: Wind, json: bool) -> anyhow::Result<ExitCode> {
     let new = Source { file: new.to_owned(), ..old.clone() };
-    let (before, after) = (readable(old)?, readable(&new)?);
-    let changes = Changes::between(&before.reading.plan, &after.reading.plan);
-    let report = match &moment.at {
-        Some(leg) => match proposed(&old.file, (&before, &after), leg, moment.pass, wind)? {
-            Some(report) => Some(report),
-            None => return Ok(ExitCode::from(1)),
-        },
+    let (Some(before), Some(after)) = (readable(old)?, readable(&new)?) else { return Ok(ExitCode::from(1)) };
+    let changes = flight_plan::diff::changes(&before.reading.plan, &after.reading.plan);
+    let takeover = match &moment.at {
+        Some(leg) => Some(takeover((old, &before), (&new, &after), leg, moment.pass, wind)?),
         None => None,
     };
     match json {
-        true => say!("{:#}", serde_json::json!({"changes": changes, "takeover": report})),
-        false => changes.print(report.as_ref()),
+        true => say!("{:#}", document(&changes, takeover.as_ref())),
+        false => lines(&changes, takeover.as_ref()).iter().for_each(|line| say!("{line}")),
     }
-    let same = changes.is_empty() && report.is_none_or(|r| r.acceptable);
-    Ok(ExitCode::from(u8::from(!same)))
+    let acceptable = takeover.is_none_or(|takeover| takeover.is_ok_and(|report| report.acceptable));
+    Ok(ExitCode::from(u8::from(!(changes.is_empty() && acceptable))))
 }
 
-/// A plan whose document is one.
-fn readable(source: &Source) -> anyhow::Result<Loaded> {
+/// A plan whose document is one; else its problems were told.
+fn readable(source: &Source) -> anyhow::Result<Option<Loaded>> {
     let loaded = source.load()?;
     super::foreign::tell(&source.file, &loaded.notes);
     if loaded.reading.has_errors() {
-        loaded.reading.problems.iter().for_each(|p| eprintln!("{}:{p}", source.file.display()));
-        bail!("{} is no plan that can be compared", source.file.display());
+        check::complain(&source.file, &loaded.reading.problems);
+        eprintln!("{} is no plan that can be compared", source.file.display());
+        return Ok(None);
     }
-    Ok(loaded)
+    Ok(Some(loaded))
 }
 
-/// What is different.
-#[derive(Debug, serde::Serialize)]
-struct Changes {
-    added: Vec<Id>,
-    removed: Vec<Id>,
-    changed: Vec<Id>,
-    /// Parts of the document besides legs.
-    other: Vec<&'static str>,
+/// What the executor says when the new plan comes, or the problems for which one of the plans can't be flown.
+type Takeover = Result<ProposalReport, Vec<String>>;
+
+fn document(changes: &[Change], takeover: Option<&Takeover>) -> serde_json::Value {
+    let report = takeover.and_then(|takeover| takeover.as_ref().ok());
+    let problems = takeover.and_then(|takeover| takeover.as_ref().err());
+    serde_json::json!({"changes": changes, "takeover": report, "problems": problems})
 }
 
-impl Changes {
-    fn between(old: &FlightPlan, new: &FlightPlan) -> Self {
-        let Difference { added, removed, changed } = Difference::between(old, new);
-        let mut changes = Self { added, removed, changed, other: other(old, new) };
-        if changes.is_empty() && flight_plan::write(old) != flight_plan::write(new) {
-            changes.other.push("names and stages");
-        }
-        changes
+fn lines(changes: &[Change], takeover: Option<&Takeover>) -> Vec<String> {
+    let mut lines: Vec<String> = changes.iter().map(Change::to_string).collect();
+    if changes.is_empty() {
+        lines.push("no difference".into());
     }
-
-    fn is_empty(&self) -> bool {
-        self.added.is_empty() && self.removed.is_empty() && self.changed.is_empty() && self.other.is_empty()
-    }
-
-    fn print(&self, report: Option<&ProposalReport>) {
-        if self.is_empty() {
-            say!("no difference");
-        }
-        for (word, legs) in [("added", &self.added), ("removed", &self.removed), ("changed", &self.changed)] {
-            legs.iter().for_each(|leg| say!("{word} {leg}"));
-        }
-        self.other.iter().for_each(|part| say!("changed {part}"));
-        if let Some(report) = report {
-            takeover(report).iter().for_each(|line| say!("{line}"));
+    match takeover {
+        None => {}
+        Some(Ok(report)) => lines.extend(told(report)),
+        Some(Err(problems)) => {
+            lines.extend(problems.iter().cloned());
+            lines.push("the update would be refused".into());
         }
     }
+    lines
 }
 
-fn other(old: &FlightPlan, new: &FlightPlan) -> Vec<&'static str> {
-    let parts = [
-        ("the aircraft", old.aircraft != new.aircraft),
-        ("fixes", old.fixes != new.fixes),
-        ("runways", old.runways != new.runways),
-        ("variables", old.variables != new.variables),
-        ("zones", old.zones != new.zones),
-        ("procedures", old.procedures != new.procedures),
-        ("the emergency plan in force", old.emergency != new.emergency),
-    ];
-    parts.into_iter().filter(|(_, differs)| *differs).map(|(part, _)| part).collect()
-}
-
-/// What the executor says when the new plan is put forward there; `None` if a plan can't be flown, after that was said.
-fn proposed(
-    file: &Path,
-    (before, after): (&Loaded, &Loaded),
+/// What becomes of an aircraft that begins a leg of the old plan when the new one is put forward. The new plan is looked at as it would
+/// be aboard, path and all.
+fn takeover(
+    (old, before): (&Source, &Loaded),
+    (new, after): (&Source, &Loaded),
     leg: &str,
     pass: Option<u64>,
     wind: Wind,
-) -> anyhow::Result<Option<ProposalReport>> {
+) -> anyhow::Result<Takeover> {
     let leg = select::known_leg(&before.reading.plan, leg)?;
-    let mut programs = Vec::new();
-    for loaded in [before, after] {
-        match loaded.compile() {
-            Ok(compiled) => programs.push(compiled),
-            Err(problems) => {
-                check::print(file, &problems);
-                return Ok(None);
-            }
-        }
+    let refused = |file: &Source, problems: Vec<Problem>| {
+        Err(problems.iter().map(|problem| check::line(&file.file, problem)).collect())
+    };
+    let (program, profile) = match before.compile() {
+        Ok(compiled) => compiled,
+        Err(problems) => return Ok(refused(old, problems)),
+    };
+    let (update, _) = match after.compile() {
+        Ok(compiled) => compiled,
+        Err(problems) => return Ok(refused(new, problems)),
+    };
+    let forbidden = after.forbidden(wind);
+    if !forbidden.is_empty() {
+        return Ok(refused(new, forbidden));
     }
-    let (Some((new, _)), Some((old, profile))) = (programs.pop(), programs.pop()) else { return Ok(None) };
     let at = When::Entering { leg: leg.clone(), iteration: pass };
-    let then = vec![Act::Propose { program: Arc::new(new) }, Act::End];
+    let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
-    let mut preview = forecast::fly(&Arc::new(old), &profile, &before.terrain, wind, &scenario)?;
+    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, wind, &scenario)?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");
     }
     // the first one put the old plan itself forward
     let last = preview.proposals.pop().filter(|_| preview.not_fired.is_empty());
     let (_, report) = last.ok_or_else(|| anyhow!("the old plan never comes to leg `{leg}`"))?;
-    Ok(Some(report))
+    Ok(Ok(report))
 }
 
-fn takeover(report: &ProposalReport) -> Vec<String> {
+fn told(report: &ProposalReport) -> Vec<String> {
     let mut lines = report.problems.clone();
     match (&report.next_leg, report.next_position) {
         _ if report.entry_needed => {
@@ -187,31 +164,52 @@ mod tests {
         assert_eq!(status(SQUARE, SQUARE, &nowhere).unwrap(), same);
         assert_eq!(status(SQUARE, &renamed, &nowhere).unwrap(), other);
         assert_eq!(status(SQUARE, &slower, &nowhere).unwrap(), other);
-        assert!(status(SQUARE, "<oops/>", &nowhere).is_err());
+        assert_eq!(status(SQUARE, "<oops/>", &nowhere).unwrap(), other);
         let at = |leg: &str| Moment { at: Some(leg.into()), pass: None };
         assert_eq!(status(SQUARE, SQUARE, &at("side2")).unwrap(), same);
         assert!(status(SQUARE, SQUARE, &at("side9")).is_err());
     }
 
+    fn said(old: &str, new: &str, at: Option<&str>) -> Vec<String> {
+        let (_old, old) = source(old.as_bytes());
+        let (_new, new) = source(new.as_bytes());
+        let (before, after) = (readable(&old).unwrap().unwrap(), readable(&new).unwrap().unwrap());
+        let changes = flight_plan::diff::changes(&before.reading.plan, &after.reading.plan);
+        let wind = Wind::default();
+        let takeover = at.map(|leg| takeover((&old, &before), (&new, &after), leg, None, wind).unwrap());
+        lines(&changes, takeover.as_ref())
+    }
+
     #[test]
-    fn parts_besides_legs() {
-        let plan = |text: &str| flight_plan::read(text).plan;
-        let moved = SQUARE.replace("length=\"600\"", "length=\"700\"");
-        let changes = Changes::between(&plan(SQUARE), &plan(&moved));
-        // the landing legs of that runway are other ones, too
-        assert!(changes.other.contains(&"runways"), "{changes:?}");
+    fn every_part_is_told_with_what_changed() {
+        let longer = SQUARE.replace("length=\"600\"", "length=\"700\"");
+        let higher = longer.replace("id=\"side3\"", "id=\"side3\" speed=\"20\"");
+        let lines = said(SQUARE, &higher, None);
+        assert!(lines.iter().any(|l| l.starts_with("runway ") && l.contains("600 → 700")), "{lines:?}");
+        assert!(lines.iter().any(|l| l.starts_with("leg side3 changed")), "{lines:?}");
     }
 
     #[test]
     fn the_takeover_is_told() {
-        let (_old, old) = source(SQUARE.as_bytes());
-        let (_new, new) = source(SQUARE.replace("id=\"side2\"", "id=\"other\"").as_bytes());
-        let (old, new) = (readable(&old).unwrap(), readable(&new).unwrap());
-        let report =
-            |leg| proposed(Path::new("old"), (&old, &new), leg, None, Wind::default()).unwrap().unwrap();
-        let lines = takeover(&report("side2"));
+        let renamed = SQUARE.replace("id=\"side2\"", "id=\"other\"");
+        let lines = said(SQUARE, &renamed, Some("side2"));
         assert!(lines.iter().any(|l| l.contains("name the leg to enter")), "{lines:?}");
-        let lines = takeover(&report("side3"));
+        let lines = said(SQUARE, &renamed, Some("side3"));
         assert!(lines.iter().any(|l| l.starts_with("the aircraft would go on leg side3")), "{lines:?}");
+    }
+
+    /// Aboard it would be refused, and the file with the problem is named.
+    #[test]
+    fn an_update_into_a_zone_is_refused() {
+        let zone =
+            r#"<zones><keepOut id="z" lat="36.305396" lon="-84.178238" radius="200"/></zones><mainPlan"#;
+        let (_old, old) = source(SQUARE.as_bytes());
+        let (_new, new) = source(SQUARE.replacen("<mainPlan", zone, 1).as_bytes());
+        let (before, after) = (readable(&old).unwrap().unwrap(), readable(&new).unwrap().unwrap());
+        let problems =
+            takeover((&old, &before), (&new, &after), "side2", None, Wind::default()).unwrap().unwrap_err();
+        let file = new.file.display().to_string();
+        assert!(problems.iter().all(|p| p.starts_with(&file)), "{problems:?}");
+        assert!(problems.iter().any(|p| p.contains("[keep-out]")), "{problems:?}");
     }
 }

@@ -1,13 +1,13 @@
 //! `legwork expand`: the waypoints that would be sent.
 
 use super::foreign::FileFormat;
-use super::output::{Output, or_stdout};
+use super::output::{DASH, Output, or_stdout};
 use super::select::Selection;
 use super::{Source, check, forecast, foreign};
 use aircraft::Wind;
 use flight_exec::preview::Preview;
 use flight_exec::{Action, Waypoint};
-use flight_plan::{Problem, Program};
+use flight_plan::Program;
 use interchange::{Export, Note};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,6 +36,29 @@ pub struct Written {
     pub overwriting: Output,
 }
 
+impl Written {
+    /// Another program's format; `None`: a document or a table of our own.
+    fn format(&self) -> anyhow::Result<Option<FileFormat>> {
+        if self.to.is_some() || self.json || self.csv || self.is_named("csv") || self.is_named("json") {
+            return Ok(self.to);
+        }
+        let Some(file) = self.output.as_deref().filter(|file| file.as_os_str() != DASH) else {
+            return Ok(None);
+        };
+        let Some(format) = FileFormat::by_path(file) else {
+            anyhow::bail!(
+                "{}: name the format with --json, --csv or --to, or by the extension",
+                file.display()
+            );
+        };
+        Ok(Some(format))
+    }
+
+    fn is_named(&self, extension: &str) -> bool {
+        self.output.as_deref().and_then(Path::extension).is_some_and(|e| e == extension)
+    }
+}
+
 /// Writes the waypoints in the order in which they are steered to. Intersections take what is selected, else their defaults.
 ///
 /// # Errors
@@ -46,14 +69,14 @@ pub fn run(
     selection: &Selection,
     written: &Written,
 ) -> anyhow::Result<ExitCode> {
+    let format = written.format()?;
     let Flown { program, preview, notes } = match fly(source, wind, selection)? {
         Ok(flown) => flown,
         Err(status) => return Ok(status),
     };
     foreign::tell(&source.file, &notes);
-    let by_name = written.output.as_deref().and_then(FileFormat::by_path);
     let file = or_stdout(written.output.as_ref());
-    let bytes = match written.to.or(by_name.filter(|_| !written.json && !written.csv)) {
+    let bytes = match format {
         Some(FileFormat::Other(format)) => {
             let export = Export { plan: program.flown(), steps: &selection.steps(&preview) };
             let made = interchange::write(format, &export)?;
@@ -63,7 +86,9 @@ pub fn run(
         Some(FileFormat::Legwork) => {
             anyhow::bail!("a flight plan holds legs, not waypoints: use `legwork convert`")
         }
-        None if written.json => format!("{:#}\n", document(&preview, selection)).into_bytes(),
+        None if written.json || written.is_named("json") => {
+            format!("{:#}\n", document(&preview, selection)).into_bytes()
+        }
         None => csv(&preview, selection).into_bytes(),
     };
     written.overwriting.write(&file, &bytes)?;
@@ -90,8 +115,13 @@ pub fn fly(source: &Source, wind: Wind, selection: &Selection) -> anyhow::Result
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let (program, profile) = match loaded.compile() {
         Ok(compiled) => compiled,
-        Err(problems) => return Ok(Err(refused(&source.file, &problems))),
+        Err(problems) => return Ok(Err(check::complain(&source.file, &problems))),
     };
+    let forbidden = if selection.anyway { Vec::new() } else { loaded.forbidden(wind) };
+    if !forbidden.is_empty() {
+        eprintln!("{}: the path must not be flown; --anyway writes it all the same", source.file.display());
+        return Ok(Err(check::complain(&source.file, &forbidden)));
+    }
     let program = Arc::new(program);
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
         Ok(preview) => preview,
@@ -111,11 +141,6 @@ pub fn fly(source: &Source, wind: Wind, selection: &Selection) -> anyhow::Result
         }
         (None, true) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
     }
-}
-
-fn refused(file: &Path, problems: &[Problem]) -> ExitCode {
-    problems.iter().for_each(|p| eprintln!("{}:{p}", file.display()));
-    check::status(problems)
 }
 
 fn document(preview: &Preview, selection: &Selection) -> serde_json::Value {

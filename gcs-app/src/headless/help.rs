@@ -7,7 +7,7 @@ macro_rules! with_examples {
             $("  ", $line, "\n",)*
             "\nExit status:\n",
             "  0  fine; warnings and notes are allowed\n",
-            "  1  the plan has errors, can't be flown, or plans differ\n",
+            "  1  the plan or its path has errors, can't be flown, or plans differ\n",
             "  2  wrong usage, or a file that can't be read or written\n",
             "\nFormats:\n",
             "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written.\n",

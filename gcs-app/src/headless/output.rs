@@ -36,7 +36,10 @@ impl Output {
     /// # Errors
     /// The file is there already and `--force` was not given.
     pub fn allow(&self, to: &Path) -> anyhow::Result<()> {
-        if !self.force && to.exists() {
+        // into a device or a pipe one writes over nothing; a link that leads nowhere is something
+        let is_kept = |is: std::fs::Metadata| is.is_file() || is.is_dir() || is.is_symlink();
+        let there = to.metadata().or_else(|_| to.symlink_metadata());
+        if !self.force && there.is_ok_and(is_kept) {
             bail!("{} is there already: choose another name, or give --force to overwrite it", to.display());
         }
         Ok(())
@@ -63,6 +66,19 @@ mod tests {
         assert_eq!(std::fs::read(&file).unwrap(), b"one");
         Output { force: true }.write(&file, b"two").unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), b"two");
+        #[cfg(unix)]
+        {
+            let (link, lost) = (folder.path().join("link.xml"), folder.path().join("lost.xml"));
+            std::os::unix::fs::symlink(&file, &link).unwrap();
+            std::os::unix::fs::symlink("nowhere", &lost).unwrap();
+            assert!(Output::default().write(&link, b"three").is_err());
+            assert!(Output::default().write(&lost, b"three").is_err());
+            Output { force: true }.write(&link, b"three").unwrap();
+            assert_eq!(std::fs::read(&file).unwrap(), b"three", "what the link leads to is written");
+            assert!(link.is_symlink());
+            Output::default().write(Path::new("/dev/null"), b"three").unwrap();
+            assert!(!Path::new("/dev/null").is_file());
+        }
         let nowhere = folder.path().join("missing").join("plan.xml");
         assert!(Output::default().write(&nowhere, b"x").is_err());
     }

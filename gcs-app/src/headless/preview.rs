@@ -36,8 +36,10 @@ pub struct Target {
 /// # Errors
 /// A file can't be read or written.
 pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
-    let map = target.out.join("map.png");
-    target.overwriting.allow(target.diagram.as_ref().unwrap_or(&map))?;
+    match &target.diagram {
+        Some(picture) => target.overwriting.allow(picture)?,
+        None => report::FILES.iter().try_for_each(|name| target.overwriting.allow(&target.out.join(name)))?,
+    }
     let mut loaded = source.load()?;
     foreign::tell(&source.file, &loaded.notes);
     selection.prepare(&mut loaded)?;
@@ -45,20 +47,22 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
     let (program, profile) = match loaded.compile() {
         Ok(compiled) => compiled,
         Err(problems) => {
-            check::print(&source.file, &problems);
-            return Ok(check::status(&problems));
+            return Ok(check::complain(&source.file, &problems));
         }
     };
+    // a diagram shows the geometry, whatever it is worth
+    let looks = target.diagram.is_none() && !selection.anyway;
+    let forbidden = if looks { loaded.forbidden(wind) } else { Vec::new() };
     let program = Arc::new(program);
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
-            say!("{}: {error}", source.file.display());
+            eprintln!("{}: {error}", source.file.display());
             return Ok(ExitCode::from(1));
         }
     };
     if let Some((seconds, refusal)) = preview.refusals.first() {
-        say!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
+        eprintln!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
         return Ok(ExitCode::from(1));
     }
     let pictures = target.diagram.as_ref().unwrap_or(&target.out);
@@ -75,7 +79,7 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
         true => say!("{:#}", document(&source.file, &preview, pictures)),
         false => say!("{}", line(&source.file, &preview, pictures)),
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(check::complain(&source.file, &forbidden))
 }
 
 fn line(file: &Path, preview: &Preview, out: &Path) -> String {

@@ -23,6 +23,9 @@ pub struct Selection {
     /// The leg on which the emergency is raised; the first one if there is none named.
     #[arg(long, value_name = "LEG", requires = "emergency")]
     pub at: Option<String>,
+    /// Also if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
+    #[arg(long)]
+    pub anyway: bool,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

@@ -3,7 +3,7 @@
 use super::foreign::Foreign;
 use super::output::DASH;
 use crate::assets;
-use aircraft::Profile;
+use aircraft::{Profile, Wind};
 use anyhow::Context;
 use flight_exec::Conditions;
 use flight_plan::{Problem, Program, Reading};
@@ -119,6 +119,13 @@ impl Loaded {
         if !self.converted {
             self.reading.places.locate(&mut found);
         }
+        found
+    }
+
+    /// What forbids to fly the path in a wind.
+    pub fn forbidden(&self, wind: Wind) -> Vec<Problem> {
+        let mut found = self.review(Conditions { wind, ..Conditions::default() });
+        found.retain(Problem::is_error);
         found
     }
 

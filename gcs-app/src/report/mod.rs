@@ -64,27 +64,32 @@ impl Findings {
     }
 }
 
-/// Writes `map.png`, `profile.png`, `legs.csv`, `report.md`, `report.html` and `events.jsonl` into `folder`, which
-/// is made if need be; gives what was measured.
+/// The files of a report.
+pub const FILES: [&str; 6] =
+    ["map.png", "profile.png", "legs.csv", "report.md", "report.html", "events.jsonl"];
+
+/// Writes the [`FILES`] into `folder`, which is made if need be; gives what was measured.
 ///
 /// # Errors
 /// The folder can't be written, or there is nothing to draw.
 pub fn write(record: &Record, folder: &Path) -> anyhow::Result<Findings> {
     use anyhow::Context;
-    std::fs::create_dir_all(folder).with_context(|| {
-        format!("can't make the report folder {}: choose another with --report", folder.display())
-    })?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("can't make the report folder {}: choose another one", folder.display()))?;
     let findings = Findings::of(record);
     let save = |name: &str, bytes: Vec<u8>| {
         let path = folder.join(name);
         std::fs::write(&path, bytes)
             .with_context(|| format!("can't write {}: is the disk full?", path.display()))
     };
-    save("map.png", map::png(record, &findings)?)?;
-    save("profile.png", profile::png(record)?)?;
-    save("legs.csv", tables::csv(&findings).into_bytes())?;
-    save("report.md", tables::markdown(record, &findings).into_bytes())?;
-    save("report.html", tables::html(record, &findings).into_bytes())?;
-    save("events.jsonl", tables::events(record).into_bytes())?;
+    let contents = [
+        map::png(record, &findings)?,
+        profile::png(record)?,
+        tables::csv(&findings).into_bytes(),
+        tables::markdown(record, &findings).into_bytes(),
+        tables::html(record, &findings).into_bytes(),
+        tables::events(record).into_bytes(),
+    ];
+    FILES.into_iter().zip(contents).try_for_each(|(name, bytes)| save(name, bytes))?;
     Ok(findings)
 }
