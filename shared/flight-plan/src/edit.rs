@@ -325,10 +325,7 @@ impl Edit {
                 return shape::corner(plan, leg, *hole, |points| points.remove(*corner));
             }
             Edit::SetRadius { leg, radius_m } => return shape::set_radius(plan, leg, *radius_m),
-            Edit::SetArea { leg, area } => match shape::area_mut(leg_mut(plan, leg)?) {
-                Some(old) => old.clone_from(area),
-                None => return Err(not_applicable(leg, "has no area: choose a scan or contour")),
-            },
+            Edit::SetArea { leg, area } => return shape::set_area(plan, leg, area),
             Edit::SetNumber { leg, name, value } => {
                 return number::set(leg_mut(plan, leg)?, name, value.as_ref());
             }
@@ -340,14 +337,8 @@ impl Edit {
                 *at_leg_or_stage(plan, of, |l| &mut l.speed_mps, |s| &mut s.speed_mps)? = speed_mps.clone()
             }
             Edit::SetFlyOver { leg, fly_over } => waypoint_mut(plan, leg)?.fly_over = *fly_over,
-            Edit::SetCount { leg, count } => match &mut leg_mut(plan, leg)?.kind {
-                LegKind::Iterative { count: old, .. } => *old = count.clone(),
-                _ => return Err(not_applicable(leg, "is no iterative leg: it has no count")),
-            },
-            Edit::SetDefault { leg, branch } => match &mut leg_mut(plan, leg)?.kind {
-                LegKind::Intersection { default, .. } => *default = branch.clone(),
-                _ => return Err(not_applicable(leg, "is no intersection: it has no branches")),
-            },
+            Edit::SetCount { leg, count } => *count_mut(plan, leg)? = count.clone(),
+            Edit::SetDefault { leg, branch } => *default_mut(plan, leg)? = branch.clone(),
             Edit::Rename { id, name } => name_mut(plan, id)?.clone_from(name),
             Edit::SetVariable { name, value } => return set_variable(plan, name, value.clone()),
             Edit::SetEmergency { of, cause, plan: to } => {
@@ -356,10 +347,7 @@ impl Edit {
             Edit::InsertLeg { leg, at } => return lists::insert(plan, leg.as_ref().clone().into(), at),
             Edit::PasteLeg { leg, at } => return lists::paste(plan, leg.as_ref().clone(), at),
             Edit::DeleteLeg { leg } => drop(lists::remove(plan, leg)?),
-            Edit::MoveLeg { leg, at } => {
-                let moved = lists::remove(plan, leg)?;
-                return lists::insert(plan, moved, at);
-            }
+            Edit::MoveLeg { leg, at } => return lists::relocate(plan, leg, at),
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
@@ -372,10 +360,7 @@ impl Edit {
             Edit::InsertStage { stage, before } => {
                 return lists::insert_stage(plan, stage.as_ref().clone(), before);
             }
-            Edit::MoveStage { stage, before } => {
-                let moved = lists::remove_stage(plan, stage)?;
-                return lists::insert_stage(plan, moved, before);
-            }
+            Edit::MoveStage { stage, before } => return lists::move_stage(plan, stage, before),
             Edit::All(edits) => return edits.iter().try_for_each(|edit| edit.change(plan)),
         }
         Ok(())
@@ -434,6 +419,20 @@ fn waypoint_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut PlanWay
         LegKind::Cf { to, .. } | LegKind::Fa { from: to, .. } => Ok(to),
         LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => Ok(&mut h.fix),
         _ => Err(not_applicable(id, "has no waypoint: choose a leg that goes to one")),
+    }
+}
+
+fn count_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Option<Value<f64>>, EditError> {
+    match &mut leg_mut(plan, id)?.kind {
+        LegKind::Iterative { count, .. } => Ok(count),
+        _ => Err(not_applicable(id, "is no iterative leg: it has no count")),
+    }
+}
+
+fn default_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Option<Id>, EditError> {
+    match &mut leg_mut(plan, id)?.kind {
+        LegKind::Intersection { default, .. } => Ok(default),
+        _ => Err(not_applicable(id, "is no intersection: it has no branches")),
     }
 }
 

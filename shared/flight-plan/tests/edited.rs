@@ -186,7 +186,7 @@ fn an_edit_of_one_leg_costs_what_a_few_legs_cost() {
         Edit::DeleteLeg { leg: "leg-300".into() },
         Edit::SetSpeed { of: "leg-300".into(), speed_mps: Some(Value::Constant(22.0)) },
         Edit::PasteLeg {
-            leg: Box::new(plan.leg(&"leg-5".into()).unwrap().leg.clone()),
+            leg: Box::new(plan.leg(&"leg-296".into()).unwrap().leg.clone()),
             at: Spot::After("leg-300".into()),
         },
     ];

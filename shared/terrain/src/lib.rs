@@ -17,6 +17,11 @@ use geometry::LatLon;
 pub trait Terrain: Send + Sync {
     /// Metres above mean sea level at `p`, or `None` where nothing is known.
     fn elevation_m(&self, p: LatLon) -> Option<f64>;
+
+    /// Metres that no elevation within a box is above; `None`: not said. The box does not cross the antimeridian.
+    fn at_most_m(&self, _south_west: LatLon, _north_east: LatLon) -> Option<f64> {
+        None
+    }
 }
 
 /// The same elevation everywhere (tests, and flights without terrain data).
@@ -25,6 +30,10 @@ pub struct Flat(pub f64);
 
 impl Terrain for Flat {
     fn elevation_m(&self, _: LatLon) -> Option<f64> {
+        Some(self.0)
+    }
+
+    fn at_most_m(&self, _: LatLon, _: LatLon) -> Option<f64> {
         Some(self.0)
     }
 }

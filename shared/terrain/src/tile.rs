@@ -14,6 +14,9 @@ const PLAUSIBLE_M: std::ops::RangeInclusive<i16> = -500..=9000;
 /// Samples a side of the two resolutions in use.
 const SIDES: [usize; 2] = [1201, 3601];
 
+/// Samples a side of the blocks whose highest one is kept: 2.8 km at 3″.
+const BLOCK: usize = 30;
+
 /// Why bytes are not an elevation tile.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TileError {
@@ -40,6 +43,8 @@ pub struct Tile {
     side: usize,
     /// Rows from north to south; [`VOID`] where nothing is known.
     samples_m: Vec<i16>,
+    /// Highest sample of each block, with its edges; rows from north to south.
+    blocks_m: Vec<i16>,
 }
 
 impl std::fmt::Debug for Tile {
@@ -64,7 +69,8 @@ impl Tile {
         if samples_m.iter().all(|s| *s == VOID) {
             return Err(TileError::Empty);
         }
-        Ok(Self { south_deg, west_deg, side, samples_m })
+        let blocks_m = blocks(&samples_m, side);
+        Ok(Self { south_deg, west_deg, side, samples_m, blocks_m })
     }
 
     /// South-west corner, whole degrees: `(latitude, longitude)`.
@@ -105,6 +111,27 @@ impl Tile {
         mix(upper, lower, v)
     }
 
+    /// Metres that no elevation in a box is above; `None`: nothing is known there.
+    pub fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
+        let last = (self.side - 1) as f64;
+        let apart = |corner_deg: i32, from_deg: f64, to_deg: f64| {
+            to_deg < f64::from(corner_deg) || from_deg > f64::from(corner_deg) + 1.0
+        };
+        if apart(self.south_deg, south_west.lat_deg, north_east.lat_deg)
+            || apart(self.west_deg, south_west.lon_deg, north_east.lon_deg)
+        {
+            return None;
+        }
+        let block = |samples: f64| (samples.clamp(0.0, last) as usize / BLOCK).min(last as usize / BLOCK);
+        let down = |lat_deg: f64| block((f64::from(self.south_deg) + 1.0 - lat_deg) * last);
+        let right = |lon_deg: f64| block((lon_deg - f64::from(self.west_deg)) * last);
+        let columns = right(south_west.lon_deg)..=right(north_east.lon_deg);
+        let blocks = (down(north_east.lat_deg)..=down(south_west.lat_deg))
+            .flat_map(|row| columns.clone().map(move |column| row * blocks_a_side(self.side) + column));
+        let highest = blocks.filter_map(|i| self.blocks_m.get(i)).max()?;
+        (*highest != VOID).then_some(f64::from(*highest))
+    }
+
     /// Between a sample and its eastern neighbour, `u` in 0..=1.
     fn blend(&self, row: usize, column: usize, u: f64) -> Option<f64> {
         mix(self.known(row, column), self.known(row, column + 1), u)
@@ -122,6 +149,26 @@ impl Tile {
             f64::from(self.west_deg) + column as f64 * step,
         )
     }
+}
+
+fn blocks_a_side(side: usize) -> usize {
+    side.div_ceil(BLOCK)
+}
+
+/// The highest sample of each block and of what lies on its edges.
+fn blocks(samples_m: &[i16], side: usize) -> Vec<i16> {
+    let number = blocks_a_side(side);
+    let mut blocks = vec![VOID; number * number];
+    for (row, samples) in samples_m.chunks_exact(side).enumerate() {
+        // the first row of a block is the last of the one before it too
+        for block_row in row.saturating_sub(1) / BLOCK..=row / BLOCK {
+            for (column, block) in blocks.iter_mut().skip(block_row * number).take(number).enumerate() {
+                let inside = samples.iter().skip(column * BLOCK).take(BLOCK + 1);
+                *block = (*block).max(inside.copied().max().unwrap_or(VOID));
+            }
+        }
+    }
+    blocks
 }
 
 /// Linear between two values; a void counts only if it has weight.

@@ -57,6 +57,20 @@ impl Terrain for Tiles {
             .flat_map(|s| wests.into_iter().flatten().map(move |w| (s, w)))
             .find_map(|corner| self.by_corner.get(&corner)?.elevation_m(p))
     }
+
+    fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
+        if !south_west.is_valid() || !north_east.is_valid() {
+            return None;
+        }
+        // the degree before, whose edge may answer too
+        let degrees = |from: f64, to: f64| from.floor() as i32 - 1..=to.floor() as i32;
+        let corners = degrees(south_west.lat_deg, north_east.lat_deg)
+            .flat_map(|s| degrees(south_west.lon_deg, north_east.lon_deg).map(move |w| (s, w)));
+        let tiles = corners.filter_map(|corner| self.by_corner.get(&corner));
+        let highest = tiles.filter_map(|tile| tile.at_most_m(south_west, north_east)).reduce(f64::max);
+        // where nothing is known, nothing is in the way
+        highest.or(Some(f64::NEG_INFINITY))
+    }
 }
 
 #[cfg(test)]
@@ -84,6 +98,34 @@ mod tests {
         ] {
             assert_eq!(tiles.elevation_m(LatLon::new(lat, lon)), expected, "{lat} {lon}");
         }
+    }
+
+    #[test]
+    fn nothing_in_a_box_is_above_what_is_said_of_it() {
+        let hills = hgt(|row, column| ((row * 7919 + column * 104_729) % 2_000) as i16);
+        let ridge = hgt(|row, _| if row == 600 { 3_000 } else { 10 });
+        let tiles =
+            Tiles::from_hgt_files([("N36W085.hgt", &hills[..]), ("N37W085.hgt", &ridge[..])]).unwrap();
+        let boxes = [
+            (36.2, -84.9, 0.003),
+            (36.5, -84.5, 0.1),
+            (36.98, -84.3, 0.05),
+            (37.48, -84.5, 0.03),
+            (36.9, -85.01, 0.02),
+        ];
+        for (south, west, size) in boxes {
+            let most_m =
+                tiles.at_most_m(LatLon::new(south, west), LatLon::new(south + size, west + size)).unwrap();
+            for i in 0..=60 {
+                for j in 0..=60 {
+                    let (north, east) = (size * f64::from(i) / 60.0, size * f64::from(j) / 60.0);
+                    let p = LatLon::new(south + north, west + east);
+                    assert!(tiles.elevation_m(p).is_none_or(|m| m <= most_m), "{p:?} {most_m}");
+                }
+            }
+        }
+        let low = tiles.at_most_m(LatLon::new(37.6, -84.6), LatLon::new(37.61, -84.59));
+        assert_eq!(low, Some(10.0), "the ridge is far away");
     }
 
     #[test]

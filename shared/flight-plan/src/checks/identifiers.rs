@@ -77,7 +77,7 @@ fn variable_name(name: &Id, problems: &mut Vec<Problem>) {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document_with, fixed_legs};
+    use crate::checks::testing::{check_legs, codes, document_with, fixed, fixed_legs, plan_with};
 
     #[test]
     fn duplicate_and_malformed_ids() {
@@ -95,6 +95,21 @@ mod tests {
             (r#"<IF id="a" fix="A"/><TF id="a" fix="B"/>"#, "duplicate-id"),
             (r#"<IF id="way" fix="A"/><TF id="b" fix="B"/>"#, "duplicate-id"),
         ]);
+    }
+
+    #[test]
+    fn legs_of_procedures_have_identifiers_of_their_own() {
+        let plan = |id: &str| {
+            let legs = r#"<IF id="a" fix="A"/><TF id="b" fix="B"/><call id="c" procedure="p"/>"#;
+            let procedure =
+                format!(r#"<procedures><procedure id="p"><TF id="{id}" fix="C"/></procedure></procedures>"#);
+            plan_with(legs).replace("<mainPlan", &format!("{procedure}<mainPlan"))
+        };
+        assert_eq!(codes(&plan("x")), [""; 0]);
+        for taken in ["a", "way", "A"] {
+            assert_eq!(codes(&plan(taken)), ["duplicate-id"], "{taken}");
+            fixed(&plan(taken), "duplicate-id");
+        }
     }
 
     #[test]

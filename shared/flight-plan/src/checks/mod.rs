@@ -198,7 +198,9 @@ fn rules_about(view: &Inspection, step: &Step) -> Vec<(usize, Problem)> {
     for (number, rule) in RULES.iter().enumerate() {
         if let Rule::Leg(check) = rule {
             check(view, step, &mut said);
-            found.extend(said.drain(..).map(|problem| (number, problem)));
+            if !said.is_empty() {
+                found.extend(said.drain(..).map(|problem| (number, problem)));
+            }
         }
     }
     found

@@ -6,6 +6,11 @@ use geometry::geodesy::{normalise_180, normalise_360};
 
 /// Shorter than this a path has no direction, metres.
 pub(super) const SHORTEST_M: f64 = 1.0;
+/// Up to this a line is short, metres.
+const SHORT_M: f64 = 5_000.0;
+/// WGS84: equatorial radius, metres, and first eccentricity squared.
+const EQUATOR_M: f64 = 6_378_137.0;
+const ECCENTRICITY_2: f64 = 0.006_694_379_990_141_316;
 
 /// A leg's path.
 #[derive(Debug, Clone, Copy)]
@@ -16,12 +21,51 @@ pub(super) enum Path {
 
 impl Path {
     pub fn line(from: LatLon, to: LatLon) -> Self {
-        let way = from.inverse(to);
-        Path::Line {
-            length_m: way.distance_m,
-            course_start_deg: way.bearing_start_deg,
-            course_end_deg: way.bearing_end_deg,
+        Self::short_line(from, to).unwrap_or_else(|| {
+            let way = from.inverse(to);
+            Path::Line {
+                length_m: way.distance_m,
+                course_start_deg: way.bearing_start_deg,
+                course_end_deg: way.bearing_end_deg,
+            }
+        })
+    }
+
+    /// The geodesic by its middle latitude (Gauss; Bomford, *Geodesy*, §2.15, first terms), where that is as good: up to 5 km and
+    /// 70° of latitude it is within 5 mm and 0.0001°, ten times as fast.
+    fn short_line(from: LatLon, to: LatLon) -> Option<Self> {
+        let middle_rad = f64::midpoint(from.lat_deg, to.lat_deg).to_radians();
+        let (sin, cos) = middle_rad.sin_cos();
+        let (north_rad, east_rad) =
+            ((to.lat_deg - from.lat_deg).to_radians(), (to.lon_deg - from.lon_deg).to_radians());
+        // radii of curvature: across the meridian, and along it
+        let flat = 1.0 - ECCENTRICITY_2 * sin * sin;
+        let across_m = EQUATOR_M / flat.sqrt();
+        let along_m = across_m * (1.0 - ECCENTRICITY_2) / flat;
+        let (north_m, east_m) = (north_rad * along_m, east_rad * across_m * cos);
+        let length_m = (north_m * north_m + east_m * east_m).sqrt();
+        let poleward_deg = from.lat_deg.abs().max(to.lat_deg.abs());
+        if !(length_m <= SHORT_M && poleward_deg <= 70.0) {
+            return None;
         }
+        let (course_deg, turn_deg) = (east_m.atan2(north_m).to_degrees(), (east_rad * sin).to_degrees());
+        Some(Path::Line {
+            length_m,
+            course_start_deg: normalise_360(course_deg - turn_deg / 2.0),
+            course_end_deg: normalise_360(course_deg + turn_deg / 2.0),
+        })
+    }
+
+    /// The box that the path is in, `(south-west, north-east)` and some room around it; `None`: not said.
+    pub fn around(&self, start: LatLon, end: LatLon) -> Option<(LatLon, LatLon)> {
+        /// More than a short line bulges towards its pole, degrees.
+        const ROOM_DEG: f64 = 0.001;
+        let short = matches!(self, Path::Line { length_m, .. } if *length_m <= SHORT_M);
+        let (south, north) = (start.lat_deg.min(end.lat_deg), start.lat_deg.max(end.lat_deg));
+        let (west, east) = (start.lon_deg.min(end.lon_deg), start.lon_deg.max(end.lon_deg));
+        let inside = south > -70.0 && north < 70.0 && west > -179.9 && east < 179.9;
+        let south_west = LatLon::new(south - ROOM_DEG, west - ROOM_DEG);
+        (short && inside).then_some((south_west, LatLon::new(north + ROOM_DEG, east + ROOM_DEG)))
     }
 
     /// The arc about `centre` from one position to another; its radius is the end's.
@@ -111,6 +155,23 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Beside the geodesic itself: see `short_line`.
+        #[test]
+        fn a_short_line_is_the_geodesic(
+            lat in -70.0..70.0, lon in -180.0..180.0, course in 0.0..360.0, length_m in 0.0..5_000.0,
+        ) {
+            let start = LatLon::new(lat, lon);
+            let end = start.destination(course, length_m);
+            let exact = start.inverse(end);
+            let path = Path::line(start, end);
+            prop_assert!((path.length_m() - exact.distance_m).abs() < 0.005);
+            if exact.distance_m > SHORTEST_M {
+                // what rounding a position to 1e-14 of a degree turns so short a line by is less
+                prop_assert!(course_change_deg(path.course_start_deg(), exact.bearing_start_deg) < 1e-4);
+                prop_assert!(course_change_deg(path.course_end_deg(), exact.bearing_end_deg) < 1e-4);
+            }
+        }
 
         /// Beside the geodesic itself.
         #[test]

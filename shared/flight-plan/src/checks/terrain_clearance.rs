@@ -13,6 +13,9 @@ const SPACING_M: f64 = 45.0;
 const MOST_LOOKS: f64 = 2_000.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    if is_high(view, step) == Some(true) {
+        return;
+    }
     let Some((clearance_m, ground_m)) = lowest_clearance_m(view, step) else { return };
     let near_runway =
         matches!(step.around.stage.kind, StageKind::Departure | StageKind::Approach | StageKind::Land);
@@ -32,6 +35,14 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         let problem = Problem::warning("low-clearance", message).of(leg);
         problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
     }
+}
+
+/// Even the highest ground around is well below the whole leg.
+fn is_high(view: &Inspection, step: &Step) -> Option<bool> {
+    let (start, end) = (step.start?, step.end?);
+    let (south_west, north_east) = step.path?.around(start.position, end.position)?;
+    let lowest_m = start.altitude_amsl_m?.min(end.altitude_amsl_m?);
+    Some(lowest_m - view.terrain.at_most_m(south_west, north_east)? >= MARGIN_M)
 }
 
 /// The leg raised at both ends by what it lacks, to whole metres.

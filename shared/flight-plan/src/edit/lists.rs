@@ -56,6 +56,11 @@ pub(super) fn insert(plan: &mut FlightPlan, leg: Arc<Leg>, at: &Spot) -> Result<
     Ok(())
 }
 
+pub(super) fn relocate(plan: &mut FlightPlan, id: &Id, at: &Spot) -> Result<(), EditError> {
+    let moved = remove(plan, id)?;
+    insert(plan, moved, at)
+}
+
 /// The list that a stage, procedure or loop has inside.
 fn list_inside<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Legs, EditError> {
     if plan.stage(id).is_some() {
@@ -155,6 +160,11 @@ pub(super) fn insert_stage(plan: &mut FlightPlan, stage: Stage, before: &Id) -> 
     let (list, index) = stage_list(plan, before)?;
     list.insert(index, stage);
     Ok(())
+}
+
+pub(super) fn move_stage(plan: &mut FlightPlan, id: &Id, before: &Id) -> Result<(), EditError> {
+    let moved = remove_stage(plan, id)?;
+    insert_stage(plan, moved, before)
 }
 
 /// A stage at the end of the main plan or of an emergency plan.

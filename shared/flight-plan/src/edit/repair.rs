@@ -52,8 +52,7 @@ impl<'a> Walk<'_, 'a> {
             (walk.visit)(DOCUMENT, &mut procedure.id);
             let parameters = walk.next_group();
             procedure.parameters.iter_mut().for_each(|p| (walk.visit)(parameters, &mut p.name));
-            let legs = walk.next_group();
-            procedure.legs.iter_mut().for_each(|leg| walk.leg(Arc::make_mut(leg), legs));
+            procedure.legs.iter_mut().for_each(|leg| walk.leg(Arc::make_mut(leg)));
         }
     }
 
@@ -64,14 +63,14 @@ impl<'a> Walk<'_, 'a> {
 
     fn stage(&mut self, stage: &'a mut Stage) {
         (self.visit)(DOCUMENT, &mut stage.id);
-        stage.legs.iter_mut().for_each(|leg| self.leg(Arc::make_mut(leg), DOCUMENT));
+        stage.legs.iter_mut().for_each(|leg| self.leg(Arc::make_mut(leg)));
     }
 
-    fn leg(&mut self, leg: &'a mut Leg, group: usize) {
-        (self.visit)(group, &mut leg.id);
+    fn leg(&mut self, leg: &'a mut Leg) {
+        (self.visit)(DOCUMENT, &mut leg.id);
         match &mut leg.kind {
             LegKind::Iterative { body, .. } => {
-                body.iter_mut().for_each(|inner| self.leg(Arc::make_mut(inner), group))
+                body.iter_mut().for_each(|inner| self.leg(Arc::make_mut(inner)))
             }
             LegKind::Intersection { branches, .. } => {
                 let of_branches = self.next_group();

@@ -18,7 +18,13 @@ fn zone_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Option<&'a mut Zone> {
     plan.zones.iter_mut().find(|z| z.id == *id)
 }
 
-pub(super) fn area_mut(leg: &mut Leg) -> Option<&mut Area> {
+pub(super) fn set_area(plan: &mut FlightPlan, id: &Id, area: &Area) -> Result<(), EditError> {
+    let missing = not_applicable(id, "has no area: choose a scan or contour");
+    area_mut(leg_mut(plan, id)?).ok_or(missing)?.clone_from(area);
+    Ok(())
+}
+
+fn area_mut(leg: &mut Leg) -> Option<&mut Area> {
     match &mut leg.kind {
         LegKind::Scan(scan) => Some(&mut scan.area),
         LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
