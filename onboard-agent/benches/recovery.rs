@@ -1,6 +1,7 @@
 //! What the journal costs, and what it gives: microseconds for each recorded input (encoding, framing, appending to a file)
 //! and for each that is synced; and milliseconds from the start of a process that comes back after a kill to its join
-//! with the gateway (goal: below one second), with a full segment to replay.
+//! with the gateway (goal: below one second), with a full segment to replay; the same with a plan of ten thousand legs, which
+//! a restart compiles again.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use flight_exec::{AircraftState, Executor, Input};
@@ -18,12 +19,23 @@ const PLAN: &str = include_str!("../../assets/plans/square.xml");
 /// Inputs before the kill: nearly a segment, the longest replay there is.
 const INPUTS: u64 = 1900;
 const RESTARTS: usize = 20;
+/// Legs of the large plan.
+const LEGS: usize = 10_000;
 
 fn main() {
     let directory = tempfile::tempdir().unwrap();
     cost(&directory.path().join("cost"));
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().unwrap();
-    runtime.block_on(recovery(&directory.path().join("recovery")));
+    runtime.block_on(recovery("square", PLAN, &directory.path().join("square")));
+    runtime.block_on(recovery("large", &large(), &directory.path().join("large")));
+}
+
+/// The square with its second side flown to and fro very often.
+fn large() -> String {
+    let side = r#"<TF id="side2" fix="B"/>"#;
+    assert!(PLAN.contains(side));
+    let legs = (0..LEGS).map(|n| format!("<TF id=\"n{n}\" fix=\"{}\"/>\n", ["A", "B"][n % 2]));
+    PLAN.replace(side, &legs.chain([side.to_owned()]).collect::<String>())
 }
 
 fn aircraft(n: u64) -> AircraftState {
@@ -127,14 +139,14 @@ fn start(endpoint: &str, folder: &Path) -> Child {
     process.env("RUST_LOG", "error").spawn().unwrap()
 }
 
-async fn recovery(folder: &Path) {
+async fn recovery(what: &str, plan: &str, folder: &Path) {
     let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
     let mut hub = Hub::open(&endpoint).await;
     hub.publish(0);
     let mut process = start(&endpoint, folder);
     hub.joined().await;
-    let propose = Propose { xml: PLAN.into(), seen_revision: None };
-    let patience = Duration::from_secs(20);
+    let propose = Propose { xml: plan.into(), seen_revision: None };
+    let patience = Duration::from_secs(600);
     let report = hub.client.call(fp_manager::PROPOSE, &propose, patience).await.unwrap();
     let commit = Command::Commit { hash: report.hash, entry: None };
     hub.client.call(fp_manager::COMMAND, &commit, patience).await.unwrap();
@@ -154,10 +166,14 @@ async fn recovery(folder: &Path) {
     }
     process.kill().unwrap();
     process.wait().unwrap();
-    println!("first restart (replays {INPUTS} inputs) to join: {:.0} ms", times[0]);
+    println!(
+        "{what}, {} KiB: first restart (replays {INPUTS} inputs) to join: {:.0} ms",
+        plan.len() / 1024,
+        times[0]
+    );
     times.sort_by(f64::total_cmp);
     println!(
-        "process start to join: p50 {:.0} ms, worst of {RESTARTS} {:.0} ms",
+        "{what}: process start to join: p50 {:.0} ms, worst of {RESTARTS} {:.0} ms",
         times[RESTARTS / 2],
         times[RESTARTS - 1]
     );

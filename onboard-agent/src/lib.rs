@@ -1,5 +1,6 @@
 //! Shell: FCS Gateway, FP Manager and their supervisor.
 
+pub mod alone;
 pub mod clock;
 pub mod config;
 pub mod fp_manager;

@@ -1,6 +1,7 @@
 //! Command line of `onboard-agent`.
 
 use clap::Parser;
+use onboard_agent::alone::Taken;
 use onboard_agent::config::{Cli, Options, Task};
 use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown, supervisor};
 use std::process::ExitCode;
@@ -65,6 +66,7 @@ fn describe() -> ExitCode {
 fn status(outcome: anyhow::Result<()>) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Taken>() => failed(STARTED_WRONGLY, &error),
         Err(error) => failed(FAILED, &error),
     }
 }

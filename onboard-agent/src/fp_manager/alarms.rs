@@ -1,7 +1,7 @@
 //! Pure: the gateway's alarms that ask for an emergency plan, each answered once.
 //!
-//! They come as events; those raised while nobody listened are found in the gateway's state
-//! after a join.
+//! They come as events; those raised while nobody listened, and those that could not be answered then, are found in
+//! the gateway's state.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -15,8 +15,17 @@ const MOST: usize = 256;
 pub struct Alarms {
     /// Identifiers of alarms that were answered and are still raised, as far as known.
     answered: BTreeSet<String>,
-    /// Alarms may have been raised unheard.
+    /// Alarms may have been raised unheard, or can be answered now.
     unread: bool,
+}
+
+/// An alarm that asks for an emergency plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Call {
+    /// The alarm's identifier.
+    pub id: String,
+    /// What the plan has to be for.
+    pub cause: Cause,
 }
 
 impl Alarms {
@@ -30,13 +39,11 @@ impl Alarms {
         &self.answered
     }
 
-    /// An alarm came up; the cause to act on, if any.
-    pub fn raised(&mut self, alarm: &Alarm) -> Option<Cause> {
-        let cause = actionable(alarm)?;
+    /// It was acted on; until it goes away, nothing more comes of it.
+    pub fn answer(&mut self, call: Call) {
         if self.answered.len() < MOST {
-            self.answered.insert(alarm.id.clone());
+            self.answered.insert(call.id);
         }
-        Some(cause)
     }
 
     /// An alarm went away.
@@ -44,31 +51,39 @@ impl Alarms {
         self.answered.remove(id);
     }
 
-    /// The gateway was joined: the next list of its alarms has to be looked at.
-    pub fn joined(&mut self) {
+    /// The next list of the gateway's alarms has to be looked at.
+    pub fn look_again(&mut self) {
         self.unread = true;
     }
 
-    /// The alarms raised now, as the gateway publishes them; the causes of those that nobody
-    /// answered yet, the most severe first. Nothing but after a join.
-    pub fn listed(&mut self, alarms: &[Alarm]) -> Vec<Cause> {
+    /// What was answered in an earlier flight asks anew.
+    pub fn new_flight(&mut self) {
+        *self = Self { answered: BTreeSet::new(), unread: true };
+    }
+
+    /// The alarms raised now, as the gateway publishes them; those that nobody answered yet, the most severe first.
+    /// Nothing, unless they have to be looked at.
+    pub fn listed(&mut self, alarms: &[Alarm]) -> Vec<Call> {
         if !std::mem::take(&mut self.unread) {
             return Vec::new();
         }
         self.answered.retain(|id| alarms.iter().any(|alarm| alarm.id == *id));
-        let unanswered: Vec<&Alarm> = alarms.iter().filter(|a| !self.answered.contains(&a.id)).collect();
-        let mut causes: Vec<Cause> = unanswered.into_iter().filter_map(|alarm| self.raised(alarm)).collect();
-        causes.sort_by_key(|cause| Reverse(*cause));
-        causes
+        let unanswered = alarms.iter().filter(|alarm| !self.answered.contains(&alarm.id));
+        let mut calls: Vec<Call> = unanswered.filter_map(call).collect();
+        calls.sort_by_key(|call| Reverse(call.cause));
+        calls
     }
 }
 
-fn actionable(alarm: &Alarm) -> Option<Cause> {
-    alarm.cause.filter(|_| alarm.severity == Severity::Warning)
+/// What an alarm asks for, if anything.
+pub fn call(alarm: &Alarm) -> Option<Call> {
+    let cause = alarm.cause.filter(|_| alarm.severity == Severity::Warning)?;
+    Some(Call { id: alarm.id.clone(), cause })
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     fn alarm(id: &str, severity: Severity, cause: Option<Cause>) -> Alarm {
@@ -87,42 +102,59 @@ mod tests {
             (alarm("a", Severity::Warning, None), None),
         ];
         for (alarm, cause) in cases {
-            assert_eq!(Alarms::default().raised(&alarm), cause, "{alarm:?}");
+            assert_eq!(call(&alarm).map(|call| call.cause), cause, "{alarm:?}");
         }
     }
 
+    /// Looks at a list and answers what it asks for.
+    fn answered(alarms: &mut Alarms, list: &[Alarm]) -> Vec<Cause> {
+        alarms.look_again();
+        let calls = alarms.listed(list);
+        calls.iter().for_each(|call| alarms.answer(call.clone()));
+        calls.into_iter().map(|call| call.cause).collect()
+    }
+
     #[test]
-    fn raised_unheard_it_is_found_after_a_join_and_once() {
+    fn raised_unheard_it_is_found_in_the_list_the_most_severe_first_and_once() {
         let list = [warning("energy-low", Cause::Energy), warning("engine-out", Cause::Engine)];
         let mut alarms = Alarms::default();
-        assert_eq!(alarms.listed(&list), [], "not without a join: the event comes");
-        alarms.joined();
-        assert_eq!(alarms.listed(&list), [Cause::Engine, Cause::Energy]);
-        alarms.joined();
-        assert_eq!(alarms.listed(&list), []);
+        assert_eq!(alarms.listed(&list), [], "the event comes");
+        assert_eq!(answered(&mut alarms, &list), [Cause::Engine, Cause::Energy]);
+        assert_eq!(answered(&mut alarms, &list), []);
+    }
+
+    #[test]
+    fn what_could_not_be_answered_asks_again_and_what_was_in_the_next_flight() {
+        let list = [warning("energy-low", Cause::Energy)];
+        let mut alarms = Alarms::default();
+        for _ in 0..2 {
+            alarms.look_again();
+            assert_eq!(alarms.listed(&list).len(), 1);
+        }
+        assert_eq!(answered(&mut alarms, &list), [Cause::Energy]);
+        assert_eq!(answered(&mut alarms, &list), []);
+        alarms.new_flight();
+        assert_eq!(alarms.listed(&list).len(), 1);
     }
 
     #[test]
     fn answered_before_a_restart_it_is_not_answered_again_unless_it_went_away() {
         let list = [warning("energy-low", Cause::Energy)];
         let mut alarms = Alarms::default();
-        alarms.raised(&list[0]);
+        alarms.answer(call(&list[0]).unwrap());
         let mut alarms = Alarms::restored(alarms.answered().clone());
-        alarms.joined();
-        assert_eq!(alarms.listed(&list), []);
+        assert_eq!(answered(&mut alarms, &list), []);
         alarms.cleared("energy-low");
-        alarms.joined();
-        assert_eq!(alarms.listed(&list), [Cause::Energy]);
+        assert_eq!(answered(&mut alarms, &list), [Cause::Energy]);
     }
 
     #[test]
     fn gone_unheard_it_counts_anew() {
         let list = [warning("energy-low", Cause::Energy)];
         let mut alarms = Alarms::default();
-        alarms.raised(&list[0]);
+        alarms.answer(call(&list[0]).unwrap());
         for (listed, causes) in [(&list[..0], vec![]), (&list[..], vec![Cause::Energy])] {
-            alarms.joined();
-            assert_eq!(alarms.listed(listed), causes);
+            assert_eq!(answered(&mut alarms, listed), causes);
         }
     }
 }

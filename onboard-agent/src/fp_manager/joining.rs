@@ -15,7 +15,7 @@ impl Manager {
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
         let Some(answer) = self.liaison.joined(now, answer) else { return };
         self.want_runways();
-        self.alarms.joined();
+        self.alarms.look_again();
         self.feeder.settle(answer.highest);
         let lost = std::mem::take(&mut self.returning) && answer.highest > self.executor.last_token();
         if answer.highest > self.executor.last_token() {
@@ -42,13 +42,17 @@ impl Manager {
     fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
         let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
         if self.liaison.is_on_ground() && answer.last.is_none() && taken {
-            self.liaison.unwant_launch();
+            self.liaison.unwant(GatewayRequest::Launch);
             self.step(now, Input::Progress { current: None }, out);
         } else if self.liaison.take_controlled() || self.has_gap(answer.last) {
             self.feeder.clear();
             // having given control back, the executor sends everything ahead anew
             self.step(now, Input::GatewayControls(true), out);
             self.step(now, Input::GatewayControls(false), out);
+            if self.executor.status_phase() == Phase::Holding {
+                // given back, the gateway flies on with what it has
+                self.liaison.want(GatewayRequest::Hold);
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use usal::contract::{GatewayRequest, GatewayState, JoinAnswer, SafeRunway};
 const RETRY: Duration = Duration::from_secs(1);
 /// After a join, states from before it may still come in for so long.
 const SETTLING: Duration = Duration::from_secs(1);
-/// A request (but for the launch) is given up after so many refusals.
+/// A request (but for the launch and Safe mode) is given up after so many refusals.
 const ATTEMPTS: u32 = 5;
 
 /// Where we stand.
@@ -55,7 +55,8 @@ impl Wish {
     }
 
     fn is_hopeless(&self) -> bool {
-        self.refusals >= ATTEMPTS && self.request != GatewayRequest::Launch
+        let lasting = matches!(self.request, GatewayRequest::Launch | GatewayRequest::Safe);
+        self.refusals >= ATTEMPTS && !lasting
     }
 }
 
@@ -85,6 +86,11 @@ impl Liaison {
         self.state == Some(GatewayState::Stop)
     }
 
+    /// The gateway says that it flies, or that somebody does.
+    pub fn is_airborne(&self) -> bool {
+        self.state.is_some_and(|state| !is_down(state))
+    }
+
     /// The gateway may have forgotten us, or does not know what we know.
     pub fn lost(&mut self) {
         self.joined = false;
@@ -94,9 +100,8 @@ impl Liaison {
     /// Its state, as published.
     pub fn state(&mut self, now: Time, state: GatewayState) {
         self.state = Some(state);
-        if !matches!(state, GatewayState::Off | GatewayState::Stop) {
-            self.unwant_launch();
-        }
+        // neither is given up as long as it makes sense
+        self.unwant(if is_down(state) { GatewayRequest::Safe } else { GatewayRequest::Launch });
         let settling = self.joined && self.joined_at.is_some_and(|at| now < at + SETTLING);
         if takes_control(state) && !settling {
             self.controlled = true;
@@ -149,9 +154,9 @@ impl Liaison {
         self.runways = Some(Wish::new(GatewayRequest::SetRunways { runways }));
     }
 
-    /// The take-off is no longer to come.
-    pub fn unwant_launch(&mut self) {
-        if self.wanted() == Some(&GatewayRequest::Launch) {
+    /// This is no longer wanted.
+    pub fn unwant(&mut self, request: GatewayRequest) {
+        if self.wanted() == Some(&request) {
             self.wanted = None;
         }
     }
@@ -201,6 +206,11 @@ impl Liaison {
         }
         new.then_some(reason)
     }
+}
+
+/// Before take-off or after landing.
+fn is_down(state: GatewayState) -> bool {
+    matches!(state, GatewayState::Off | GatewayState::Stop)
 }
 
 /// States in which the gateway or the pilot flies and our waypoints are not taken.

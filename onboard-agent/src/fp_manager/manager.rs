@@ -3,7 +3,7 @@
 //! records are written first, as one, and synced if asked for; only then the rest is carried out.
 
 use super::aircraft::Aircraft;
-use super::alarms::Alarms;
+use super::alarms::{self, Alarms};
 use super::feeder::{Fate, Feeder};
 use super::journal::{Entry, Notes, Record, Reply};
 use super::liaison::Liaison;
@@ -135,13 +135,13 @@ impl Manager {
         id: Option<&str>,
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
-        let id = id.filter(|id| id.len() <= REPLY_ID_MAX);
-        if let Some(reply) = id.and_then(|id| self.replies.iter().find(|reply| reply.id == id)) {
+        let id = id.filter(|id| id.len() <= REPLY_ID_MAX).and_then(|id| reply_id(by, id, &command));
+        if let Some(reply) = self.replies.iter().find(|reply| Some(&reply.id) == id.as_ref()) {
             return reply.result.clone();
         }
         let result = self.order(now, command, by, out);
         if let Some(id) = id {
-            let reply = Reply { id: id.to_owned(), result: result.clone() };
+            let reply = Reply { id, result: result.clone() };
             self.record(now, Record::Answered(reply.clone()), out);
             self.remember(reply);
         }
@@ -163,11 +163,15 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
         let starts = command == Command::Start;
+        let leaves_emergency = matches!(command, Command::ReturnToMain { .. });
         let request = self.next_request();
         let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.liaison.want(GatewayRequest::Launch);
+            self.alarms.new_flight();
+        } else if leaves_emergency {
+            self.alarms.look_again();
         }
         self.send(now, out);
         Ok(())
@@ -225,9 +229,9 @@ impl Manager {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
-        if self.liaison.is_joined() {
-            for cause in self.alarms.listed(&status.alarms) {
-                self.emergency(now, cause, out);
+        if self.liaison.is_joined() && self.liaison.is_airborne() {
+            for call in self.alarms.listed(&status.alarms) {
+                self.emergency(now, call, out);
             }
         }
         self.send(now, out);
@@ -242,8 +246,8 @@ impl Manager {
                 self.step(now, Input::Progress { current: None }, out);
             }
             GatewayEvent::AlarmRaised(alarm) => {
-                if let Some(cause) = self.alarms.raised(&alarm) {
-                    self.emergency(now, cause, out);
+                if let Some(call) = alarms::call(&alarm) {
+                    self.emergency(now, call, out);
                 }
             }
             GatewayEvent::AlarmCleared { id } => self.alarms.cleared(&id),
@@ -253,21 +257,34 @@ impl Manager {
         self.send(now, out);
     }
 
-    /// An alarm of the gateway asks for an emergency plan.
-    fn emergency(&mut self, now: Time, cause: Cause, out: &mut Vec<Effect>) {
+    /// An alarm of the gateway asks for an emergency plan. On the ground it has to ask again in the air; while a plan
+    /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do.
+    fn emergency(&mut self, now: Time, call: alarms::Call, out: &mut Vec<Effect>) {
+        if !self.liaison.is_airborne() {
+            return self.alarms.look_again();
+        }
+        let cause = call.cause;
         tracing::warn!(?cause, "alarm of the gateway: emergency");
         if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {
             tracing::warn!(?cause, "no emergency plan flown: {refusal}");
-            if refusal.code == "no-emergency-plan" {
-                self.liaison.want(GatewayRequest::Safe);
+            if refusal.code == "not-more-severe" {
+                return;
             }
+            self.liaison.want(GatewayRequest::Safe);
         }
+        self.alarms.answer(call);
     }
 
     /// The gateway appeared: it has to be joined (again).
     pub fn gateway_appeared(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.liaison.lost();
         self.send(now, out);
+    }
+
+    /// Events of the gateway are lost for good: what they would have told is settled by a join.
+    pub fn events_lost(&mut self, now: Time, missed: u64, out: &mut Vec<Effect>) {
+        tracing::warn!(missed, "events of the gateway were lost");
+        self.gateway_appeared(now, out);
     }
 
     /// The answer to [`Effect::Feed`]; `None`: none came.
@@ -424,6 +441,14 @@ fn recorded(input: &Input) -> Record {
         },
         other => Record::Input(other.clone()),
     }
+}
+
+/// By which a command is known when it is repeated: who asks, the request's own name, and what is asked. Two clients may
+/// well use the same names.
+fn reply_id(by: &str, id: &str, command: &Command) -> Option<String> {
+    let mut asked = Vec::new();
+    ciborium::into_writer(command, &mut asked).ok()?;
+    Some(format!("{by}/{id}/{:08x}", crc32fast::hash(&asked)))
 }
 
 fn unanswered() -> Refusal {

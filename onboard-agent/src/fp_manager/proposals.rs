@@ -1,43 +1,104 @@
-//! A plan put forward: checked, compiled and its path reviewed on a thread of its own, while the flight goes on.
+//! A plan put forward: checked, compiled and its path reviewed on a thread of its own, its document kept on the disk,
+//! while the flight goes on.
 
+use super::journal::Keeper;
 use super::{Config, listed};
 use aircraft::Wind;
 use flight_exec::{Conditions, compile_and_review};
 use flight_plan::{Problem, Program};
+use std::pin::Pin;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::task::JoinHandle;
+use tokio::time::Instant;
 use usal::Incoming;
 use usal::contract::{ProposalReport, Propose, Refusal};
 
-type Looked = Result<Arc<Program>, Vec<Problem>>;
+/// In lockstep time stands for so long (wall-clock) while a proposal is looked at; the others wait for five seconds at most.
+const LOCKSTEP_PATIENCE: Duration = Duration::from_secs(4);
 
-/// The proposal that is being looked at, if there is one.
+type Asked = Incoming<Propose, ProposalReport>;
+
+/// A plan that may be proposed, and its document as it is kept.
+pub struct Fit {
+    /// The plan.
+    pub program: Arc<Program>,
+    /// The document.
+    pub xml: Vec<u8>,
+}
+
+type Looked = Result<Fit, Vec<Problem>>;
+type Outcome = Result<Arc<Program>, Refusal>;
+
+/// The proposal that is on the desk, if there is one.
 #[derive(Default)]
-pub struct Desk(Option<(Incoming<Propose, ProposalReport>, JoinHandle<Looked>)>);
+pub struct Desk(Option<Proposal>);
+
+struct Proposal {
+    asked: Asked,
+    since: Instant,
+    step: Step,
+}
+
+enum Step {
+    /// It is being looked at.
+    Looking(JoinHandle<Looked>),
+    /// Its document is being kept.
+    Keeping(Arc<Program>, Pin<Box<dyn Future<Output = ()> + Send>>),
+    Done(Outcome),
+}
 
 impl Desk {
     /// Begins to look at a proposal in a wind; one that comes while another is on the desk is refused.
-    pub fn take(&mut self, incoming: Incoming<Propose, ProposalReport>, config: &Config, wind: Wind) {
+    pub fn take(&mut self, asked: Asked, config: &Config, wind: Wind) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
-            return incoming.answer(Err(Refusal { code: "busy".into(), reason: reason.into() }));
+            return asked.answer(Err(Refusal { code: "busy".into(), reason: reason.into() }));
         }
-        let (xml, config) = (incoming.request.xml.clone(), config.clone());
+        let (xml, config) = (asked.request.xml.clone(), config.clone());
         let work = tokio::task::spawn_blocking(move || look(&xml, &config, wind));
-        self.0 = Some((incoming, work));
+        self.0 = Some(Proposal { asked, since: Instant::now(), step: Step::Looking(work) });
     }
 
-    /// A proposal that has been looked at; never, if there is none. May be cancelled.
-    pub async fn next(&mut self) -> (Incoming<Propose, ProposalReport>, Result<Arc<Program>, Refusal>) {
-        let looked = match &mut self.0 {
-            Some((_, work)) => work.await,
-            None => std::future::pending().await,
-        };
-        match self.0.take() {
-            Some((incoming, _)) => (incoming, outcome(looked.unwrap_or_else(|e| Err(vec![broken(&e)])))),
-            // it was there a line ago
-            None => std::future::pending().await,
+    /// A proposal that has been looked at and is kept; never, if there is none. May be cancelled.
+    pub async fn next(&mut self, journal: &mut Option<Keeper>) -> (Asked, Outcome) {
+        loop {
+            match self.0.take_if(|proposal| matches!(proposal.step, Step::Done(_))) {
+                Some(Proposal { asked, step: Step::Done(outcome), .. }) => return (asked, outcome),
+                _ => self.advance(journal).await,
+            }
         }
+    }
+
+    async fn advance(&mut self, journal: &mut Option<Keeper>) {
+        let Some(proposal) = &mut self.0 else { return std::future::pending().await };
+        proposal.step = match &mut proposal.step {
+            Step::Looking(work) => match outcome(work.await.unwrap_or_else(|e| Err(vec![broken(&e)]))) {
+                Ok(fit) => kept(fit, journal),
+                Err(refusal) => Step::Done(Err(refusal)),
+            },
+            Step::Keeping(program, keeping) => {
+                keeping.await;
+                Step::Done(Ok(program.clone()))
+            }
+            Step::Done(_) => return,
+        };
+    }
+
+    /// In lockstep, time stands while a proposal is looked at, but not so long that the others go on without us.
+    pub fn holds_time_until(&self) -> Option<Instant> {
+        self.0.as_ref().map(|proposal| proposal.since + LOCKSTEP_PATIENCE)
+    }
+}
+
+fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
+    let Fit { program, xml } = fit;
+    match journal {
+        Some(journal) => {
+            let keeping = journal.keep(program.hash.clone(), xml);
+            Step::Keeping(program, Box::pin(keeping))
+        }
+        None => Step::Done(Ok(program)),
     }
 }
 
@@ -45,17 +106,19 @@ impl Desk {
 ///
 /// # Errors
 /// Its problems.
-pub fn looked_at(xml: &str, config: &Config, wind: Wind) -> Result<Arc<Program>, Refusal> {
-    outcome(look(xml, config, wind))
+pub fn looked_at(xml: &str, config: &Config, wind: Wind) -> Outcome {
+    outcome(look(xml, config, wind)).map(|fit| fit.program)
 }
 
 fn look(xml: &str, config: &Config, wind: Wind) -> Looked {
     // when the flight begins is not known: zones with periods count as active
     let conditions = Conditions { wind, ..Conditions::default() };
-    compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, conditions)
+    let program = compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, conditions)?;
+    let xml = flight_plan::write(&program.plan).into_bytes();
+    Ok(Fit { program, xml })
 }
 
-fn outcome(looked: Looked) -> Result<Arc<Program>, Refusal> {
+fn outcome(looked: Looked) -> Result<Fit, Refusal> {
     looked.map_err(|problems| Refusal { code: "plan-errors".into(), reason: listed(&problems) })
 }
 

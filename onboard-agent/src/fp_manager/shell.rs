@@ -6,12 +6,13 @@ use super::manager::{Effect, Manager, OPERATOR};
 use super::proposals::{Desk, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
-use crate::Shutdown;
-use crate::clock::Clock;
+use crate::clock::{Clock, Time};
+use crate::{Shutdown, alone};
 use anyhow::Context;
 use flight_plan::Program;
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::time::Instant;
 use usal::contract::*;
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
 use usal::{
@@ -152,6 +153,7 @@ pub(super) struct Shell {
 /// # Errors
 /// The session or the state directory can't be had, or the plan it was started with can't be flown.
 pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
+    let _lock = alone::lock(config.state_dir.as_deref(), FP_MANAGER).await?;
     let client = usal::Config::client(&config.vehicle, &config.connect);
     let session = Session::open(client).await.context("the FP Manager's network session")?;
     let outcome = run_in(&session, config, &mut shutdown).await;
@@ -160,6 +162,7 @@ pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
 }
 
 async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> anyhow::Result<()> {
+    alone::expect_nobody(session, FP_MANAGER).await?;
     let (journal, past) = open(&config)?;
     let mut ears = Ears::new(session)?;
     let mut services = Services::new(session)?;
@@ -180,7 +183,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     loop {
         tokio::select! {
             () = shutdown.requested() => break,
-            beat = shell.clock.beat() => {
+            beat = next_beat(&mut shell.clock, shell.desk.holds_time_until()) => {
                 anyhow::ensure!(beat.is_some(), "the network session was closed");
                 shell.beat(&mut ears).await;
             }
@@ -188,7 +191,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             occurrence = ears.events.recv() => {
                 shell.occurred(occurrence.context("the network session was closed")?).await;
             }
-            (incoming, looked) = shell.desk.next() => shell.looked(incoming, looked).await,
+            (incoming, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, looked).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -197,6 +200,14 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
         journal.done().await;
     }
     Ok(())
+}
+
+/// The next beat; in lockstep, what was proposed before is looked at first.
+async fn next_beat(clock: &mut Clock, held_until: Option<Instant>) -> Option<Time> {
+    if let Some(until) = held_until.filter(|_| clock.is_simulated()) {
+        tokio::time::sleep_until(until).await;
+    }
+    clock.beat().await
 }
 
 fn refusal(code: &str, reason: String) -> Refusal {
@@ -275,7 +286,7 @@ impl Shell {
             Occurrence::Event { event, .. } => {
                 self.manager.gateway_event(self.clock.now(), event.value, &mut effects)
             }
-            Occurrence::Gap { missed } => tracing::warn!(missed, "events of the gateway were lost"),
+            Occurrence::Gap { missed } => self.manager.events_lost(self.clock.now(), missed, &mut effects),
         }
         self.perform(effects).await;
     }
@@ -319,13 +330,7 @@ impl Shell {
             let reason = format!("the plan is at revision {revision} by now: look at it, then propose again");
             return incoming.answer(Err(refusal("stale-revision", reason)));
         }
-        let wind = self.manager.wind();
-        if self.clock.is_simulated() {
-            // in lockstep looking takes no time
-            let looked = looked_at(&incoming.request.xml, &self.config, wind);
-            return self.looked(incoming, looked).await;
-        }
-        self.desk.take(incoming, &self.config, wind);
+        self.desk.take(incoming, &self.config, self.manager.wind());
     }
 
     /// A proposal has been looked at. The executor sees to it that the plan it was made for is still the one being flown.

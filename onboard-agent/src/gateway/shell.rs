@@ -7,7 +7,7 @@ use super::order::Time;
 use super::publish::Publishers;
 use super::station::Station;
 use super::store::Store;
-use crate::Shutdown;
+use crate::{Shutdown, alone};
 use anyhow::Context;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::sync::Arc;
@@ -109,6 +109,7 @@ struct Shell {
 /// # Errors
 /// If the session or the link's own socket can't be had.
 pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
+    let _lock = alone::lock(config.state_dir.as_deref(), topics::GATEWAY).await?;
     let hub = usal::Config::hub(&config.vehicle, &config.listen);
     let session = Session::open(hub).await.context("the gateway's network session")?;
     let outcome = run_in(&session, config, &mut shutdown).await;
@@ -136,7 +137,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
                 if matches!(call, Call::Closed) {
                     anyhow::bail!("the network session was closed");
                 }
-                shell.call(call);
+                shell.call(call).await;
             }
             _ = ticks.tick() => shell.tick().await,
         }
@@ -194,23 +195,23 @@ impl Shell {
             loop {
                 tokio::select! {
                     biased;
-                    call = services.next() => self.call(call),
+                    call = services.next() => self.call(call).await,
                     _ = conductor.settle() => break,
                 }
                 self.flush();
             }
         }
         while let Some(call) = services.waiting() {
-            self.call(call);
+            self.call(call).await;
         }
         self.station.tick(self.clock.now());
         self.flush();
-        self.store.work().await;
+        self.keep().await;
         self.station.answer_step(step_ns);
         self.flush();
     }
 
-    fn call(&mut self, call: Call) {
+    async fn call(&mut self, call: Call) {
         let now = self.clock.now();
         let station = &mut self.station;
         match call {
@@ -231,7 +232,11 @@ impl Shell {
             Call::Request(incoming) => {
                 let (request, answer) = incoming.split();
                 tracing::info!(?request, "request");
-                answer(match station.ask(now, |id| Input::Request(id, request)) {
+                let outcome = station.ask(now, |id| Input::Request(id, request));
+                // what was accepted survives a crash; the orders that it leads to do not wait for the disk
+                self.flush();
+                self.store.settle().await;
+                answer(match outcome {
                     Some(Answer::Request(Ok(()))) => Ok(Empty {}),
                     Some(Answer::Request(Err(reason))) => Err(Refusal { code: "refused".into(), reason }),
                     _ => Err(unanswered()),
@@ -239,8 +244,8 @@ impl Shell {
             }
             Call::Describe(incoming) => incoming.answer(Ok(usal::gateway_description())),
             Call::Heartbeat(received) => {
-                let plan = received.stamped.value.plan.clone();
-                station.input(now, Input::Heartbeat { plan });
+                let Heartbeat { count, plan } = received.stamped.value.clone();
+                station.input(now, Input::Heartbeat { count, plan });
             }
             Call::Closed => {}
         }
@@ -257,9 +262,20 @@ impl Shell {
         }
     }
 
+    /// Goes on with writing, and tells the core when that fails or succeeds again.
+    async fn keep(&mut self) {
+        if self.store.wants_again() {
+            self.store.save(self.station.gateway().snapshot());
+        }
+        self.store.work().await;
+        if let Some(stored) = self.store.news() {
+            self.station.input(self.clock.now(), Input::Stored(stored));
+        }
+    }
+
     /// Wall-clock time passed.
     async fn tick(&mut self) {
-        self.store.work().await;
+        self.keep().await;
         if !self.clock.simulated {
             return self.station.tick(self.clock.now());
         }

@@ -5,7 +5,7 @@ use super::{Address, Config, run};
 use std::net::TcpListener;
 use std::time::{Duration, Instant};
 use usal::Session;
-use usal::contract::GatewayState;
+use usal::contract::{GatewayRequest, GatewayState, LatLon, SafeRunway};
 use usal::topics::gateway;
 
 fn free_endpoint() -> String {
@@ -44,4 +44,31 @@ async fn a_lockstep_simulator_is_seen_on_the_network_and_time_runs_fast() {
     trigger.shut_down();
     tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
     sim.stop();
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn killed_after_an_answer_what_was_accepted_is_on_the_disk() {
+    let directory = tempfile::tempdir().unwrap();
+    let listen = free_endpoint();
+    let (trigger, shutdown) = crate::shutdown();
+    let state_dir = Some(directory.path().to_owned());
+    let config = Config { state_dir, ..Config::new("test", &listen, "udp:127.0.0.1:0".parse().unwrap()) };
+    let task = tokio::spawn(run(config, shutdown));
+    let session = Session::open(usal::Config::client("test", &listen)).await.unwrap();
+    for id in ["A", "B", "C", "D"] {
+        let runway = SafeRunway {
+            id: id.into(),
+            threshold: LatLon::new(36.3190, -84.1730),
+            elevation_amsl_m: 349.0,
+            heading_deg: 52.0,
+            length_m: 600.0,
+            priority: 1,
+        };
+        let request = GatewayRequest::SetRunways { runways: vec![runway] };
+        session.call(gateway::REQUEST, &request, Duration::from_secs(60)).await.unwrap();
+        let stored = std::fs::read_to_string(directory.path().join("gateway.json")).unwrap();
+        assert!(stored.contains(&format!("\"id\":\"{id}\"")), "{id}: {stored}");
+    }
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
 }

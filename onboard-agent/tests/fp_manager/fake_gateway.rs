@@ -1,8 +1,12 @@
 //! A gateway as the contract has it, around an autopilot that flies a waypoint a step. It
 //! conducts the clock, so the test drives time.
 
-use std::collections::VecDeque;
+#[path = "../../src/fp_manager/kills/gateway.rs"]
+mod flying;
+
+use flying::Gateway;
 use std::future::Future;
+use std::ops::{Deref, DerefMut};
 use std::time::Duration;
 use usal::contract::*;
 use usal::topics::{GATEWAY, gateway};
@@ -35,6 +39,7 @@ pub fn free_endpoint() -> String {
 }
 
 pub struct FakeGateway {
+    flying: Gateway,
     conductor: Conductor,
     feed: Server<Feed, FeedAnswer>,
     join: Server<Join, JoinAnswer>,
@@ -45,28 +50,27 @@ pub struct FakeGateway {
     events: EventPublisher<TimedGatewayEvent>,
     _announcement: Announcement,
     time_s: f64,
-    here: LatLon,
-    buffer: VecDeque<Waypoint>,
-    highest: Token,
-    pub state: GatewayState,
-    pub flown: Vec<Waypoint>,
-    pub joins: Vec<Join>,
-    /// All but the storing of runways.
-    pub requests: Vec<GatewayRequest>,
-    /// As they were stored, each time.
-    pub runways: Vec<Vec<SafeRunway>>,
-    pub refuse_leg: Option<Id>,
-    /// Launches are refused with this.
-    pub refuse_launch: Option<String>,
-    /// Raised now.
-    alarms: Vec<Alarm>,
-    resume_on_feed: bool,
+}
+
+impl Deref for FakeGateway {
+    type Target = Gateway;
+
+    fn deref(&self) -> &Gateway {
+        &self.flying
+    }
+}
+
+impl DerefMut for FakeGateway {
+    fn deref_mut(&mut self) -> &mut Gateway {
+        &mut self.flying
+    }
 }
 
 impl FakeGateway {
     pub async fn open(endpoint: &str) -> Self {
         let session = Session::open(usal::Config::hub("uav1", endpoint)).await.unwrap();
         Self {
+            flying: Gateway::new(LatLon { lat_deg: 36.3190, lon_deg: -84.1730 }),
             conductor: Conductor::new(&session).unwrap().patience(DEADLINE),
             feed: session.serve(gateway::FEED).unwrap(),
             join: session.serve(gateway::JOIN).unwrap(),
@@ -77,18 +81,6 @@ impl FakeGateway {
             events: session.emitter(gateway::EVENTS).unwrap(),
             _announcement: session.announce(GATEWAY).unwrap(),
             time_s: 0.0,
-            here: LatLon { lat_deg: 36.3190, lon_deg: -84.1730 },
-            buffer: VecDeque::new(),
-            highest: Token(0),
-            state: GatewayState::Stop,
-            flown: Vec::new(),
-            joins: Vec::new(),
-            requests: Vec::new(),
-            runways: Vec::new(),
-            refuse_leg: None,
-            refuse_launch: None,
-            alarms: Vec::new(),
-            resume_on_feed: false,
         }
     }
 
@@ -96,44 +88,10 @@ impl FakeGateway {
         until(async || self.conductor.participants().len() == count).await;
     }
 
-    pub fn launched(&self) -> bool {
-        self.requests.contains(&GatewayRequest::Launch)
-    }
-
-    pub fn end_is_aboard(&self) -> bool {
-        self.buffer.back().is_some_and(|w| w.end_of_plan)
-    }
-
-    pub fn finished(&self) -> bool {
-        self.buffer.is_empty() && self.flown.last().is_some_and(|w| w.end_of_plan)
-    }
-
-    pub fn alarm(&mut self, cause: Cause) {
-        let alarm = Alarm {
-            id: "energy-low".into(),
-            severity: Severity::Warning,
-            source: "gateway".into(),
-            advice: "land".into(),
-            cause: Some(cause),
-        };
-        self.emit(GatewayEvent::AlarmRaised(alarm.clone()));
-        self.alarms.push(alarm);
-    }
-
-    /// Safe.Hold with an empty buffer, until the FP Manager joins.
-    pub fn safe_until_joined(&mut self) {
-        self.state = GatewayState::SafeHold;
-        self.buffer.clear();
-    }
-
-    fn emit(&self, value: GatewayEvent) {
-        self.events.emit(&Stamped { time_s: self.time_s, validity_s: 1.0, value });
-    }
-
     /// One step of time: fly, publish, and let everybody do what is due.
     pub async fn step(&mut self) {
         self.time_s += STEP_S;
-        self.fly();
+        self.flying.fly();
         self.publish();
         self.conductor.start(self.time_s);
         let late = within(self.serve_until_settled()).await;
@@ -159,132 +117,29 @@ impl FakeGateway {
                 biased;
                 Some(incoming) = self.feed.recv() => {
                     let (feed, reply) = incoming.split();
-                    reply(Ok(self.feed(feed)));
+                    reply(Ok(self.flying.feed(feed)));
                 }
                 Some(incoming) = self.join.recv() => {
                     let (join, reply) = incoming.split();
-                    reply(Ok(self.join(join)));
+                    reply(Ok(self.flying.join(join)));
                 }
                 Some(incoming) = self.request.recv() => {
                     let (request, reply) = incoming.split();
-                    reply(self.request(request));
+                    let refused = |reason| Refusal { code: "refused".into(), reason };
+                    reply(self.flying.request(&request).map(|()| Empty {}).map_err(refused));
                 }
                 late = self.conductor.settle() => return late,
             }
         }
     }
 
-    fn feed(&mut self, feed: Feed) -> FeedAnswer {
-        if self.state == GatewayState::SafeHold {
-            return FeedAnswer::NotNow("join first".into());
+    fn publish(&mut self) {
+        let time_s = self.time_s;
+        for value in self.flying.events.drain(..) {
+            self.events.emit(&Stamped { time_s, validity_s: 1.0, value });
         }
-        let refused = self.refuse_leg.as_ref().and_then(|leg| feed.waypoints.iter().find(|w| w.leg == *leg));
-        if let Some(waypoint) = refused {
-            return FeedAnswer::Refused {
-                faults: vec![(waypoint.token, "fence".into(), "not there".into())],
-            };
-        }
-        if let Some(keep) = feed.cancel_after {
-            self.buffer.retain(|w| w.token <= keep);
-        }
-        for waypoint in feed.waypoints {
-            assert!(waypoint.token > self.highest, "{:?} fed after {:?}", waypoint.token, self.highest);
-            self.highest = waypoint.token;
-            self.buffer.push_back(waypoint);
-        }
-        if std::mem::take(&mut self.resume_on_feed) {
-            self.state = GatewayState::Nav;
-        }
-        FeedAnswer::Accepted
-    }
-
-    fn join(&mut self, join: Join) -> JoinAnswer {
-        self.joins.push(join);
-        if self.state == GatewayState::SafeHold {
-            self.state = GatewayState::Hold;
-            self.resume_on_feed = true;
-        }
-        JoinAnswer {
-            accepted: true,
-            reason: String::new(),
-            current: self.buffer.front().map(|w| w.token),
-            last: self.buffer.back().map(|w| w.token),
-            highest: self.highest,
-        }
-    }
-
-    fn request(&mut self, request: GatewayRequest) -> Result<Empty, Refusal> {
-        match request {
-            GatewayRequest::Launch if self.refuse_launch.is_some() => {
-                let reason = self.refuse_launch.clone().unwrap_or_default();
-                return Err(Refusal { code: "refused".into(), reason });
-            }
-            GatewayRequest::Launch | GatewayRequest::Resume => {
-                assert!(!self.buffer.is_empty(), "{request:?} before the waypoints");
-                self.state = GatewayState::Nav;
-            }
-            GatewayRequest::Hold => self.state = GatewayState::Hold,
-            GatewayRequest::Safe => self.state = GatewayState::SafeHold,
-            GatewayRequest::SetRunways { runways } => {
-                self.runways.push(runways);
-                return Ok(Empty {});
-            }
-            _ => panic!("{request:?}"),
-        }
-        self.requests.push(request);
-        Ok(Empty {})
-    }
-
-    fn fly(&mut self) {
-        if self.state != GatewayState::Nav {
-            return;
-        }
-        let Some(reached) = self.buffer.pop_front() else { return };
-        self.here = reached.position;
-        self.flown.push(reached);
-        if self.finished() {
-            self.state = GatewayState::Stop;
-        }
-        self.emit(GatewayEvent::Progress { current: self.buffer.front().map(|w| w.token) });
-    }
-
-    fn publish(&self) {
-        let on_ground = self.state == GatewayState::Stop;
-        let position = Position {
-            position: self.here,
-            altitude_amsl_m: 450.0,
-            altitude_home_m: 100.0,
-            velocity_north_mps: 0.0,
-            velocity_east_mps: 22.0,
-            velocity_down_mps: 0.0,
-            track_deg: 90.0,
-            ground_speed_mps: if on_ground { 0.0 } else { 22.0 },
-            on_ground,
-        };
-        self.position.set(self.time_s, 1.0, &position);
-        let navigation = Navigation {
-            current: self.buffer.front().map(|w| w.token),
-            next: self.buffer.get(1).map(|w| w.token),
-            last: self.buffer.back().map(|w| w.token),
-            distance_m: 100.0,
-            eta_s: 5.0,
-            cross_track_m: 0.0,
-            buffer_waypoints: self.buffer.len(),
-            buffer_s: 5.0 * self.buffer.len() as f64,
-            room: 256 - self.buffer.len(),
-            end_of_plan: self.buffer.back().is_some_and(|w| w.end_of_plan),
-        };
-        self.navigation.set(self.time_s, 1.0, &navigation);
-        let status = GatewayStatus {
-            state: self.state,
-            cause: "test".into(),
-            armed: !on_ground,
-            autopilot_mode: "AUTO".into(),
-            autopilot_age_s: 0.0,
-            fp_manager_age_s: None,
-            safe_return_in_s: None,
-            alarms: self.alarms.clone(),
-        };
-        self.status.set(self.time_s, 1.0, &status);
+        self.position.set(time_s, 1.0, &self.flying.position());
+        self.navigation.set(time_s, 1.0, &self.flying.navigation());
+        self.status.set(time_s, 1.0, &self.flying.status());
     }
 }

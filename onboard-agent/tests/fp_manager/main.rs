@@ -4,6 +4,7 @@
 mod fake_gateway;
 
 use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
+use onboard_agent::alone::Taken;
 use onboard_agent::{Trigger, fp_manager, shutdown};
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -105,7 +106,7 @@ impl Flight {
 
     async fn start(&mut self) {
         self.command(Command::Start).await.unwrap();
-        self.step_until(|g| g.launched()).await;
+        self.step_until(|g| g.launches() > 0).await;
     }
 }
 
@@ -122,7 +123,7 @@ async fn plan_is_proposed_committed_started_and_flown_to_its_end() {
     let status = flight.client.follow(topic::STATUS).unwrap();
     flight.load(SQUARE).await;
     flight.start().await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     flight.step(3).await;
     let flown = legs(&flight.gateway);
     for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
@@ -212,7 +213,7 @@ async fn hold_and_resume_reach_the_gateway_in_order() {
     flight.step(20).await;
     assert_eq!(flight.gateway.flown.len(), held);
     flight.command(Command::Resume).await.unwrap();
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     let kinds: Vec<_> = flight.gateway.requests.clone();
     assert_eq!(kinds, [GatewayRequest::Launch, GatewayRequest::Hold, GatewayRequest::Resume]);
 }
@@ -223,8 +224,8 @@ async fn alarm_with_a_cause_flies_the_emergency_plan() {
     flight.load(SQUARE).await;
     flight.start().await;
     flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
-    flight.gateway.alarm(Cause::Energy);
-    flight.step_until(FakeGateway::finished).await;
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    flight.step_until(|g| g.finished()).await;
     let flown = legs(&flight.gateway);
     assert!(flown.contains(&"r1".to_owned()) && !flown.contains(&"side3".to_owned()), "{flown:?}");
 }
@@ -235,7 +236,7 @@ async fn alarm_without_an_emergency_plan_asks_the_gateway_for_safe_mode() {
     flight.load(&SQUARE.replace(r#"<mainPlan emergency="return">"#, "<mainPlan>")).await;
     flight.start().await;
     flight.step_until(|g| g.flown.len() >= 2).await;
-    flight.gateway.alarm(Cause::Energy);
+    flight.gateway.alarm("energy-low", Cause::Energy);
     flight.step_until(|g| g.requests.contains(&GatewayRequest::Safe)).await;
 }
 
@@ -246,7 +247,7 @@ async fn emergency_plan_refused_by_the_gateway_leaves_the_flight_to_safe_mode() 
     flight.start().await;
     flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
     flight.gateway.refuse_leg = Some("r1".into());
-    flight.gateway.alarm(Cause::Energy);
+    flight.gateway.alarm("energy-low", Cause::Energy);
     flight.step_until(|g| g.requests.contains(&GatewayRequest::Safe)).await;
 }
 
@@ -263,7 +264,7 @@ async fn a_plan_calls_a_service_once_where_it_says_so() {
     let with = format!(r#"<TF id="side2" fix="B">{action}</TF>"#);
     flight.load(&SQUARE.replace(side, &with)).await;
     flight.start().await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     let dropped = within(drops.recv()).await.unwrap();
     assert_eq!(dropped.request, serde_json::json!({"bay": 2}));
     dropped.answer(Ok(Empty {}));
@@ -280,19 +281,19 @@ async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
     flight.start().await;
     flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "take-off")).await;
     flight.kill_manager().await;
-    flight.gateway.alarm(Cause::Energy);
+    flight.gateway.alarm("energy-low", Cause::Energy);
     // both times it finds the alarm raised
     for _ in 0..2 {
-        flight.gateway.safe_until_joined();
+        flight.gateway.safe_return();
         flight.start_manager().await;
         let runways = flight.gateway.runways.len();
         flight.step_until(|g| g.runways.len() > runways).await;
         flight.step(1).await;
         flight.kill_manager().await;
     }
-    flight.gateway.safe_until_joined();
+    flight.gateway.safe_return();
     flight.start_manager().await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     let flown = legs(&flight.gateway);
     assert!(flown.contains(&"r1".to_owned()) && !flown.contains(&"side3".to_owned()), "{flown:?}");
     let mut started = 0;
@@ -312,8 +313,8 @@ async fn launch_refused_is_told_once_with_its_reason_and_asked_again() {
     flight.command(Command::Start).await.unwrap();
     flight.step(20).await;
     flight.gateway.refuse_launch = None;
-    flight.step_until(|g| g.launched()).await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.launches() > 0).await;
+    flight.step_until(|g| g.finished()).await;
     let mut told = Vec::new();
     while let Some(occurrence) = events.try_recv() {
         if let Occurrence::Event {
@@ -338,7 +339,7 @@ async fn killed_and_restarted_it_goes_on_at_its_place() {
     flight.kill_manager().await;
     flight.step(2).await;
     flight.start_manager().await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     let flown = legs(&flight.gateway);
     for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
         assert_eq!(flown.iter().filter(|l| *l == leg).count(), 1, "{leg} in {flown:?}");
@@ -355,7 +356,7 @@ async fn runways_of_the_plan_are_stored_when_it_becomes_active_and_after_each_jo
     flight.step_until(|g| g.runways.len() == 1).await;
     flight.start().await;
     flight.step_until(|g| g.flown.len() >= 2).await;
-    flight.gateway.safe_until_joined();
+    flight.gateway.safe_hold();
     flight.step_until(|g| g.runways.len() == 2).await;
     let plan = flight_plan::read(SQUARE).plan;
     let ids: Vec<String> = plan.runways.iter().map(|r| r.id.to_string()).collect();
@@ -370,8 +371,8 @@ async fn gateway_that_lost_its_buffer_is_fed_again() {
     flight.load(SQUARE).await;
     flight.start().await;
     flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
-    flight.gateway.safe_until_joined();
-    flight.step_until(FakeGateway::finished).await;
+    flight.gateway.safe_return();
+    flight.step_until(|g| g.finished()).await;
     let flown = legs(&flight.gateway);
     assert!(flown.ends_with(&["land".to_owned()]), "{flown:?}");
     let tokens: Vec<u64> = flight.gateway.flown.iter().map(|w| w.token.0).collect();
@@ -443,6 +444,22 @@ async fn variable_is_written_by_its_writers_only_and_who_did_is_told() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn second_manager_of_a_vehicle_or_a_state_directory_does_not_start() {
+    let directory = tempfile::tempdir().unwrap();
+    let flight = Flight::new(Some(directory.path())).await;
+    let elsewhere = fp_manager::Config { state_dir: None, ..flight.config.clone() };
+    let refused = within(fp_manager::run(elsewhere, shutdown().1)).await.unwrap_err();
+    assert!(refused.is::<Taken>() && refused.to_string().contains("uav1"), "{refused:#}");
+    let endpoint = free_endpoint();
+    let Manager::Process(mut second) =
+        Manager::start(&fp_manager::Config { connect: endpoint, ..flight.config.clone() })
+    else {
+        panic!("no process")
+    };
+    assert_eq!(within(second.wait()).await.unwrap().code(), Some(2));
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn proposal_not_committed_survives_a_kill() {
     let directory = tempfile::tempdir().unwrap();
     let mut flight = Flight::new(Some(directory.path())).await;
@@ -507,7 +524,7 @@ async fn landed_while_it_was_dead_it_does_not_take_off_again() {
     flight.start().await;
     flight.step_until(|g| g.end_is_aboard()).await;
     flight.kill_manager().await;
-    flight.step_until(FakeGateway::finished).await;
+    flight.step_until(|g| g.finished()).await;
     let flown = flight.gateway.flown.len();
     flight.start_manager().await;
     flight.step(30).await;

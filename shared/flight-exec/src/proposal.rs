@@ -6,6 +6,8 @@ use flight_plan::{FlightPlan, Id, Leg, LegKind, Problem, Program, Stage};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Problems that a report lists.
+const PROBLEMS_MAX: usize = 50;
 /// Who asks when it is only tried what a proposal would do.
 const NOBODY: &str = "trial";
 
@@ -34,7 +36,7 @@ impl Executor {
     }
 
     fn report(&self, program: &Arc<Program>, objections: &[Problem]) -> ProposalReport {
-        let problems = program.warnings.iter().chain(objections).map(|w| w.message.clone()).collect();
+        let problems = listed(program.warnings.iter().chain(objections));
         let forbidden = objections.iter().any(Problem::is_error);
         let mut report = ProposalReport {
             hash: program.hash().clone(),
@@ -84,6 +86,17 @@ impl Executor {
         let kept = first.checked_sub(1).and_then(|i| self.state.handed.get(i));
         Some(kept.map_or(0.0, |h| self.path_left_m(h.end_m)))
     }
+}
+
+/// As they are told to people, with code and place; not all of very many.
+fn listed<'a>(problems: impl Iterator<Item = &'a Problem>) -> Vec<String> {
+    let mut problems = problems.map(ToString::to_string);
+    let mut told: Vec<String> = problems.by_ref().take(PROBLEMS_MAX).collect();
+    let more = problems.count();
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    told
 }
 
 /// A report that knows only which legs and stages differ: those only in the new plan, only in the old one, and those that are not the
@@ -141,4 +154,24 @@ fn without_body(leg: &Leg) -> Leg {
         other => other.clone(),
     };
     Leg { kind, ..leg.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flight_plan::Location;
+
+    #[test]
+    fn problem_names_its_code_place_and_leg_and_a_flood_of_them_is_cut() {
+        let problem = |line| {
+            Problem::warning("no-emergency", "name an emergency plan here")
+                .of(&Id::new("side2"))
+                .at(Location { line, column: 5 })
+        };
+        let few = [problem(7)];
+        assert_eq!(listed(few.iter()), ["7:5: warning [no-emergency] side2: name an emergency plan here"]);
+        let many: Vec<Problem> = (1..=200).map(problem).collect();
+        let told = listed(many.iter());
+        assert_eq!((told.len(), told.last().map(String::as_str)), (PROBLEMS_MAX + 1, Some("and 150 more")));
+    }
 }

@@ -1,8 +1,9 @@
 //! Serving invocations: one typed answer each, repeated requests executed once.
 //!
-//! A request may carry, as parameters of its selector, `id` (any text without `;`; the same id
-//! is executed once and answered again from memory), `timeout_ms` (after which it is not
-//! executed any more) and `from` (who asks: a service's name, a key segment; a claim, not a proof). A refusal is an error reply of the form `{code, reason}`. Answers come in
+//! A request may carry, as parameters of its selector, `id` (any text without `;`; the same request of the
+//! same asker under the same id is executed once and answered again from memory), `timeout_ms` (after which it is not
+//! executed any more) and `from` (who asks: a service's name, a key segment; a claim, not a proof). The refusals `busy`
+//! and `expired` are about the moment: under the same id it can be asked again. A refusal is an error reply of the form `{code, reason}`. Answers come in
 //! the format of the request.
 
 use crate::SessionError;
@@ -15,6 +16,7 @@ use crate::topics::Invocation;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{HashMap, VecDeque};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -35,6 +37,10 @@ const WAITING: usize = 8;
 const ID_MAX: usize = 128;
 /// Deadline of a request that names none, and the longest that it may name.
 const TIMEOUT_MAX: Duration = Duration::from_secs(60);
+/// Refusal of a request that finds others before it.
+const BUSY: &str = "busy";
+/// Refusal of a request whose deadline has passed.
+const EXPIRED: &str = "expired";
 
 /// Receives the requests of an invocation.
 pub struct Server<Q, A> {
@@ -78,7 +84,7 @@ pub struct Incoming<Q, A> {
 impl<Q, A: Serialize> Incoming<Q, A> {
     /// The request's own name: the same for each repetition of it.
     pub fn id(&self) -> Option<&str> {
-        self.reply.id.as_deref()
+        self.reply.name.as_ref().map(|name| name.id.as_str())
     }
 
     /// Who asks, if it says so: a service's name.
@@ -101,10 +107,7 @@ impl<Q, A: Serialize> Incoming<Q, A> {
         if Instant::now() < self.deadline {
             return Some(self);
         }
-        self.answer(Err(refusal(
-            "expired",
-            "its deadline passed before it could be executed; send it again",
-        )));
+        self.answer(Err(refusal(EXPIRED, "its deadline passed before it could be executed; send it again")));
         None
     }
 }
@@ -160,7 +163,7 @@ fn receive<Q: DeserializeOwned, A: Serialize>(sender: &mpsc::Sender<Incoming<Q, 
             let incoming = Incoming { request, reply, deadline, _answer: PhantomData };
             if let Err(full) = sender.try_send(incoming) {
                 full.into_inner()
-                    .answer(Err(refusal("busy", "too many requests are waiting; try again later")));
+                    .answer(Err(refusal(BUSY, "too many requests are waiting; try again later")));
             }
         }
     }
@@ -173,11 +176,12 @@ fn timeout(query: &Query) -> Duration {
 
 /// Lets a request through to the service unless it repeats an earlier one.
 fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Option<Replier> {
-    let id = query.parameters().get("id").filter(|id| id.len() <= ID_MAX).map(str::to_owned);
+    let from = query.parameters().get("from").filter(|from| is_segment(from)).map(str::to_owned);
+    let name = Name::of(&query, from.as_deref());
     let format = query.encoding().map_or(Format::Cbor, Format::of);
-    if let Some(id) = &id {
+    if let Some(name) = &name {
         let mut memory = memory.lock().unwrap_or_else(PoisonError::into_inner);
-        match memory.requests.get_mut(id) {
+        match memory.requests.get_mut(name) {
             Some(Request::Running(waiting)) => {
                 if waiting.len() < WAITING {
                     waiting.push(query);
@@ -188,19 +192,36 @@ fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Opt
                 send(&query, reply, health);
                 return None;
             }
-            None => memory.begin(id.clone()),
+            None => memory.begin(name.clone()),
         }
     }
-    let from = query.parameters().get("from").filter(|from| is_segment(from)).map(str::to_owned);
     let (memory, health) = (memory.clone(), health.clone());
-    Some(Replier { query, format, id, from, memory, health, answered: false })
+    Some(Replier { query, format, name, from, memory, health, answered: false })
+}
+
+/// By which a request is known when it is repeated: two clients may well use the same ids.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Name {
+    id: String,
+    from: Option<String>,
+    /// Of what is asked, as it came.
+    payload: u64,
+}
+
+impl Name {
+    fn of(query: &Query, from: Option<&str>) -> Option<Self> {
+        let id = query.parameters().get("id").filter(|id| id.len() <= ID_MAX)?.to_owned();
+        let mut hasher = DefaultHasher::new();
+        query.payload().map(ZBytes::to_bytes).hash(&mut hasher);
+        Some(Self { id, from: from.map(str::to_owned), payload: hasher.finish() })
+    }
 }
 
 /// The duty to answer one request, and those that repeat it.
 struct Replier {
     query: Query,
     format: Format,
-    id: Option<String>,
+    name: Option<Name>,
     from: Option<String>,
     memory: Arc<Mutex<Memory>>,
     health: Arc<Health>,
@@ -212,9 +233,10 @@ impl Replier {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
         send(&self.query, &reply, &self.health);
-        if let Some(id) = &self.id {
+        if let Some(name) = &self.name {
+            let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
             let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-            for waiting in memory.finish(id, &reply) {
+            for waiting in if passing { memory.forget(name) } else { memory.finish(name, &reply) } {
                 send(&waiting, &reply, &self.health);
             }
         }
@@ -266,8 +288,8 @@ fn send(query: &Query, reply: &Reply, health: &Health) {
 /// Requests with an id, so that a repeated one is not executed again; the oldest are forgotten.
 #[derive(Default)]
 struct Memory {
-    requests: HashMap<String, Request>,
-    order: VecDeque<String>,
+    requests: HashMap<Name, Request>,
+    order: VecDeque<Name>,
 }
 
 enum Request {
@@ -276,19 +298,28 @@ enum Request {
 }
 
 impl Memory {
-    fn begin(&mut self, id: String) {
+    fn begin(&mut self, name: Name) {
         if self.order.len() >= REMEMBERED
             && let Some(oldest) = self.order.pop_front()
         {
             self.requests.remove(&oldest);
         }
-        self.order.push_back(id.clone());
-        self.requests.insert(id, Request::Running(Vec::new()));
+        self.order.push_back(name.clone());
+        self.requests.insert(name, Request::Running(Vec::new()));
+    }
+
+    /// Whoever repeats it asks anew. Returns the repetitions that wait for an answer.
+    fn forget(&mut self, name: &Name) -> Vec<Query> {
+        self.order.retain(|known| known != name);
+        match self.requests.remove(name) {
+            Some(Request::Running(waiting)) => waiting,
+            Some(Request::Done(_)) | None => Vec::new(),
+        }
     }
 
     /// Remembers an answer and returns the repetitions that wait for it.
-    fn finish(&mut self, id: &str, reply: &Reply) -> Vec<Query> {
-        let Some(request) = self.requests.get_mut(id) else { return Vec::new() };
+    fn finish(&mut self, name: &Name, reply: &Reply) -> Vec<Query> {
+        let Some(request) = self.requests.get_mut(name) else { return Vec::new() };
         let kept = if reply.bytes.len() <= REMEMBERED_BYTES {
             reply.clone()
         } else {

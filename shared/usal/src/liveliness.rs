@@ -5,6 +5,7 @@ use crate::session::Session;
 use crate::{KeyError, SessionError};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::watch;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -14,6 +15,8 @@ use zenoh::sample::SampleKind;
 /// Names beyond this are not remembered: no vehicle has so many services.
 const SERVICES_MAX: usize = 256;
 const ALIVE: &str = "alive";
+/// A hub that is there says who is, within this time.
+const ASK_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Shows that a service is there, until dropped.
 pub struct Announcement {
@@ -54,6 +57,22 @@ impl Session {
     pub fn announce(&self, service: &str) -> Result<Announcement, SessionError> {
         let token = self.token(service, ALIVE)?;
         Ok(Announcement { _token: token, _session: self.clone() })
+    }
+
+    /// Whether anybody shows this service now, as far as the hub is there to say.
+    ///
+    /// # Errors
+    /// [`SessionError`] for a bad name or on a closed session.
+    pub async fn is_announced(&self, service: &str) -> Result<bool, SessionError> {
+        let key = self.key(service, Kind::Liveliness, ALIVE)?.to_string();
+        let asked = self.inner.zenoh.liveliness().get(key).timeout(ASK_TIMEOUT).await;
+        let replies = asked.map_err(SessionError::network)?;
+        while let Ok(reply) = replies.recv_async().await {
+            if reply.result().is_ok() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Watches who is there.

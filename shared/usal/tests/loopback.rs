@@ -252,6 +252,56 @@ async fn repeated_request_ids_are_executed_once() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn clients_that_use_the_same_ids_get_their_own_answers() {
+    let net = Net::open().await;
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let executed = Arc::new(AtomicUsize::new(0));
+    let count = executed.clone();
+    let service = tokio::spawn(async move {
+        while let Some(incoming) = server.recv().await {
+            count.fetch_add(1, Ordering::SeqCst);
+            incoming.answer(Ok(Empty {}));
+        }
+    });
+    let outside = outside_client(&net.endpoint).await;
+    let [hold, resume] = [br#"{"request":"hold"}"#.as_slice(), br#"{"request":"resume"}"#];
+    // (id and asker, what, executed in all)
+    let cases = [
+        ("1;from=a", hold, 1),
+        ("1;from=b", hold, 2),
+        ("1;from=b", resume, 3),
+        ("1", resume, 4),
+        ("1;from=a", hold, 4),
+    ];
+    for (id, payload, total) in cases {
+        ask(&outside, "gateway", "request", id, payload, Encoding::APPLICATION_JSON).await.unwrap();
+        assert_eq!(executed.load(Ordering::SeqCst), total, "{id}");
+    }
+    service.abort();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn refused_as_busy_or_expired_it_can_be_sent_again_under_the_same_id() {
+    for code in ["busy", "expired"] {
+        let net = Net::open().await;
+        let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+        let service = tokio::spawn(async move {
+            let refusal = Refusal { code: code.into(), reason: "not now".into() };
+            server.recv().await.unwrap().answer(Err(refusal));
+            server.recv().await.unwrap().answer(Ok(Empty {}));
+        });
+        let outside = outside_client(&net.endpoint).await;
+        let payload = br#"{"request":"hold"}"#;
+        let ask = || ask(&outside, "gateway", "request", "1", payload, Encoding::APPLICATION_JSON);
+        assert!(ask().await.unwrap_err().contains(code));
+        for _ in 0..2 {
+            assert_eq!(ask().await.unwrap(), "{}");
+        }
+        service.await.unwrap();
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn request_given_up_by_the_service_is_answered_all_the_same() {
     let net = Net::open().await;
     let mut server = net.hub.serve(gateway::REQUEST).unwrap();

@@ -16,6 +16,13 @@ const RETRY: Duration = Duration::from_secs(1);
 
 /// Something to be written.
 pub enum Job {
+    /// A plan's document, by and by: the jobs after it do not wait for it.
+    Document {
+        /// Its hash.
+        hash: Arc<str>,
+        /// What is written.
+        xml: Vec<u8>,
+    },
     /// A plan's document, before the turn that names it.
     Plan(Arc<Program>),
     /// A turn.
@@ -34,7 +41,8 @@ impl Job {
     pub fn bytes(&self) -> usize {
         match self {
             Self::Turn { payload, .. } => payload.len(),
-            Self::Plan(_) | Self::State(..) => 4096,
+            // there is one document at a time, that of the proposal being looked at
+            Self::Document { .. } | Self::Plan(_) | Self::State(..) => 4096,
         }
     }
 }
@@ -80,6 +88,18 @@ impl<S: Storage> Clerk<S> {
         }
     }
 
+    /// Writes the next piece of a document.
+    pub fn write_piece(&mut self) {
+        if let Err(error) = self.log.write_piece() {
+            tracing::warn!("a proposal's document can't be kept beforehand: {error}");
+        }
+    }
+
+    /// A document is being written: [`Self::write_piece`] has to be called, whenever there are no jobs.
+    pub fn is_writing(&self) -> bool {
+        self.log.is_writing()
+    }
+
     fn sync(&mut self, now: Time) {
         self.dirty_since = None;
         if let Err(error) = self.log.sync() {
@@ -94,6 +114,10 @@ impl<S: Storage> Clerk<S> {
 
     fn perform_one(&mut self, now: Time, job: Job) -> io::Result<()> {
         match job {
+            Job::Document { hash, xml } => {
+                self.log.keep_document(&hash, xml);
+                Ok(())
+            }
             Job::Plan(program) => self.log.keep_plan(&program),
             Job::Turn { payload, .. } => self.log.append(&payload),
             Job::State(saved, programs) => {

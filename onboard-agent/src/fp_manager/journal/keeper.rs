@@ -11,6 +11,8 @@ use usal::contract::PlanEvent;
 
 /// The flight waits for the disk so long at most.
 const PATIENCE: Duration = Duration::from_millis(500);
+/// A proposal waits for its document so long at most.
+const DOCUMENT_PATIENCE: Duration = Duration::from_secs(60);
 /// More than this does not wait for a disk, bytes.
 const WAITING_MAX: usize = 8 << 20;
 
@@ -32,6 +34,8 @@ pub struct Keeper {
 struct Progress {
     /// Number of the last job done.
     done: u64,
+    /// But for a document.
+    writing: bool,
     report: Report,
 }
 
@@ -59,7 +63,7 @@ impl Keeper {
     pub fn start<S: Storage + Send + 'static>(clerk: Clerk<S>) -> anyhow::Result<Self> {
         let desk = Arc::<Desk>::default();
         let report = clerk.report(Duration::ZERO);
-        let (sender, progress) = watch::channel(Progress { done: 0, report });
+        let (sender, progress) = watch::channel(Progress { done: 0, writing: false, report });
         let theirs = desk.clone();
         std::thread::Builder::new()
             .name("fp-manager-disk".into())
@@ -85,6 +89,19 @@ impl Keeper {
         }
         drop(slot);
         self.desk.changed.notify_one();
+    }
+
+    /// Has a proposal's document on the disk, while the flight goes on; the future ends when it is there, when the disk
+    /// failed, or when it takes all too long.
+    pub fn keep(&mut self, hash: Arc<str>, xml: Vec<u8>) -> impl Future<Output = ()> + Send + use<> {
+        self.give(Job::Document { hash, xml });
+        let (given, mut progress) = (self.given, self.progress.clone());
+        async move {
+            let kept = progress.wait_for(|progress| progress.done >= given && !progress.writing);
+            if tokio::time::timeout(DOCUMENT_PATIENCE, kept).await.is_err() {
+                tracing::warn!("the disk is slow: a proposal's document takes too long to be kept");
+            }
+        }
     }
 
     /// Something could not even be given: only a new state helps.
@@ -169,7 +186,8 @@ impl Desk {
 fn work<S: Storage>(mut clerk: Clerk<S>, desk: &Desk, progress: &watch::Sender<Progress>) {
     let start = Instant::now();
     loop {
-        let wait = clerk.due().map(|due| due.saturating_sub(start.elapsed()));
+        let due = clerk.due().map(|due| due.saturating_sub(start.elapsed()));
+        let wait = if clerk.is_writing() { Some(Duration::ZERO) } else { due };
         let Some((jobs, last, overrun)) = desk.take(wait) else { break };
         let now = start.elapsed();
         if overrun {
@@ -177,7 +195,11 @@ fn work<S: Storage>(mut clerk: Clerk<S>, desk: &Desk, progress: &watch::Sender<P
         }
         clerk.perform(now, jobs);
         let report = clerk.report(now);
-        progress.send_replace(Progress { done: last, report });
+        progress.send_replace(Progress { done: last, writing: clerk.is_writing(), report });
+        if clerk.is_writing() {
+            clerk.write_piece();
+            progress.send_modify(|progress| progress.writing = clerk.is_writing());
+        }
     }
     clerk.finish(start.elapsed());
 }

@@ -20,6 +20,9 @@ const SEGMENT_TEMPORARY: &str = "segment.tmp";
 const PLAN: &str = "plan-";
 const XML: &str = ".xml";
 const PLAN_TEMPORARY: &str = "plan.tmp";
+const DOCUMENT_TEMPORARY: &str = "document.tmp";
+/// A document is written in pieces of so many bytes: each is on a slow card within the time that a turn may take.
+const PIECE: usize = 256 << 10;
 /// Segments that could not be used and are kept for whoever wants to look at them.
 const UNUSABLE_KEPT: usize = 3;
 /// Longest plan, bytes: no more can be proposed.
@@ -60,6 +63,15 @@ pub struct Log<S> {
     buffer: Vec<u8>,
     /// What is on the storage is known.
     stock_taken: bool,
+    /// A document that is being written piece by piece.
+    document: Option<Document>,
+}
+
+/// A plan's document of which so many bytes are written.
+struct Document {
+    hash: String,
+    xml: Vec<u8>,
+    written: usize,
 }
 
 struct Open {
@@ -96,6 +108,7 @@ impl<S: Storage> Log<S> {
             previous_plans: BTreeSet::new(),
             buffer: Vec::new(),
             stock_taken: false,
+            document: None,
         };
         let found = log.storage.names().map(|names| log.take_stock(&names));
         (log, found)
@@ -192,6 +205,45 @@ impl<S: Storage> Log<S> {
         Ok(())
     }
 
+    /// Has a plan's document on the disk by and by, by [`Self::write_piece`]; one that is being written is given up.
+    pub fn keep_document(&mut self, hash: &str, xml: Vec<u8>) {
+        let known = self.plans.contains(hash);
+        self.document = (!known).then(|| Document { hash: hash.to_owned(), xml, written: 0 });
+    }
+
+    /// A document is being written.
+    pub fn is_writing(&self) -> bool {
+        self.document.is_some()
+    }
+
+    /// Writes and syncs the next piece of a document, if there is one.
+    ///
+    /// # Errors
+    /// It could not be written, and is given up: it is written at once when a turn names it.
+    pub fn write_piece(&mut self) -> io::Result<()> {
+        let Some(mut document) = self.document.take() else { return Ok(()) };
+        if document.written == 0 {
+            self.storage.create(DOCUMENT_TEMPORARY)?;
+        }
+        let piece = document.xml.get(document.written..).unwrap_or_default();
+        let piece = piece.get(..PIECE).unwrap_or(piece);
+        self.storage.append(DOCUMENT_TEMPORARY, piece)?;
+        self.storage.sync(DOCUMENT_TEMPORARY)?;
+        document.written += piece.len();
+        if document.written < document.xml.len() {
+            self.document = Some(document);
+            return Ok(());
+        }
+        self.storage.rename(DOCUMENT_TEMPORARY, &plan_name(&document.hash))?;
+        self.storage.sync_names()?;
+        if let Some(open) = &mut self.open {
+            // no new state removes it before the turn that names it
+            open.plans.insert(document.hash.clone());
+        }
+        self.plans.insert(document.hash);
+        Ok(())
+    }
+
     /// Temporary file, sync, rename, sync of the names.
     fn replace(&mut self, name: &str, temporary: &str, bytes: &[u8]) -> io::Result<()> {
         self.storage.create(temporary)?;
@@ -221,10 +273,17 @@ impl<S: Storage> Log<S> {
         self.storage.append(SEGMENT_TEMPORARY, &bytes)?;
         self.storage.sync(SEGMENT_TEMPORARY)?;
         self.next_number += 1;
-        let renamed = self.storage.rename(SEGMENT_TEMPORARY, &name).and_then(|()| self.storage.sync_names());
-        renamed.inspect_err(|_| self.stop())?;
+        self.storage.rename(SEGMENT_TEMPORARY, &name).inspect_err(|_| self.stop())?;
         let plans = saved.plans().map(|hash| hash.to_string()).collect();
-        let before = self.open.replace(Open { number, name, frames: 1, bytes: 0, plans, dirty: false });
+        let open = Open { number, name, frames: 1, bytes: 0, plans, dirty: false };
+        if let Err(error) = self.storage.sync_names() {
+            self.stop();
+            // a restart may find the new one, too, and has to see that nothing was added to it
+            self.open = Some(open);
+            self.stop();
+            return Err(error);
+        }
+        let before = self.open.replace(open);
         if let Some(before) = before {
             self.previous = Some(before.name);
             self.previous_plans = before.plans;

@@ -6,7 +6,8 @@
 //! A **turn** is one call of the [`Manager`](super::Manager): the inputs of the executor it leads to, with the executor's time,
 //! what the FP Manager remembers beside it ([`Notes`]: what is wanted of the gateway, alarms answered), and answers
 //! to commands ([`Reply`]). A turn is written as one frame: after a restart all of it happened or none. A proposal's document
-//! is kept in a file of its own, under its hash, before the turn that names it.
+//! is kept in a file of its own, under its hash, before the turn that names it: piece by piece between the turns of the
+//! flight, which does not wait for it.
 //!
 //! # When
 //!
@@ -30,7 +31,7 @@
 //! | `segment-00000042.stopped` | a segment that failed while the flight went on: something is missing behind it |
 //! | `segment-00000042.unusable` | set aside by a restart; the last three are kept |
 //! | `plan-HASH.xml` | documents that these segments name |
-//! | `segment.tmp`, `plan.tmp` | not finished, of no meaning |
+//! | `segment.tmp`, `plan.tmp`, `document.tmp` | not finished, of no meaning |
 //!
 //! A new segment is begun after 2000 turns or 2 MiB: written to a temporary file, synced, renamed, the
 //! folder synced; then what is older than the segment before is removed. Two states, two tails and at most 22 plans is all

@@ -55,7 +55,7 @@ pub struct Notes {
 /// The answer to a command: one that is repeated after a restart is not executed again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reply {
-    /// The request's own name.
+    /// By which the request is known: asker, own name and content.
     pub id: String,
     /// How it was answered.
     pub result: Result<(), Refusal>,

@@ -134,6 +134,16 @@ fn names_cannot_be_synced() {
 }
 
 #[test]
+fn killed_after_the_names_could_not_be_synced_it_is_known_that_something_is_missing() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 2);
+    disk.fail(Operation::SyncNames, ErrorKind::Other);
+    clerk.perform(Time::from_secs(1), vec![state(), job(3, true)]);
+    disk.reboot(Death::Kill, &mut Random(1));
+    assert_eq!(found(&disk), (vec![], true), "{:?}", disk.names_now());
+}
+
+#[test]
 fn no_room_for_a_new_segment_the_old_one_goes_on_up_to_its_greatest_length() {
     let disk = Faulty::default();
     let mut clerk = clerk_with(&disk, 11);
@@ -294,6 +304,38 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
         }
     };
     tokio::time::timeout(std::time::Duration::from_secs(30), caught_up).await.unwrap();
+}
+
+#[test]
+fn document_of_a_proposal_is_kept_between_the_turns_of_the_flight() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 0);
+    let xml: Vec<u8> = (0..2_000_000_u32).map(|n| n as u8).collect();
+    clerk.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: xml.clone() }]);
+    let mut turns = 0;
+    while clerk.is_writing() {
+        turns += 1;
+        clerk.perform(Time::ZERO, vec![job(turns, true)]);
+        assert_eq!(found(&disk).0.len() as u64, turns, "the turn does not wait");
+        let before = disk.size();
+        clerk.write_piece();
+        assert!(disk.size() - before <= 1 << 18, "a piece is small");
+    }
+    assert!(turns >= 8, "{turns}");
+    disk.reboot(Death::PowerLoss, &mut Random(3));
+    assert_eq!(Log::open(disk.clone(), LIMITS).0.plan("0123"), Some(xml));
+}
+
+#[test]
+fn document_that_cannot_be_kept_beforehand_does_not_stop_the_recording() {
+    let disk = Faulty::default();
+    let mut clerk = clerk_with(&disk, 1);
+    disk.fail(Operation::Create, ErrorKind::StorageFull);
+    clerk.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: vec![1; 9] }]);
+    clerk.write_piece();
+    assert!(!clerk.is_writing());
+    clerk.perform(Time::ZERO, vec![job(2, true)]);
+    assert_eq!((clerk.report(Time::ZERO).trouble, found(&disk).0), (None, vec![1, 2]));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use usal::contract::*;
 
-const MISSION: &str = include_str!("mission.xml");
+pub const MISSION: &str = include_str!("mission.xml");
 
 /// What the client asks, once so many waypoints are flown and so many steps after the last answer.
 pub struct Ask {

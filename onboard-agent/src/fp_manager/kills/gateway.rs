@@ -1,4 +1,5 @@
-//! A gateway and an autopilot that flies a waypoint a step; neither dies.
+//! A gateway and an autopilot that flies a waypoint a step; neither dies. Without sockets; the tests over loopback
+//! put some around it.
 
 use std::collections::VecDeque;
 use usal::contract::*;
@@ -6,27 +7,60 @@ use usal::contract::*;
 pub struct Gateway {
     pub state: GatewayState,
     pub flown: Vec<Waypoint>,
-    pub launches: usize,
+    pub joins: Vec<Join>,
+    /// All but the storing of runways.
+    pub requests: Vec<GatewayRequest>,
+    /// As they were stored, each time.
+    pub runways: Vec<Vec<SafeRunway>>,
+    /// Waypoints of this leg are refused.
+    pub refuse_leg: Option<Id>,
+    /// Launches are refused with this.
+    pub refuse_launch: Option<String>,
+    /// Safe mode is refused so often, as below the height where a take-off may be interrupted.
+    pub refuse_safe: usize,
+    /// What happened and was not told yet.
+    pub events: VecDeque<GatewayEvent>,
     buffer: VecDeque<Waypoint>,
     highest: Token,
     here: LatLon,
     alarms: Vec<Alarm>,
+    /// It gave the aircraft back with an empty buffer: the next waypoints are flown at once.
+    awaits_waypoints: bool,
+    /// Safe mode was commanded: no join ends it.
+    commanded: bool,
 }
 
 impl Gateway {
-    pub fn new() -> Self {
+    /// On the ground, at a place.
+    pub fn new(here: LatLon) -> Self {
         Self {
             state: GatewayState::Stop,
             flown: Vec::new(),
-            launches: 0,
+            joins: Vec::new(),
+            requests: Vec::new(),
+            runways: Vec::new(),
+            refuse_leg: None,
+            refuse_launch: None,
+            refuse_safe: 0,
+            events: VecDeque::new(),
             buffer: VecDeque::new(),
             highest: Token(0),
-            here: LatLon::new(36.4905, -84.2710),
+            here,
             alarms: Vec::new(),
+            awaits_waypoints: false,
+            commanded: false,
         }
     }
 
     pub fn feed(&mut self, feed: Feed) -> FeedAnswer {
+        if is_safe(self.state) {
+            return FeedAnswer::NotNow("join first".into());
+        }
+        let refused = self.refuse_leg.as_ref().and_then(|leg| feed.waypoints.iter().find(|w| w.leg == *leg));
+        if let Some(waypoint) = refused {
+            let faults = vec![(waypoint.token, "fence".into(), "not there".into())];
+            return FeedAnswer::Refused { faults };
+        }
         if let Some(keep) = feed.cancel_after {
             self.buffer.retain(|w| w.token <= keep);
         }
@@ -35,13 +69,24 @@ impl Gateway {
             self.highest = waypoint.token;
             self.buffer.push_back(waypoint);
         }
+        if !self.buffer.is_empty() && std::mem::take(&mut self.awaits_waypoints) {
+            self.state = GatewayState::Nav;
+        }
         FeedAnswer::Accepted
     }
 
-    pub fn join(&self) -> JoinAnswer {
+    /// In Safe mode, whoever knows the flight gets the aircraft back: flying on, or to send waypoints first.
+    pub fn join(&mut self, join: Join) -> JoinAnswer {
+        let knows = join.last_token >= self.highest && !self.commanded;
+        let accepted = !is_safe(self.state) || knows;
+        self.joins.push(join);
+        if accepted && is_safe(self.state) {
+            self.awaits_waypoints = self.buffer.is_empty();
+            self.state = if self.awaits_waypoints { GatewayState::Hold } else { GatewayState::Nav };
+        }
         JoinAnswer {
-            accepted: true,
-            reason: String::new(),
+            accepted,
+            reason: if accepted { String::new() } else { "it does not know the flight".into() },
             current: self.buffer.front().map(|w| w.token),
             last: self.buffer.back().map(|w| w.token),
             highest: self.highest,
@@ -50,41 +95,84 @@ impl Gateway {
 
     pub fn request(&mut self, request: &GatewayRequest) -> Result<(), String> {
         match request {
+            GatewayRequest::Launch if self.refuse_launch.is_some() => {
+                return Err(self.refuse_launch.clone().unwrap_or_default());
+            }
             GatewayRequest::Launch if self.state != GatewayState::Stop => return Err("it flies".into()),
-            GatewayRequest::Launch => self.launches += 1,
-            GatewayRequest::SetRunways { .. } => return Ok(()),
-            _ => {}
+            GatewayRequest::Launch | GatewayRequest::Resume => {
+                assert!(!self.buffer.is_empty(), "{request:?} before the waypoints");
+                self.state = GatewayState::Nav;
+            }
+            GatewayRequest::Hold => {
+                self.awaits_waypoints = false;
+                self.state = GatewayState::Hold;
+            }
+            GatewayRequest::Safe if self.refuse_safe > 0 => {
+                self.refuse_safe -= 1;
+                return Err("not clear of the ground".into());
+            }
+            GatewayRequest::Safe => {
+                self.commanded = true;
+                self.state = GatewayState::SafeHold;
+            }
+            GatewayRequest::SetRunways { runways } => {
+                self.runways.push(runways.clone());
+                return Ok(());
+            }
+            other => panic!("{other:?}"),
         }
-        let held = *request == GatewayRequest::Hold;
-        self.state = if held { GatewayState::Hold } else { GatewayState::Nav };
+        self.requests.push(request.clone());
         Ok(())
     }
 
-    pub fn alarm(&mut self, cause: Cause) -> GatewayEvent {
+    /// Safe.Hold, until the FP Manager joins.
+    pub fn safe_hold(&mut self) {
+        self.state = GatewayState::SafeHold;
+    }
+
+    /// The same after T2: on its way home, and the waypoints are gone.
+    pub fn safe_return(&mut self) {
+        self.state = GatewayState::SafeReturn;
+        self.buffer.clear();
+    }
+
+    pub fn alarm(&mut self, id: &str, cause: Cause) {
         let alarm = Alarm {
-            id: "energy-low".into(),
+            id: id.into(),
             severity: Severity::Warning,
             source: "gateway".into(),
             advice: "land".into(),
             cause: Some(cause),
         };
         self.alarms.push(alarm.clone());
-        GatewayEvent::AlarmRaised(alarm)
+        self.events.push_back(GatewayEvent::AlarmRaised(alarm));
     }
 
     /// Flies a waypoint.
-    pub fn fly(&mut self) -> Option<GatewayEvent> {
-        let reached = (self.state == GatewayState::Nav).then(|| self.buffer.pop_front())??;
-        if reached.end_of_plan {
-            self.state = GatewayState::Stop;
+    pub fn fly(&mut self) {
+        if self.state != GatewayState::Nav {
+            return;
         }
+        let Some(reached) = self.buffer.pop_front() else { return };
         self.here = reached.position;
         self.flown.push(reached);
-        Some(GatewayEvent::Progress { current: self.buffer.front().map(|w| w.token) })
+        if self.finished() {
+            self.state = GatewayState::Stop;
+        }
+        let current = self.buffer.front().map(|w| w.token);
+        self.events.push_back(GatewayEvent::Progress { current });
+    }
+
+    pub fn launches(&self) -> usize {
+        self.requests.iter().filter(|r| **r == GatewayRequest::Launch).count()
+    }
+
+    pub fn end_is_aboard(&self) -> bool {
+        self.buffer.back().is_some_and(|w| w.end_of_plan)
     }
 
     pub fn finished(&self) -> bool {
-        self.flown.last().is_some_and(|w| w.end_of_plan)
+        self.buffer.is_empty() && self.flown.last().is_some_and(|w| w.end_of_plan)
     }
 
     pub fn position(&self) -> Position {
@@ -92,7 +180,7 @@ impl Gateway {
         Position {
             position: self.here,
             altitude_amsl_m: 450.0,
-            altitude_home_m: 128.0,
+            altitude_home_m: 100.0,
             velocity_north_mps: 0.0,
             velocity_east_mps: 22.0,
             velocity_down_mps: 0.0,
@@ -112,8 +200,8 @@ impl Gateway {
             cross_track_m: 0.0,
             buffer_waypoints: self.buffer.len(),
             buffer_s: 5.0 * self.buffer.len() as f64,
-            room: 256,
-            end_of_plan: self.buffer.back().is_some_and(|w| w.end_of_plan),
+            room: 256_usize.saturating_sub(self.buffer.len()),
+            end_of_plan: self.end_is_aboard(),
         }
     }
 
@@ -129,4 +217,8 @@ impl Gateway {
             alarms: self.alarms.clone(),
         }
     }
+}
+
+fn is_safe(state: GatewayState) -> bool {
+    matches!(state, GatewayState::SafeHold | GatewayState::SafeReturn)
 }

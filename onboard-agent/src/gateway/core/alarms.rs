@@ -30,9 +30,10 @@ enum Watch {
     PositionStale,
     Disobeys,
     NoSafeRunway,
+    NotStored,
 }
 
-const WATCHES: [Watch; 7] = [
+const WATCHES: [Watch; 8] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EnergyLow,
@@ -40,6 +41,7 @@ const WATCHES: [Watch; 7] = [
     Watch::PositionStale,
     Watch::Disobeys,
     Watch::NoSafeRunway,
+    Watch::NotStored,
 ];
 
 impl Watch {
@@ -94,6 +96,13 @@ impl Watch {
                 "Safe mode knows no runway within reach; the autopilot returns by its own means. Store runways before flight.",
                 None,
             ),
+            Watch::NotStored => (
+                "not-stored",
+                Severity::Caution,
+                "gateway",
+                "Runways and the state of the flight can't be stored: a gateway that starts anew forgets them. Check the disk of the state directory.",
+                None,
+            ),
         };
         Alarm { id: id.into(), severity, source: source.into(), advice: advice.into(), cause }
     }
@@ -117,6 +126,8 @@ pub struct Conduct {
     pub sinks_below_target: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
+    /// What must survive a restart can't be written.
+    pub not_stored: bool,
 }
 
 /// The alarms, and what may become one.
@@ -183,6 +194,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: Conduct, raised: bo
         Watch::PositionStale => t.is_airborne() && is_stale(now, t),
         Watch::Disobeys => age(conduct.disobeys_since).is_some_and(|a| a > DISOBEYS),
         Watch::NoSafeRunway => conduct.no_safe_runway,
+        Watch::NotStored => conduct.not_stored,
     }
 }
 

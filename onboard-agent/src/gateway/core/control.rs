@@ -34,8 +34,8 @@ pub struct Control {
     pub retry_at: Option<Time>,
     /// Since when Safe.Hold lasts.
     pub safe_since: Option<Time>,
-    /// Safe mode was commanded, so that only a command ends it.
-    pub safe_commanded: bool,
+    /// Safe mode was commanded, or the FP Manager could not fly on: only a command ends it.
+    pub safe_until_command: bool,
     /// The entry that the autopilot last said it steers to.
     pub current_seq: Option<u16>,
     /// What the driver said of this autopilot.
@@ -65,7 +65,7 @@ impl Default for Control {
             disobeys_since: None,
             retry_at: None,
             safe_since: None,
-            safe_commanded: false,
+            safe_until_command: false,
             current_seq: None,
             capability: None,
             direct: None,

@@ -21,7 +21,7 @@ impl Gateway {
             self.highest = join.last_token;
             self.window.clear();
         }
-        self.recover(out);
+        self.recover(now, out);
         out.push(Output::Save);
         self.join_answer(true, String::new())
     }
@@ -33,8 +33,8 @@ impl Gateway {
                 Err("Too late: the aircraft is on its way to the runway.".into())
             }
             GatewayState::Terminate => Err("The flight was ended by force.".into()),
-            GatewayState::SafeHold | GatewayState::SafeReturn if self.control.safe_commanded => {
-                Err("Safe mode was commanded; only the request `recover` ends it.".into())
+            GatewayState::SafeHold | GatewayState::SafeReturn if self.control.safe_until_command => {
+                Err("Only the request `recover` ends this Safe mode.".into())
             }
             GatewayState::SafeHold | GatewayState::SafeReturn => self.knows_the_flight(join),
             _ => Ok(()),
@@ -49,7 +49,8 @@ impl Gateway {
                     .into(),
             );
         }
-        if join.last_token < self.window.chain().last().map_or(Token(0), |w| w.token) {
+        // not the last one aboard: the way home that Safe mode flies has no tokens
+        if join.last_token < self.highest {
             return Err("It does not know the waypoints of this flight; restore its state, or use the request `recover`.".into());
         }
         Ok(())
@@ -68,7 +69,7 @@ impl Gateway {
 
     /// Gives the aircraft back to the FP Manager: on with the waypoints aboard, or holding until
     /// it sends some.
-    pub(super) fn recover(&mut self, out: &mut Vec<Output>) {
+    pub(super) fn recover(&mut self, now: Time, out: &mut Vec<Output>) {
         let theirs = self.window.chain().waypoints().any(|w| w.token.0 > 0);
         match self.state {
             GatewayState::SafeHold if theirs => {
@@ -78,12 +79,12 @@ impl Gateway {
             GatewayState::SafeHold | GatewayState::SafeReturn => {
                 self.window.feed(Some(Token(0)), vec![]);
                 self.control.set_intent(Intent::Hold, self.telemetry.mode);
-                self.fp_manager.resume_on_feed = true;
+                self.fp_manager.awaited_since = Some(now);
                 self.change(Trigger::RecoveredDry, "the FP Manager is back; waiting for its waypoints", out);
             }
             _ => return,
         }
-        self.control.safe_commanded = false;
+        self.control.safe_until_command = false;
     }
 
     /// One transaction: taken whole, or the buffer stays as it was.
@@ -114,7 +115,7 @@ impl Gateway {
 
     /// Safe.Hold because the buffer ran dry, with an FP Manager that is alive: waypoints heal it.
     fn is_only_dry(&self, now: Time) -> bool {
-        !self.control.safe_commanded && !self.fp_manager.is_silent(now, &self.safe)
+        !self.control.safe_until_command && !self.fp_manager.is_silent(now, &self.safe)
     }
 
     fn faults(&self, feed: &Feed) -> Vec<batch::Fault> {
@@ -140,8 +141,9 @@ impl Gateway {
         self.window.feed(feed.cancel_after, feed.waypoints);
         self.ended = false;
         self.low_told = false;
-        if last.is_some() && (self.fp_manager.resume_on_feed || self.state == GatewayState::SafeHold) {
-            self.fp_manager.resume_on_feed = false;
+        let awaited = self.fp_manager.awaited_since.is_some() || self.state == GatewayState::SafeHold;
+        if last.is_some() && awaited {
+            self.fp_manager.awaited_since = None;
             self.control.set_intent(Intent::Fly, self.telemetry.mode);
             self.change(Trigger::Recovered, "the FP Manager sent waypoints", out);
         }

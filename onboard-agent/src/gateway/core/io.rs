@@ -28,8 +28,12 @@ pub enum Input {
     Tick,
     /// From the driver.
     Report(Report),
+    /// What must survive a restart is on the disk, or can't be written there.
+    Stored(bool),
     /// The FP Manager is alive, and flies this plan.
     Heartbeat {
+        /// Counts up from the start of its process.
+        count: u64,
         /// Hash of the plan.
         plan: Option<String>,
     },

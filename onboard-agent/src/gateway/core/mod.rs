@@ -55,6 +55,8 @@ pub struct Gateway {
     /// What was last told as progress.
     told: Option<Option<Token>>,
     low_told: bool,
+    /// What must survive a restart can't be written.
+    not_stored: bool,
     astray_since: Option<Time>,
     /// The flight was ended by force, perhaps before a restart; until it is on the ground.
     terminated: bool,
@@ -81,6 +83,7 @@ impl Gateway {
             ended: false,
             told: None,
             low_told: false,
+            not_stored: false,
             astray_since: None,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
@@ -92,7 +95,8 @@ impl Gateway {
         match input {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
-            Input::Heartbeat { plan } => self.fp_manager.heard(now, plan),
+            Input::Stored(stored) => self.not_stored = !stored,
+            Input::Heartbeat { count, plan } => self.fp_manager.heard(now, count, plan),
             Input::Join(request, join) => {
                 let answer = self.join(now, join, out);
                 out.push(Output::Answer(request, Answer::Join(answer)));
@@ -123,6 +127,7 @@ impl Gateway {
         let waits = [
             self.fp_manager.silent_at(&self.safe),
             self.control.safe_since.map(|s| s + seconds(self.safe.t2_s)),
+            self.waypoints_due(),
             self.control.retry_at,
             self.telemetry.heard.map(|h| h + OFF_AFTER),
         ];
@@ -186,6 +191,7 @@ impl Gateway {
         let known = self.adopting.take();
         let intent = known.as_ref().map_or(Intent::Fly, |k| k.intent);
         let waypoints = known.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
+        self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
         let current = self.control.current_seq.unwrap_or(0);
         if self.window.adopt(list, current, waypoints) {
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
@@ -199,6 +205,7 @@ impl Gateway {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
+            not_stored: self.not_stored,
         };
         let mut events = vec![];
         self.alarms.update(now, &self.telemetry, conduct, &mut events);
@@ -287,6 +294,9 @@ impl Gateway {
         self.cause = cause.to_owned();
         if !is_safe(to) {
             self.control.safe_since = None;
+        }
+        if to != GatewayState::Hold {
+            self.fp_manager.awaited_since = None;
         }
         out.push(Output::Event(GatewayEvent::StateChanged { from, to, cause: cause.to_owned() }));
     }

@@ -72,6 +72,8 @@ impl Gateway {
 
     fn hold(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
         self.is_free()?;
+        // whoever wants a hold means it: waypoints do not end it
+        self.fp_manager.awaited_since = None;
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
         out.push(Output::Save);
         Ok(())
@@ -119,9 +121,12 @@ impl Gateway {
     }
 
     fn safe_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
-        self.enter_safe(now, true, "by command", out);
+        self.enter_safe(now, "by command", out);
         match self.state {
-            GatewayState::SafeHold => Ok(()),
+            GatewayState::SafeHold | GatewayState::SafeReturn => {
+                self.control.safe_until_command = true;
+                Ok(())
+            }
             s => Err(format!("Safe mode can't be entered while the state is {s:?}.")),
         }
     }
@@ -136,7 +141,7 @@ impl Gateway {
         if self.fp_manager.is_silent(now, &self.safe) {
             return Err("The FP Manager is silent; start it first.".into());
         }
-        self.recover(out);
+        self.recover(now, out);
         out.push(Output::Save);
         Ok(())
     }

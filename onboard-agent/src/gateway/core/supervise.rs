@@ -17,25 +17,37 @@ pub struct FpManager {
     last_heard: Option<Time>,
     /// When the gateway began to listen, in flight.
     expected_since: Option<Time>,
-    /// Hash of the plan it flies.
+    /// Hash of the plan it flies, as the one that joined says.
     pub plan: Option<String>,
-    /// It was given the aircraft back with an empty buffer.
-    pub resume_on_feed: bool,
+    /// Number of its last heartbeat.
+    beats: u64,
+    /// The one that sends heartbeats is the one that joined.
+    joined: bool,
+    /// Since when its waypoints are waited for: it was given the aircraft back with an empty buffer.
+    pub awaited_since: Option<Time>,
 }
 
 impl FpManager {
-    /// A heartbeat. One that comes after a silence does not end Safe mode: that takes a join.
-    pub fn heard(&mut self, now: Time, plan: Option<String>) {
+    /// A heartbeat, numbered from the start of its process. One that comes after a silence does not end Safe mode: that
+    /// takes a join. And what a process says that did not join is not what is being flown.
+    pub fn heard(&mut self, now: Time, beats: u64, plan: Option<String>) {
         self.last_heard = Some(now);
-        if plan.is_some() {
+        self.joined &= beats >= self.beats;
+        self.beats = beats;
+        if self.joined && plan.is_some() {
             self.plan = plan;
         }
     }
 
     /// It presented itself and was accepted.
     pub fn joined(&mut self, now: Time, plan: Option<String>) {
-        self.heard(now, plan);
-        self.resume_on_feed = false;
+        self.last_heard = Some(now);
+        self.joined = true;
+        // its heartbeats may be older than this, and are numbered from one if it is new
+        self.beats = 0;
+        if plan.is_some() {
+            self.plan = plan;
+        }
     }
 
     /// Age of the last sign of life, seconds.
@@ -61,9 +73,12 @@ impl Gateway {
             GatewayState::Nav | GatewayState::Hold | GatewayState::Directed => {
                 self.fp_manager.expected_since.get_or_insert(now);
                 if self.fp_manager.is_silent(now, &self.safe) {
-                    self.enter_safe(now, false, "the FP Manager is silent", out);
+                    self.enter_safe(now, "the FP Manager is silent", out);
                 } else if self.is_dry() {
-                    self.enter_safe(now, false, "the waypoints ran dry before the end of the plan", out);
+                    self.enter_safe(now, "the waypoints ran dry before the end of the plan", out);
+                } else if self.waypoints_due().is_some_and(|due| now >= due) {
+                    self.enter_safe(now, "the FP Manager is back and sends no waypoints", out);
+                    self.control.safe_until_command = true;
                 }
             }
             GatewayState::TakeOff | GatewayState::Approach => self.supervise_low(now, out),
@@ -82,15 +97,15 @@ impl Gateway {
     fn supervise_low(&mut self, now: Time, out: &mut Vec<Output>) {
         self.fp_manager.expected_since.get_or_insert(now);
         if self.is_dry() {
-            self.enter_safe(now, false, "the waypoints ran dry before the end of the plan", out);
+            self.enter_safe(now, "the waypoints ran dry before the end of the plan", out);
         } else if !self.is_complete() && self.fp_manager.is_silent(now, &self.safe) {
-            self.enter_safe(
-                now,
-                false,
-                "the FP Manager is silent, and the way to a landing is not aboard",
-                out,
-            );
+            self.enter_safe(now, "the FP Manager is silent, and the way to a landing is not aboard", out);
         }
+    }
+
+    /// When an FP Manager that was given the aircraft back has to have sent waypoints.
+    pub(super) fn waypoints_due(&self) -> Option<Time> {
+        self.fp_manager.awaited_since.map(|since| since + seconds(self.safe.t2_s))
     }
 
     /// The end of the plan is in the buffer, or was flown.
@@ -110,7 +125,7 @@ impl Gateway {
     }
 
     /// Safe.Hold, if the state allows it.
-    pub(super) fn enter_safe(&mut self, now: Time, commanded: bool, cause: &str, out: &mut Vec<Output>) {
+    pub(super) fn enter_safe(&mut self, now: Time, cause: &str, out: &mut Vec<Output>) {
         let before = self.state;
         if !self.is_clear_of_ground() {
             return;
@@ -120,7 +135,7 @@ impl Gateway {
             return;
         }
         self.control.safe_since = Some(now);
-        self.control.safe_commanded = commanded;
+        self.control.safe_until_command = false;
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
         out.push(Output::Save);
     }

@@ -23,6 +23,10 @@ pub struct Flight {
     pub events: Vec<(f64, GatewayEvent)>,
     /// The FP Manager sends heartbeats.
     pub alive: bool,
+    /// It says in them that it flies this plan.
+    pub plan: &'static str,
+    /// So many were sent by its process.
+    pub beats: u64,
     /// Entries of the autopilot's list that it steered to, with the place at that time.
     pub steered: Vec<LatLon>,
     decoder: Decoder,
@@ -50,6 +54,8 @@ impl Flight {
             now: Time::ZERO,
             events: vec![],
             alive: true,
+            plan: "plan",
+            beats: 0,
             steered: vec![],
             decoder: Decoder::default(),
             sim_decoder: sim::frame::Decoder::default(),
@@ -70,7 +76,9 @@ impl Flight {
             self.station.receive(self.now, header, &message);
         }
         if self.alive && self.now.as_millis().is_multiple_of(500) {
-            self.station.input(self.now, Input::Heartbeat { plan: Some("plan".into()) });
+            self.beats += 1;
+            let (count, plan) = (self.beats, Some(self.plan.into()));
+            self.station.input(self.now, Input::Heartbeat { count, plan });
         }
         self.station.tick(self.now);
         let step = self.station.take_step().expect("every step asks for the time");
@@ -133,7 +141,12 @@ impl Flight {
     }
 
     pub fn join(&mut self, plan: &str) -> JoinAnswer {
-        let join = Join { plan: Some(plan.into()), last_token: Token(self.next - 1) };
+        self.join_knowing(plan, self.next - 1)
+    }
+
+    /// It has given out waypoints up to this one.
+    pub fn join_knowing(&mut self, plan: &str, last_token: u64) -> JoinAnswer {
+        let join = Join { plan: Some(plan.into()), last_token: Token(last_token) };
         match self.station.ask(self.now, |id| Input::Join(id, join)) {
             Some(Answer::Join(answer)) => answer,
             other => panic!("{other:?}"),
@@ -166,6 +179,23 @@ impl Flight {
             _ => None,
         };
         self.events.iter().filter_map(to).collect()
+    }
+
+    /// On the way home, as the FP Manager died.
+    pub fn in_safe_return(seed: u64) -> Self {
+        let mut flight = Self::on_zigzag(seed, &[], 30, 300.0);
+        flight.store_runway();
+        flight.run(60.0);
+        flight.alive = false;
+        flight.run_until(40.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
+        flight.run(5.0);
+        flight
+    }
+
+    /// Another process of the FP Manager, which has not joined.
+    pub fn restart_fp_manager(&mut self, plan: &'static str) {
+        (self.alive, self.plan, self.beats) = (true, plan, 0);
+        self.run(2.0);
     }
 
     /// In the air on its way along a zigzag of `count` waypoints, `metres` apart.

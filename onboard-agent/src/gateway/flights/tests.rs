@@ -84,12 +84,7 @@ fn fp_manager_back_in_time_gets_the_aircraft_back() {
 
 #[test]
 fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
-    let mut flight = Flight::on_zigzag(4, &[], 30, 300.0);
-    flight.store_runway();
-    flight.run(60.0);
-    flight.alive = false;
-    flight.run_until(40.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
-    flight.run(5.0);
+    let mut flight = Flight::in_safe_return(4);
     flight.alive = true;
     let answer = flight.join("plan");
     assert!(answer.accepted && answer.current.is_none(), "{answer:?}");
@@ -99,6 +94,100 @@ fn fp_manager_back_during_the_return_gets_the_aircraft_back_too() {
     flight.run_until(200.0, "Nav", |f| f.has_reached(first + 4));
     assert_eq!(flight.state(), GatewayState::Nav);
     assert!(flight.progress().iter().flatten().all(|t| *t < 32 || *t >= first));
+}
+
+#[test]
+fn fp_manager_that_does_not_know_the_flight_does_not_stop_the_return() {
+    for (plan, forgets) in [("plan", true), ("another plan", false)] {
+        let mut flight = Flight::in_safe_return(18);
+        flight.restart_fp_manager(plan);
+        let last_token = if forgets { 0 } else { flight.next - 1 };
+        let answer = flight.join_knowing(plan, last_token);
+        assert!(!answer.accepted && answer.reason.contains("recover"), "{plan}: {answer:?}");
+        flight.run(5.0);
+        assert_eq!(flight.state(), GatewayState::SafeReturn, "{plan}");
+    }
+}
+
+#[test]
+fn gateway_and_fp_manager_killed_the_next_gateway_knows_the_plan_of_the_flight() {
+    let mut flight = Flight::on_zigzag(23, &[], 30, 300.0);
+    flight.run(25.0);
+    let snapshot = flight.station.gateway().snapshot();
+    flight.station = Station::new(settings(), Some(snapshot), true);
+    flight.alive = false;
+    flight.run_until(15.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+    flight.restart_fp_manager("another plan");
+    assert!(!flight.join("another plan").accepted);
+    assert!(flight.join("plan").accepted);
+}
+
+#[test]
+fn fp_manager_back_without_waypoints_goes_home_after_t2_and_only_a_command_stops_that() {
+    let mut flight = Flight::in_safe_return(19);
+    flight.restart_fp_manager("plan");
+    assert!(flight.join("plan").accepted);
+    flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
+    let held = flight.now.as_secs_f64();
+    flight.run_until(30.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+    let waited = flight.now.as_secs_f64() - held;
+    assert!((19.0..20.3).contains(&waited), "T2 is 20 s, not {waited}");
+    let answer = flight.join("plan");
+    assert!(!answer.accepted && answer.reason.contains("recover"), "{answer:?}");
+    flight.run_until(30.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
+    flight.ask(GatewayRequest::Recover).unwrap();
+    assert_eq!(flight.feed(None, zigzag(10, 12, 300.0)), FeedAnswer::Accepted);
+    flight.run_until(20.0, "Nav", |f| f.state() == GatewayState::Nav);
+}
+
+#[test]
+fn join_answer_lost_or_killed_before_the_feed_the_waypoints_after_the_second_join_are_flown() {
+    for killed in [false, true] {
+        let mut flight = Flight::in_safe_return(20);
+        flight.restart_fp_manager("plan");
+        assert!(flight.join("plan").accepted);
+        flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
+        if killed {
+            flight.restart_fp_manager("plan");
+        }
+        let answer = flight.join("plan");
+        assert!(answer.accepted, "{answer:?}");
+        assert_eq!(flight.feed(None, zigzag(10, 12, 300.0)), FeedAnswer::Accepted);
+        flight.run_until(20.0, "Nav", |f| f.state() == GatewayState::Nav);
+        flight.run_until(200.0, "further", |f| f.has_reached(answer.highest.0 + 4));
+    }
+}
+
+#[test]
+fn hold_asked_for_after_the_return_is_not_ended_by_waypoints_nor_by_t2() {
+    let mut flight = Flight::in_safe_return(21);
+    flight.restart_fp_manager("plan");
+    assert!(flight.join("plan").accepted);
+    flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
+    flight.ask(GatewayRequest::Hold).unwrap();
+    assert_eq!(flight.feed(None, zigzag(10, 12, 300.0)), FeedAnswer::Accepted);
+    flight.run(40.0);
+    assert_eq!(flight.state(), GatewayState::Hold);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(20.0, "Nav", |f| f.state() == GatewayState::Nav);
+}
+
+#[test]
+fn safe_mode_commanded_while_it_lasts_already_is_not_ended_by_a_join() {
+    let mut flight = Flight::on_zigzag(22, &[], 30, 300.0);
+    flight.store_runway();
+    flight.run(60.0);
+    flight.alive = false;
+    for state in [GatewayState::SafeHold, GatewayState::SafeReturn] {
+        flight.run_until(40.0, "Safe", |f| f.state() == state);
+        flight.ask(GatewayRequest::Safe).unwrap();
+        flight.restart_fp_manager("plan");
+        let answer = flight.join("plan");
+        assert!(!answer.accepted && answer.reason.contains("recover"), "{answer:?}");
+        flight.ask(GatewayRequest::Recover).unwrap();
+        flight.run_until(20.0, "given back", |f| matches!(f.state(), GatewayState::Nav | GatewayState::Hold));
+        flight.alive = false;
+    }
 }
 
 #[test]
@@ -237,6 +326,16 @@ fn a_landing_cancelled_on_the_approach_does_not_circle_for_ever() {
     flight.run_until(900.0, "Approach", |f| f.state() == GatewayState::Approach);
     assert_eq!(flight.feed(Some(5), vec![]), FeedAnswer::Accepted);
     flight.run_until(200.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+}
+
+#[test]
+fn state_that_cannot_be_stored_is_an_alarm_until_it_can() {
+    let mut flight = Flight::new(24, &[]);
+    for (stored, alarms) in [(false, 1), (true, 0)] {
+        flight.station.input(flight.now, Input::Stored(stored));
+        let raised = flight.station.gateway().status(flight.now).alarms;
+        assert_eq!(raised.iter().filter(|a| a.id == "not-stored").count(), alarms, "{raised:?}");
+    }
 }
 
 #[test]

@@ -170,7 +170,7 @@ fn an_objection_of_the_shell_forbids_the_commit_a_warning_does_not() {
         (Problem::error("outside-keep-in", "leg d leaves the keep-in zone: move it"), false, "not-proposed"),
         (Problem::warning("near-keep-out", "leg d comes near"), true, "done"),
     ] {
-        let message = problem.message.clone();
+        let message = problem.to_string();
         let report = propose(&mut rig, &plan, None, vec![problem]).unwrap();
         assert_eq!(report.acceptable, acceptable);
         assert!(report.problems.contains(&message));

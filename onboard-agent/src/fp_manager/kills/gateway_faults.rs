@@ -1,0 +1,175 @@
+//! What the gateway does, or what is lost on the way from it, in a flight whose FP Manager does not die.
+
+use super::asks::{What, asks};
+use super::*;
+use flight_exec::Phase;
+
+/// In the air, so many waypoints flown; nothing but these first requests is asked.
+fn flown(waypoints: usize, requests: usize) -> Flight {
+    let mut flight = Flight::new(1, false, false);
+    flight.asks.truncate(requests);
+    run_until(&mut flight, "flown", |f| f.gateway.flown.len() >= waypoints);
+    flight
+}
+
+fn run_until(flight: &mut Flight, what: &str, done: impl Fn(&Flight) -> bool) {
+    for _ in 0..STEPS_MAX {
+        if done(flight) {
+            return;
+        }
+        flight.step();
+    }
+    panic!("never: {what}; asked {:?}, heard {:?}", flight.gateway.requests, flight.heard);
+}
+
+fn run(flight: &mut Flight, steps: usize) {
+    (0..steps).for_each(|_| flight.step());
+}
+
+fn emergencies(flight: &Flight) -> usize {
+    flight.heard.iter().filter(|e| matches!(e, PlanEvent::EmergencyStarted { .. })).count()
+}
+
+fn in_emergency(flight: &Flight) -> bool {
+    flight.process.manager.executor().status().emergency.is_some()
+}
+
+/// Proposes, commits and starts.
+const STARTED: usize = 3;
+
+#[test]
+fn events_lost_an_alarm_among_them_is_found_and_answered() {
+    let mut flight = flown(10, STARTED);
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    flight.gateway.events.clear();
+    run(&mut flight, 4);
+    assert!(!in_emergency(&flight), "it waits for the event");
+    flight.tell(|manager, now, out| manager.events_lost(now, 1, out));
+    run(&mut flight, 2);
+    assert!(in_emergency(&flight), "{:?}", flight.heard);
+}
+
+#[test]
+fn events_lost_the_landing_among_them_is_noticed() {
+    let mut flight = flown(10, STARTED);
+    // found: the loop is left
+    flight.asks.extend(asks(false).pop_back());
+    run_until(&mut flight, "the end is aboard", |f| f.gateway.end_is_aboard());
+    while !flight.gateway.finished() {
+        flight.gateway.fly();
+    }
+    flight.gateway.events.clear();
+    run(&mut flight, 4);
+    assert_eq!(flight.process.manager.executor().status_phase(), Phase::Flying);
+    flight.tell(|manager, now, out| manager.events_lost(now, 9, out));
+    run(&mut flight, 4);
+    assert_eq!(flight.process.manager.executor().status_phase(), Phase::Finished);
+}
+
+#[test]
+fn alarm_raised_on_the_ground_is_answered_in_the_air() {
+    let mut flight = Flight::new(1, false, false);
+    flight.asks.truncate(STARTED);
+    run(&mut flight, 1);
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+    assert_eq!(emergencies(&flight), 0, "it is not for the ground");
+    run(&mut flight, 3);
+    assert_eq!(emergencies(&flight), 1, "{:?}", flight.heard);
+}
+
+#[test]
+fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
+    let mut flight = flown(10, STARTED);
+    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    run(&mut flight, 4);
+    assert_eq!(emergencies(&flight), 1);
+    flight.ask_once(&What::Command(Command::ReturnToMain { leg: Id::new("back") }), "return").unwrap();
+    run(&mut flight, 2);
+    assert_eq!(emergencies(&flight), 2);
+    let starts = flight.heard.iter().rev();
+    let last = starts.filter(|e| matches!(e, PlanEvent::EmergencyStarted { .. })).take(1);
+    assert!(format!("{:?}", last.collect::<Vec<_>>()).contains("Energy"));
+    // the engine's was answered, and so is this now
+    run(&mut flight, 4);
+    assert_eq!(emergencies(&flight), 2);
+    assert!(!flight.gateway.requests.contains(&GatewayRequest::Safe));
+}
+
+#[test]
+fn clients_that_use_the_same_names_get_their_own_answers() {
+    let mut flight = flown(10, STARTED);
+    let mut ask = |by: &str, command: Command| {
+        flight
+            .process
+            .manager
+            .command(flight.time, command, by, Some("1"), &mut Vec::new())
+            .map_err(|r| r.code)
+    };
+    assert_eq!(ask("a", Command::Hold), Ok(()));
+    assert_eq!(ask("a", Command::Hold), Ok(()), "repeated");
+    assert_eq!(ask("b", Command::Hold).unwrap_err(), "already-holding");
+    assert_eq!(ask("b", Command::Resume), Ok(()));
+}
+
+/// In the take-off, of a plan without emergency plans, with an alarm; Safe mode is refused so often.
+fn needs_safe(refusals: usize) -> Flight {
+    let mut flight = Flight::new(1, false, false);
+    let plan = asks::MISSION.replace(r#"<mainPlan emergency="home">"#, "<mainPlan>");
+    flight.asks.truncate(STARTED);
+    flight.asks[0].what = What::Propose(plan);
+    flight.gateway.refuse_safe = refusals;
+    run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight
+}
+
+#[test]
+fn safe_mode_refused_below_the_height_for_it_is_asked_for_until_it_is_granted() {
+    let mut flight = needs_safe(10);
+    run(&mut flight, 30);
+    assert_eq!(flight.gateway.state, GatewayState::SafeHold, "{:?}", flight.gateway.requests);
+}
+
+#[test]
+fn safe_mode_never_granted_is_not_wanted_of_the_next_flight() {
+    let mut flight = needs_safe(usize::MAX);
+    run(&mut flight, 30);
+    assert_eq!(flight.process.manager.liaison.wanted(), Some(&GatewayRequest::Safe));
+    flight.gateway.state = GatewayState::Stop;
+    run(&mut flight, 2);
+    assert_eq!(flight.process.manager.liaison.wanted(), None);
+}
+
+#[test]
+fn alarm_in_flight_without_a_plan_being_flown_asks_for_safe_mode() {
+    let mut flight = Flight::new(1, false, false);
+    flight.asks.clear();
+    flight.gateway.state = GatewayState::Nav;
+    run(&mut flight, 2);
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    run(&mut flight, 3);
+    assert_eq!(flight.gateway.requests, [GatewayRequest::Safe]);
+}
+
+#[test]
+fn holding_when_safe_mode_ends_it_holds_again() {
+    for home in [false, true] {
+        let mut flight = flown(10, STARTED);
+        flight.ask_once(&What::Command(Command::Hold), "hold").unwrap();
+        run(&mut flight, 2);
+        assert_eq!(flight.gateway.state, GatewayState::Hold);
+        let held = flight.gateway.flown.len();
+        if home {
+            flight.gateway.safe_return()
+        } else {
+            flight.gateway.safe_hold()
+        }
+        run(&mut flight, 8);
+        assert_eq!((flight.gateway.state, flight.gateway.flown.len()), (GatewayState::Hold, held));
+        flight.ask_once(&What::Command(Command::Resume), "resume").unwrap();
+        run(&mut flight, 4);
+        assert!(flight.gateway.flown.len() > held);
+    }
+}
