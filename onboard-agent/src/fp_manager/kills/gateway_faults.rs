@@ -68,14 +68,20 @@ fn events_lost_the_landing_among_them_is_noticed() {
 
 #[test]
 fn alarm_raised_on_the_ground_is_answered_in_the_air() {
-    let mut flight = Flight::new(1, false, false);
-    flight.asks.truncate(STARTED);
-    run(&mut flight, 1);
-    flight.gateway.alarm("energy-low", Cause::Energy);
-    run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
-    assert_eq!(emergencies(&flight), 0, "it is not for the ground");
-    run(&mut flight, 3);
-    assert_eq!(emergencies(&flight), 1, "{:?}", flight.heard);
+    for steps in [1, 10] {
+        let mut flight = Flight::new(1, false, false);
+        flight.asks.truncate(STARTED);
+        flight.gateway.refuse_launch = Some("not yet".into());
+        run(&mut flight, steps);
+        assert_eq!(flight.asks.is_empty(), steps > 1, "the second time, it was started before");
+        flight.gateway.alarm("energy-low", Cause::Energy);
+        run(&mut flight, 10);
+        flight.gateway.refuse_launch = None;
+        run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+        assert_eq!(emergencies(&flight), 0, "it is not for the ground");
+        run(&mut flight, 3);
+        assert_eq!(emergencies(&flight), 1, "{:?}", flight.heard);
+    }
 }
 
 #[test]
