@@ -1,10 +1,11 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `feeder`, `liaison`, `aircraft`, `alarms`,
+//! The FP Manager: flies the plan. Pure parts (`manager`, `hearing`, `feeder`, `liaison`, `aircraft`, `alarms`,
 //! `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a crash, and the shell
 //! that owns session, clock and disk.
 
 mod aircraft;
 mod alarms;
 mod feeder;
+mod hearing;
 mod joining;
 pub mod journal;
 #[cfg(test)]

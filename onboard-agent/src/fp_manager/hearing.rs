@@ -1,0 +1,89 @@
+//! Pure: what is heard of the gateway, and what its alarms lead to.
+
+use super::alarms;
+use super::manager::{Effect, Manager};
+use crate::clock::Time;
+use flight_exec::Input;
+use usal::contract::*;
+
+/// Who asks for what an alarm of the gateway leads to.
+const GATEWAY: &str = "gateway";
+
+impl Manager {
+    /// The gateway's buffer and place, as it publishes them.
+    pub fn navigation(&mut self, now: Time, navigation: &Navigation, out: &mut Vec<Effect>) {
+        if let Some(current) = navigation.current {
+            self.progress(now, current, out);
+        }
+        if navigation.room > self.feeder.waiting() {
+            self.feeder.hurry();
+        }
+        self.send(now, out);
+    }
+
+    /// The gateway's state, as it publishes it.
+    pub fn gateway_status(&mut self, now: Time, status: &GatewayStatus, out: &mut Vec<Effect>) {
+        let controlled = self.liaison.is_controlled();
+        self.liaison.state(now, status.state);
+        if !controlled && self.liaison.is_controlled() {
+            self.feeder.clear();
+            self.step(now, Input::GatewayControls(true), out);
+        }
+        if self.liaison.is_joined() && self.liaison.is_airborne() {
+            for call in self.alarms.listed(&status.alarms) {
+                self.emergency(now, call, out);
+            }
+        }
+        self.send(now, out);
+    }
+
+    /// Something happened at the gateway.
+    pub fn gateway_event(&mut self, now: Time, event: GatewayEvent, out: &mut Vec<Effect>) {
+        match event {
+            GatewayEvent::Progress { current: Some(current) } => self.progress(now, current, out),
+            // while waypoints are on their way it is not the end
+            GatewayEvent::Progress { current: None } if self.feeder.is_idle() => {
+                self.step(now, Input::Progress { current: None }, out);
+            }
+            GatewayEvent::AlarmRaised(alarm) => {
+                if let Some(call) = alarms::call(&alarm) {
+                    self.emergency(now, call, out);
+                }
+            }
+            GatewayEvent::AlarmCleared { id } => self.alarms.cleared(&id),
+            GatewayEvent::BufferLow { .. } => self.feeder.hurry(),
+            _ => {}
+        }
+        self.send(now, out);
+    }
+
+    /// An alarm of the gateway asks for an emergency plan. On the ground it has to ask again in the air; while a plan
+    /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do.
+    fn emergency(&mut self, now: Time, call: alarms::Call, out: &mut Vec<Effect>) {
+        if !self.liaison.is_airborne() {
+            return self.alarms.look_again();
+        }
+        let cause = call.cause;
+        tracing::warn!(?cause, "alarm of the gateway: emergency");
+        if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {
+            tracing::warn!(?cause, "no emergency plan flown: {refusal}");
+            if refusal.code == "not-more-severe" {
+                return;
+            }
+            self.liaison.want(GatewayRequest::Safe);
+        }
+        self.alarms.answer(call);
+    }
+
+    /// The gateway appeared: it has to be joined (again).
+    pub fn gateway_appeared(&mut self, now: Time, out: &mut Vec<Effect>) {
+        self.liaison.lost();
+        self.send(now, out);
+    }
+
+    /// Events of the gateway are lost for good: what they would have told is settled by a join.
+    pub fn events_lost(&mut self, now: Time, missed: u64, out: &mut Vec<Effect>) {
+        tracing::warn!(missed, "events of the gateway were lost");
+        self.gateway_appeared(now, out);
+    }
+}
