@@ -95,7 +95,7 @@ fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
     let Fit { program, xml } = fit;
     match journal {
         Some(journal) => {
-            let keeping = journal.keep(program.hash.clone(), xml);
+            let keeping = journal.keep(program.hash().clone(), xml);
             Step::Keeping(program, Box::pin(keeping))
         }
         None => Step::Done(Ok(program)),
