@@ -114,6 +114,8 @@ fn look(xml: &str, config: &Config, wind: Wind) -> Looked {
     // when the flight begins is not known: zones with periods count as active
     let conditions = Conditions { wind, ..Conditions::default() };
     let program = compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, conditions)?;
+    // neither is for the flight to wait for: the hash is worked out when it is first asked for
+    program.hash();
     let xml = flight_plan::write(&program.plan).into_bytes();
     Ok(Fit { program, xml })
 }
