@@ -153,14 +153,13 @@ fn analyse(
 ) -> (Analysis, Option<Arc<Program>>) {
     let plan = &question.plan;
     let profile = profile_of(plan);
-    let (program, problems, hash) =
-        match flight_plan::compile(plan.clone(), &profile, terrain.as_ref()) {
-            Ok(program) => {
-                let (problems, hash) = (program.warnings.clone(), program.hash().to_string());
-                (Some(Arc::new(program)), problems, hash)
-            }
-            Err(problems) => (None, problems, flight_plan::hash(plan)),
-        };
+    let (program, problems, hash) = match flight_plan::compile(plan.clone(), &profile, terrain.as_ref()) {
+        Ok(program) => {
+            let (problems, hash) = (program.warnings.clone(), program.hash().to_string());
+            (Some(Arc::new(program)), problems, hash)
+        }
+        Err(problems) => (None, problems, flight_plan::hash(plan)),
+    };
     let flown = match &program {
         Some(program) => super::preview::fly(program, &profile, terrain),
         None => Err("This plan can't be flown yet: see its problems.".into()),

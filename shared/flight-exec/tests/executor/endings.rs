@@ -26,17 +26,29 @@ fn finished(rig: &Rig) -> Vec<u64> {
     rig.events.iter().filter_map(of).collect()
 }
 
+/// By default at its deadline, or decided: then it is asked for, and the end shows as no way further.
 #[test]
-fn a_decision_that_leads_to_the_end_is_asked_for_and_told() {
-    let mut rig = ending_with(
-        r#"<TF id="a" fix="B1"/><TF id="b" fix="B2"/><intersection id="x" default="out" decideBefore="10s">
-           <branch id="again" label="Again" next="a"/><branch id="out" label="Out"/></intersection>"#,
-    );
-    rig.fly_to("b");
-    rig.fly_to_the_end();
-    assert_eq!(rig.legs(), "a b");
-    let taken = |e: &&Event| matches!(e, Event::DecisionTaken { branch, by, .. } if branch.as_str() == "out" && by == "default");
-    assert_eq!(rig.events.iter().filter(taken).count(), 1, "{:?}", rig.events);
+fn a_decision_that_leads_to_the_end_is_told() {
+    for (default, decided, by) in [("out", None, "default"), ("again", Some("out"), "operator")] {
+        let mut rig = ending_with(&format!(
+            r#"<TF id="a" fix="B1"/><TF id="b" fix="B2"/><intersection id="x" default="{default}" decideBefore="10s">
+               <branch id="again" label="Again" next="a"/><branch id="out" label="Out"/></intersection>"#
+        ));
+        rig.fly_to("b");
+        if let Some(branch) = decided {
+            let request = rig.executor.status().decision.unwrap();
+            let ways: Vec<usize> = request.options.iter().map(|o| o.preview.len()).collect();
+            assert!(ways[0] > 1 && ways[1] == 1, "the place itself, and nothing beyond it: {ways:?}");
+            rig.command(Command::Decide { leg: "x".into(), branch: branch.into() }).unwrap();
+        }
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), "a b");
+        let taken = rig.events.iter().filter_map(|e| match e {
+            Event::DecisionTaken { branch, by, .. } => Some((branch.as_str(), by.as_str())),
+            _ => None,
+        });
+        assert_eq!(Vec::from_iter(taken), [("out", by)]);
+    }
 }
 
 #[test]

@@ -48,6 +48,21 @@ fn outside_a_corner_an_action_is_done_once_the_corner_is_flown() {
     assert_eq!(done(&rig).len(), 1);
 }
 
+#[test]
+fn abeam_between_two_reports_an_action_is_done_when_its_piece_is_flown() {
+    let middle = fix("B1").destination(90.0, 1000.0);
+    let when = format!(r#"on="abeam" lat="{}" lon="{}""#, middle.lat_deg, middle.lon_deg);
+    let mut rig = flying(&two_legs(&format!("<action {when}><photo/></action>")));
+    rig.fly_to("p");
+    at(&mut rig, 100.0);
+    assert_eq!(done(&rig).len(), 0);
+    rig.buffer.pop_front();
+    rig.steer();
+    assert_eq!((rig.leg().as_str(), done(&rig)), ("z", vec!["p:photo".to_owned()]));
+    rig.fly_to_the_end();
+    assert_eq!(done(&rig).len(), 1);
+}
+
 /// The loop's own actions are not those of the end that is circled at.
 #[test]
 fn while_the_last_leg_of_a_loop_waits_the_loop_goes_on() {

@@ -223,3 +223,25 @@ fn a_pattern_whose_first_track_ends_elsewhere_begins_anew() {
         assert_eq!(again, flown(&fresh), "{pattern}");
     }
 }
+
+/// A fifth of a degree moves corners by more than two metres beyond 570 m of the datum, and none nearer by.
+#[test]
+fn turned_by_a_hair_a_square_goes_on_at_the_first_side_that_moved() {
+    let square = format!(
+        r#"<expandingSquare id="p" spacing="300" heading="= v / 10.0" radius="900" turn="right">{CENTRE}</expandingSquare>"#
+    );
+    let mut rig = flying(&square);
+    while flown(&rig).len() < 7 {
+        rig.fly_one();
+    }
+    let before = flown(&rig).len();
+    rig.set("v", 5.0).unwrap();
+    rig.fly_to_the_end();
+    let legs = format!(r#"<TF id="a" fix="B1"/>{square}<TF id="z" fix="A3"/>"#);
+    let mut fresh =
+        Rig::flying(&document_with(&legs, &VARIABLES.replace(r#"initial="3""#, r#"initial="5""#), ""));
+    fresh.fly_to_the_end();
+    let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
+    // sides of 300, 300, 600, 600 m lead to corners at most 424 m off; the fifth one ends 671 m off
+    assert_eq!(again, flown(&fresh)[4..]);
+}

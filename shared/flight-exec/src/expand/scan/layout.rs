@@ -83,9 +83,9 @@ impl LaidOut {
         let track = self.pattern.nearest_track((a + b) * 0.5, |_| true)?;
         let (low, high) = self.ends_of(track)?;
         let (a, b) = self.joined(None, a, b);
-        let aside = |p: Vec2| (p - low).cross(self.along).abs() <= UNMOVED_M;
+        let aside_m = |p: Vec2| (p - low).cross(self.along).abs();
         let along = |p: Vec2| p.dot(self.along);
         let covers = along(a) <= along(low) + UNMOVED_M && along(b) >= along(high) - UNMOVED_M;
-        (aside(a) && aside(b) && covers).then_some(track)
+        (aside_m(a).max(aside_m(b)) <= UNMOVED_M && covers).then_some(track)
     }
 }

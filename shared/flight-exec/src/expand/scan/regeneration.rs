@@ -77,8 +77,10 @@ impl Sweep {
 
     /// The ends of the tracks at places of the flight order.
     fn ends_of(&self, places: Range<u64>) -> Vec<(LatLon, LatLon)> {
-        let Some(laid_out) = self.laid_out() else { return Vec::new() };
-        let ends = self.compute(places, laid_out).into_iter().flatten();
-        ends.map(|(a, b)| (laid_out.frame.to_geo(a), laid_out.frame.to_geo(b))).collect()
+        let to_geo = |laid_out: &LaidOut| {
+            let ends = self.compute(places, laid_out).into_iter().flatten();
+            ends.map(|(a, b)| (laid_out.frame.to_geo(a), laid_out.frame.to_geo(b))).collect()
+        };
+        self.laid_out().map_or_else(Vec::new, to_geo)
     }
 }
