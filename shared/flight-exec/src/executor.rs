@@ -84,7 +84,7 @@ impl Executor {
 
     /// The active plan.
     pub fn program(&self) -> Option<&Arc<Program>> {
-        // whatever was compiled has a hash
+        // whatever was compiled has a stage
         Some(&self.program).filter(|program| !program.plan.stages.is_empty())
     }
 
