@@ -161,9 +161,11 @@ fn pattern() -> BoxedStrategy<Pattern> {
             width_m,
             spacing
         }),
-        (area(), spacing(), of(value()), yes(), turn()).prop_map(|(area, spacing, loops, inward, turn)| {
-            Pattern::Contour { area, spacing, loops, inward, turn }
-        }),
+        (area(), spacing(), of(value()), of(value()), of(value()), yes(), turn()).prop_map(
+            |(area, spacing, loops, levels, level_step_m, inward, turn)| {
+                Pattern::Contour { area, spacing, loops, levels, level_step_m, inward, turn }
+            }
+        ),
         (place(), value(), value(), value(), turn()).prop_map(
             |(centre, radius_m, heading_deg, turns, turn)| Pattern::FigureEight {
                 centre,

@@ -30,6 +30,7 @@ fn concave() -> Polygon {
 fn scan(polygon: &Polygon, lines: f64) -> Scan {
     let parameters = ScanParameters {
         spacing_m: polygon.width_m(90.0) / lines,
+        grid: None,
         heading_deg: Some(90.0),
         overshoot_m: 0.0,
         entry: Entry::Corner(Corner::StartLeft),

@@ -43,6 +43,7 @@ fn survey(order: &Order) -> Result<Vec<[f64; 4]>, Box<dyn Error>> {
         &area,
         &ScanParameters {
             spacing_m: order.spacing_m,
+            grid: None,
             heading_deg: Some(order.heading_deg),
             overshoot_m: order.overshoot_m,
             entry: Entry::Corner(Corner::StartLeft),

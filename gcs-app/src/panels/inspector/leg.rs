@@ -201,6 +201,8 @@ fn meaning(name: &'static str, u: Units) -> (&'static str, Unit, f64, f64) {
         "turns" => ("Turns", TIMES, 0.25, 1.0),
         "passes" => ("Passes", TIMES, 1.0, 1.0),
         "loops" => ("Loops", TIMES, 1.0, 3.0),
+        "levels" => ("Levels", TIMES, 1.0, 3.0),
+        "levelStep" => ("Level step", u.altitude(), f64::MIN, -50.0),
         "sectors" => ("Sectors", TIMES, 3.0, 3.0),
         "spacing" => ("Spacing", u.length(), 1.0, 100.0),
         "overshoot" => ("Overshoot", u.length(), 0.0, 0.0),

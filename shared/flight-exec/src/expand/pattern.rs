@@ -1,14 +1,17 @@
 //! The patterns besides scans, and their regeneration in flight.
 
+mod heights;
 mod recipe;
 
 use super::remade::Remade;
 use super::track::Approach;
 use super::{ExpandError, Point};
-use crate::path::distance_m;
+use crate::path::{Level, distance_m};
 use crate::world::World;
 use flight_plan::Pattern as Plan;
+use geometry::pattern::Vertex;
 use geometry::{LatLon, LocalFrame, Pattern};
+use heights::Heights;
 use recipe::Recipe;
 use serde::{Deserialize, Serialize};
 
@@ -32,12 +35,9 @@ pub struct Flight {
 struct LaidOut {
     pattern: Pattern,
     frame: LocalFrame,
-}
-
-impl LaidOut {
-    fn at(&self, index: u64) -> Option<LatLon> {
-        Some(self.frame.to_geo(self.pattern.vertex(index)?.at))
-    }
+    heights: Option<Heights>,
+    /// It ends where it begins: flown again, it is without its first waypoint.
+    closed: bool,
 }
 
 impl Flight {
@@ -66,12 +66,13 @@ impl Flight {
 
     /// How many points it has.
     pub fn count(&self) -> u64 {
-        self.laid_out().map_or(0, |l| l.pattern.count().saturating_sub(self.first))
+        self.laid_out().map_or(0, |l| l.count().saturating_sub(self.first))
     }
 
     /// The point number `index`.
     pub fn point(&self, index: u64) -> Option<Point> {
-        self.at(self.first.checked_add(index)?).map(Point::fly)
+        let (laid_out, index) = (self.laid_out()?, self.first.checked_add(index)?);
+        Some(Point { level: laid_out.level(index), ..Point::fly(laid_out.at(index)?) })
     }
 
     /// The point a regenerated one goes on at, when `given` points of the one before are given out: what goes round and
@@ -121,17 +122,65 @@ impl Flight {
 }
 
 impl LaidOut {
+    fn new(pattern: Pattern, frame: LocalFrame, heights: Option<Heights>) -> Self {
+        let at = |index| pattern.vertex(index).map(|v| v.at);
+        let last = pattern.count().checked_sub(1).filter(|last| *last > 0);
+        let closed = last.is_some_and(|last| at(last) == at(0));
+        Self { pattern, frame, heights, closed }
+    }
+
+    fn rounds(&self) -> u64 {
+        self.heights.map_or(1, |h| h.rounds())
+    }
+
+    /// Waypoints of a round after the first one.
+    fn again(&self) -> u64 {
+        self.pattern.count().saturating_sub(u64::from(self.closed))
+    }
+
+    fn count(&self) -> u64 {
+        let later = self.rounds().saturating_sub(1).saturating_mul(self.again());
+        self.pattern.count().saturating_add(later)
+    }
+
+    /// The round that a waypoint belongs to, and its number there.
+    fn locate(&self, index: u64) -> (u64, u64) {
+        let again = self.again().max(1);
+        match index.checked_sub(self.pattern.count()) {
+            None => (0, index),
+            Some(later) => (1 + later / again, u64::from(self.closed) + later % again),
+        }
+    }
+
+    fn vertex(&self, index: u64) -> Option<Vertex> {
+        let (round, within) = self.locate(index);
+        let vertex = self.pattern.vertex(within).filter(|_| round < self.rounds())?;
+        let before = if round == 0 { 0 } else { round.saturating_mul(self.pattern.tracks()) };
+        Some(Vertex { track: before.saturating_add(vertex.track), ..vertex })
+    }
+
+    fn at(&self, index: u64) -> Option<LatLon> {
+        Some(self.frame.to_geo(self.vertex(index)?.at))
+    }
+
+    /// The altitude of a waypoint, where it is not the leg's.
+    fn level(&self, index: u64) -> Option<Level> {
+        let (round, within) = self.locate(index);
+        let Pattern::Contours(loops) = &self.pattern else { return None };
+        Some(self.heights?.level(round, loops.distance_number(within)))
+    }
+
     /// The first waypoint of the track that a waypoint belongs to.
     fn beginning_of_track(&self, index: u64) -> u64 {
-        let track = self.pattern.vertex(index).map(|v| v.track);
+        let track = self.vertex(index).map(|v| v.track);
         let mut begin = index;
-        while let Some(before) = begin.checked_sub(1).and_then(|i| self.pattern.vertex(i))
+        while let Some(before) = begin.checked_sub(1).and_then(|i| self.vertex(i))
             && Some(before.track) == track
         {
             begin -= 1;
         }
         // the first waypoint that is flown to on a track has its beginning before it
-        let on_track = self.pattern.vertex(begin).is_some_and(|v| v.on_track);
+        let on_track = self.vertex(begin).is_some_and(|v| v.on_track);
         begin - u64::from(on_track && begin > 0)
     }
 }

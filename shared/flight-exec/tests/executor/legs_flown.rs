@@ -20,7 +20,7 @@ const EVERYTHING: &str = r#"
     <sector id="sector" radius="1200" turn="right"><centre fix="C3"/></sector>
     <trackLine id="line" spacing="600" returns="true"><route><point fix="B2"/><point fix="C3"/><point fix="D3"/></route></trackLine>
     <corridor id="corridor" width="800" spacing="400"><route><point fix="B2"/><point fix="C3"/><point fix="D3"/></route></corridor>
-    <contour id="contour" spacing="300" turn="left"><area fix="C3" radius="700"/></contour>
+    <contour id="contour" spacing="300" levelStep="20" turn="left"><area fix="C3" radius="700"/></contour>
     <figureEight id="eight" radius="400" turns="1" turn="left"><centre fix="C3"/></figureEight>
     <TF id="z" fix="A3"><action on="start"><videoStop/></action></TF>"#;
 

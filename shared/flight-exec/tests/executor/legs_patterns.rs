@@ -1,7 +1,7 @@
 //! Every pattern: flown, flown backwards, changed in flight, and gone on with after a restart.
 
 use crate::rig::{GROUND_M, Rig, document_with, fix};
-use flight_exec::{Event, Executor, Snapshot};
+use flight_exec::{Event, Executor, Snapshot, Waypoint};
 use flight_plan::VariableValue;
 use geometry::{LatLon, LocalFrame};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ const VARIABLES: &str = r#"<variable name="r" type="number" initial="600" min="1
     <variable name="field" type="polygon" initial="36.56 -84.17, 36.57 -84.17, 36.57 -84.15, 36.56 -84.15"/>"#;
 
 /// Each kind of pattern, its size by the variable `r`, its place by `e`.
-const PATTERNS: [(&str, &str); 11] = [
+const PATTERNS: [(&str, &str); 13] = [
     (
         "scan",
         r#"<scan id="p" spacing="200" heading="0" overshoot="30"><area centre="= offset(datum, 90.0, e)" radius="= r"/></scan>"#,
@@ -52,6 +52,14 @@ const PATTERNS: [(&str, &str); 11] = [
     (
         "contour",
         r#"<contour id="p" spacing="200" direction="inward" turn="left"><area centre="= offset(datum, 90.0, e)" radius="= r"/></contour>"#,
+    ),
+    (
+        "descending contour",
+        r#"<contour id="p" spacing="200" loops="2" levels="2" levelStep="-40" direction="outward" turn="left"><area centre="= offset(datum, 90.0, e)" radius="= r"/></contour>"#,
+    ),
+    (
+        "contour up a hill",
+        r#"<contour id="p" spacing="200" levelStep="25" direction="inward" turn="right"><area centre="= offset(datum, 90.0, e)" radius="= r"/></contour>"#,
     ),
     (
         "figure-eight",
@@ -116,7 +124,8 @@ fn backwards_a_pattern_keeps_its_altitude_and_speed() {
         ("holding", r#"<HM id="p" fix="C4" course="0" turn="right" length="600" maxLaps="1"/>"#),
         ("racetrack", r#"<HF id="p" fix="C4" course="0" turn="right" length="600"/>"#),
     ];
-    for (name, pattern) in PATTERNS.into_iter().chain(others) {
+    let level = PATTERNS.into_iter().filter(|(_, pattern)| !pattern.contains("levelStep"));
+    for (name, pattern) in level.chain(others) {
         let own = r#"id="p" altitude="515" altitudeReference="amsl" speed="20""#;
         let pattern = pattern.replace(r#"id="p""#, own);
         let before = r#"<TF id="b" fix="B2" altitude="505" altitudeReference="amsl" speed="28"/>"#;
@@ -134,6 +143,38 @@ fn backwards_a_pattern_keeps_its_altitude_and_speed() {
             assert_eq!((last.altitude_amsl_m, last.airspeed_mps), (505.0, 28.0), "{name}: {last:?}");
         }
     }
+}
+
+/// Altitudes of the loops of a contour about D3 that begins at 600 m AMSL: at the end of each, when they are reached.
+fn altitudes_of_loops(attributes: &str) -> Vec<(f64, f64)> {
+    let contour = format!(
+        r#"<contour id="p" spacing="300" turn="left" altitude="600" altitudeReference="amsl" {attributes}><area fix="D3" radius="600"/></contour>"#
+    );
+    let mut rig = flying(&contour);
+    rig.fly_to_the_end();
+    let of_leg: Vec<_> = rig.flown.iter().filter(|w| w.leg.as_str() == "p").collect();
+    let end_of_loop = of_leg.windows(2).filter(|pair| {
+        let off = |i: usize| pair[i].position.distance_m(fix("D3"));
+        (off(0) - off(1)).abs() > 100.0 || (pair[0].altitude_amsl_m - pair[1].altitude_amsl_m).abs() > 5.0
+    });
+    let last = of_leg.last().copied();
+    let ends = end_of_loop.map(|pair| pair[0]).chain(last);
+    // straight lines stand for the circle: to ten metres
+    let off_m = |w: &Waypoint| (w.position.distance_m(fix("D3")) / 10.0).round() * 10.0;
+    ends.map(|w| (off_m(w), w.altitude_amsl_m.round())).collect()
+}
+
+#[test]
+fn a_contour_is_flown_at_one_altitude_after_the_other_or_each_loop_at_its_own() {
+    let outward = r#"direction="outward" loops="2""#;
+    let all = |more: &str| altitudes_of_loops(&format!("{outward} {more}"));
+    assert_eq!(all(""), [(750.0, 600.0), (1050.0, 600.0)]);
+    assert_eq!(all(r#"levelStep="-7""#), [(750.0, 600.0), (1050.0, 593.0)]);
+    let twice = [(750.0, 600.0), (1050.0, 600.0), (750.0, 607.0), (1050.0, 607.0)];
+    assert_eq!(all(r#"levelStep="7" levels="2""#), twice);
+    // one loop at three altitudes: where it is closed is flown through once
+    let one = altitudes_of_loops(r#"direction="outward" loops="1" levelStep="7" levels="3""#);
+    assert_eq!(one, [(750.0, 600.0), (750.0, 607.0), (750.0, 614.0)]);
 }
 
 #[test]

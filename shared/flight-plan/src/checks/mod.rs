@@ -16,6 +16,7 @@ mod identifiers;
 mod inspection;
 mod intersections;
 mod iteratives;
+mod levels;
 mod memory;
 mod orbits;
 mod order;
@@ -66,7 +67,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 38] = {
+const RULES: [Rule; 39] = {
     use Rule::{Leg, Plan};
     [
         Plan(empty::check),
@@ -94,6 +95,7 @@ const RULES: [Rule; 38] = {
         Leg(orbits::check),
         Leg(scans::check),
         Leg(patterns::check),
+        Leg(levels::check),
         Leg(spacings::check),
         Leg(actions::check),
         Plan(speeds::check),

@@ -159,6 +159,10 @@ pub enum Pattern {
         spacing: Spacing,
         /// How many loops; `None`: until the area is filled (inward only).
         loops: Option<Value<f64>>,
+        /// How many altitudes all loops are flown at; `None`, with a step: each loop has an altitude of its own.
+        levels: Option<Value<f64>>,
+        /// From each altitude to the next, metres: more than 0 climbs, less descends; `None`: all at one altitude.
+        level_step_m: Option<Value<f64>>,
         /// To the inside of the area.
         inward: bool,
         /// Direction.

@@ -139,10 +139,12 @@ macro_rules! walk {
                         visit(Slot::Number("width", width_m));
                         spacing(s, visit);
                     }
-                    Pattern::Contour { area: a, spacing: s, loops, .. } => {
+                    Pattern::Contour { area: a, spacing: s, loops, levels, level_step_m, .. } => {
                         area(a, visit);
                         spacing(s, visit);
                         visit(Slot::Optional("loops", loops));
+                        visit(Slot::Optional("levels", levels));
+                        visit(Slot::Optional("levelStep", level_step_m));
                     }
                     Pattern::FigureEight { centre, radius_m, heading_deg, turns, .. } => {
                         visit(Slot::Place(centre));

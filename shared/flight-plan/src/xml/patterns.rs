@@ -40,8 +40,10 @@ pub(super) fn attributes(tag: Tag, pattern: &Pattern) -> Tag {
         }
         Pattern::TrackLine { spacing: s, returns, .. } => spacing(tag, s).with("returns", returns),
         Pattern::Corridor { width_m, spacing: s, .. } => spacing(tag.value("width", width_m), s),
-        Pattern::Contour { spacing: s, loops, inward, turn, .. } => {
+        Pattern::Contour { spacing: s, loops, levels, level_step_m, inward, turn, .. } => {
             let tag = spacing(tag, s).maybe_value("loops", loops.as_ref());
+            let tag =
+                tag.maybe_value("levels", levels.as_ref()).maybe_value("levelStep", level_step_m.as_ref());
             direction(tag, *inward).turn(*turn)
         }
         Pattern::FigureEight { radius_m, heading_deg, turns, turn, .. } => {
@@ -210,10 +212,11 @@ impl<'a> Document<'a> {
     ) -> Pattern {
         let spacing = self.spacing(element);
         let loops = self.value(element, "loops");
+        let (levels, level_step_m) = (self.value(element, "levels"), self.value(element, "levelStep"));
         let inward = self.inward(element);
         let turn = self.turn(element, None);
         let area = self.inside(element, "area", emergency, actions).area.unwrap_or_else(no_area);
-        Pattern::Contour { area, spacing, loops, inward, turn }
+        Pattern::Contour { area, spacing, loops, levels, level_step_m, inward, turn }
     }
 
     fn orbit(

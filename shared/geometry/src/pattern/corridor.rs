@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct CorridorParameters {
     /// Its width, metres: half of it on each side of the route.
     pub width_m: f64,
-    /// Distance between neighbouring tracks, metres. The outer ones are half of it inside the corridor's edges.
+    /// Greatest distance between neighbouring tracks, metres: as few as that allows are spread evenly over the width.
     pub spacing_m: f64,
     /// How far tracks go on beyond the route's ends, metres.
     pub overshoot_m: f64,
@@ -36,10 +36,10 @@ impl Corridor {
         positive("spacing", p.spacing_m)?;
         not_negative("overshoot", p.overshoot_m)?;
         not_negative("turn radius", p.turn_radius_m)?;
-        let lines = Lines::new((-p.width_m / 2.0, p.width_m / 2.0), p.spacing_m)?;
+        let lines = Lines::even((-p.width_m / 2.0, p.width_m / 2.0), p.spacing_m)?;
         route.check_paths(lines.count())?;
         let order =
-            Order::interleaved(lines.count(), p.turn_radius_m, p.spacing_m, corner(route, p, &lines)?);
+            Order::interleaved(lines.count(), p.turn_radius_m, lines.spacing_m(), corner(route, p, &lines)?);
         let mut stored = Stored::default();
         for track in 0..lines.count() {
             let mut path = route.beside(lines.across_m(order.line(track)), p.overshoot_m);

@@ -21,6 +21,7 @@ impl CrissCross {
         let end = scan_count(&first).checked_sub(1).and_then(|last| scan_vertex(&first, last));
         let across = ScanParameters {
             heading_deg: Some(first.heading_deg() + 90.0),
+            grid: None,
             entry: end.map_or(p.entry, |v| Entry::Nearest(v.at)),
             ..*p
         };
@@ -80,6 +81,7 @@ mod tests {
         for entry in [Corner::StartLeft, Corner::StartRight, Corner::EndLeft, Corner::EndRight] {
             let p = ScanParameters {
                 spacing_m: 100.0,
+                grid: None,
                 heading_deg: None,
                 overshoot_m: 0.0,
                 entry: Entry::Corner(entry),

@@ -3,7 +3,6 @@
 //! A cursor can so bookmark a place, go on from it, and fly a pattern backwards. Patterns that follow a formula store nothing
 //! but their parameters; those along a route or a polygon's edge store their waypoints, at most [`MOST_STORED`].
 
-mod cells;
 mod contour;
 mod corridor;
 mod creeping;
@@ -17,7 +16,6 @@ mod spiral;
 mod tests;
 mod track_line;
 
-pub use cells::CellScan;
 pub use contour::{ContourParameters, Contours, Side};
 pub use corridor::{Corridor, CorridorParameters};
 pub use creeping::creeping_heading_deg;
@@ -55,8 +53,6 @@ pub struct Vertex {
 pub enum Pattern {
     /// Parallel tracks over a polygon; also the creeping line. Gaps are flown over: see [`Scan::segments`].
     Scan(Scan),
-    /// Parallel tracks, one arm of the area after the other.
-    CellScan(CellScan),
     /// Two scans at right angles.
     CrissCross(CrissCross),
     /// Round and round about a centre.
@@ -80,7 +76,6 @@ impl Pattern {
     pub fn count(&self) -> u64 {
         match self {
             Pattern::Scan(p) => criss_cross::scan_count(p),
-            Pattern::CellScan(p) => p.count(),
             Pattern::CrissCross(p) => p.count(),
             Pattern::Spiral(p) => p.count(),
             Pattern::ExpandingSquare(p) => p.count(),
@@ -97,7 +92,6 @@ impl Pattern {
     pub fn vertex(&self, index: u64) -> Option<Vertex> {
         match self {
             Pattern::Scan(p) => criss_cross::scan_vertex(p, index),
-            Pattern::CellScan(p) => p.vertex(index),
             Pattern::CrissCross(p) => p.vertex(index),
             Pattern::Spiral(p) => p.vertex(index),
             Pattern::ExpandingSquare(p) => p.vertex(index),

@@ -72,6 +72,7 @@ proptest! {
     ) {
         let p = ScanParameters {
             spacing_m,
+            grid: None,
             heading_deg: Some(creeping_heading_deg(&area, None)),
             overshoot_m: spacing_m / 2.0,
             entry: Entry::Nearest(Vec2::new(5000.0, -5000.0)),
@@ -182,6 +183,7 @@ fn criss_cross_is_a_pattern_of_two_scans() {
     let area = disc(Vec2::default(), 500.0);
     let p = ScanParameters {
         spacing_m: 100.0,
+        grid: None,
         heading_deg: Some(20.0),
         overshoot_m: 50.0,
         entry: Entry::Corner(Corner::EndRight),

@@ -28,9 +28,13 @@ const MAX_LINES: f64 = 9e15;
 /// How a polygon is to be scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScanParameters {
-    /// Distance between neighbouring lines, metres. The first and the last line are half of it
-    /// inside the polygon's extent; the last gap may be smaller.
+    /// Greatest distance between neighbouring lines, metres. As few lines as that allows are spread evenly over the
+    /// polygon's extent, the first and the last one half their distance inside.
     pub spacing_m: f64,
+    /// For a scan that takes the place of another one, whose lines are to stay where they were: a place on the border
+    /// between two of its strips ([`Scan::grid`]). Lines are `spacing_m` apart then, counted from there; only the
+    /// outermost ones, in the middle of what is left of their strips, may be nearer to their neighbours, down to half of that.
+    pub grid: Option<Vec2>,
     /// Direction of the lines, degrees true; `None`: the one with the fewest lines.
     pub heading_deg: Option<f64>,
     /// How far a track goes on beyond the area's edge, metres. No point of a scanning segment is
@@ -96,6 +100,9 @@ pub enum ScanError {
     /// The entry point is not a number.
     #[error("the point that the scan should begin near to is not a position")]
     EntryPoint,
+    /// The border of the strips is not a number.
+    #[error("the place on the border between two strips is not a position")]
+    Grid,
     /// More lines than can be counted.
     #[error("a spacing of {0} m gives more lines than can be counted: widen it")]
     TooManyLines(f64),
@@ -137,38 +144,61 @@ impl Axes {
     }
 }
 
-/// Where the lines are, across the heading.
+/// Where the lines are, across the heading: each in the middle of the strip that it stands for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lines {
-    first_m: f64,
-    last_m: f64,
+    left_m: f64,
+    right_m: f64,
+    /// Where the first strip begins: at the left edge or, on a given grid, outside it.
+    begin_m: f64,
+    /// Width of a strip.
     spacing_m: f64,
     count: u64,
 }
 
 impl Lines {
-    /// Lines between two edges, the outer ones half a spacing inside.
-    pub fn new((left_m, right_m): (f64, f64), spacing_m: f64) -> Result<Self, ScanError> {
-        let width_m = right_m - left_m;
-        // forgives rounding: a width of 10 spacings has 10 lines
-        let count = (width_m / spacing_m * (1.0 - 1e-12) - 1e-9).ceil().max(1.0);
-        if count > MAX_LINES {
-            return Err(ScanError::TooManyLines(spacing_m));
-        }
-        let inside_m = (spacing_m / 2.0).min(width_m / 2.0);
-        Ok(Self { first_m: left_m + inside_m, last_m: right_m - inside_m, spacing_m, count: count as u64 })
+    /// Lines between two edges, evenly spread, as few as are no more than `most_m` apart; the outer ones half a spacing inside.
+    pub fn even((left_m, right_m): (f64, f64), most_m: f64) -> Result<Self, ScanError> {
+        let count = strips(right_m - left_m, most_m)?;
+        let spacing_m = (right_m - left_m) / count as f64;
+        Ok(Self { left_m, right_m, begin_m: left_m, spacing_m, count })
+    }
+    /// Lines of strips of one width, one of which begins at `grid_m`. The outer strips end at the edges.
+    fn on_grid((left_m, right_m): (f64, f64), spacing_m: f64, grid_m: f64) -> Result<Self, ScanError> {
+        // forgives rounding: a strip that ends at the edge is not in the area
+        let first = ((left_m - grid_m) / spacing_m + 1e-9).floor();
+        let begin_m = grid_m + first * spacing_m;
+        Ok(Self { left_m, right_m, begin_m, spacing_m, count: strips(right_m - begin_m, spacing_m)? })
     }
     pub fn count(&self) -> u64 {
         self.count
     }
+    pub fn spacing_m(&self) -> f64 {
+        self.spacing_m
+    }
+    #[inline]
     pub fn across_m(&self, line: u64) -> f64 {
-        (self.first_m + line as f64 * self.spacing_m).min(self.last_m)
+        let begin_m = self.begin_m + line as f64 * self.spacing_m;
+        (begin_m.max(self.left_m) + (begin_m + self.spacing_m).min(self.right_m)) / 2.0
     }
     fn nearest(&self, across_m: f64) -> u64 {
-        let line = ((across_m - self.first_m) / self.spacing_m).round();
         // a cast of NaN or of a negative number gives 0
-        (line as u64).min(self.count.saturating_sub(1))
+        let strip = ((across_m - self.begin_m) / self.spacing_m) as u64;
+        let last = self.count.saturating_sub(1);
+        let around = [strip.saturating_sub(1), strip, strip.saturating_add(1)].map(|line| line.min(last));
+        let off_m = |line: &u64| (self.across_m(*line) - across_m).abs();
+        around.into_iter().min_by(|a, b| off_m(a).total_cmp(&off_m(b))).unwrap_or(0)
     }
+}
+
+/// How many strips make up a width.
+fn strips(width_m: f64, spacing_m: f64) -> Result<u64, ScanError> {
+    // forgives rounding: a width of 10 spacings has 10 strips
+    let count = (width_m / spacing_m * (1.0 - 1e-12) - 1e-9).ceil().max(1.0);
+    if count > MAX_LINES {
+        return Err(ScanError::TooManyLines(spacing_m));
+    }
+    Ok(count as u64)
 }
 
 impl Scan {
@@ -181,8 +211,11 @@ impl Scan {
         let heading_deg = p.heading_deg.unwrap_or_else(|| polygon.narrowest_heading_deg());
         let axes = Axes::new(heading_deg);
         let outline = Outline::new(polygon, axes);
-        let lines = Lines::new(outline.extent(), p.spacing_m)?;
-        let order = |corner| Order::interleaved(lines.count, p.turn_radius_m, p.spacing_m, corner);
+        let lines = match p.grid {
+            None => Lines::even(outline.extent(), p.spacing_m)?,
+            Some(place) => Lines::on_grid(outline.extent(), p.spacing_m, place.dot(axes.across))?,
+        };
+        let order = |corner| Order::interleaved(lines.count, p.turn_radius_m, lines.spacing_m, corner);
         let mut scan = Self {
             outline,
             axes,
@@ -190,7 +223,7 @@ impl Scan {
             order: order(Corner::StartLeft),
             heading_deg,
             overshoot_m: p.overshoot_m,
-            strip_m: p.overshoot_m.min(p.spacing_m / 2.0),
+            strip_m: p.overshoot_m.min(lines.spacing_m / 2.0),
         };
         scan.order = order(scan.corner(p.entry));
         Ok(scan)
@@ -223,6 +256,16 @@ impl Scan {
     /// Direction of the lines, degrees true (0..180 if it was left to the scan).
     pub fn heading_deg(&self) -> f64 {
         self.heading_deg
+    }
+
+    /// Distance between neighbouring lines as they are laid, metres: at most the one asked for.
+    pub fn spacing_m(&self) -> f64 {
+        self.lines.spacing_m
+    }
+
+    /// A place on the border between two of the strips that the lines stand for.
+    pub fn grid(&self) -> Vec2 {
+        self.axes.across * self.lines.begin_m
     }
 
     /// Number of tracks; they are numbered from 0 in flight order.
@@ -293,6 +336,9 @@ impl ScanParameters {
         }
         if !not_negative(self.turn_radius_m) {
             return Err(ScanError::TurnRadius(self.turn_radius_m));
+        }
+        if self.grid.is_some_and(|place| !place.length().is_finite()) {
+            return Err(ScanError::Grid);
         }
         match self.entry {
             Entry::Nearest(point) if !point.length().is_finite() => Err(ScanError::EntryPoint),

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 fn parameters(spacing_m: f64) -> ScanParameters {
     ScanParameters {
         spacing_m,
+        grid: None,
         heading_deg: None,
         overshoot_m: 0.0,
         entry: Entry::Corner(Corner::StartLeft),
@@ -64,23 +65,42 @@ fn a_rectangle_is_flown_along_its_long_side() {
     );
 }
 
+/// Distances of the lines from the rectangle's left edge.
+fn lines_m(p: &ScanParameters) -> Vec<f64> {
+    all(&Scan::new(&rectangle(), p).unwrap()).iter().map(|s| 400.0 - s.from.n).collect()
+}
+
+fn assert_near(lines: &[f64], expected: &[f64]) {
+    let near = lines.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6);
+    assert!(near && lines.len() == expected.len(), "{lines:?} are not {expected:?}");
+}
+
 #[test]
-fn first_and_last_line_are_half_a_spacing_inside() {
-    // width, spacing → distances of the lines from the left edge
+fn lines_are_spread_evenly() {
+    let third = 400.0 / 6.0;
     for (spacing_m, expected) in [
         (100.0, vec![50.0, 150.0, 250.0, 350.0]),
-        (150.0, vec![75.0, 225.0, 325.0]),
-        (399.0, vec![199.5, 200.5]),
+        (150.0, vec![third, 3.0 * third, 5.0 * third]),
+        (399.0, vec![100.0, 300.0]),
         (400.0, vec![200.0]),
         (5000.0, vec![200.0]),
     ] {
-        let scan = Scan::new(&rectangle(), &parameters(spacing_m)).unwrap();
-        let lines: Vec<f64> = all(&scan).iter().map(|s| 400.0 - s.from.n).collect();
-        assert_eq!(lines.len(), expected.len());
-        for (line, expected) in lines.iter().zip(expected) {
-            assert!((line - expected).abs() < 1e-6, "{spacing_m}: {lines:?}");
-        }
+        assert_near(&lines_m(&parameters(spacing_m)), &expected);
     }
+}
+
+#[test]
+fn lines_of_a_grid_stay_where_they_are_and_the_outer_ones_are_in_the_middle_of_what_is_left() {
+    let on_grid = |grid_m: f64| {
+        // along 90° the left edge is 400 m north
+        let grid = Some(Vec2::new(77.0, 400.0 - grid_m));
+        lines_m(&ScanParameters { grid, heading_deg: Some(90.0), ..parameters(150.0) })
+    };
+    assert_near(&on_grid(0.0), &[75.0, 225.0, 350.0]);
+    assert_near(&on_grid(-10_500.0), &[75.0, 225.0, 350.0]);
+    assert_near(&on_grid(50.0), &[25.0, 125.0, 275.0, 375.0]);
+    assert_near(&on_grid(400.0), &[50.0, 175.0, 325.0]);
+    assert_near(&on_grid(2.0), &[1.0, 77.0, 227.0, 351.0]);
 }
 
 #[test]
@@ -180,6 +200,8 @@ fn bad_parameters_are_refused() {
     assert!(matches!(refused(p), ScanError::Heading(_)));
     let p = ScanParameters { entry: Entry::Nearest(Vec2::new(f64::NAN, 0.0)), ..base };
     assert_eq!(refused(p), ScanError::EntryPoint);
+    let p = ScanParameters { grid: Some(Vec2::new(f64::INFINITY, 0.0)), ..base };
+    assert_eq!(refused(p), ScanError::Grid);
     assert!(matches!(refused(parameters(1e-300)), ScanError::TooManyLines(_)));
 }
 
@@ -265,9 +287,11 @@ fn coverage_is_a_share() {
 
 fn any_parameters() -> impl Strategy<Value = ScanParameters> {
     let heading = prop::option::of(0.0..360.0);
-    (40.0..400.0, heading, 0.0..300.0, 0_usize..4, 0.0..400.0).prop_map(
-        |(spacing_m, heading_deg, overshoot_m, corner, turn_radius_m)| ScanParameters {
+    let grid = prop::option::of((-5000.0..5000.0, -5000.0..5000.0).prop_map(|(e, n)| Vec2::new(e, n)));
+    (40.0..400.0, grid, heading, 0.0..300.0, 0_usize..4, 0.0..400.0).prop_map(
+        |(spacing_m, grid, heading_deg, overshoot_m, corner, turn_radius_m)| ScanParameters {
             spacing_m,
+            grid,
             heading_deg,
             overshoot_m,
             entry: Entry::Corner(Corner::ALL[corner]),
@@ -278,6 +302,41 @@ fn any_parameters() -> impl Strategy<Value = ScanParameters> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// No track nearly repeats another, and none is farther from the next than asked: each stands for its strip, and the strips
+    /// make up the area's width.
+    #[test]
+    fn lines_are_at_one_distance(area in any_area(), p in any_parameters()) {
+        let scan = Scan::new(&area, &p).unwrap();
+        let across = Axes::new(scan.heading_deg()).across;
+        let places = area.outer().iter().map(|c| c.dot(across));
+        let (left_m, right_m) = places.fold((f64::MAX, f64::MIN), |(l, r), x| (l.min(x), r.max(x)));
+        let lines: Vec<f64> = (0..scan.tracks()).map(|line| scan.lines.across_m(line)).collect();
+        let gaps: Vec<f64> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let (least_m, most_m) = gaps.iter().fold((f64::MAX, 0.0_f64), |(l, m), g| (l.min(*g), m.max(*g)));
+        let even = p.grid.is_none();
+        let room_m = if even { scan.spacing_m() } else { 0.0 };
+        prop_assert!(most_m <= p.spacing_m * (1.0 + 1e-9), "{most_m}");
+        prop_assert!(lines[0] - left_m >= room_m / 2.0 - 1e-6 && right_m - lines[lines.len() - 1] >= room_m / 2.0 - 1e-6);
+        prop_assert!(gaps.is_empty() || least_m >= p.spacing_m / 2.0 * (1.0 - 1e-9), "{least_m}");
+        prop_assert!(!even || gaps.is_empty() || most_m - least_m < 1e-6, "{least_m} {most_m}");
+        let fewest = ((right_m - left_m) / p.spacing_m * (1.0 - 1e-9)).ceil() as u64;
+        prop_assert!((fewest..=fewest + u64::from(!even)).contains(&scan.tracks()), "{}", scan.tracks());
+    }
+
+    /// What is flown already need not be flown again.
+    #[test]
+    fn a_scan_on_the_grid_of_another_has_its_lines(area in any_area(), wider in any_area(), p in any_parameters()) {
+        let p = ScanParameters { grid: None, heading_deg: Some(p.heading_deg.unwrap_or(33.0)), ..p };
+        let first = Scan::new(&area, &p).unwrap();
+        let on = ScanParameters { spacing_m: first.spacing_m(), grid: Some(first.grid()), ..p };
+        let second = Scan::new(&wider, &on).unwrap();
+        let inner = |scan: &Scan| (1..scan.tracks().saturating_sub(1)).map(|l| scan.lines.across_m(l)).collect::<Vec<_>>();
+        for a in inner(&second) {
+            let steps = (a - first.lines.across_m(0)) / first.spacing_m();
+            prop_assert!((steps - steps.round()).abs() < 1e-6, "{steps}");
+        }
+    }
 
     #[test]
     fn an_overshoot_of_half_the_spacing_covers_everything(area in any_area(), p in any_parameters()) {

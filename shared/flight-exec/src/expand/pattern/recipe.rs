@@ -5,6 +5,7 @@ use super::super::area::{Outline, geometric};
 use super::super::spacing::spacing_m;
 use super::super::track::{Approach, side};
 use super::LaidOut;
+use super::heights::Heights;
 use crate::world::World;
 use flight_plan::{Pattern as Plan, Place, Value};
 use geometry::pattern as shapes;
@@ -19,6 +20,7 @@ const MOST_LOOPS: u64 = 10_000;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     shape: Shape,
+    heights: Option<Heights>,
     /// Stays what it was when the pattern was begun: a gust must not move the tracks.
     turn_radius_m: f64,
     tolerance_m: f64,
@@ -39,8 +41,15 @@ impl Recipe {
     /// # Errors
     /// Values that can't be computed.
     pub fn of(pattern: &Plan, approach: &Approach, world: &World) -> Result<Self, ExpandError> {
+        let heights = match pattern {
+            Plan::Contour { levels, level_step_m, .. } => {
+                Heights::of(levels.as_ref(), level_step_m.as_ref(), approach.level, world)?
+            }
+            _ => None,
+        };
         Ok(Self {
             shape: Shape::of(pattern, approach, world)?,
+            heights,
             turn_radius_m: world.turn_radius_m(approach.airspeed_mps),
             tolerance_m: world.config.arc_tolerance_m,
         })
@@ -61,6 +70,11 @@ impl Recipe {
     /// # Errors
     /// There is none.
     pub fn lay_out(&self, from: LatLon) -> Result<LaidOut, ExpandError> {
+        let (pattern, frame) = self.in_a_plane(from)?;
+        Ok(LaidOut::new(pattern, frame, self.heights))
+    }
+
+    fn in_a_plane(&self, from: LatLon) -> Result<(Pattern, LocalFrame), ExpandError> {
         let centre = Vec2::default();
         let tolerance_m = self.tolerance_m;
         match self.shape {
@@ -131,15 +145,15 @@ impl Recipe {
 fn laid_out(
     pattern: Result<Pattern, shapes::PatternError>,
     frame: LocalFrame,
-) -> Result<LaidOut, ExpandError> {
-    Ok(LaidOut { pattern: pattern.map_err(geometric)?, frame })
+) -> Result<(Pattern, LocalFrame), ExpandError> {
+    Ok((pattern.map_err(geometric)?, frame))
 }
 
 /// A pattern along a route, in a frame around it.
 fn along(
     route: &[LatLon],
     pattern: impl FnOnce(&shapes::Route, &LocalFrame) -> Result<Pattern, shapes::PatternError>,
-) -> Result<LaidOut, ExpandError> {
+) -> Result<(Pattern, LocalFrame), ExpandError> {
     let frame = LocalFrame::around(route)
         .filter(|frame| route.iter().all(|p| frame.origin().distance_m(*p) <= frame.radius_m()));
     let frame = frame.ok_or_else(|| {
@@ -192,7 +206,7 @@ impl Shape {
                 width_m: number(width_m)?,
                 spacing_m: spacing(s)?,
             },
-            Plan::Contour { area, spacing: s, loops, inward, turn } => Shape::Contour {
+            Plan::Contour { area, spacing: s, loops, inward, turn, .. } => Shape::Contour {
                 area: Outline::of(area, world)?,
                 spacing_m: spacing(s)?,
                 loops: loops.as_ref().map(|n| whole("loops", number(n)?)).transpose()?,
@@ -224,7 +238,7 @@ fn places(route: &[Place], world: &World) -> Result<Vec<LatLon>, ExpandError> {
 }
 
 /// A value that counts something.
-fn whole(what: &str, value: f64) -> Result<u64, ExpandError> {
+pub(super) fn whole(what: &str, value: f64) -> Result<u64, ExpandError> {
     if (1.0..=1e9).contains(&value) && value.fract() == 0.0 {
         return Ok(value as u64);
     }

@@ -39,6 +39,11 @@ impl LaidOut {
         self.pattern.heading_deg()
     }
 
+    /// A place on the border between two of its strips, and their width, metres.
+    pub fn grid(&self) -> (LatLon, f64) {
+        (self.frame.to_geo(self.pattern.grid()), self.pattern.spacing_m())
+    }
+
     /// The track at a place of the flight order; the whole chunk around it is computed when it is not at hand.
     pub fn cached(&self, place: u64, chunk: impl Fn() -> (u64, Vec<Option<Line>>)) -> Option<Line> {
         // a poisoned cache is still a cache: its content is replaced as a whole

@@ -16,7 +16,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     area: Outline,
-    spacing_m: f64,
+    /// As the plan gives it: tracks are no farther apart.
+    pub spacing_m: f64,
+    /// Where the strips of its tracks lie, and how wide they are, when it takes the place of another sweep.
+    pub grid: Option<(LatLon, f64)>,
     /// As the plan gives it; `None`: left to the pattern.
     pub heading_deg: Option<f64>,
     /// Tracks lie across the heading.
@@ -36,6 +39,7 @@ impl Recipe {
         Ok(Self {
             area: Outline::of(&scan.area, world)?,
             spacing_m: spacing_m(&scan.spacing, approach.level, world)?,
+            grid: None,
             heading_deg: scan.heading_deg.as_ref().map(|h| world.number(h)).transpose()?,
             across: second || scan.style == ScanStyle::Creeping,
             // the second sweep begins where the first one ends
@@ -57,7 +61,8 @@ impl Recipe {
             self.heading_deg
         };
         let parameters = ScanParameters {
-            spacing_m: self.spacing_m,
+            spacing_m: self.grid.map_or(self.spacing_m, |(_, metres)| metres),
+            grid: self.grid.map(|(place, _)| frame.to_local(place)),
             heading_deg,
             overshoot_m: self.overshoot_m,
             entry: match self.entry {

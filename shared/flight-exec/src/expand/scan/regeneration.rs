@@ -35,9 +35,13 @@ impl Sweep {
             recipe.heading_deg = self.recipe.heading_deg.or_else(chosen_deg);
         }
         let turned = scan.heading_deg.is_some() && recipe.heading_deg != self.recipe.heading_deg;
+        recipe.grid = self.recipe.grid;
         if !turned && recipe.is_but_for_its_heading(&self.recipe) {
             return Ok(None);
         }
+        // so do the tracks' places: to spread them anew would move all of them
+        let stays = !turned && recipe.spacing_m == self.recipe.spacing_m;
+        recipe.grid = self.laid_out().filter(|_| stays).map(LaidOut::grid);
         let laid_out = recipe.lay_out(at)?;
         Ok(Some(Self::resumed(recipe, laid_out, self.flown_until(given), at)))
     }

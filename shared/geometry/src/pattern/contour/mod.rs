@@ -57,6 +57,8 @@ pub struct ContourParameters {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contours {
     stored: Stored,
+    /// The first waypoint of each distance from the edge.
+    begins: Vec<u64>,
 }
 
 impl Contours {
@@ -91,6 +93,13 @@ impl Contours {
     /// See [`super::Pattern::vertex`].
     pub fn vertex(&self, index: u64) -> Option<Vertex> {
         self.stored.vertex(index)
+    }
+
+    /// Which of the distances from the edge, from 0 in flight order, the loop of a waypoint keeps; what is flown round because
+    /// two loops leave it unseen counts as the former one's.
+    pub fn distance_number(&self, index: u64) -> u64 {
+        let begun = self.begins.partition_point(|&begin| begin <= index);
+        begun.saturating_sub(1) as u64
     }
 }
 
@@ -132,7 +141,7 @@ impl ContourParameters {
 fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Contours, PatternError> {
     p.check()?;
     p.check_work(area)?;
-    let mut stored = Stored::default();
+    let (mut stored, mut begins) = (Stored::default(), Vec::new());
     let (mut at, mut offset_m) = (p.entry, p.first_m);
     let mut level = p.level(area, offset_m)?;
     if covering && p.side == Side::Inward {
@@ -156,6 +165,7 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
         } else {
             Vec::new()
         };
+        begins.push(if number == 1 { 0 } else { stored.count() });
         for areas in [level, between] {
             at = fly(&mut stored, areas, p.turn, at)?;
         }
@@ -168,7 +178,7 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
         let width_m = area.width_m(area.narrowest_heading_deg());
         return Err(PatternError::TooNarrow { width_m, spacing_m: 2.0 * p.first_m });
     }
-    Ok(Contours { stored })
+    Ok(Contours { stored, begins })
 }
 
 /// How far beyond the strip that one loop sees the next loop's strip may begin, up to half the spacing, metres.

@@ -54,8 +54,10 @@ fn a_middle_too_wide_for_the_last_loop_gets_one_more() {
 fn holes_are_gone_round_the_other_way() {
     let area = Polygon::new(square(0.0, 0.0, 1000.0), vec![square(400.0, 400.0, 200.0)]).unwrap();
     let p = ContourParameters { levels: 1, ..parameters() };
-    let loops = loops(&area, &p);
+    let contours = Contours::new(&area, &p).unwrap();
+    let loops = rings_flown(&contours);
     assert_eq!(loops.len(), 2);
+    assert_eq!(contours.distance_number(contours.count() - 1), 0, "both keep the same distance");
     assert!(signed_area_m2(&loops[0]) < 0.0 && signed_area_m2(&loops[1]) > 0.0);
     assert!(loops.iter().flatten().all(|&c| (area.distance_to_edge_m(c) - 50.0).abs() < 21.0));
     assert!(loops[1].iter().all(|&c| (area.distance_to_edge_m(c) - 50.0).abs() < 1e-3));
@@ -65,8 +67,12 @@ fn holes_are_gone_round_the_other_way() {
 fn outward_loops_keep_their_distance() {
     let area = Polygon::new(square(0.0, 0.0, 300.0), vec![square(100.0, 100.0, 50.0)]).unwrap();
     let p = ContourParameters { side: Side::Outward, levels: 3, turn: Turn::Left, ..parameters() };
-    let loops = loops(&area, &p);
+    let contours = Contours::new(&area, &p).unwrap();
+    let loops = rings_flown(&contours);
     assert_eq!(loops.len(), 3);
+    for index in 0..contours.count() {
+        assert_eq!(contours.distance_number(index), contours.vertex(index).unwrap().track);
+    }
     for (ring, expected_m) in loops.iter().zip([50.0, 150.0, 250.0]) {
         assert!(signed_area_m2(ring) > 0.0);
         for pair in ring.windows(2) {
