@@ -2,7 +2,7 @@
 
 use super::Shared;
 use aircraft::Profile;
-use flight_exec::review::{Conditions, review};
+use flight_exec::review::{Conditions, review, review_extremes};
 use flight_plan::{FlightPlan, Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -116,10 +116,19 @@ fn work(
         // the path takes longer to be looked at than the plan: not while the plan is being changed
         if let (Some(program), None) = (program, &newer) {
             let profile = profile_of(&program.plan);
-            let found = review(&program, &profile, terrain, Conditions::default());
-            last.problems.extend(found);
+            let conditions = Conditions::default();
+            let found = review(&program, &profile, terrain, conditions);
+            last.problems.extend(found.iter().cloned());
             last.reviewed = true;
             if tell(&last).is_err() {
+                return;
+            }
+            let more = review_extremes(&program, &profile, terrain, conditions, &found, &mut |_, _| {
+                newer = inbox.try_recv().ok();
+                newer.is_none()
+            });
+            last.problems.extend(more.iter().cloned());
+            if !more.is_empty() && tell(&last).is_err() {
                 return;
             }
         }

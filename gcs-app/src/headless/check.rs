@@ -1,12 +1,17 @@
 //! `legwork check`: everything that is wrong with a plan.
 
+use super::source::Loaded;
 use super::{Source, foreign};
 use aircraft::Wind;
 use flight_exec::Conditions;
 use flight_plan::Problem;
+use indicatif::{ProgressBar, ProgressStyle};
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
+
+/// How the progress is shown.
+const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values of variables";
 
 /// What a path is looked at for.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -38,7 +43,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
     let loaded = source.load()?;
     let mut problems = loaded.problems();
     if !circumstances.quick {
-        problems.extend(loaded.review(circumstances.conditions()));
+        problems.extend(reviewed(&loaded, circumstances.conditions()));
     }
     if json {
         say!("{:#}", document(&source.file, &problems, &loaded.notes));
@@ -47,6 +52,19 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
         print(&source.file, &problems);
     }
     Ok(status(&problems))
+}
+
+/// What a review of the path finds, with a bar that counts the values of variables that are tried.
+fn reviewed(loaded: &Loaded, conditions: Conditions) -> Vec<Problem> {
+    let bar = ProgressBar::new(0);
+    // without its style the bar is plain
+    bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let found = loaded.review(conditions, &mut |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    found
 }
 
 /// Prints problems for people, and how many there are.

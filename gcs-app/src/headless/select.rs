@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn variables_take_only_what_fits() {
-        assert_eq!(set(&["fire_radius=900"]).unwrap(), VariableValue::Number(900.0));
+        assert_eq!(set(&["fire_radius=500"]).unwrap(), VariableValue::Number(500.0));
         let fire = LatLon::new(36.35, -84.2);
         assert_eq!(set(&["fire_centre=36.35 -84.2"]).unwrap(), VariableValue::Position(fire));
         for (bad, said) in [

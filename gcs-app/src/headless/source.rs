@@ -5,7 +5,7 @@ use super::output::DASH;
 use crate::assets;
 use aircraft::{Profile, Wind};
 use anyhow::Context;
-use flight_exec::Conditions;
+use flight_exec::{Conditions, review, review_extremes};
 use flight_plan::{Problem, Program, Reading};
 use interchange::Note;
 use std::fs::File;
@@ -112,10 +112,18 @@ impl Loaded {
         problems
     }
 
-    /// What is wrong with the path that would be flown; nothing if the plan has errors already.
-    pub fn review(&self, conditions: Conditions) -> Vec<Problem> {
+    /// What is wrong with the path that would be flown, now and when variables change; nothing if the plan has errors already.
+    ///
+    /// `progress` is told how many of how many flights with other values are done.
+    pub fn review(&self, conditions: Conditions, progress: &mut dyn FnMut(usize, usize)) -> Vec<Problem> {
         let Ok((program, profile)) = self.compile() else { return Vec::new() };
-        let mut found = flight_exec::review(&Arc::new(program), &profile, &self.terrain, conditions);
+        let program = Arc::new(program);
+        let mut found = review(&program, &profile, &self.terrain, conditions);
+        let mut go_on = |done, all| {
+            progress(done, all);
+            true
+        };
+        found.extend(review_extremes(&program, &profile, &self.terrain, conditions, &found, &mut go_on));
         if !self.converted {
             self.reading.places.locate(&mut found);
         }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use aircraft::{Profile, Wind};
-use flight_exec::{Conditions, compile_and_review, review};
+use flight_exec::{Conditions, compile_and_review, review, review_extremes};
 use flight_plan::{
     Altitude, AltitudeReference, Edit, FlightPlan, Id, Problem, Program, Spot, Value, check, compile,
     compile_document,
@@ -43,13 +43,66 @@ fn shown(problems: &[Problem]) -> Vec<String> {
     problems.iter().map(Problem::to_string).collect()
 }
 
+/// Good plans that are flown so low and so far out that after an engine failure there is no runway: they say so.
+const OUT_OF_GLIDE: [&str; 3] = ["coast-patrol", "pipeline", "square"];
+
+/// Not even when their variables change.
 #[test]
 fn good_plans_have_no_problems_on_their_path() {
-    for path in plans("") {
-        let program = verdict(&std::fs::read(&path).unwrap());
+    let review = |path: &Path| {
+        let program = verdict(&std::fs::read(path).unwrap());
         let program = program.unwrap_or_else(|p| panic!("{}: {:?}", path.display(), shown(&p)));
-        assert_eq!(shown(&program.warnings), [""; 0], "{}", path.display());
-    }
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let found: Vec<_> =
+            program.warnings.iter().map(|p| (p.code, p.subject.as_ref().unwrap().as_str())).collect();
+        let expected = [("glide-out-of-reach", "return")];
+        assert_eq!(
+            found,
+            expected[..usize::from(OUT_OF_GLIDE.contains(&name))],
+            "{:?}",
+            shown(&program.warnings)
+        );
+        let (profile, conditions) = (Profile::default(), Conditions::default());
+        let later = review_extremes(&program, &profile, &ground(), conditions, &[], &mut |_, _| true);
+        assert_eq!(shown(&later), [""; 0], "{name}");
+    };
+    // each takes a second or ten
+    std::thread::scope(|scope| {
+        for path in plans("") {
+            scope.spawn(move || review(&path));
+        }
+    });
+}
+
+/// A circle east of B that comes to a zone when it is as wide as it may be, or as wide and as far east.
+#[test]
+fn a_plan_that_is_good_only_as_long_as_its_variables_stay_what_they_are() {
+    let circle = r#"<orbit id="o" radius="= r" turns="1" turn="left"><centre at="= offset(b, 90.0, east)"/></orbit><DF id="on" fix="A"/>"#;
+    let zone = r#"<keepOut id="z" lat="36.30" lon="-84.14" radius="200"/>"#;
+    let found = |r: &str, east: &str| {
+        let variables = format!(
+            r#"<variables><variable name="b" type="position" initial="36.30 -84.16"/><variable name="r" type="number" unit="m" initial="300" {r}/>
+               <variable name="east" type="number" initial="0" {east}/></variables><zones>"#
+        );
+        let document = String::from_utf8(rectangle(zone, circle)).unwrap().replace("<zones>", &variables);
+        let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+        let (profile, conditions) = (Profile::default(), Conditions::default());
+        let program = compile_document(document.as_bytes(), &profile, flat.as_ref());
+        let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+        let now = review(&program, &profile, &flat, conditions);
+        assert!(now.iter().all(|p| p.code == "glide-out-of-reach"), "{:?}", shown(&now));
+        let later = review_extremes(&program, &profile, &flat, conditions, &now, &mut |_, _| true);
+        assert!(!later.iter().any(Problem::is_error), "{later:?}");
+        // the way home leads through the zone as well
+        let path = later.iter().filter(|p| p.code != "emergency-through-zone");
+        path.map(|p| (p.code, p.message.split(": ").next().unwrap().to_owned())).collect::<Vec<_>>()
+    };
+    let one = |code, when: &str| vec![(code, when.to_owned())];
+    assert_eq!(found(r#"max="900""#, ""), []);
+    assert_eq!(found("", r#"max="800""#), []);
+    assert_eq!(found(r#"max="1700""#, ""), one("keep-out", "when `r` is 1700 m"));
+    assert_eq!(found(r#"max="900""#, r#"max="800""#), one("keep-out", "when `r` is 900 m and `east` is 800"));
+    assert_eq!(found(r#"min="0""#, ""), one("turn-too-tight", "when `r` is 0 m"));
 }
 
 /// What comes after a wait is looked at as well.
@@ -59,7 +112,8 @@ fn a_plan_with_a_wait_is_reviewed_to_its_end() {
     let sea: Arc<dyn Terrain> = Arc::new(Flat(2.0));
     let program = compile_and_review(&document, &Profile::default(), &sea, Conditions::default());
     let program = program.unwrap_or_else(|p| panic!("{:?}", shown(&p)));
-    assert_eq!(shown(&program.warnings), [""; 0]);
+    let codes: Vec<_> = program.warnings.iter().map(|p| p.code).collect();
+    assert_eq!(codes, ["glide-out-of-reach"], "it is flown low over the sea");
 }
 
 #[test]

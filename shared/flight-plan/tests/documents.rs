@@ -138,15 +138,32 @@ fn every_leg_has_a_section_with_an_example_and_a_picture() {
     }
 }
 
+/// What a source text says before its tests, and those.
+fn shipped_and_tests(source: &str) -> (&str, &str) {
+    source.split_at(source.find("#[cfg(test)]").unwrap_or(source.len()))
+}
+
+/// The text literals of a source text that are codes by their form.
+fn literals(source: &str) -> impl Iterator<Item = &str> {
+    let lines = source.lines().filter(|l| !l.trim_start().starts_with("#["));
+    lines.flat_map(|l| l.split('"').skip(1).step_by(2)).filter(|word| is_code(word))
+}
+
 /// The codes that a source text gives to problems: the text literals that stand first in `Problem::error(` and
-/// `Problem::warning(`, and those that the header of a rule names (`code-of-words`: what it means).
+/// `Problem::warning(`, those that the header of a rule names (`code-of-words`: what it means) and, where a code is chosen
+/// before its problem is made, whatever is a code by its form.
 fn codes_of(source: &str) -> BTreeSet<String> {
-    let shipped = source.split("#[cfg(test)]").next().unwrap_or_default();
+    let (shipped, _) = shipped_and_tests(source);
     let header: String = shipped.lines().map_while(|l| l.strip_prefix("//!")).collect();
     let named = header.split('`').skip(1).step_by(2).filter(|word| is_code(word));
-    let calls = ["Problem::error(", "Problem::warning("].iter().flat_map(|call| shipped.split(call).skip(1));
-    let literals = calls.filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next());
-    literals.chain(named).map(str::to_owned).collect()
+    let calls =
+        || ["Problem::error(", "Problem::warning("].iter().flat_map(|call| shipped.split(call).skip(1));
+    let direct = calls().filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next());
+    let chosen =
+        calls().any(|rest| !rest.trim_start().starts_with('"')) || shipped.contains("-> ExpressionError");
+    // the name of an encoding, not of a problem
+    let chosen = literals(shipped).filter(|word| chosen && *word != "us-ascii");
+    direct.chain(named).chain(chosen).map(str::to_owned).collect()
 }
 
 /// Words with hyphens between them.
@@ -154,33 +171,58 @@ fn is_code(word: &str) -> bool {
     word.contains('-') && word.split('-').all(|w| !w.is_empty() && w.bytes().all(|b| b.is_ascii_lowercase()))
 }
 
-fn sources(folder: &Path, into: &mut BTreeSet<String>) {
+/// Calls `look` with each source text of a folder, and whether it is nothing but tests.
+fn for_each_source(folder: &Path, look: &mut dyn FnMut(&str, bool)) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, into);
-        } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("tests.rs") {
-            into.extend(codes_of(&text(&path)));
+            for_each_source(&path, look);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let tests = path.ends_with("tests.rs") || path.components().any(|c| c.as_os_str() == "tests");
+            look(&text(&path), tests);
         }
     }
 }
 
+/// Every code that the sources of checks and review give to problems, and every one that their tests name.
+fn codes_given_and_tested() -> (BTreeSet<String>, BTreeSet<String>) {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let (mut given, mut tested) = (BTreeSet::new(), BTreeSet::new());
+    for folder in ["flight-plan/src", "flight-plan/tests", "flight-exec/src", "flight-exec/tests"] {
+        for_each_source(&shared.join(folder), &mut |source, tests| {
+            let its_tests = if tests { source } else { shipped_and_tests(source).1 };
+            tested.extend(literals(its_tests).map(str::to_owned));
+            given.extend(if tests { BTreeSet::new() } else { codes_of(source) });
+        });
+    }
+    assert!(given.len() > 90, "{given:?}");
+    (given, tested)
+}
+
+/// The codes that the seeded faulty plans are named by.
+fn seeded() -> BTreeSet<String> {
+    let plans = [files("plans/bad", "xml"), files("plans/bad/path", "xml")].concat();
+    let names = plans.iter().map(|path| path.file_name().unwrap().to_str().unwrap());
+    let codes = names.filter_map(|name| name.strip_prefix("xsd-").unwrap_or(name).split('.').next());
+    codes.map(str::to_owned).collect()
+}
+
 #[test]
 fn every_code_of_a_problem_is_in_the_reference() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut codes = BTreeSet::new();
-    sources(&shared.join("flight-plan/src"), &mut codes);
-    sources(&shared.join("flight-exec/src"), &mut codes);
-    // the seeded faulty plans are named by their codes
-    for path in files("plans/bad", "xml") {
-        let name = path.file_name().unwrap().to_str().unwrap();
-        codes.extend(name.strip_prefix("xsd-").unwrap_or(name).split('.').next().map(str::to_owned));
-    }
-    assert!(codes.len() > 60, "{codes:?}");
+    let codes = &codes_given_and_tested().0 | &seeded();
     let reference = page("plan-language.md");
     let missing: Vec<&String> =
         codes.iter().filter(|code| !reference.contains(&format!("`{code}`"))).collect();
     assert!(missing.is_empty(), "not in the reference: {missing:?}");
+}
+
+/// That each seeded plan has its problem, and the good ones none, is for `examples.rs` and the review's tests to say.
+#[test]
+fn every_code_of_a_problem_has_a_faulty_plan_or_a_test_that_names_it() {
+    let (given, tested) = codes_given_and_tested();
+    let caught = &seeded() | &tested;
+    let never: Vec<&String> = given.difference(&caught).collect();
+    assert!(never.is_empty(), "neither seeded nor tested: {never:?}");
 }
 
 #[test]

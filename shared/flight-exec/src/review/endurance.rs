@@ -11,17 +11,24 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     problems.extend(match &view.flights.planned {
         Ok(planned) => low_reserve(view, planned.battery_left),
         Err(PreviewError::OutOfEnergy { seconds, leg }) => Some(out_of_energy(view, *seconds, leg)),
-        // there is a default to be named: another rule says so
-        Err(PreviewError::Waiting { .. } | PreviewError::Cancelled) => None,
-        Err(error @ (PreviewError::NoStart | PreviewError::Refused(_))) => {
-            Some(Problem::error("not-startable", error.to_string()))
-        }
-        Err(error @ (PreviewError::TooLong { leg, .. } | PreviewError::TooManyWaypoints { leg, .. })) => {
-            Some(Problem::warning("endless-flight", error.to_string()).of(leg))
-        }
+        Err(error) => without_end(error),
     });
     let others = view.flights.chosen.iter();
     problems.extend(others.filter_map(|(choices, flight)| chosen(view, choices, flight)));
+}
+
+/// What is wrong with a flight that does not begin or end.
+fn without_end(error: &PreviewError) -> Option<Problem> {
+    match error {
+        PreviewError::NoStart | PreviewError::Refused(_) => {
+            Some(Problem::error("not-startable", error.to_string()))
+        }
+        PreviewError::TooLong { leg, .. } | PreviewError::TooManyWaypoints { leg, .. } => {
+            Some(Problem::warning("endless-flight", error.to_string()).of(leg))
+        }
+        // there is a default to be named, or energy to be saved: others say so
+        PreviewError::Waiting { .. } | PreviewError::Cancelled | PreviewError::OutOfEnergy { .. } => None,
+    }
 }
 
 /// What is wrong with the energy if somebody chooses other branches.
@@ -62,4 +69,31 @@ fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
 
 fn open_ended(kind: &LegKind) -> bool {
     matches!(kind, LegKind::Iterative { count: None, .. } | LegKind::Hm { max_laps: None, .. })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::api::Refusal;
+
+    /// A compiled plan always begins, so that no document shows it: should one not, it must not pass for good.
+    #[test]
+    fn what_does_not_begin_or_end_is_told() {
+        let leg = || Id::new("loop");
+        let refusal = Refusal { code: "empty-plan".into(), reason: "add a stage".into() };
+        for (error, code, subject) in [
+            (PreviewError::NoStart, "not-startable", None),
+            (PreviewError::Refused(refusal), "not-startable", None),
+            (PreviewError::TooLong { seconds: 21_600.0, leg: leg() }, "endless-flight", Some(leg())),
+            (
+                PreviewError::TooManyWaypoints { waypoints: 200_000, leg: leg() },
+                "endless-flight",
+                Some(leg()),
+            ),
+        ] {
+            let problem = without_end(&error).unwrap();
+            assert_eq!((problem.code, problem.subject), (code, subject));
+        }
+    }
 }

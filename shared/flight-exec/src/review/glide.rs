@@ -1,12 +1,17 @@
-//! `glide-out-of-reach`: if the engine fails at some point, the glide along the emergency plan that is named there for that ends
-//! before its runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered.
+//! `glide-out-of-reach`: if the engine fails at some point, the glide along the emergency plan that answers there ends before its
+//! runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered. The worst point is named.
+//!
+//! A plan that is named for an engine failure promises that all of it is within the glide. The fallback does not: it is told where
+//! its runway is so far away that even a glide straight there ends before it (whoever steers may leave out the rest of the plan),
+//! and on how much of the flight.
 //!
 //! The glide: at the cruise speed with the best glide ratio, in the wind, with more sink in the turns from track to track, through
 //! the places of the emergency plan without the laps of its holdings. Legs of take-off, approach and landing are left out: there the
-//! runway is ahead, or not yet out of sight.
+//! runway is ahead, or not yet out of sight. So are, for the fallback, those of departure and arrival: they climb and descend near it.
 
 use super::View;
 use super::alternates::{Alternate, Origin, alternates, ground_speed_mps, turn_rad};
+use super::in_force::Engine;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
 use geometry::{LatLon, PathElement};
@@ -18,18 +23,36 @@ const MOST_LOOKS: f64 = 500.0;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins: Vec<Origin> = view.origins(GLIDES_EVERY_S).filter(|from| counts(view, from)).collect();
-    for (index, alternate) in alternates(view) {
-        let applies = |from: &&Origin| view.in_force.engine(&from.leg) == Some(index);
-        let missing = || origins.iter().filter(applies).map(|from| (missing_m(view, &alternate, from), from));
-        let short = missing().filter(|(missing_m, _)| *missing_m > 0.0);
-        if let Some((missing_m, from)) = short.max_by(|(a, _), (b, _)| a.total_cmp(b)) {
-            problems.push(out_of_reach(view, &alternate, from, missing_m));
-            continue;
+    for (plan, alternate) in alternates(view) {
+        for named in [true, false] {
+            let answers = Some(Engine { plan, named });
+            let applies = |from: &&Origin| {
+                view.in_force.engine(&from.leg) == answers && (named || !is_near_runway(view, from))
+            };
+            let from: Vec<&Origin> = origins.iter().filter(applies).collect();
+            let straight = [alternate.runway.threshold];
+            let way = if named { alternate.route.as_slice() } else { &straight };
+            problems.extend(glides(view, &alternate, (named, way), &from));
         }
-        let hill =
-            origins.iter().filter(applies).step_by(LOOKS_EVERY).find_map(|from| hill(view, &alternate, from));
-        problems.extend(hill);
     }
+}
+
+/// What is wrong with the glides by way of some places to the runway of an emergency plan, from the points of the flight where it
+/// answers.
+fn glides(
+    view: &View,
+    alternate: &Alternate,
+    (named, way): (bool, &[LatLon]),
+    from: &[&Origin],
+) -> Option<Problem> {
+    let missing = from.iter().map(|from| (missing_m(view, alternate, way, from), *from));
+    let short: Vec<(f64, &Origin)> = missing.filter(|(missing_m, _)| *missing_m > 0.0).collect();
+    let Some(worst) = short.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+        let looks = from.iter().filter(|_| named).step_by(LOOKS_EVERY);
+        return looks.into_iter().find_map(|from| hill(view, alternate, from));
+    };
+    let share = short.len() as f64 / from.len() as f64;
+    Some(out_of_reach(view, alternate, *worst, (!named).then_some(share)))
 }
 
 /// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one looks.
@@ -41,15 +64,20 @@ fn counts(view: &View, from: &Origin) -> bool {
     view.stage_kind(&from.leg).is_some_and(|kind| !left_out.contains(&kind))
 }
 
-/// Height that is lacking at a point to glide to the runway, metres; infinite if the wind does not let it.
-fn missing_m(view: &View, alternate: &Alternate, from: &Origin) -> f64 {
-    let available_m =
-        from.altitude_amsl_m - alternate.runway.elevation_amsl_m - view.conditions.margins.glide_m;
-    height_m(view, alternate, from).map_or(f64::INFINITY, |needed_m| needed_m - available_m)
+fn is_near_runway(view: &View, from: &Origin) -> bool {
+    let near = [StageKind::Departure, StageKind::Arrival];
+    view.stage_kind(&from.leg).is_some_and(|kind| near.contains(&kind))
 }
 
-/// Height that the glide through the plan's places takes.
-fn height_m(view: &View, alternate: &Alternate, from: &Origin) -> Option<f64> {
+/// Height that is lacking at a point to glide to the runway, metres; infinite if the wind does not let it.
+fn missing_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -> f64 {
+    let available_m =
+        from.altitude_amsl_m - alternate.runway.elevation_amsl_m - view.conditions.margins.glide_m;
+    height_m(view, alternate, way, from).map_or(f64::INFINITY, |needed_m| needed_m - available_m)
+}
+
+/// Height that the glide takes.
+fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -> Option<f64> {
     let profile = view.profile;
     let speed_mps = profile.cruise_airspeed_mps;
     let sink_mps = glide_sink_mps(profile, speed_mps, 1.0);
@@ -57,7 +85,7 @@ fn height_m(view: &View, alternate: &Alternate, from: &Origin) -> Option<f64> {
     let turning_mps = glide_sink_mps(profile, speed_mps, load_factor);
     let turn_s_per_rad = profile.turn_radius_m(speed_mps) / speed_mps;
     let (mut here, mut course_deg, mut height_m) = (from.position, from.course_deg, 0.0);
-    for place in &alternate.route {
+    for place in way {
         let (distance_m, arrives_deg) = crate::path::distance_and_course(here, *place);
         if distance_m < 1.0 {
             continue;
@@ -71,7 +99,13 @@ fn height_m(view: &View, alternate: &Alternate, from: &Origin) -> Option<f64> {
     Some(height_m + line_up_rad * turn_s_per_rad * turning_mps)
 }
 
-fn out_of_reach(view: &View, alternate: &Alternate, from: &Origin, missing_m: f64) -> Problem {
+/// `share`: of the points where the plan answers as the fallback, how many are out of its reach.
+fn out_of_reach(
+    view: &View,
+    alternate: &Alternate,
+    (missing_m, from): (f64, &Origin),
+    share: Option<f64>,
+) -> Problem {
     let short_m = missing_m * view.profile.glide_ratio;
     let what = if missing_m.is_finite() {
         format!(
@@ -81,11 +115,18 @@ fn out_of_reach(view: &View, alternate: &Alternate, from: &Origin, missing_m: f6
     } else {
         format!("does not get to the runway `{}` against the wind: fly nearer to it", alternate.runway.id)
     };
+    let plan = &alternate.plan.id;
+    let Some(share) = share else {
+        let message = format!(
+            "from {from}, a glide along `{plan}` {what}, or name a nearer emergency plan for an engine failure"
+        );
+        return Problem::warning("glide-out-of-reach", message).of(&from.leg);
+    };
     let message = format!(
-        "from {from}, a glide along `{}` {what}, or name a nearer emergency plan for an engine failure",
-        alternate.plan.id
+        "be ready to land elsewhere after an engine failure, for which no emergency plan is named: on {:.0} % of the flight the runway of `{plan}` is out of glide, at worst from {from}, where one {what}, or name a nearer plan for the cause `engine`",
+        (100.0 * share).ceil()
     );
-    Problem::warning("glide-out-of-reach", message).of(&from.leg)
+    Problem::warning("glide-out-of-reach", message).of(plan)
 }
 
 /// A hill that the glide to the plan's entry runs into.

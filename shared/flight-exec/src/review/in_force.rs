@@ -5,8 +5,23 @@ use std::collections::HashMap;
 
 /// Which emergency plans answer on which leg.
 pub(super) struct InForce {
-    /// By leg: the plan for an engine failure, and those for the other causes.
-    by_leg: HashMap<Id, (Option<usize>, Vec<usize>)>,
+    by_leg: HashMap<Id, Answers>,
+}
+
+/// What answers on one leg.
+struct Answers {
+    engine: Option<Engine>,
+    /// For the other causes, each once.
+    powered: Vec<usize>,
+}
+
+/// What answers an engine failure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Engine {
+    /// The emergency plan.
+    pub plan: usize,
+    /// It is named for that cause; else it is the fallback, which was chosen for a flight with an engine.
+    pub named: bool,
 }
 
 /// Every cause but an engine failure.
@@ -26,26 +41,26 @@ impl InForce {
             let mut powered: Vec<usize> = POWERED.iter().filter_map(|cause| answer(leg, *cause)).collect();
             powered.sort_unstable();
             powered.dedup();
-            let engine = answer(leg, Cause::Engine).filter(|_| names_engine(program, leg));
-            (leg.clone(), (engine, powered))
+            let engine =
+                answer(leg, Cause::Engine).map(|plan| Engine { plan, named: names_engine(program, leg) });
+            (leg.clone(), Answers { engine, powered })
         };
         Self { by_leg: stages.chain(main).map(of).collect() }
     }
 
-    /// The plan that is named for an engine failure on a leg. (A fallback answers one too, but promises no glide: over
-    /// most of the earth there is no runway within the glide of a low flight.)
-    pub fn engine(&self, leg: &Id) -> Option<usize> {
-        self.by_leg.get(leg)?.0
+    /// The plan that is flown after an engine failure on a leg.
+    pub fn engine(&self, leg: &Id) -> Option<Engine> {
+        self.by_leg.get(leg)?.engine
     }
 
     /// The plans for the other causes, each once.
     pub fn powered(&self, leg: &Id) -> &[usize] {
-        self.by_leg.get(leg).map_or(&[], |(_, plans)| plans)
+        self.by_leg.get(leg).map_or(&[], |answers| &answers.powered)
     }
 
     /// All of them; one may come twice.
     pub fn plans(&self, leg: &Id) -> impl Iterator<Item = usize> + '_ {
-        self.powered(leg).iter().copied().chain(self.engine(leg))
+        self.powered(leg).iter().copied().chain(self.engine(leg).map(|engine| engine.plan))
     }
 }
 

@@ -11,6 +11,7 @@ mod alternates;
 mod altitudes;
 mod ceiling;
 mod endurance;
+mod extremes;
 mod flights;
 mod flown;
 mod glide;
@@ -30,6 +31,7 @@ mod zones;
 
 use aircraft::{Profile, Wind};
 use alternates::Origin;
+pub use extremes::{MOST_TRIALS, review_extremes};
 use flight_plan::{Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value};
 use flights::Flights;
 use in_force::InForce;
@@ -101,7 +103,7 @@ const RULES: [Rule; 13] = [
 
 /// Every problem of the path that a compiled plan makes the aircraft fly, each once for a leg.
 ///
-/// Variables have their initial values.
+/// Variables have their initial values; [`review_extremes`] looks at others.
 pub fn review(
     program: &Arc<Program>,
     profile: &Profile,

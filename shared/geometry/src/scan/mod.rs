@@ -147,28 +147,37 @@ impl Axes {
 /// Where the lines are, across the heading: each in the middle of the strip that it stands for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lines {
-    left_m: f64,
-    right_m: f64,
     /// Where the first strip begins: at the left edge or, on a given grid, outside it.
     begin_m: f64,
     /// Width of a strip.
     spacing_m: f64,
     count: u64,
+    /// The first and the last line: in the middle of what is left of their strips.
+    first_m: f64,
+    last_m: f64,
 }
 
 impl Lines {
     /// Lines between two edges, evenly spread, as few as are no more than `most_m` apart; the outer ones half a spacing inside.
     pub fn even((left_m, right_m): (f64, f64), most_m: f64) -> Result<Self, ScanError> {
         let count = strips(right_m - left_m, most_m)?;
-        let spacing_m = (right_m - left_m) / count as f64;
-        Ok(Self { left_m, right_m, begin_m: left_m, spacing_m, count })
+        Ok(Self::strips_of((right_m - left_m) / count as f64, left_m, count, (left_m, right_m)))
     }
     /// Lines of strips of one width, one of which begins at `grid_m`. The outer strips end at the edges.
     fn on_grid((left_m, right_m): (f64, f64), spacing_m: f64, grid_m: f64) -> Result<Self, ScanError> {
         // forgives rounding: a strip that ends at the edge is not in the area
         let first = ((left_m - grid_m) / spacing_m + 1e-9).floor();
         let begin_m = grid_m + first * spacing_m;
-        Ok(Self { left_m, right_m, begin_m, spacing_m, count: strips(right_m - begin_m, spacing_m)? })
+        let count = strips(right_m - begin_m, spacing_m)?;
+        Ok(Self::strips_of(spacing_m, begin_m, count, (left_m, right_m)))
+    }
+    fn strips_of(spacing_m: f64, begin_m: f64, count: u64, (left_m, right_m): (f64, f64)) -> Self {
+        let middle_m = |strip: u64| {
+            let begin_m = begin_m + strip as f64 * spacing_m;
+            (begin_m.max(left_m) + (begin_m + spacing_m).min(right_m)) / 2.0
+        };
+        let (first_m, last_m) = (middle_m(0), middle_m(count.saturating_sub(1)));
+        Self { begin_m, spacing_m, count, first_m, last_m }
     }
     pub fn count(&self) -> u64 {
         self.count
@@ -178,8 +187,8 @@ impl Lines {
     }
     #[inline]
     pub fn across_m(&self, line: u64) -> f64 {
-        let begin_m = self.begin_m + line as f64 * self.spacing_m;
-        (begin_m.max(self.left_m) + (begin_m + self.spacing_m).min(self.right_m)) / 2.0
+        // the middle of a whole strip; that of what is left of an outer one is farther inside
+        (self.begin_m + (line as f64 + 0.5) * self.spacing_m).max(self.first_m).min(self.last_m)
     }
     fn nearest(&self, across_m: f64) -> u64 {
         // a cast of NaN or of a negative number gives 0
