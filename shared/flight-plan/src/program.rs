@@ -320,8 +320,8 @@ mod tests {
         let flight = FlightState::on_ground(LatLon::new(36.3, -84.2));
         let value = |variables: &Variables| program.eval_number(&radius, &Env { variables, flight });
         assert_eq!(value(&variables), Ok(500.0));
-        variables.set(&program.plan, &"fire_radius".into(), crate::VariableValue::Number(700.0)).unwrap();
-        assert_eq!(value(&variables), Ok(850.0));
+        variables.set(&program.plan, &"fire_radius".into(), crate::VariableValue::Number(450.0)).unwrap();
+        assert_eq!(value(&variables), Ok(600.0));
         let env = Env { variables: &variables, flight };
         assert_eq!(program.eval_bool("fire_out || battery < 0.35", &env), Ok(false));
         assert_eq!(program.eval_place(&Place::Fix("GAP".into()), &env), Ok(LatLon::new(36.285, -84.215)));
