@@ -114,7 +114,7 @@ fn work(
         }
         newer = inbox.try_recv().ok();
         // the path takes longer to be looked at than the plan: not while the plan is being changed
-        if let (Some(program), None) = (program, &newer) {
+        if let Some(program) = program.filter(|_| newer.is_none()) {
             let profile = profile_of(&program.plan);
             let conditions = Conditions::default();
             let found = review(&program, &profile, terrain, conditions);
