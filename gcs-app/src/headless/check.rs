@@ -59,7 +59,7 @@ fn reviewed(loaded: &Loaded, conditions: Conditions) -> Vec<Problem> {
     let bar = ProgressBar::new(0);
     // without its style the bar is plain
     bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let found = loaded.review(conditions, &mut |done, all| {
+    let found = loaded.review_changes(conditions, &mut |done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });

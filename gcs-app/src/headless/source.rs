@@ -112,18 +112,33 @@ impl Loaded {
         problems
     }
 
-    /// What is wrong with the path that would be flown, now and when variables change; nothing if the plan has errors already.
-    ///
-    /// `progress` is told how many of how many flights with other values are done.
-    pub fn review(&self, conditions: Conditions, progress: &mut dyn FnMut(usize, usize)) -> Vec<Problem> {
-        let Ok((program, profile)) = self.compile() else { return Vec::new() };
-        let program = Arc::new(program);
-        let mut found = review(&program, &profile, &self.terrain, conditions);
+    /// What is wrong with the path that would be flown; nothing if the plan has errors already.
+    pub fn review(&self, conditions: Conditions) -> Vec<Problem> {
+        self.look_at(|program, profile| review(program, profile, &self.terrain, conditions))
+    }
+
+    /// As [`Loaded::review`], and what is wrong when variables change; `progress` is told how many of how many flights with other
+    /// values are done.
+    pub fn review_changes(
+        &self,
+        conditions: Conditions,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Vec<Problem> {
         let mut go_on = |done, all| {
             progress(done, all);
             true
         };
-        found.extend(review_extremes(&program, &profile, &self.terrain, conditions, &found, &mut go_on));
+        self.look_at(|program, profile| {
+            let mut found = review(program, profile, &self.terrain, conditions);
+            let more = review_extremes(program, profile, &self.terrain, conditions, &found, &mut go_on);
+            found.extend(more);
+            found
+        })
+    }
+
+    fn look_at(&self, look: impl FnOnce(&Arc<Program>, &Profile) -> Vec<Problem>) -> Vec<Problem> {
+        let Ok((program, profile)) = self.compile() else { return Vec::new() };
+        let mut found = look(&Arc::new(program), &profile);
         if !self.converted {
             self.reading.places.locate(&mut found);
         }

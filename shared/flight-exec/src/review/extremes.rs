@@ -82,7 +82,7 @@ impl Trial<'_> {
         terrain: &Arc<dyn Terrain>,
         conditions: Conditions,
     ) -> Vec<Problem> {
-        let mut plan = program.plan.clone();
+        let mut plan = program.plan.as_ref().clone();
         for (tried, x) in &self.0 {
             if let Some(variable) = plan.variables.iter_mut().find(|v| v.name == tried.name) {
                 variable.initial = VariableValue::Number(*x);
