@@ -8,9 +8,10 @@ mod trigger;
 
 use crate::api::{Event, Output, ResolvedAct};
 use crate::cursor::Mark;
+use crate::cursor::control::is_call;
 use crate::executor::Executor;
 use crate::handed::Handed;
-use flight_plan::{Act, Id, Leg, LegKind, Trigger};
+use flight_plan::{Act, Id, Leg, LegKind, Program, Trigger};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 pub(crate) use trigger::Moment;
@@ -52,7 +53,7 @@ impl Executor {
     pub(crate) fn change_passage(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
         self.end_passages(|p| !p.is_around(handed), out);
         for passage in &mut self.state.passages {
-            passage.iteration = iteration_of(&passage.leg, handed);
+            passage.iteration = iteration_of(&self.program, &passage.leg, handed);
         }
         self.pass_silently(marks, handed, out);
         out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
@@ -87,7 +88,7 @@ impl Executor {
         let mut passage = Passage {
             leg: leg.clone(),
             number,
-            iteration: iteration_of(leg, handed),
+            iteration: iteration_of(&self.program, leg, handed),
             began_m: handed.leg_start_m,
             flown_s: 0.0,
             done: vec![Done::default(); actions],
@@ -206,10 +207,12 @@ impl Passage {
     }
 }
 
-/// The pass that a leg's actions see at a waypoint: a loop's own, else that of the innermost loop.
-fn iteration_of(leg: &Id, handed: &Handed) -> u64 {
-    let around = &handed.place.iterations;
-    around.iter().find(|i| i.leg == *leg).or(around.last()).map_or(0, |i| i.iteration)
+/// The pass that a leg's actions see at a waypoint: a loop's own, else that of the innermost loop. A call is no loop.
+fn iteration_of(program: &Program, leg: &Id, handed: &Handed) -> u64 {
+    let called = |id: &Id| program.leg(id).is_some_and(is_call);
+    let around = || handed.place.iterations.iter().filter(|i| !called(&i.leg));
+    let own = around().find(|i| i.leg == *leg);
+    own.or_else(|| around().last()).map_or(0, |i| i.iteration)
 }
 
 /// Activations of the loops around a waypoint, outermost first.

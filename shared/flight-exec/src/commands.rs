@@ -1,6 +1,7 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use crate::api::{Command, Event, Output, Phase, Refusal};
+use crate::cursor::control::is_call;
 use crate::cursor::{Cursor, Doing};
 use crate::executor::{Executor, refusal};
 use crate::handed::{Handed, Onward};
@@ -175,15 +176,22 @@ impl Executor {
             refusal("unknown-leg", reason)
         };
         let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
-        let now = self.bookmark(1);
+        let now = self.place_reached();
         let mut cursor = now.moved_to(&target, &self.world());
         cursor.move_path_to(self.here_at_level_of(&now));
         Ok(cursor)
     }
 
+    /// The cursor behind the waypoint steered to; before it, and before the choices that would lead to it, while its leg isn't entered:
+    /// what nobody was told of has not happened.
+    pub(crate) fn place_reached(&self) -> Cursor {
+        let entered = self.state.handed.front().is_none_or(|front| self.is_announced(front));
+        self.bookmark(usize::from(entered))
+    }
+
     fn set_count(&mut self, leg: Id, count: u64, out: &mut Vec<Output>) -> Result<(), Refusal> {
         let program = self.flying_program()?;
-        if program.leg(&leg).and_then(Leg::as_loop).is_none() {
+        if program.leg(&leg).filter(|l| !is_call(l)).and_then(Leg::as_loop).is_none() {
             return Err(refusal("unknown-leg", format!("`{leg}` is no iterative leg of the plan: name one")));
         }
         if count == 0 {
@@ -262,7 +270,9 @@ impl Executor {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
         let keep = self.alterable_from().max(1).min(self.state.handed.len());
-        let mut cursor = self.bookmark(keep);
+        // a pattern that is over is not to be flown once more
+        let begun = self.at_the_leg_begun(keep, &self.world());
+        let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
         match cursor.refresh_pattern(&self.world()) {
             Ok(true) => {
                 for handed in self.state.handed.iter_mut().take(keep) {

@@ -3,7 +3,7 @@
 //! A clone of a cursor is a bookmark: the same cursor in the same [`World`] gives the same waypoints. The executor keeps one
 //! before each waypoint it hands out, and goes back to it when something beyond must change.
 
-mod control;
+pub(crate) mod control;
 mod emit;
 mod enter;
 mod notes;
@@ -48,6 +48,10 @@ pub struct Cursor {
     pub passage: u64,
     /// Points of the expansion that have been given out.
     pub given: u64,
+    /// Of what is left by a choice: the points given when it was read last, and whether it leaves. What was chosen there is not
+    /// chosen once more when the path is laid out anew from behind it.
+    #[serde(default)]
+    pub left_or_not: Option<(u64, bool)>,
     /// The points of this passage (kept aside in a snapshot).
     #[serde(skip)]
     pub expansion: Option<Arc<Expansion>>,
@@ -160,6 +164,7 @@ impl Cursor {
             airspeed_mps: path.last.airspeed_mps,
             passage,
             given: 0,
+            left_or_not: None,
             expansion: None,
             crossings: Vec::new(),
         }
@@ -193,14 +198,23 @@ impl Cursor {
         if self.doing != Doing::Flying && self.doing != Doing::Turning {
             return None;
         }
-        if let Some(lap) = self.expansion.as_ref()?.crossing(self.given) {
-            let (choice, leaves) = self.leave_open_end(lap, world, notes);
-            notes.choices.push(choice);
-            if leaves {
-                return None;
-            }
+        if let Some(lap) = self.expansion.as_ref()?.crossing(self.given)
+            && self.leaves(lap, world, notes)
+        {
+            return None;
         }
         self.expansion.as_ref()?.point(self.given)
+    }
+
+    /// It is left at this crossing: as was chosen here before, else by a choice.
+    fn leaves(&mut self, lap: u64, world: &World, notes: &mut Notes) -> bool {
+        if let Some((_, leaves)) = self.left_or_not.filter(|(given, _)| *given == self.given) {
+            return leaves;
+        }
+        let (choice, leaves) = self.leave_open_end(lap, world, notes);
+        notes.choices.push(choice);
+        self.left_or_not = Some((self.given, leaves));
+        leaves
     }
 
     /// The stages it is in.

@@ -125,7 +125,8 @@ impl Executor {
         }
         let stop_m = self.stopping_distance_m();
         let to_front_m = self.to_current_m();
-        let near = |h: &&Handed| to_front_m + h.end_m - front.end_m <= stop_m;
+        // a circle can be left wherever it is
+        let near = |h: &&Handed| !h.is_loiter() && to_front_m + h.end_m - front.end_m <= stop_m;
         self.state.handed.iter().take_while(near).count()
     }
 

@@ -92,7 +92,7 @@ impl Executor {
         let target = new.path(entry).ok_or_else(|| {
             refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
         })?;
-        let now = self.bookmark(1);
+        let now = self.place_reached();
         let flown = self.state.emergency.as_ref().map(|e| &e.plan);
         let entered = target.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
         if entered.is_some() && entered != flown {
@@ -112,11 +112,15 @@ impl Executor {
     /// At the beginning of the leg being flown, when waypoint number `index` is its first and still ahead (after a
     /// resume it comes behind the place where the hold was given): that waypoint's bookmark is at the end of the leg before it, and a leg that a new
     /// plan puts in between belongs to the past.
-    fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
+    pub(crate) fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
         let first = self.state.handed.get(index)?;
         let before = Some(self.bookmark(index)).filter(|c| c.passage != first.passage)?;
         let mut begun = before.clone();
         self.is_announced(first).then(|| begun.next(world))?;
+        if begun.place(world).leg != first.place.leg {
+            // what it waits for is there: that choice is made, and told, by laying the path out
+            return None;
+        }
         begun.path = before.path;
         begun.given = 0;
         if begun.doing != Doing::Turning {

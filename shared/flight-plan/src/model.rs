@@ -355,6 +355,8 @@ pub enum IterativeForm {
     Forward,
     /// Forth and back, with a full turn at each end (form A).
     Reverse,
+    /// A procedure that is called: one pass, and no loop for `iteration`. Only in [`crate::Program::flown`], never in a document.
+    Once,
 }
 
 /// A branch of an intersection.

@@ -133,6 +133,7 @@ impl Cursor {
     pub(super) fn begin_passage(&mut self, doing: Doing) {
         self.passage += 1;
         self.given = 0;
+        self.left_or_not = None;
         self.leg_start = self.path;
         self.doing = doing;
     }
@@ -188,9 +189,11 @@ impl Cursor {
         }
     }
 
-    /// The world as the innermost loop sees it.
+    /// The world as the innermost loop sees it; a call is none.
     pub(super) fn inside<'a>(&self, world: &World<'a>) -> World<'a> {
-        world.in_iteration(self.loops.last().map_or(0, |f| f.iteration))
+        let chain = self.chain(world);
+        let around = self.loops.iter().zip(chain).rev().find(|(_, leg)| !is_call(leg));
+        world.in_iteration(around.map_or(0, |(frame, _)| frame.iteration))
     }
 
     /// At a crossing of a holding's fix, or a point of a track until an altitude: is it left? Provisional ahead of the
@@ -222,6 +225,11 @@ impl Cursor {
         let left_m = if climbing { target_m - altitude_m } else { altitude_m - target_m };
         left_m <= world.config.altitude_tolerance_m
     }
+}
+
+/// A procedure that is called is flown as a loop of one pass.
+pub(crate) fn is_call(leg: &Leg) -> bool {
+    leg.as_loop().is_some_and(|passes| passes.form == IterativeForm::Once)
 }
 
 fn successor(list: &[Arc<Leg>], leg: &Leg, index: usize) -> usize {

@@ -7,6 +7,7 @@ mod damaged;
 mod endings;
 #[path = "../common/grid.rs"]
 mod grid;
+mod kept;
 mod legs;
 mod legs_actions;
 mod legs_actions_edges;

@@ -3,7 +3,7 @@
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Step, Trace};
 use flight_exec::{Command, Event, Input, Output, Phase, RequestId};
-use flight_plan::VariableValue;
+use flight_plan::{Id, VariableValue};
 
 pub const POLICIES: &[Policy] = &[
     policy("one-answer-per-request", "A request gets exactly one answer, in its own step.", one_answer),
@@ -43,7 +43,7 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "variables-change-by-command",
-        "A variable changes by a write or a new plan only.",
+        "A variable changes by a write, an action or a new plan only, and has the value told last.",
         variables_change,
     ),
     policy(
@@ -158,13 +158,15 @@ fn resume(trace: &Trace, found: &mut Findings) {
 fn writes_are_told(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::SetVariable { name, value } = command else { continue };
-        let told = step.events().filter(|e| matches!(e, Event::VariableChanged { .. }));
+        let by_operator = |e: &&Event| matches!(e, Event::VariableChanged { by, .. } if **by == *"operator");
+        let told = step.events().filter(by_operator);
         let right = told.eq([&Event::VariableChanged {
             name: name.clone(),
             value: value.clone(),
             by: "operator".into(),
         }]);
-        let has = step.after.variables.get(name) == Some(value);
+        // the plan may write the same variable in the same instant
+        let has = step.after.variables.get(name) == Some(value) || told_last(step, name) != Some(value);
         found.expect(step, right && has, || format!("{name}: {:?}", step.moment.outputs));
     }
 }
@@ -190,13 +192,23 @@ fn bad_values(trace: &Trace, found: &mut Findings) {
 
 fn variables_change(trace: &Trace, found: &mut Findings) {
     for step in trace.steps() {
-        let may = matches!(step.accepted(), Some(Command::SetVariable { .. } | Command::Commit { .. }));
-        if !may {
-            found.expect(step, step.before.variables == step.after.variables, || {
-                format!("{:?}", step.moment.deed)
-            });
+        if matches!(step.accepted(), Some(Command::Commit { .. })) {
+            continue;
         }
+        let (before, after) = (&step.before.variables, &step.after.variables);
+        let told = |name: &Id| told_last(step, name).or(before.get(name));
+        let same = before.iter().chain(after.iter()).all(|(name, _)| told(name) == after.get(name));
+        found.expect(step, same, || format!("{:?}", step.moment.deed));
     }
+}
+
+/// The value of a variable that a step tells last.
+fn told_last<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
+    let values = step.events().filter_map(|e| match e {
+        Event::VariableChanged { name, value, .. } => Some((name, value)),
+        _ => None,
+    });
+    values.filter(|(name, _)| *name == variable).last().map(|(_, value)| value)
 }
 
 fn refused_batch(trace: &Trace, found: &mut Findings) {

@@ -157,10 +157,10 @@ fn resolve<'a>(program: &'a Program, leg: &Id, cause: Cause) -> Option<&'a Id> {
             |wanted: Option<Cause>| choice.by_cause.iter().find(|(c, _)| *c == wanted).map(|(_, plan)| plan);
         of(Some(cause)).or(of(None))
     };
-    let context = program.plan.leg(leg);
+    let context = program.flown().leg(leg);
     let legs = context.iter().flat_map(|c| [c.leg].into_iter().chain(c.loops.iter().rev().copied()));
     let legs = Vec::from_iter(legs.map(|l| &l.emergency));
-    let stage = context.as_ref().map(|c| c.stage).or(program.plan.stage(leg)).map(|s| &s.emergency);
+    let stage = context.as_ref().map(|c| c.stage).or(program.flown().stage(leg)).map(|s| &s.emergency);
     legs.into_iter().chain(stage).chain([&program.plan.emergency]).find_map(named)
 }
 

@@ -19,7 +19,7 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "a-waypoint-never-changes",
-        "A token means the same waypoint for ever, within half a metre.",
+        "A token means the same waypoint for ever, within half a metre; the mark of the end goes when more is fed behind it, and never comes.",
         never_changes,
     ),
     policy(
@@ -142,20 +142,23 @@ fn never_changes(trace: &Trace, found: &mut Findings) {
     let mut known: BTreeMap<Token, &Waypoint> = BTreeMap::new();
     for step in trace.steps() {
         known.extend(step.feeds().flat_map(|(_, waypoints)| waypoints).map(|w| (w.token, w)));
-        for waypoint in step.after.ahead.iter().filter(|_| step.after.is_fed()) {
+        for (i, waypoint) in step.after.ahead.iter().enumerate().filter(|_| step.after.is_fed()) {
             let sent = known.get(&waypoint.token);
-            found.expect(step, sent.is_some_and(|w| is_the_same(w, waypoint)), || {
+            let followed = i + 1 < step.after.ahead.len();
+            let marked = |w: &Waypoint| w.end_of_plan == waypoint.end_of_plan || (w.end_of_plan && followed);
+            found.expect(step, sent.is_some_and(|w| is_the_same(w, waypoint) && marked(w)), || {
                 format!("{sent:?} is now {waypoint:?}")
             });
         }
     }
 }
 
+/// The same but for the mark of the end, which only the last waypoint has: what is fed behind it takes it away.
 fn is_the_same(a: &Waypoint, b: &Waypoint) -> bool {
     let near = a.position.distance_m(b.position) < 0.5
         && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < 0.5
         && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05;
-    near && (&a.leg, a.action, a.fly_over, a.end_of_plan) == (&b.leg, b.action, b.fly_over, b.end_of_plan)
+    near && (&a.leg, a.action, a.fly_over) == (&b.leg, b.action, b.fly_over)
 }
 
 fn one_cancellation(trace: &Trace, found: &mut Findings) {
@@ -281,7 +284,7 @@ fn nothing_near(trace: &Trace, found: &mut Findings) {
                 break;
             }
             before = near;
-            let kept = step.after.ahead.contains(near);
+            let kept = step.after.ahead.iter().any(|w| w.token == near.token && is_the_same(w, near));
             found.expect(step, kept, || format!("{:?} at {way_m:.0} m was altered", near.token));
         }
     }

@@ -65,7 +65,7 @@ impl Flight {
         let draw = |r: &mut Random| if r.percent(70) { draft.edited(r) } else { Draft::new(r) };
         let (_, other) = Draft::flyable(&mut random, draw);
         let plans = vec![main, other];
-        let ids = plans.iter().flat_map(|p| p.plan.all_legs().into_iter().map(|c| c.leg.id.clone()));
+        let ids = plans.iter().flat_map(|p| p.flown().all_legs().into_iter().map(|c| c.leg.id.clone()));
         let ids = ids.chain(["m".into(), "land".into(), "b-df".into(), "nowhere".into()]).collect();
         let executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default());
         let start = seen(&executor, &VecDeque::new(), None, false);
@@ -145,7 +145,7 @@ impl Flight {
     /// Of the plan being flown, mostly.
     fn any_leg(&mut self) -> Id {
         let program = self.executor.program().filter(|_| self.random.percent(70));
-        let flown = program.map(|p| Vec::from_iter(p.plan.all_legs().iter().map(|c| c.leg.id.clone())));
+        let flown = program.map(|p| Vec::from_iter(p.flown().all_legs().iter().map(|c| c.leg.id.clone())));
         self.random.pick(flown.as_ref().unwrap_or(&self.ids))
     }
 
@@ -189,8 +189,14 @@ impl Flight {
         let mut legs: Vec<Id> = forks.cloned().chain(asked.clone()).chain(asked).collect();
         legs.extend(self.random.percent(10).then(|| self.random.pick(&self.ids)));
         let leg = if legs.is_empty() { Id::new("nowhere") } else { self.random.pick(&legs) };
-        let branch = format!("{leg}-{}", self.random.pick(&["s", "l", "s", "l", "x"]));
-        Command::Decide { leg, branch: branch.as_str().into() }
+        let kind = self.plans.iter().find_map(|p| p.leg(&leg)).map(|l| &l.kind);
+        let mut names: Vec<Id> = match kind {
+            Some(LegKind::Intersection { branches, .. }) => branches.iter().map(|b| b.id.clone()).collect(),
+            _ => Vec::new(),
+        };
+        names.extend_from_within(..);
+        names.push("x".into());
+        Command::Decide { leg, branch: self.random.pick(&names) }
     }
 
     fn write(&mut self) -> Command {
@@ -374,6 +380,10 @@ impl Flight {
             match (status.phase, status.decision) {
                 (Phase::Idle | Phase::Finished, _) => return,
                 (Phase::Holding, _) => self.command(Command::Resume),
+                // some can only be released
+                (Phase::Flying, _) if self.is_held_by_the_plan() && self.random.percent(5) => {
+                    self.command(Command::SkipLeg);
+                }
                 (Phase::AwaitingDecision, Some(asked)) => {
                     let branch = asked.options[0].branch.clone();
                     self.command(Command::Decide { leg: asked.leg, branch });
@@ -386,6 +396,12 @@ impl Flight {
                 return;
             }
         }
+    }
+
+    fn is_held_by_the_plan(&self) -> bool {
+        let leg = self.executor.ahead().next().map(|w| &w.leg);
+        let kind = leg.and_then(|id| self.executor.program()?.leg(id)).map(|l| &l.kind);
+        matches!(kind, Some(LegKind::Hm { .. }))
     }
 
     // ---- the aircraft -------------------------------------------------------------------------------------------

@@ -1,9 +1,9 @@
 //! How far ahead, and how it ends.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::Trace;
+use crate::trace::{Trace, kind};
 use flight_exec::{Action, Command, Config, Event, Input, Phase, Waypoint};
-use flight_plan::LegKind;
+use flight_plan::{Act, Id, LegAction, LegKind, Program};
 
 pub const POLICIES: &[Policy] = &[
     policy("never-dry", "While flying the buffer never runs dry without the end mark.", never_dry),
@@ -21,12 +21,12 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "a-wait-is-at-an-intersection",
-        "A loiter is the last waypoint, and belongs to an intersection.",
+        "A loiter is the last waypoint, and belongs to an intersection, or to a leg with a wait at its end.",
         a_wait,
     ),
     policy(
         "waits-while-it-loiters",
-        "It awaits a decision exactly while it steers to a loiter.",
+        "It awaits a decision exactly while it steers to a loiter at an intersection.",
         waits_while_it_loiters,
     ),
     policy("left-alone-it-ends", "Left alone, and helped where it asks, every flight ends.", left_alone),
@@ -95,8 +95,8 @@ fn a_wait(trace: &Trace, found: &mut Findings) {
         for (i, wait) in
             waypoints.iter().enumerate().filter(|(_, w)| matches!(w.action, Action::Loiter { .. }))
         {
-            let kind = program.leg(&wait.leg).map(|l| &l.kind);
-            let there = matches!(kind, Some(LegKind::Intersection { .. })) && i + 1 == waypoints.len();
+            let asks_or_waits = asks(program, &wait.leg) || waits(program, &wait.leg);
+            let there = asks_or_waits && i + 1 == waypoints.len();
             found.expect(step, there, || format!("{wait:?}"));
         }
     }
@@ -104,10 +104,22 @@ fn a_wait(trace: &Trace, found: &mut Findings) {
 
 fn waits_while_it_loiters(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.after.is_fed() && !s.after.ahead.is_empty()) {
-        let loiters = matches!(step.after.ahead[0].action, Action::Loiter { .. });
-        let waits = step.after.status.phase == Phase::AwaitingDecision;
-        found.expect(step, loiters == waits, || format!("{:?}", step.after.status.phase));
+        let Some(program) = &step.after.program else { continue };
+        let front = &step.after.ahead[0];
+        let loiters = matches!(front.action, Action::Loiter { .. }) && !waits(program, &front.leg);
+        let awaits = step.after.status.phase == Phase::AwaitingDecision;
+        found.expect(step, loiters == awaits, || format!("{:?}", step.after.status.phase));
     }
+}
+
+fn asks(program: &Program, leg: &Id) -> bool {
+    matches!(kind(program, leg), Some(LegKind::Intersection { .. }))
+}
+
+/// A leg at whose end is circled for a time.
+pub fn waits(program: &Program, leg: &Id) -> bool {
+    let wait = |a: &LegAction| matches!(a.act, Act::Wait { .. });
+    !asks(program, leg) && program.leg(leg).is_some_and(|l| l.actions.iter().any(wait))
 }
 
 fn left_alone(trace: &Trace, found: &mut Findings) {

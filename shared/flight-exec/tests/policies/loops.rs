@@ -1,7 +1,7 @@
 //! Loops: every iteration is flown and announced once, none is skipped.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Step, Trace, kind};
+use crate::trace::{Seen, Step, Trace, kind};
 use flight_exec::{Command, Event, PlacePointer};
 use flight_plan::{Id, IterativeForm, LegKind, Value};
 use std::collections::BTreeMap;
@@ -43,7 +43,7 @@ pub const POLICIES: &[Policy] = &[
     ),
     policy(
         "counts-are-checked",
-        "A count for a loop that is not being flown, or of zero, is refused.",
+        "A count for a loop that is not being flown, for a call, or of zero, is refused.",
         counts_are_checked,
     ),
 ];
@@ -179,9 +179,12 @@ fn count_of_the_plan(trace: &Trace, found: &mut Findings) {
 fn set_count_counts(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::SetCount { leg, count } = command else { continue };
-        let around = step.after.place().and_then(|p| p.iterations.iter().find(|i| i.leg == *leg));
-        found.expect(step, around.is_some_and(|i| i.of == Some(*count)), || {
-            format!("{leg} set to {count}: {around:?}")
+        let around = |seen: &Seen| seen.place()?.iterations.iter().find(|i| i.leg == *leg).cloned();
+        let (was, is) = (around(step.before), around(step.after));
+        // a pass that has not begun, beyond the new count, is not flown any more
+        let left = is.is_none() && was.is_some_and(|i| i.iteration > *count) && !step.is_begun();
+        found.expect(step, left || is.as_ref().is_some_and(|i| i.of == Some(*count)), || {
+            format!("{leg} set to {count}: {is:?}")
         });
     }
 }
@@ -254,7 +257,11 @@ fn counts_are_checked(trace: &Trace, found: &mut Findings) {
         let Some(Command::SetCount { leg, count }) = step.command() else { continue };
         let flown = step.before.is_flying()
             && step.before.place().is_some_and(|p| p.iterations.iter().any(|i| i.leg == *leg));
-        if *count == 0 || !flown {
+        let once = |p: &flight_plan::Program| {
+            matches!(kind(p, leg), Some(LegKind::Iterative { form: IterativeForm::Once, .. }))
+        };
+        let called = step.before.program.as_deref().is_some_and(once);
+        if *count == 0 || !flown || called {
             found.expect(step, step.refused().is_some(), || format!("{leg} set to {count}"));
         }
     }

@@ -177,6 +177,7 @@ impl<'a> Model<'a, '_> {
                 entry.clone()
             }
             Jump::GoOn { program, simply } => {
+                self.forget_other_forms(program);
                 self.program = Some(program);
                 let here = self.here.clone().filter(|_| simply && !self.stack.iter().any(|f| f.reverse));
                 after = here.clone();
@@ -189,6 +190,24 @@ impl<'a> Model<'a, '_> {
         let frames = self.frames_around(&path, after.is_some());
         self.counts.retain(|id, _| frames.iter().any(|f| f.id.as_ref() == Some(id)));
         self.fly_section(path.emergency_plan, &path, frames, after.is_some())
+    }
+
+    /// The way back of a loop is what was flown forth in it, or around it, to be flown back. What was flown in a plan that never would
+    /// have gone back there is forgotten, and where a loop's form has changed everything inside it.
+    fn forget_other_forms(&mut self, new: &Program) {
+        let form = |program: Option<&Program>, id: Option<&Id>| match &program?.leg(id?)?.kind {
+            LegKind::Iterative { form, .. } => Some(*form),
+            _ => None,
+        };
+        let (mut same, mut back) = (true, false);
+        for frame in &mut self.stack {
+            let old = form(self.program, frame.id.as_ref());
+            same &= old == form(Some(new), frame.id.as_ref());
+            back |= old == Some(IterativeForm::Reverse);
+            if !same || !back {
+                frame.visited.clear();
+            }
+        }
     }
 
     fn is_control(&self, leg: &Id) -> bool {

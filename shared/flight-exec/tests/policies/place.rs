@@ -1,8 +1,9 @@
 //! Where the flight is in the plan, and that it does not get lost.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Seen, Step, Trace, same_passage};
+use crate::trace::{Seen, Step, Trace, kind, same_passage};
 use flight_exec::{Branching, Command, Input, Phase, PlacePointer};
+use flight_plan::LegKind;
 use std::collections::BTreeMap;
 
 pub const POLICIES: &[Policy] = &[
@@ -46,7 +47,11 @@ pub const POLICIES: &[Policy] = &[
         "On the way to one waypoint, the way made on the leg grows as the aircraft comes nearer.",
         way_made,
     ),
-    policy("skip-leaves-the-leg", "A skip leaves the passage it was given on.", skip_leaves),
+    policy(
+        "skip-leaves-the-leg",
+        "A skip leaves the passage it was given on, but for a holding until released, which ends its lap.",
+        skip_leaves,
+    ),
     policy(
         "go-to-goes-there",
         "A go-to leads to the leg it names, in the plan being flown.",
@@ -192,7 +197,9 @@ fn way_made(trace: &Trace, found: &mut Findings) {
 
 fn skip_leaves(trace: &Trace, found: &mut Findings) {
     for (step, _) in trace.accepted().filter(|(_, c)| **c == Command::SkipLeg) {
-        if let (Some(before), Some(after)) = (step.before.place(), step.after.place()) {
+        let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
+        let held = step.before.program.as_deref().and_then(|p| kind(p, &before.leg));
+        if !matches!(held, Some(LegKind::Hm { .. })) {
             found.expect(step, !same_passage(before, after), || format!("still {after:?}"));
         }
     }

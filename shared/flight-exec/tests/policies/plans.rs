@@ -1,17 +1,19 @@
-//! Random plans: every kind of control leg, nested; small enough that a flight meets all of it.
+//! Random plans: every kind of leg and action the language has, nested; small enough that a flight meets all of it.
 
-use crate::grid::{HOME, compiled, document_with};
+use crate::grid::{compiled, document_with};
 use crate::random::Random;
+use crate::writing;
 use flight_plan::Program;
 use std::sync::Arc;
 
 /// Nearly every draft can be flown.
 const MOST_DRAWS: usize = 50;
 
-/// `r` shapes the scans, `stop` ends loops, `n` counts passes.
+/// `r` shapes the patterns, `stop` ends loops and holdings, `n` counts passes, `tally` counts what the plan itself writes.
 const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="1500"/>
     <variable name="stop" type="bool" initial="false"/>
     <variable name="n" type="number" initial="2" min="1" max="4"/>
+    <variable name="tally" type="number" initial="0" min="0" max="100000"/>
     <variable name="note" type="text" initial="" maxLength="8"/>"#;
 
 /// A leg without a name; lists give them theirs.
@@ -20,11 +22,22 @@ pub enum Kind {
     /// Variants of a leg are at other places.
     Track(usize),
     Direct,
+    Course,
     Start,
     Lap,
     Climb,
-    Scan,
-    Orbit,
+    ClimbOnTrack,
+    /// A holding that is released, or left by `stop`, or by its laps.
+    Hold {
+        until: bool,
+        laps: Option<u64>,
+    },
+    /// One of [`writing::PATTERNS`].
+    Pattern(usize),
+    /// Of a procedure, of which one calls the other.
+    Call {
+        nested: bool,
+    },
     /// Over one leg to the one after it.
     Jump,
     Loop {
@@ -43,8 +56,40 @@ pub enum Kind {
 pub struct Leg {
     pub id: String,
     pub kind: Kind,
-    pub emergency: &'static str,
+    pub emergency: Emergency,
+    pub actions: Vec<Action>,
 }
+
+/// An emergency plan of a leg's own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Emergency {
+    None,
+    ForEveryCause,
+    ForLink,
+}
+
+/// When, as an attribute, and what, as an element; nothing twice on a leg, so that what is done can be told apart.
+pub type Action = (&'static str, &'static str);
+
+const WHEN: [&str; 6] = [
+    r#"on="start""#,
+    r#"on="end""#,
+    r#"on="abeam" fix="C2""#,
+    r#"afterDistance="700""#,
+    r#"afterTime="20""#,
+    r#"every="400""#,
+];
+const WHAT: [&str; 8] = [
+    "<photo/>",
+    r#"<photo every="40"/>"#,
+    "<photoStop/>",
+    "<videoStart/>",
+    "<videoStop/>",
+    r#"<set variable="tally" to="= tally + 1.0"/>"#,
+    r#"<set variable="r" to="= r + 50.0"/>"#,
+    r#"<invoke service="camera" operation="zoom" argument="1"/>"#,
+];
+const WAIT: Action = (r#"on="end""#, r#"<wait seconds="20"/>"#);
 
 /// What a document is made of.
 #[derive(Debug, Clone)]
@@ -77,21 +122,32 @@ impl Draft {
         self.names += 1;
         let id = format!("k{}", self.names);
         let kind = self.kind(depth, random);
-        let emergency = if self.emergencies && random.percent(15) { r#" emergency="other""# } else { "" };
-        Leg { id, kind, emergency }
+        let emergency = match random.below(100) {
+            0..12 if self.emergencies => Emergency::ForEveryCause,
+            12..20 if self.emergencies => Emergency::ForLink,
+            _ => Emergency::None,
+        };
+        let actions = if random.percent(30) { actions(kind.is_flown(), random) } else { Vec::new() };
+        Leg { id, kind, emergency, actions }
     }
 
     fn kind(&mut self, depth: usize, random: &mut Random) -> Kind {
-        match random.below(if depth > 0 { 16 } else { 11 }) {
+        match random.below(if depth > 0 { 24 } else { 17 }) {
             0..3 => Kind::Track(0),
             3 => Kind::Direct,
             4 => Kind::Start,
             5 => Kind::Lap,
             6 => Kind::Climb,
-            7 => Kind::Scan,
-            8 => Kind::Orbit,
-            9 => Kind::Jump,
-            10 | 11 => Kind::Fork { default: random.percent(75), due: random.pick(&["200m", "600m", "15s"]) },
+            7..10 => Kind::Pattern(random.below(writing::PATTERNS.len())),
+            10 => Kind::Course,
+            11 => Kind::ClimbOnTrack,
+            12 | 13 => Kind::Hold {
+                until: random.percent(40),
+                laps: random.percent(50).then(|| 1 + random.below(3) as u64),
+            },
+            14 => Kind::Jump,
+            15 => Kind::Call { nested: random.percent(60) },
+            16 | 17 => Kind::Fork { default: random.percent(75), due: random.pick(&["200m", "600m", "15s"]) },
             _ => Kind::Loop {
                 reverse: random.percent(50),
                 count: random.percent(80).then(|| 1 + random.below(3) as u64),
@@ -129,10 +185,11 @@ impl Draft {
         let legs = format!(
             "{}{}",
             if self.by_cause && self.emergencies { by_cause } else { "" },
-            write(&self.legs, "")
+            writing::list(&self.legs, "")
         );
         let stage = if self.by_cause && self.emergencies { r#"emergency="back""# } else { "" };
         let mut document = document_with(&legs, VARIABLES, stage);
+        document = document.replace("</variables>", &format!("</variables>{}", writing::procedures()));
         if !self.emergencies {
             document = document.replace(r#"<mainPlan emergency="back">"#, "<mainPlan>");
         }
@@ -143,7 +200,25 @@ impl Draft {
     }
 }
 
-/// One edit, in a loop's body now and then: a leg less, one more, or another track.
+impl Kind {
+    /// It has an end of its own to circle at.
+    fn is_flown(&self) -> bool {
+        !matches!(self, Kind::Start | Kind::Jump | Kind::Call { .. } | Kind::Loop { .. } | Kind::Fork { .. })
+    }
+}
+
+/// One or two, and a wait now and then.
+fn actions(flown: bool, random: &mut Random) -> Vec<Action> {
+    let (when, what) = (random.below(WHEN.len()), random.below(WHAT.len()));
+    let mut actions = vec![(WHEN[when], WHAT[what])];
+    if random.percent(40) {
+        actions.push((WHEN[(when + 1 + random.below(5)) % 6], WHAT[(what + 1 + random.below(7)) % 8]));
+    }
+    actions.extend(Some(WAIT).filter(|_| flown && random.percent(25)));
+    actions
+}
+
+/// One edit, in a loop's body now and then: a leg less, one more, another track, or other actions.
 fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
     let spot = random.below(list.len());
     if let Kind::Loop { body, .. } = &mut list[spot].kind
@@ -152,73 +227,13 @@ fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
         return edit(body, new_id, random);
     }
     let kind = Kind::Track(1 + random.below(9));
-    match random.below(3) {
+    match random.below(4) {
         0 if list.len() > 1 => drop(list.remove(spot)),
         1 => list[spot].kind = kind,
-        _ => list.insert(spot, Leg { id: new_id.into(), kind, emergency: "" }),
-    }
-}
-
-/// A track at each end: every body flies something.
-fn write(legs: &[Leg], prefix: &str) -> String {
-    let body: String = legs.iter().map(one).collect();
-    format!("{}{body}{}", track(&format!("{prefix}s"), ""), track(&format!("{prefix}z"), ""))
-}
-
-fn track(id: &str, attributes: &str) -> String {
-    format!(r#"<TF id="{id}" {}{attributes}/>"#, spot(id))
-}
-
-/// A place of its own for each name, within ten kilometres (FNV-1a of the name).
-fn spot(name: &str) -> String {
-    let hash = name
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    let metres = |bits: u64| 10_000.0 * (bits % 1009) as f64 / 1009.0;
-    let at = HOME.destination(90.0, metres(hash >> 40)).destination(0.0, metres(hash >> 20));
-    format!(r#"lat="{:.6}" lon="{:.6}""#, at.lat_deg, at.lon_deg)
-}
-
-fn one(leg: &Leg) -> String {
-    let Leg { id, emergency, .. } = leg;
-    let here = spot(id);
-    match &leg.kind {
-        Kind::Track(variant) => format!(r#"<TF id="{id}" {}{emergency}/>"#, spot(&format!("{id}{variant}"))),
-        Kind::Direct => format!(r#"<DF id="{id}" {here}{emergency}/>"#),
-        Kind::Start => format!(r#"<IF id="{id}" {here}/>"#),
-        Kind::Lap => format!(r#"<HF id="{id}" {here} course="0" turn="left" length="600"{emergency}/>"#),
-        Kind::Climb => format!(
-            r#"<HA id="{id}" {here} course="90" turn="right" length="600" altitude="600" altitudeReference="amsl"/>"#
-        ),
-        Kind::Scan => format!(
-            r#"<scan id="{id}" spacing="= r * 0.5" heading="0" overshoot="50"{emergency}><area fix="C3" radius="= r"/></scan>"#
-        ),
-        Kind::Orbit => format!(
-            r#"<orbit id="{id}" radius="= 200.0 + r * 0.2" turns="1" turn="left"><centre fix="D2"/></orbit>"#
-        ),
-        Kind::Jump => {
-            let (over, to) = (format!("{id}-x"), format!("{id}-y"));
-            track(id, &format!(r#" next="{to}""#)) + &track(&over, "") + &track(&to, "")
-        }
-        Kind::Loop { reverse, count, until, body } => {
-            let form = if *reverse { "reverse" } else { "forward" };
-            let until = until.map_or(String::new(), |u| format!(r#" until="{u}""#));
-            let count = count.map_or("= n".into(), |c| c.to_string());
-            let body = write(body, &format!("{id}-"));
-            format!(
-                r#"<iterative id="{id}" form="{form}" count="{count}"{until}{emergency}>{body}</iterative>"#
-            )
-        }
-        Kind::Fork { default, due } => {
-            let default = if *default { format!(r#" default="{id}-s""#) } else { String::new() };
-            let (long, both) = (format!("{id}-d"), format!("{id}-e"));
-            format!(
-                r#"<intersection id="{id}"{default} decideBefore="{due}">
-                   <branch id="{id}-s" label="s" next="{both}"/><branch id="{id}-l" label="l" next="{long}" when="r &gt; 900.0"/></intersection>
-                   {}{}"#,
-                track(&long, ""),
-                track(&both, "")
-            )
+        2 => list[spot].actions = actions(list[spot].kind.is_flown(), random),
+        _ => {
+            let (emergency, actions) = (Emergency::None, Vec::new());
+            list.insert(spot, Leg { id: new_id.into(), kind, emergency, actions });
         }
     }
 }

@@ -31,7 +31,10 @@ impl Findings {
 
 /// Every policy, by subject.
 pub fn all() -> impl Iterator<Item = &'static Policy> {
-    use crate::{answers, decisions, emergencies, feeding, horizon, loops, model, place, restart, updates};
+    use crate::{
+        actions, answers, decisions, emergencies, feeding, holdings, horizon, loops, model, place, restart,
+        updates,
+    };
     [
         feeding::POLICIES,
         horizon::POLICIES,
@@ -40,6 +43,8 @@ pub fn all() -> impl Iterator<Item = &'static Policy> {
         decisions::POLICIES,
         emergencies::POLICIES,
         updates::POLICIES,
+        actions::POLICIES,
+        holdings::POLICIES,
         restart::POLICIES,
         answers::POLICIES,
         model::POLICIES,

@@ -2,12 +2,12 @@
 #![allow(clippy::unit_arg)] // `Some(change)`: changed, one line each
 
 use crate::policy::{self, Findings, Policy};
-use crate::trace::{Deed, Seen, Trace};
+use crate::trace::{Deed, Moment, Seen, Trace};
 use flight_exec::{
-    Action, Answer, Branching, Event, Input, IterationPlace, Output, Phase, PlacePointer, Refusal, RequestId,
-    Time, Token, Waypoint,
+    Action, Answer, Branching, Command, Event, Input, IterationPlace, Output, Phase, PlacePointer, Refusal,
+    RequestId, ResolvedAct, Time, Token, Waypoint,
 };
-use flight_plan::{Id, Variables};
+use flight_plan::{Id, Place, Value, Variables};
 use geometry::LatLon;
 
 /// Changes a trace at a moment; `None`: not this one.
@@ -153,6 +153,35 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     ("the-same-plan-changes-nothing", |t, at| say(t, at, cancel(Token(0)))),
     ("variables-carry-over", |t, at| Some(after(t, at).variables = Variables::default())),
     ("on-the-ground-it-waits", |t, at| Some(after(t, at).status.phase = Phase::Flying)),
+    // actions
+    ("acts-are-told", |t, at| unsay(t, at, |o| matches!(o, Output::Act { .. }))),
+    ("acts-are-the-legs", |t, at| {
+        event(t, at, |e| match e {
+            Event::ActionDone { leg, .. } => Some(*leg = nowhere()),
+            _ => None,
+        })
+    }),
+    ("done-once-a-passage", |t, at| {
+        let again = t.moments[at].outputs.iter().filter(|o| is_done(o)).cloned().collect::<Vec<_>>();
+        Some(t.moments[at].outputs.extend(again))
+    }),
+    ("begun-with-its-leg", forget_what_was_done),
+    ("done-by-its-end", forget_what_was_done),
+    ("every-so-often", forget_what_was_done),
+    ("nothing-is-done-by-the-way-while-muted", |t, at| {
+        let act = ResolvedAct::Photo;
+        say(t, at, Output::Event(Event::ActionDone { leg: nowhere(), passage: 0, act }))
+    }),
+    ("the-plan-writes-by-actions", |t, at| {
+        unsay(t, at, |o| matches!(o, Output::Event(Event::VariableChanged { .. })))
+    }),
+    ("a-timed-wait-ends", |t, at| Some(t.moments[at].now += Time::from_secs(100))),
+    ("a-timed-wait-is-flown", |t, at| Some(t.moments[at].now = Time::ZERO)),
+    ("the-wait-left-is-told", |t, at| Some(after(t, at).status.wait_left_s = Some(99.0))),
+    // holdings
+    ("never-past-its-laps", |t, at| nothing_but_the_fix(t, at, 0)),
+    ("released-at-its-fix", |t, at| nothing_but_the_fix(t, at, at)),
+    ("left-for-a-reason", without_a_reason),
     // restart
     ("same-after-restart", |t, at| say(t, at, Output::Hold)),
     ("status-survives-restart", |t, at| Some(after(t, at).status.revision += 1)),
@@ -409,6 +438,40 @@ fn refuse(t: &mut Trace, at: usize, code: &str) -> Option<()> {
 
 fn refuse_otherwise(t: &mut Trace, at: usize) -> Option<()> {
     refusal(t, at).map(|r| r.code = "another".into())
+}
+
+fn is_done(output: &Output) -> bool {
+    matches!(output, Output::Event(Event::ActionDone { .. } | Event::ActionRefused { .. }))
+}
+
+fn forget_what_was_done(t: &mut Trace, _: usize) -> Option<()> {
+    Some(t.moments.iter_mut().for_each(|m| m.outputs.retain(|o| !is_done(o))))
+}
+
+/// Every waypoint of the leg is its fix, where several of them are still to be flown.
+fn nothing_but_the_fix(t: &mut Trace, at: usize, from: usize) -> Option<()> {
+    let leg = before(t, at).place()?.leg.clone();
+    let program = t.moments[at].after.program.clone()?;
+    let Some(Place::Position(Value::Constant(fix))) = program.leg(&leg)?.place() else { return None };
+    let on_it = |m: &Moment| m.after.place().is_some_and(|p| p.leg == leg);
+    let mut told = 0;
+    for moment in t.moments[from..].iter_mut().take_while(|m| from == 0 || on_it(m)) {
+        told += usize::from(matches!(moment.deed, Deed::Input(Input::Progress { .. })) && on_it(moment));
+        moment.after.ahead.iter_mut().filter(|w| w.leg == leg).for_each(|w| w.position = *fix);
+    }
+    (told > 4).then_some(())
+}
+
+/// Neither condition nor command nor laps.
+fn without_a_reason(t: &mut Trace, _: usize) -> Option<()> {
+    for moment in &mut t.moments {
+        moment.after.variables = Variables::default();
+        moment.after.ahead.iter_mut().for_each(|w| w.position = LatLon::new(0.0, 0.0));
+        if matches!(&moment.deed, Deed::Input(Input::Command { command: Command::SkipLeg, .. })) {
+            moment.deed = Deed::Input(Input::Tick);
+        }
+    }
+    Some(())
 }
 
 // ---- the test -----------------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 //! What the reference model reads: what was told of the way, and what people did to it, in order.
 
 use crate::trace::{Step, Trace};
-use flight_exec::{Command, Event, Phase, PlacePointer};
+use flight_exec::{Branching, Command, Event, Phase, PlacePointer};
 use flight_plan::{Id, Program, VariableValue};
 
 #[derive(Debug, Clone)]
@@ -47,6 +47,7 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
     let mut tape = Vec::new();
     let mut entries: Vec<usize> = Vec::new();
     let mut last_entered = None;
+    let mut alternate = None;
     for step in trace.steps() {
         for event in step.events() {
             let window = entries.len().checked_sub(2).map_or(0, |i| entries[i]);
@@ -56,7 +57,8 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
                 last_entered = Some(place);
             }
         }
-        let order = order(step, last_entered);
+        let order = order(step, last_entered, alternate);
+        alternate = flown_alternate(step, alternate);
         // the same passage may be gone to once more: then it is to be entered again
         if step.is_jump() && !matches!(order, Some(Sight::Jump(Jump::GoOn { .. }))) {
             last_entered = None;
@@ -99,7 +101,22 @@ fn values(step: Step, window: usize) -> (Vec<bool>, Vec<u64>) {
     (stop, n)
 }
 
-fn order<'a>(step: Step<'a>, last_entered: Option<&PlacePointer>) -> Option<Sight<'a>> {
+/// The emergency plan that is flown, also while nothing of it is ahead.
+fn flown_alternate<'a>(step: Step<'a>, before: Option<&'a Id>) -> Option<&'a Id> {
+    let started = step.events().find_map(|e| match e {
+        Event::EmergencyStarted { plan, .. } => Some(plan),
+        _ => None,
+    });
+    let over = matches!(step.accepted(), Some(Command::ReturnToMain { .. } | Command::Start));
+    let in_main = step.after.place().is_some_and(|p| p.plan == Branching::Main);
+    started.or(before.filter(|_| !over && !in_main && step.after.is_flying()))
+}
+
+fn order<'a>(
+    step: Step<'a>,
+    last_entered: Option<&PlacePointer>,
+    alternate: Option<&Id>,
+) -> Option<Sight<'a>> {
     let program = step.after.program.as_deref()?;
     let announced = || {
         let place = step.before.place();
@@ -112,9 +129,8 @@ fn order<'a>(step: Step<'a>, last_entered: Option<&PlacePointer>) -> Option<Sigh
         Command::SkipLeg => Sight::Skipped { announced: announced() },
         Command::SetCount { leg, count } => Sight::Counted(leg, *count),
         Command::Emergency { .. } => {
-            let plan = crate::place::emergency_flown(step.after)?;
-            let switched = crate::place::emergency_flown(step.before) != Some(plan);
-            return switched.then_some(Sight::Jump(Jump::Emergency(plan)));
+            let plan = flown_alternate(step, None)?;
+            return (alternate != Some(plan)).then_some(Sight::Jump(Jump::Emergency(plan)));
         }
         Command::Commit { entry, .. } if step.before.is_flying() => {
             let current = step.before.place().map(|p| &p.leg);

@@ -160,6 +160,24 @@ impl<'a> Step<'a> {
         self.accepted().is_some_and(goes)
     }
 
+    /// The leg steered to before this step has been entered: announced, and nobody has gone elsewhere since.
+    pub fn is_begun(&self) -> bool {
+        self.was_begun(self.at, self.before)
+    }
+
+    /// The same of the leg steered to after it.
+    pub fn is_begun_now(&self) -> bool {
+        self.was_begun(self.at + 1, self.after)
+    }
+
+    fn was_begun(&self, until: usize, seen: &Seen) -> bool {
+        let earlier = (0..until).rev().map(|at| self.trace.step(at));
+        let stays = |s: &Step| matches!(s.command(), Some(Command::Commit { entry: None, .. }));
+        let since = earlier.take_while(|s| !s.is_jump() || stays(s));
+        let last = since.into_iter().find_map(|s| s.entered().last());
+        last.zip(seen.place()).is_some_and(|(a, b)| same_passage(a, b))
+    }
+
     /// An accepted commit while flying: before and after.
     pub fn update(&self) -> Option<(&'a Program, &'a Program)> {
         let Some(Command::Commit { .. }) = self.accepted() else { return None };

@@ -2,7 +2,7 @@
 
 use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Step, Trace, kind, knows, same_passage};
+use crate::trace::{Step, Trace, kind, knows};
 use flight_exec::{Answer, Command, Event, Input, Phase, PlacePointer, ProposalReport};
 use flight_plan::{Id, IterativeForm, LegKind, Program, Variable};
 use std::collections::BTreeSet;
@@ -188,14 +188,13 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
             continue;
         };
         let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
-        let entered = trace.entered().take_while(|(s, _)| s.at < step.at).last();
         let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
         // where an orbit is left depends on what follows: it may turn out to be flown already
         let ends_early = kind(new) == Some("orbit");
         // nobody has to decide any more: the new plan does
         let is_decided = decides(step, &before.leg);
         let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early && !is_decided;
-        if !is_there || !entered.is_some_and(|(_, p)| same_passage(p, before)) {
+        if !is_there || !step.is_begun() {
             continue;
         }
         // a loop of another form begins its directions anew

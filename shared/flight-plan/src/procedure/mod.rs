@@ -3,8 +3,8 @@
 //! A call becomes a loop of one pass around the procedure's legs: it keeps the call's identifier, name, emergency plans,
 //! altitude, speed and actions, and the legs inside it are called `call.leg`. In them, parameters are replaced by the
 //! call's arguments, and what is written as a constant position or course is moved and turned with the procedure. What a
-//! fix or an expression gives is where it is: it does not move. (So `iteration` inside a procedure is 1: it
-//! is that of the loop which the call has become.)
+//! fix or an expression gives is where it is: it does not move. `iteration` inside a procedure is that of the innermost
+//! loop that somebody wrote, around the call or in the procedure: the one which the call has become doesn't count.
 
 mod arguments;
 mod frame;
@@ -125,7 +125,7 @@ impl Calls<'_> {
         body.iter_mut().for_each(|l| self.leg(Arc::make_mut(l), Some(&frame)));
         self.has_room()?;
         let count = Some(Value::Constant(1.0));
-        let (form, turn) = (IterativeForm::Forward, TurnDirection::Right);
+        let (form, turn) = (IterativeForm::Once, TurnDirection::Right);
         Ok(Some(LegKind::Iterative { form, count, until: None, turn, body }))
     }
 

@@ -47,7 +47,7 @@ fn kind_attributes(tag: Tag, kind: &LegKind) -> Tag {
             holding(tag, h).maybe("until", until.as_ref()).maybe_value("maxLaps", max_laps.as_ref())
         }
         LegKind::Iterative { form, count, until, turn, .. } => {
-            let form = if *form == IterativeForm::Forward { "forward" } else { "reverse" };
+            let form = if *form == IterativeForm::Reverse { "reverse" } else { "forward" };
             tag.with("form", form)
                 .maybe_value("count", count.as_ref())
                 .maybe("until", until.as_ref())

@@ -1,0 +1,127 @@
+//! What has been reached stays reached, and what has been chosen stays chosen: each of these a random flight has once found otherwise.
+
+use crate::rig::{Rig, document, document_with, program};
+use flight_exec::{Command, Event, Time};
+use flight_plan::VariableValue;
+
+const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="3000"/>"#;
+
+fn fork(when: &str) -> String {
+    format!(
+        r#"<TF id="a" fix="B2"/><intersection id="i"><branch id="x" label="x" next="u"/><branch id="y" label="y" next="v" {when}/></intersection>
+           <TF id="u" fix="C2"/><TF id="v" fix="C3"/><TF id="z" fix="A3"/>"#
+    )
+}
+
+fn arrivals(rig: &Rig) -> Vec<u64> {
+    let finished = rig.events.iter().filter_map(|e| match e {
+        Event::IterationFinished { finished, .. } => Some(*finished),
+        _ => None,
+    });
+    finished.collect()
+}
+
+#[test]
+fn a_wait_just_ahead_is_given_up_when_the_new_plan_asks_nothing_there() {
+    let mut rig = Rig::started(&fork(""));
+    rig.fly_to("a");
+    rig.position = rig.buffer[0].position.destination(180.0, 60.0);
+    rig.report();
+    rig.update(&program(&document(r#"<TF id="a" fix="B2"/><TF id="i" fix="C4"/><TF id="z" fix="A3"/>"#)))
+        .unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a i z");
+}
+
+#[test]
+fn a_lap_begun_is_flown_though_the_path_is_laid_out_anew() {
+    let legs = r#"<TF id="a" fix="B1"/><HA id="h" fix="B3" course="90" turn="right" length="600" altitude="600" altitudeReference="amsl"/><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("h");
+    rig.altitude_amsl_m = Some(500.0);
+    for n in 0..100 {
+        rig.fly_one();
+        rig.now += Time::from_secs(2);
+        rig.set("r", 400.0 + f64::from(n)).unwrap();
+        assert_eq!(rig.leg(), "h", "after {n} changes");
+    }
+    rig.altitude_amsl_m = Some(600.0);
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a h z");
+}
+
+#[test]
+fn a_condition_that_came_true_while_waiting_is_told_as_the_decision_when_the_plan_changes() {
+    let legs = fork(r#"when="r &gt; 900.0""#);
+    let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
+    rig.fly_to("i");
+    // twice: the second write waits for the least time between two changes
+    rig.set("r", 600.0).unwrap();
+    rig.set("r", 1000.0).unwrap();
+    let longer = legs.replace(r#"<TF id="z""#, r#"<TF id="w" fix="B4"/><TF id="z""#);
+    rig.update(&program(&document_with(&longer, VARIABLES, ""))).unwrap();
+    rig.fly_to_the_end();
+    let decided = |e: &&Event| matches!(e, Event::DecisionTaken { branch, by, .. } if branch.as_str() == "y" && by == "condition");
+    assert_eq!(rig.events.iter().filter(decided).count(), 1);
+    assert_eq!(rig.legs(), "a i v w z");
+}
+
+#[test]
+fn a_scan_that_is_over_is_not_flown_again_when_its_size_changes_after_a_resume() {
+    let legs = r#"<TF id="a" fix="B1"/><scan id="s" spacing="150" heading="0"><area fix="C4" radius="= r"/></scan><TF id="z" fix="F0"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("z");
+    rig.report();
+    rig.command(Command::Hold).unwrap();
+    rig.command(Command::Resume).unwrap();
+    rig.set("r", 900.0).unwrap();
+    rig.now += Time::from_secs(2);
+    rig.report();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a s z");
+}
+
+#[test]
+fn who_skips_and_then_goes_elsewhere_has_not_flown_the_pass_in_between() {
+    let legs = r#"<iterative id="l" form="forward" count="2"><TF id="a" fix="B1"/><TF id="b" fix="C1"/><TF id="c" fix="C2"/></iterative><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_to("c");
+    rig.command(Command::Hold).unwrap();
+    rig.command(Command::SkipLeg).unwrap();
+    rig.command(Command::GoTo { leg: "b".into() }).unwrap();
+    rig.command(Command::Resume).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c b c a b c z");
+    assert_eq!(arrivals(&rig), [1, 2], "none is lost, none doubled");
+}
+
+#[test]
+fn the_iteration_in_a_procedure_is_that_of_the_loop_around_its_call() {
+    let set = r#"<action on="start"><set variable="r" to="= 100.0 * double(iteration)"/></action>"#;
+    let procedure = format!(
+        r#"<procedures><procedure id="p"><TF id="q" fix="C2" altitude="= 500.0 + 10.0 * double(iteration)" altitudeReference="amsl">{set}</TF></procedure></procedures>"#
+    );
+    let legs = r#"<TF id="a" fix="B1"/><iterative id="l" form="forward" count="3"><call id="k" procedure="p"/><TF id="b" fix="C4"/></iterative><TF id="z" fix="A3"/>"#;
+    let plan =
+        document_with(legs, VARIABLES, "").replace("</variables>", &format!("</variables>{procedure}"));
+    let mut rig = Rig::flying(&plan);
+    rig.fly_to_the_end();
+    let of_call = rig.flown.iter().filter(|w| w.leg.as_str() == "k.q");
+    assert_eq!(Vec::from_iter(of_call.map(|w| w.altitude_amsl_m)), [510.0, 520.0, 530.0]);
+    let set = rig.events.iter().filter_map(|e| match e {
+        Event::VariableChanged { value: VariableValue::Number(n), .. } => Some(*n),
+        _ => None,
+    });
+    assert_eq!(Vec::from_iter(set), [100.0, 200.0, 300.0]);
+}
+
+#[test]
+fn a_call_in_no_loop_is_iteration_zero() {
+    let call = r#"<call id="k" procedure="p"/>"#;
+    let procedure = r#"<procedures><procedure id="p"><TF id="q" fix="C2" altitude="= 500.0 + 10.0 * double(iteration)" altitudeReference="amsl"/></procedure></procedures>"#;
+    let plan = document(&format!(r#"<TF id="a" fix="B1"/>{call}<TF id="z" fix="A3"/>"#));
+    let mut rig = Rig::flying(&plan.replace("</variables>", &format!("</variables>{procedure}")));
+    rig.fly_to_the_end();
+    let of_call = rig.flown.iter().find(|w| w.leg.as_str() == "k.q");
+    assert_eq!(of_call.map(|w| w.altitude_amsl_m), Some(500.0));
+}

@@ -1,0 +1,128 @@
+//! Holdings: left at their fix, and for a reason.
+
+use crate::policy::{Findings, Policy, policy};
+use crate::trace::{Seen, Step, Trace, same_passage};
+use flight_exec::{Command, Input, PlacePointer};
+use flight_plan::{LegKind, Program, Value, VariableValue};
+
+pub const POLICIES: &[Policy] = &[
+    policy(
+        "never-past-its-laps",
+        "A holding with a number of laps is left when they are flown.",
+        never_past_its_laps,
+    ),
+    policy(
+        "released-at-its-fix",
+        "A holding that was released is left at the next crossing of its fix.",
+        released_at_its_fix,
+    ),
+    policy(
+        "left-for-a-reason",
+        "A holding until released is left by a command, by its condition or by its laps, and by nothing else.",
+        left_for_a_reason,
+    ),
+];
+
+/// A holding until released, as the plan has it: whether it has a condition, and its laps.
+fn holding(program: &Program, place: &PlacePointer) -> Option<(bool, Option<f64>)> {
+    match &program.leg(&place.leg)?.kind {
+        LegKind::Hm { until, max_laps, .. } => {
+            let laps = max_laps.as_ref().and_then(|n| match n {
+                Value::Constant(n) => Some(*n),
+                Value::Expression(_) => None,
+            });
+            Some((until.is_some(), laps))
+        }
+        _ => None,
+    }
+}
+
+/// A passage of a holding, from its entry to the first step of another leg (or the last one of all).
+struct Held<'a> {
+    place: &'a PlacePointer,
+    program: &'a Program,
+    steps: Vec<Step<'a>>,
+}
+
+fn passages(trace: &Trace) -> Vec<Held<'_>> {
+    let held = |(step, place): (Step<'_>, &'_ PlacePointer)| {
+        let program = trace.moments[step.at].after.program.as_deref()?;
+        let place = trace.moments[step.at].after.place().filter(|p| same_passage(p, place))?;
+        holding(program, place)?;
+        let later = (step.at + 1..trace.moments.len()).map(|at| trace.step(at));
+        let mut over = false;
+        let gone = |s: &Step| s.after.place().is_none_or(|p| !same_passage(p, place));
+        // what is skipped is left, but for a holding that is released
+        let leaps = |s: &Step| s.is_jump() && s.accepted() != Some(&Command::SkipLeg);
+        let steps = later.take_while(|s| !std::mem::replace(&mut over, gone(s) || leaps(s)));
+        Some(Held { place, program, steps: steps.collect() })
+    };
+    trace.entered().filter_map(held).collect()
+}
+
+impl<'a> Held<'a> {
+    /// Steps in which the aircraft was told to be past the fix.
+    fn crossings(&self) -> impl Iterator<Item = Step<'a>> {
+        let (fix, program) = (self.place, self.program);
+        let crosses = move |s: &Step| {
+            let Some(Input::Progress { current: Some(_) }) = s.input() else { return false };
+            let passed = s.before.ahead.iter().take_while(|w| Some(w.token) != s.after.status.current);
+            let fix = program.leg(&fix.leg).and_then(|l| l.place());
+            let fix = fix.and_then(|p| match p {
+                flight_plan::Place::Position(Value::Constant(p)) => Some(*p),
+                _ => None,
+            });
+            let at_fix = |w: &flight_exec::Waypoint| {
+                w.leg == self.place.leg && fix.is_some_and(|f| f.distance_m(w.position) < 1.0)
+            };
+            s.before.status.current != s.after.status.current && passed.into_iter().any(at_fix)
+        };
+        self.steps.clone().into_iter().filter(move |s| crosses(s)).collect::<Vec<_>>().into_iter()
+    }
+
+    fn was_released(&self) -> bool {
+        self.steps.iter().any(|s| s.command() == Some(&Command::SkipLeg))
+    }
+}
+
+/// It is entered at its fix; each crossing after that ends a lap.
+fn never_past_its_laps(trace: &Trace, found: &mut Findings) {
+    for held in passages(trace) {
+        let Some((_, Some(laps))) = holding(held.program, held.place) else { continue };
+        let crossings = held.crossings().count() as f64;
+        if let Some(last) = held.steps.last().filter(|_| crossings > 0.0) {
+            found.expect(*last, crossings <= laps + 1.0, || {
+                format!("{crossings} crossings of {}, {laps} laps", held.place.leg)
+            });
+        }
+    }
+}
+
+fn released_at_its_fix(trace: &Trace, found: &mut Findings) {
+    for held in passages(trace) {
+        let mut laps = held.crossings().map(|s| s.at).collect::<Vec<_>>();
+        let Some(skip) = held.steps.iter().find(|s| s.accepted() == Some(&Command::SkipLeg)) else {
+            continue;
+        };
+        laps.retain(|at| *at > skip.at);
+        found.expect(*skip, laps.len() <= 1, || format!("{} crossings after {}", laps.len(), held.place.leg));
+    }
+}
+
+fn left_for_a_reason(trace: &Trace, found: &mut Findings) {
+    let stop = |seen: &Seen| seen.variables.get(&"stop".into()) == Some(&VariableValue::Bool(true));
+    for held in passages(trace) {
+        let Some(last) = held.steps.last().filter(|s| !s.is_jump() && s.entered().next().is_some()) else {
+            continue;
+        };
+        let Some((until, laps)) = holding(held.program, held.place) else { continue };
+        let updated = held.steps.iter().any(|s| s.update().is_some());
+        let stopped = until && held.steps.iter().any(|s| stop(s.before) || stop(s.after));
+        let flown = laps.is_some_and(|n| held.crossings().count() as f64 >= n);
+        if !updated {
+            found.expect(*last, held.was_released() || stopped || flown, || {
+                format!("{} was left", held.place.leg)
+            });
+        }
+    }
+}
