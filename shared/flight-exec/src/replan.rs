@@ -221,8 +221,11 @@ impl Executor {
         self.settle_phase(out);
     }
 
-    /// Waiting for a decision or not, whatever it steers to.
+    /// Waiting for a decision or not, or for a time, whatever it steers to.
     pub(crate) fn settle_phase(&mut self, out: &mut Vec<Output>) {
+        let front = self.state.handed.front();
+        self.state.wait =
+            self.state.wait.filter(|w| front.is_none_or(|h| h.is_loiter() && w.passage == h.passage));
         let waits = self.state.handed.front().is_some_and(Handed::waits_for_decision);
         match self.state.phase {
             Phase::Flying if waits => self.enter_phase(Phase::AwaitingDecision, out),

@@ -96,6 +96,20 @@ fn who_skips_and_then_goes_elsewhere_has_not_flown_the_pass_in_between() {
 }
 
 #[test]
+fn a_wait_that_a_new_plan_has_not_is_over_and_forgotten() {
+    let wait = r#"<TF id="a" fix="B1"><action on="end"><wait seconds="60"/></action></TF>"#;
+    let rest = r#"<TF id="b" fix="C4"/><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::started(&format!("{wait}{rest}"));
+    rig.fly_to("a");
+    rig.fly_one();
+    assert!(rig.executor.status().wait_left_s.is_some());
+    rig.update(&program(&document(&format!(r#"<TF id="a" fix="B1"/>{rest}"#)))).unwrap();
+    assert_eq!((rig.leg().as_str(), rig.executor.status().wait_left_s), ("b", None));
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b z");
+}
+
+#[test]
 fn the_iteration_in_a_procedure_is_that_of_the_loop_around_its_call() {
     let set = r#"<action on="start"><set variable="r" to="= 100.0 * double(iteration)"/></action>"#;
     let procedure = format!(

@@ -2,7 +2,7 @@
 
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, same_passage};
-use flight_exec::{Action, Event, Input, Output, Phase, PlacePointer, ResolvedAct};
+use flight_exec::{Event, Input, Output, Phase, PlacePointer, ResolvedAct};
 use flight_plan::{Act, Id, Leg, LegKind, Trigger};
 use std::collections::BTreeMap;
 use std::mem::{Discriminant, discriminant};
@@ -256,14 +256,7 @@ fn plan_writes(trace: &Trace, found: &mut Findings) {
 
 // ---- waits ------------------------------------------------------------------------------------------------------
 
-/// Steers to a circle that ends by itself.
-fn circles(seen: &Seen) -> bool {
-    let (Some(front), Some(program)) = (seen.ahead.first(), seen.program.as_deref()) else { return false };
-    let loiters = matches!(front.action, Action::Loiter { .. });
-    loiters && seen.is_flying() && crate::horizon::waits(program, &front.leg)
-}
-
-fn wait_begun(step: Step<'_'>) -> Option<(&Id, u64, f64)> {
+fn wait_begun(step: Step<'_>) -> Option<(&Id, u64, f64)> {
     done(step).find_map(|(leg, passage, act)| match act {
         ResolvedAct::Wait { seconds } => Some((leg, passage, *seconds)),
         _ => None,
@@ -273,12 +266,12 @@ fn wait_begun(step: Step<'_'>) -> Option<(&Id, u64, f64)> {
 /// A wait with the steps until the first that doesn't circle any more.
 fn waits(trace: &Trace) -> Vec<(f64, f64, Vec<Step<'_>>)> {
     let begun = trace.steps().filter_map(|s| wait_begun(s).map(|(.., seconds)| (s, seconds)));
-    let begun = begun.filter(|(s, _)| circles(s.after));
+    let begun = begun.filter(|(s, _)| s.after.circles());
     let with_end = begun.map(|(step, seconds)| {
         let later = (step.at + 1..trace.moments.len()).map(|at| trace.step(at));
         let mut over = false;
         let until = later
-            .take_while(|s| !std::mem::replace(&mut over, !circles(s.after) || wait_begun(*s).is_some()));
+            .take_while(|s| !std::mem::replace(&mut over, !s.after.circles() || wait_begun(*s).is_some()));
         (step.moment.now.as_secs_f64(), seconds, until.collect())
     });
     with_end.collect()
@@ -286,7 +279,7 @@ fn waits(trace: &Trace) -> Vec<(f64, f64, Vec<Step<'_>>)> {
 
 fn wait_ends(trace: &Trace, found: &mut Findings) {
     for (begin_s, seconds, steps) in waits(trace) {
-        for step in steps.into_iter().filter(|s| s.input().is_some() && circles(s.after)) {
+        for step in steps.into_iter().filter(|s| s.input().is_some() && s.after.circles()) {
             let waited_s = step.moment.now.as_secs_f64() - begin_s;
             // a time that goes back is not time that has passed
             found.expect(step, waited_s < seconds + 1.0 || wait_begun(step).is_some(), || {
@@ -298,7 +291,7 @@ fn wait_ends(trace: &Trace, found: &mut Findings) {
 
 fn wait_is_flown(trace: &Trace, found: &mut Findings) {
     for (begin_s, seconds, steps) in waits(trace) {
-        let Some(last) = steps.last().filter(|s| !circles(s.after)) else { continue };
+        let Some(last) = steps.last().filter(|s| !s.after.circles()) else { continue };
         let interfered = |s: &Step| {
             s.is_jump() || matches!(s.input(), Some(Input::Rejected { .. } | Input::Progress { .. }))
         };
@@ -316,8 +309,8 @@ fn wait_left(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.after.is_flying() && !s.after.ahead.is_empty()) {
         let begun = step.is_begun_now();
         let left_s = step.after.status.wait_left_s;
-        if left_s.is_some() || (circles(step.after) && begun) {
-            let sound = left_s.is_some_and(|s| (0.0..=20.0).contains(&s)) && circles(step.after);
+        if left_s.is_some() || (step.after.circles() && begun) {
+            let sound = left_s.is_some_and(|s| (0.0..20.001).contains(&s)) && step.after.circles();
             found.expect(step, sound, || format!("{left_s:?} left, {:?}", step.accepted()));
         }
     }

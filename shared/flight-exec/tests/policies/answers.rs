@@ -203,7 +203,7 @@ fn variables_change(trace: &Trace, found: &mut Findings) {
 }
 
 /// The value of a variable that a step tells last.
-fn told_last<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
+pub fn told_last<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
     let values = step.events().filter_map(|e| match e {
         Event::VariableChanged { name, value, .. } => Some((name, value)),
         _ => None,

@@ -155,7 +155,7 @@ fn never_changes(trace: &Trace, found: &mut Findings) {
 
 /// The same but for the mark of the end, which only the last waypoint has: what is fed behind it takes it away.
 fn is_the_same(a: &Waypoint, b: &Waypoint) -> bool {
-    let near = a.position.distance_m(b.position) < 0.5
+    let near = (a.position == b.position || a.position.distance_m(b.position) < 0.5)
         && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < 0.5
         && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05;
     near && (&a.leg, a.action, a.fly_over) == (&b.leg, b.action, b.fly_over)

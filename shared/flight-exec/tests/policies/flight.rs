@@ -151,7 +151,8 @@ impl Flight {
 
     fn any_command(&mut self) -> Command {
         let id = self.any_leg();
-        match self.random.below(24) {
+        match self.random.below(26) {
+            24 | 25 => self.count(),
             0 | 1 => Command::Hold,
             2 | 3 => Command::Resume,
             4 => Command::SkipLeg,
@@ -174,8 +175,9 @@ impl Flight {
 
     fn count(&mut self) -> Command {
         let place = self.executor.status().place;
-        let around: Vec<Id> =
-            place.iter().flat_map(|p| &p.iterations).map(|i| i.leg.clone()).chain(["m".into()]).collect();
+        let around: Vec<Id> = place.iter().flat_map(|p| &p.iterations).map(|i| i.leg.clone()).collect();
+        let elsewhere = around.is_empty() || self.random.percent(20);
+        let around = if elsewhere { vec!["m".into()] } else { around };
         Command::SetCount { leg: self.random.pick(&around), count: self.random.below(6) as u64 }
     }
 

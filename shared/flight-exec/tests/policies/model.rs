@@ -415,8 +415,9 @@ impl<'a> Model<'a, '_> {
     /// left out.
     fn enter(&mut self, id: &Id) -> Flown {
         let start = self.program.and_then(|p| p.leg(id)).is_some_and(|l| l.kind_name() == "IF");
+        let next = self.peek()?;
         let optional = start || self.cannot_be_flown.contains(id);
-        match self.peek()? {
+        match next {
             Sight::Entered(place) if self.is_here(id, place) => {
                 self.here = Some(id.clone());
                 self.agree();

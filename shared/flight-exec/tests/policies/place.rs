@@ -2,7 +2,7 @@
 
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, kind, same_passage};
-use flight_exec::{Branching, Command, Input, Phase, PlacePointer};
+use flight_exec::{Branching, Command, Event, Input, Phase, PlacePointer};
 use flight_plan::LegKind;
 use std::collections::BTreeMap;
 
@@ -205,7 +205,8 @@ fn skip_leaves(trace: &Trace, found: &mut Findings) {
     }
 }
 
-/// A leg that flies nothing (an IF where the path is, an intersection) leads on: then the first leg flown tells.
+/// A leg that flies nothing (an IF where the path is, an intersection, one that can't be flown) leads on: then the first leg
+/// flown tells.
 fn go_to_goes_there(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::GoTo { leg } = command else { continue };
@@ -213,7 +214,10 @@ fn go_to_goes_there(trace: &Trace, found: &mut Findings) {
         let same_plan = step.before.place().is_none_or(|p| p.plan == place.plan);
         let inside = place.iterations.iter().any(|i| i.leg == *leg) || place.stage == *leg;
         let flies_nothing = program.leg(leg).is_some_and(|l| matches!(l.kind_name(), "IF" | "intersection"));
-        let there = place.leg == *leg || inside || flies_nothing;
+        let told = trace.events().take_while(|(s, _)| s.at <= step.at);
+        let refused = |e: &Event| matches!(e, Event::PatternRefused { leg: of, .. } if of == leg);
+        let impossible = told.into_iter().any(|(_, e)| refused(e));
+        let there = place.leg == *leg || inside || flies_nothing || impossible;
         found.expect(step, same_plan && there, || format!("{leg} led to {place:?}"));
     }
 }

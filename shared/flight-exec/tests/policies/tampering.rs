@@ -116,7 +116,7 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
         unsay(t, at, |o| matches!(o, Output::Event(Event::EmergencyStarted { .. })))
     }),
     ("alarm-cancels-everything", |t, at| unsay(t, at, is_feed)),
-    ("only-worse-causes", |t, at| accept(t, at).or_else(|| refuse(t, at, "not-more-severe"))),
+    ("only-worse-causes", judge_severity_otherwise),
     ("emergency-plans-never-nest", |t, at| {
         event(t, at, |e| match e {
             Event::EmergencyStarted { from_leg, .. } => Some(*from_leg = Some("b-df".into())),
@@ -436,6 +436,13 @@ fn refuse(t: &mut Trace, at: usize, code: &str) -> Option<()> {
     answer(t, at).filter(|a| a.is_ok()).map(|a| *a = Err(why))
 }
 
+fn judge_severity_otherwise(t: &mut Trace, at: usize) -> Option<()> {
+    if refusal(t, at).is_some_and(|r| r.code == "not-more-severe") {
+        return accept(t, at);
+    }
+    refusal(t, at).map(|r| r.code = "not-more-severe".into()).or_else(|| refuse(t, at, "not-more-severe"))
+}
+
 fn refuse_otherwise(t: &mut Trace, at: usize) -> Option<()> {
     refusal(t, at).map(|r| r.code = "another".into())
 }
@@ -459,7 +466,7 @@ fn nothing_but_the_fix(t: &mut Trace, at: usize, from: usize) -> Option<()> {
         told += usize::from(matches!(moment.deed, Deed::Input(Input::Progress { .. })) && on_it(moment));
         moment.after.ahead.iter_mut().filter(|w| w.leg == leg).for_each(|w| w.position = *fix);
     }
-    (told > 4).then_some(())
+    (told > 7).then_some(())
 }
 
 /// Neither condition nor command nor laps.

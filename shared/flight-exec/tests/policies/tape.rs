@@ -60,7 +60,8 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
         let order = order(step, last_entered, alternate);
         alternate = flown_alternate(step, alternate);
         // the same passage may be gone to once more: then it is to be entered again
-        if step.is_jump() && !matches!(order, Some(Sight::Jump(Jump::GoOn { .. }))) {
+        let goes_on = matches!(order, Some(Sight::Jump(Jump::GoOn { .. }))) && step.keeps_its_leg();
+        if step.is_jump() && !goes_on {
             last_entered = None;
         }
         tape.extend(order.map(|s| (step, s)));
@@ -145,9 +146,7 @@ fn order<'a>(
 
 /// Nothing but waypoints of the leg being flown were kept, and it is the same kind of leg.
 fn keeps_one_leg(step: Step) -> bool {
-    let (Some((old, new)), Some(place)) = (step.update(), step.before.place()) else { return false };
+    let Some(place) = step.before.place().filter(|_| step.keeps_its_leg()) else { return false };
     let tokens = step.after.tokens();
-    let kept = step.before.ahead.iter().filter(|w| tokens.contains(&w.token));
-    let kind = |p: &Program| p.leg(&place.leg).map(|l| l.kind_name());
-    kept.into_iter().all(|w| w.leg == place.leg) && kind(old) == kind(new)
+    step.before.ahead.iter().filter(|w| tokens.contains(&w.token)).all(|w| w.leg == place.leg)
 }

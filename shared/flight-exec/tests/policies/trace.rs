@@ -1,8 +1,8 @@
 //! What happened, moment by moment: all that a policy may look at.
 
 use flight_exec::{
-    AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, Refusal, Status, Time, Token,
-    Waypoint,
+    Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, Refusal, Status, Time,
+    Token, Waypoint,
 };
 use flight_plan::{Id, LegKind, Program, Variables};
 use std::sync::Arc;
@@ -170,10 +170,17 @@ impl<'a> Step<'a> {
         self.was_begun(self.at + 1, self.after)
     }
 
+    /// An update that goes on with the leg being flown, which is of the same kind in both plans.
+    pub fn keeps_its_leg(&self) -> bool {
+        let Some(Command::Commit { entry: None, .. }) = self.accepted() else { return false };
+        let (Some((old, new)), Some(place)) = (self.update(), self.before.place()) else { return false };
+        let kind = |p: &Program| p.leg(&place.leg).map(|l| l.kind_name());
+        kind(old) == kind(new)
+    }
+
     fn was_begun(&self, until: usize, seen: &Seen) -> bool {
         let earlier = (0..until).rev().map(|at| self.trace.step(at));
-        let stays = |s: &Step| matches!(s.command(), Some(Command::Commit { entry: None, .. }));
-        let since = earlier.take_while(|s| !s.is_jump() || stays(s));
+        let since = earlier.take_while(|s| !s.is_jump() || s.keeps_its_leg());
         let last = since.into_iter().find_map(|s| s.entered().last());
         last.zip(seen.place()).is_some_and(|(a, b)| same_passage(a, b))
     }
@@ -194,6 +201,15 @@ impl Seen {
     /// Flying by the executor's waypoints, and nobody else's.
     pub fn is_fed(&self) -> bool {
         matches!(self.status.phase, Phase::Flying | Phase::AwaitingDecision) && !self.gateway_controls
+    }
+
+    /// Steers to a circle that ends by itself.
+    pub fn circles(&self) -> bool {
+        let (Some(front), Some(program)) = (self.ahead.first(), self.program.as_deref()) else {
+            return false;
+        };
+        let loiters = matches!(front.action, Action::Loiter { .. });
+        loiters && self.is_flying() && crate::horizon::waits(program, &front.leg)
     }
 
     pub fn place(&self) -> Option<&PlacePointer> {

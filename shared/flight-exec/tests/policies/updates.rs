@@ -1,5 +1,7 @@
 //! Plans that change in flight: nothing half applied, the place kept.
 
+use crate::answers::told_last;
+use crate::horizon::waits;
 use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Step, Trace, kind, knows};
@@ -194,7 +196,9 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         // nobody has to decide any more: the new plan does
         let is_decided = decides(step, &before.leg);
         let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early && !is_decided;
-        if !is_there || !step.is_begun() {
+        // nor is there anything to circle for
+        let is_over = step.before.circles() && !waits(new, &before.leg);
+        if !is_there || is_over || !step.is_begun() {
             continue;
         }
         // a loop of another form begins its directions anew
@@ -279,7 +283,9 @@ fn variables_carry_over(trace: &Trace, found: &mut Findings) {
         let (Command::Commit { .. }, Some(new)) = (command, &step.after.program) else { continue };
         let kept = |v: &Variable| {
             let old = step.before.variables.get(&v.name).filter(|old| v.accepts(old).is_ok());
-            step.after.variables.get(&v.name) == Some(old.unwrap_or(&v.initial))
+            // an action may write it at once
+            let written = told_last(step, &v.name);
+            step.after.variables.get(&v.name) == Some(written.or(old).unwrap_or(&v.initial))
         };
         found.expect(step, new.plan.variables.iter().all(kept), || format!("{:?}", step.after.variables));
     }

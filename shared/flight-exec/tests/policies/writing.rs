@@ -19,11 +19,12 @@ pub const PATTERNS: [(&str, &str, &str); 12] = [
     ("sector", r#"radius="= r + 600.0" sectors="3" heading="10" passes="1" turn="right""#, CENTRE),
     ("trackLine", r#"spacing="= r * 0.5 + 200.0" returns="true""#, ROUTE),
     ("corridor", r#"width="= r" spacing="200""#, ROUTE),
-    ("contour", r#"spacing="200" direction="inward" turn="left""#, DISC),
+    ("contour", r#"spacing="= 100.0 + r * 0.2" direction="inward" turn="left""#, SQUARE),
     ("figureEight", r#"radius="= 200.0 + r * 0.3" heading="40" turns="1" turn="left""#, CENTRE),
     ("orbit", r#"radius="= 200.0 + r * 0.2" turns="1" turn="left""#, r#"<centre fix="D2"/>"#),
 ];
 const DISC: &str = r#"<area fix="C3" radius="= r"/>"#;
+const SQUARE: &str = r#"<area><corner lat="36.54" lon="-84.17"/><corner lat="36.54" lon="-84.15"/><corner lat="36.555" lon="-84.15"/><corner lat="36.555" lon="-84.17"/></area>"#;
 const CENTRE: &str = r#"<centre fix="C3"/>"#;
 const ROUTE: &str = r#"<route><point fix="B3"/><point fix="C4"/><point fix="D4"/></route>"#;
 
