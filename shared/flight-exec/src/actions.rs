@@ -212,7 +212,7 @@ fn iteration_of(program: &Program, leg: &Id, handed: &Handed) -> u64 {
     let called = |id: &Id| program.leg(id).is_some_and(is_call);
     let around = || handed.place.iterations.iter().filter(|i| !called(&i.leg));
     let own = around().find(|i| i.leg == *leg);
-    own.or_else(|| around().last()).map_or(0, |i| i.iteration)
+    own.or_else(|| around().next_back()).map_or(0, |i| i.iteration)
 }
 
 /// Activations of the loops around a waypoint, outermost first.

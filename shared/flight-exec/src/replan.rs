@@ -1,6 +1,6 @@
 //! Handing out: topping the horizon up, and laying the path out anew when something has changed.
 
-use crate::api::{Action, Event, Output, Phase, Token};
+use crate::api::{Action, Event, Output, Phase, Token, Waypoint};
 use crate::cursor::{Cursor, Trouble};
 use crate::executor::Executor;
 use crate::handed::{Handed, Onward, Stretch, lay_out};
@@ -157,12 +157,12 @@ impl Executor {
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
         let stretch = lay_out(&cursor, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
         let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
-        let tokens: Vec<Token> = old.iter().take(same).map(|h| h.waypoint.token).collect();
+        let sent: Vec<Waypoint> = old.iter().take(same).map(|h| h.waypoint.clone()).collect();
         self.state.handed.truncate(from);
         let before = self.state.last_token;
         let appended = stretch.handed.len() - same;
         self.append(stretch, out);
-        self.keep_tokens(from, &tokens, before);
+        self.keep_sent(from, sent, before);
         let cancel = (old.len() > same).then(|| self.last_token_before(from + same));
         if cancel.is_some() || appended > 0 {
             self.feed(cancel, from + same, out);
@@ -170,17 +170,17 @@ impl Executor {
         self.settle_phase(out);
     }
 
-    /// Waypoints that stayed the same get their old numbers back; the others count on from `before`.
-    fn keep_tokens(&mut self, from: usize, tokens: &[Token], before: u64) {
-        self.state.last_token = before;
-        for (i, handed) in self.state.handed.iter_mut().skip(from).enumerate() {
-            handed.waypoint.token = match tokens.get(i) {
-                Some(kept) => *kept,
-                None => {
-                    self.state.last_token += 1;
-                    Token(self.state.last_token)
-                }
-            };
+    /// Waypoints that stayed the same stay as they were sent, so that many small changes don't add up unseen; the others count on
+    /// from `before`.
+    fn keep_sent(&mut self, from: usize, sent: Vec<Waypoint>, before: u64) {
+        let appended = self.state.handed.len().saturating_sub(from + sent.len());
+        self.state.last_token = before + appended as u64;
+        let numbers = (before + 1..).map(Token);
+        for (handed, token) in self.state.handed.iter_mut().skip(from + sent.len()).zip(numbers) {
+            handed.waypoint.token = token;
+        }
+        for (handed, waypoint) in self.state.handed.iter_mut().skip(from).zip(sent) {
+            handed.waypoint = waypoint;
         }
     }
 

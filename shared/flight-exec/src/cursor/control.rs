@@ -20,7 +20,9 @@ impl Cursor {
         let Some(leg) = list.get(self.index).filter(|_| self.performed_stage(world).is_none()) else {
             return self.next_stage(world);
         };
-        if flown.is_some() && self.given == 0 {
+        // what was regenerated begins anew: it may have flown all there is
+        let nothing_flown = self.given == 0 && self.path.distance_m <= self.leg_start.distance_m;
+        if flown.is_some() && nothing_flown {
             self.mark(leg, notes);
         }
         let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));

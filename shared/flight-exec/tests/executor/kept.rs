@@ -96,6 +96,36 @@ fn who_skips_and_then_goes_elsewhere_has_not_flown_the_pass_in_between() {
 }
 
 #[test]
+fn a_pattern_that_shrinks_to_nothing_is_not_begun_again() {
+    let legs = r#"<TF id="a" fix="B1"/><expandingSquare id="p" spacing="300" heading="30" radius="= r" turn="right"><centre fix="C4"/><action on="start"><photo/></action></expandingSquare><TF id="z" fix="A3"/>"#;
+    for flown in 1..8 {
+        let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+        rig.fly_to("p");
+        for _ in 1..flown {
+            rig.fly_one();
+        }
+        rig.set("r", 20.0).unwrap();
+        rig.now += Time::from_secs(2);
+        rig.report();
+        rig.fly_to_the_end();
+        assert_eq!((rig.legs().as_str(), rig.acts.len()), ("a p z", 1), "after {flown} waypoints");
+    }
+}
+
+#[test]
+fn many_changes_too_small_to_be_sent_do_not_add_up() {
+    let legs = r#"<TF id="a" fix="B1"/><orbit id="o" radius="= r" turns="3" turn="left"><centre fix="C4"/></orbit><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("o");
+    for n in 1..20 {
+        rig.set("r", 500.0 + 0.1 * f64::from(n)).unwrap();
+        rig.now += Time::from_secs(2);
+        rig.report();
+        assert!(rig.executor.ahead().eq(&rig.buffer), "after {n} changes");
+    }
+}
+
+#[test]
 fn a_wait_that_a_new_plan_has_not_is_over_and_forgotten() {
     let wait = r#"<TF id="a" fix="B1"><action on="end"><wait seconds="60"/></action></TF>"#;
     let rest = r#"<TF id="b" fix="C4"/><TF id="z" fix="A3"/>"#;

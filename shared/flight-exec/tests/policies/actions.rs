@@ -165,7 +165,7 @@ fn begun_with_its_leg(trace: &Trace, found: &mut Findings) {
 }
 
 /// A passage may have been begun in a plan that was replaced.
-fn updated_since_jump(step: Step) -> bool {
+pub fn updated_since_jump(step: Step) -> bool {
     let mut back = (0..=step.at).rev().map(|at| step.trace.step(at)).take_while(|s| !is_leap(s));
     back.any(|s| s.update().is_some())
 }

@@ -1,5 +1,6 @@
 //! Holdings: left at their fix, and for a reason.
 
+use crate::actions::updated_since_jump;
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, same_passage};
 use flight_exec::{Action, Command, Input, PlacePointer};
@@ -127,7 +128,8 @@ fn left_for_a_reason(trace: &Trace, found: &mut Findings) {
             continue;
         };
         let Some((until, laps)) = holding(held.program, held.place) else { continue };
-        let updated = held.steps.iter().any(|s| s.update().is_some());
+        // a leg that was of another kind ends as that did
+        let updated = updated_since_jump(*last);
         let stopped = until && held.steps.iter().any(|s| stop(s.before) || stop(s.after));
         let flown = laps.is_some_and(|n| held.crossings().count() as f64 >= n);
         if !updated {

@@ -3,6 +3,7 @@
 use crate::trace::{Deed, Moment};
 use flight_exec::{Action, Command, Event, Input, Output, PlacePointer, Waypoint};
 use flight_plan::{Leg, LegKind, Program};
+use std::sync::Arc;
 
 /// Time, what was done, what came of it, and where that led; nothing of a moment that led to nothing.
 pub fn moment(moment: &Moment) -> String {
@@ -40,11 +41,11 @@ fn short(hash: &str) -> &str {
 /// A plan's hash and the legs of its main plan; bodies in brackets.
 fn outline(program: &Program) -> String {
     let legs: Vec<_> = program.flown().stages.iter().map(|s| list(&s.legs)).collect();
-    format!("{}: {}", short(&program.hash), legs.concat())
+    format!("{}: {}", short(program.hash()), legs.concat())
 }
 
-fn list(legs: &[Leg]) -> String {
-    let one = |leg: &Leg| match &leg.kind {
+fn list(legs: &[Arc<Leg>]) -> String {
+    let one = |leg: &Arc<Leg>| match &leg.kind {
         LegKind::Iterative { form, count, until, .. } => {
             format!("{}:{form:?} {count:?} {until:?}[{}] ", leg.id, list(leg.body()))
         }

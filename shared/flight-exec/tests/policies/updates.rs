@@ -271,7 +271,9 @@ fn same_plan(trace: &Trace, found: &mut Findings) {
         let quiet = |c: &Command| matches!(c, Command::Commit { .. });
         let undisturbed =
             trace.accepted().filter(|(s, _)| (entered..step.at).contains(&s.at)).all(|(_, c)| quiet(c));
-        if old.hash() == new.hash() && step.before.is_fed() && undisturbed {
+        let written = (entered..step.at)
+            .any(|at| trace.step(at).events().any(|e| matches!(e, Event::VariableChanged { .. })));
+        if old.hash() == new.hash() && step.before.is_fed() && undisturbed && !written {
             let same = step.feeds().next().is_none() && step.before.tokens() == step.after.tokens();
             found.expect(step, same, || format!("{:?}", step.moment.outputs));
         }
