@@ -38,7 +38,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use trace::Trace;
 
 /// Sequences in a plain `cargo test`.
-const SEQUENCES: u64 = 200;
+const SEQUENCES: u64 = 400;
 /// Moments told before the one that is wrong.
 const TOLD: usize = 500;
 const EVERY_HAPPENING: usize = usize::MAX;

@@ -411,11 +411,11 @@ impl<'a> Model<'a, '_> {
         Ok(chosen.next.clone().filter(known))
     }
 
-    /// A passage must be entered now. An IF or a CF flies something only where the path is not there yet; a leg told to be impossible may be
+    /// A passage must be entered now. An IF, a CF or an FA flies something only where the path is not there yet; a leg told to be impossible may be
     /// left out.
     fn enter(&mut self, id: &Id) -> Flown {
         let start =
-            self.program.and_then(|p| p.leg(id)).is_some_and(|l| matches!(l.kind_name(), "IF" | "CF"));
+            self.program.and_then(|p| p.leg(id)).is_some_and(|l| matches!(l.kind_name(), "IF" | "CF" | "FA"));
         let next = self.peek()?;
         let optional = start || self.cannot_be_flown.contains(id);
         match next {

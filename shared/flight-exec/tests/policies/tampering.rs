@@ -471,6 +471,10 @@ fn nothing_but_the_fix(t: &mut Trace, at: usize, from: usize) -> Option<()> {
 
 /// Neither condition nor command nor laps.
 fn without_a_reason(t: &mut Trace, _: usize) -> Option<()> {
+    // an update is a reason as well
+    if t.steps().any(|s| s.update().is_some()) {
+        return None;
+    }
     for moment in &mut t.moments {
         moment.after.variables = Variables::default();
         moment.after.ahead.iter_mut().for_each(|w| w.position = LatLon::new(0.0, 0.0));
