@@ -22,7 +22,9 @@ enum Spot {
     Leg(usize),
     /// The stage of this number.
     Stage(usize),
-    /// Something that is not flown.
+    /// The fix of this index.
+    Fix(usize),
+    /// Something else that is not flown.
     Other,
 }
 
@@ -58,7 +60,7 @@ impl Spots {
         let (stage, mut leg) = match spot {
             Spot::Leg(number) => (self.legs.get(number)?.stage, Some(number)),
             Spot::Stage(number) => (number, None),
-            Spot::Other => return None,
+            Spot::Fix(_) | Spot::Other => return None,
         };
         let mut indices = Vec::new();
         while let Some(spot) = leg.and_then(|number| self.legs.get(number)) {
@@ -121,11 +123,19 @@ impl Ids {
     pub fn path(&self, id: &Id) -> Option<LegPath> {
         self.places.path(*self.spots.get(id)?)
     }
+
+    /// Index of a fix.
+    pub fn fix(&self, id: &Id) -> Option<usize> {
+        match self.spots.get(id)? {
+            Spot::Fix(index) => Some(*index),
+            _ => None,
+        }
+    }
 }
 
 fn others(plan: &FlightPlan) -> Vec<(Id, Spot)> {
-    let mut ids: Vec<Id> = plan.fixes.iter().map(|f| f.id.clone()).collect();
-    ids.extend(plan.runways.iter().map(|r| r.id.clone()));
+    let fixes = plan.fixes.iter().enumerate().map(|(i, fix)| (fix.id.clone(), Spot::Fix(i)));
+    let mut ids: Vec<Id> = plan.runways.iter().map(|r| r.id.clone()).collect();
     ids.extend(plan.zones.iter().map(|z| z.id.clone()));
     for procedure in &plan.procedures {
         ids.push(procedure.id.clone());
@@ -133,7 +143,7 @@ fn others(plan: &FlightPlan) -> Vec<(Id, Spot)> {
     }
     ids.extend(plan.emergency_plans.iter().map(|e| e.id.clone()));
     let stages = plan.all_stages().enumerate().map(|(i, (_, stage))| (stage.id.clone(), Spot::Stage(i)));
-    ids.into_iter().map(|id| (id, Spot::Other)).chain(stages).collect()
+    fixes.chain(ids.into_iter().map(|id| (id, Spot::Other))).chain(stages).collect()
 }
 
 fn add_legs(legs: &[Arc<Leg>], ids: &mut Vec<Id>) {

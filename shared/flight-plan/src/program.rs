@@ -4,7 +4,7 @@ use crate::checks::{Checked, Expressions, Memory, checked, checked_again};
 use crate::expression::{Env, EvalError, Expression};
 use crate::ids::Ids;
 use crate::{
-    Cause, EmergencyChoice, EmergencyPlan, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage,
+    Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage,
     Value, xml,
 };
 use aircraft::Profile;
@@ -217,6 +217,10 @@ impl Program {
         }
     }
 
+    fn fix(&self, id: &Id) -> Option<&Fix> {
+        self.plan.fixes.get(self.ids.fix(id)?)
+    }
+
     /// Where a place is now.
     ///
     /// # Errors
@@ -224,7 +228,7 @@ impl Program {
     pub fn eval_place(&self, place: &Place, env: &Env) -> Result<LatLon, EvalError> {
         match place {
             Place::Fix(id) => {
-                Ok(self.plan.fix(id).ok_or_else(|| EvalError::NotCompiled(id.to_string()))?.position)
+                Ok(self.fix(id).ok_or_else(|| EvalError::NotCompiled(id.to_string()))?.position)
             }
             Place::Position(value) => self.eval_position(value, env),
         }
