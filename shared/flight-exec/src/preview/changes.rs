@@ -173,7 +173,8 @@ impl Comparison<'_> {
         if !std::ptr::eq(old, new) && without_body(old) != without_body(new) || self.leads_elsewhere(old) {
             self.changes.ids.insert(old.id.clone());
         }
-        if !std::ptr::eq(old, new) || !self.fixes.is_empty() {
+        let inner = !old.body().is_empty() || !new.body().is_empty();
+        if inner && (!std::ptr::eq(old, new) || !self.fixes.is_empty()) {
             let loops = place.loops.iter().copied().chain([index]).collect();
             self.lists(&List { around: &old.id, stage: place.stage, loops }, old.body(), new.body());
         }

@@ -24,9 +24,9 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Waypoints on a stretch, at least, as long as there are few stretches.
-const WAYPOINTS: usize = 12;
+const WAYPOINTS: usize = 8;
 /// Most stretches remembered, some tens of kilobytes each: beyond, they become longer.
-const MOST_STRETCHES: usize = 1024;
+const MOST_STRETCHES: usize = 1536;
 
 /// A preview for plan after plan, of one aircraft in one wind.
 pub struct Rehearsal {
