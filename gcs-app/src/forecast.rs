@@ -1,7 +1,7 @@
 //! What will be flown, as map, profile and table need it; and the worker that finds it out.
 //!
-//! The worker checks, hashes, compiles and previews the newest plan on a thread of its own. It waits
-//! for a short rest between edits, and a newer plan always wins.
+//! The worker checks, compiles, previews, hashes and reviews the newest plan on threads of its own; from edit to edit only what has
+//! changed, and a newer plan always wins.
 
 mod preview;
 mod worker;

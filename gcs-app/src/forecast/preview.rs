@@ -1,8 +1,8 @@
-//! From a plan to its forecast, by flying it with the code that flies it aboard.
+//! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
-use super::{Forecast, Passage, Point};
+use super::{Forecast, Passage, Point, Shared};
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Options, Preview, Scenario, Start};
+use flight_exec::preview::{Kept, Options, Preview, PreviewError, Rehearsal, Start};
 use flight_plan::{FlightPlan, Program};
 use geometry::LocalFrame;
 use std::sync::Arc;
@@ -11,30 +11,52 @@ use terrain::Terrain;
 /// Most points of a forecast: a longer flight is told in coarser steps.
 const MOST_POINTS: f64 = 60_000.0;
 
-/// Flies a plan ahead of time in calm air. The sentence says why it can't be flown.
-pub fn fly(
-    program: &Arc<Program>,
-    profile: &Profile,
-    terrain: &Arc<dyn Terrain>,
-) -> Result<Forecast, String> {
-    if program.plan.stages.is_empty() {
-        return Err("Nothing to be flown yet: add stages and legs to the plan.".into());
+/// Flies plan after plan ahead of time, in calm air.
+pub struct Forecaster {
+    rehearsal: Rehearsal,
+    terrain: Arc<dyn Terrain>,
+    /// What came out last.
+    last: Shared,
+}
+
+impl Forecaster {
+    /// For an aircraft, over a ground.
+    pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
+        let options = Options::default();
+        let track_every_s = (options.most_s / MOST_POINTS).max(options.track_every_s);
+        let options = Options { track_every_s, ..options };
+        let rehearsal = Rehearsal::new(profile, terrain.clone(), Wind::default(), options);
+        Self { rehearsal, terrain, last: Shared::default() }
     }
-    let options = Options::default();
-    let options =
-        Options { track_every_s: (options.most_s / MOST_POINTS).max(options.track_every_s), ..options };
-    let plan = &program.plan;
-    let start = if plan.home().is_some() { Start::Runway } else { in_flight(plan)? };
-    let flown = flight_exec::preview(
-        program,
-        profile,
-        terrain,
-        Wind::default(),
-        start,
-        &Scenario::default(),
-        &options,
-    );
-    flown.map(|preview| forecast(&preview, terrain.as_ref())).map_err(|error| error.to_string())
+
+    /// Flies a plan. The sentence says why it can't be flown at all; one that ends too early is flown until then.
+    pub fn fly(&mut self, program: &Arc<Program>) -> Result<Shared, String> {
+        let plan = &program.plan;
+        if plan.stages.is_empty() {
+            return Err("Nothing to be flown yet: add stages and legs to the plan.".into());
+        }
+        let start = if plan.home().is_some() { Start::Runway } else { in_flight(plan)? };
+        let outcome = self.rehearsal.fly(program, start, &mut |_| true);
+        let Some(preview) = self.rehearsal.preview() else {
+            return Err(outcome.err().map_or_else(String::new, |why| why.to_string()));
+        };
+        let points = points(preview, &self.last.points, self.rehearsal.kept(), self.terrain.as_ref());
+        self.last = Arc::new(Forecast {
+            points,
+            passages: passages(preview),
+            waypoints: preview.waypoints.iter().filter(|w| !w.replaced).map(|w| w.waypoint.clone()).collect(),
+            battery_left: Some(preview.battery_left),
+            cut_short: cut_short(preview, outcome),
+        });
+        Ok(self.last.clone())
+    }
+}
+
+fn cut_short(preview: &Preview, outcome: Result<(), PreviewError>) -> Option<String> {
+    match outcome {
+        Err(why) => Some(why.to_string()),
+        Ok(()) => (!preview.landed).then(|| "The flight does not end on the ground.".to_owned()),
+    }
 }
 
 /// A plan without take-off is entered at its first fix.
@@ -44,32 +66,43 @@ fn in_flight(plan: &FlightPlan) -> Result<Start, String> {
     Ok(Start::InFlight { position, altitude_amsl_m: 1000.0, heading_deg: 0.0 })
 }
 
-fn forecast(preview: &Preview, terrain: &dyn Terrain) -> Forecast {
-    Forecast {
-        points: points(preview, terrain),
-        passages: passages(preview),
-        waypoints: preview.waypoints.iter().filter(|w| !w.replaced).map(|w| w.waypoint.clone()).collect(),
-        battery_left: Some(preview.battery_left),
-        cut_short: (!preview.landed).then(|| "The flight does not end on the ground.".to_owned()),
-    }
-}
-
-fn points(preview: &Preview, terrain: &dyn Terrain) -> Vec<Point> {
-    let mut distance_m = 0.0;
-    let mut before: Option<geometry::LatLon> = None;
-    let points = preview.track.iter().map(|at| {
-        distance_m += before.map_or(0.0, |b| LocalFrame::new(b).to_local(at.position).length());
-        before = Some(at.position);
-        Point {
+/// The points of a track; those that were in the former one have the same ground below them and the same distances between them.
+fn points(preview: &Preview, former: &[Point], kept: Kept, terrain: &dyn Terrain) -> Vec<Point> {
+    let track = &preview.track;
+    let tail = track.len() - kept.tail.min(track.len() - kept.head);
+    // the former track is longer or shorter by what was flown anew
+    let of_former = |index: usize| match index {
+        _ if index < kept.head => former.get(index),
+        _ if index >= tail => former.get((index + former.len()).checked_sub(track.len())?),
+        _ => None,
+    };
+    let mut points: Vec<Point> = Vec::with_capacity(track.len());
+    let mut moved_m = None;
+    for (index, at) in track.iter().enumerate() {
+        let known = of_former(index);
+        let way_m = || {
+            points.last().map_or(0.0, |last| {
+                last.distance_m + LocalFrame::new(last.position).to_local(at.position).length()
+            })
+        };
+        let distance_m = match (known, index >= tail) {
+            (Some(known), false) => known.distance_m,
+            (Some(known), true) => {
+                known.distance_m + *moved_m.get_or_insert_with(|| way_m() - known.distance_m)
+            }
+            (None, _) => way_m(),
+        };
+        points.push(Point {
             time_s: at.time_s,
             distance_m,
             position: at.position,
             altitude_amsl_m: at.altitude_amsl_m,
-            ground_amsl_m: terrain.elevation_m(at.position),
+            ground_amsl_m: known
+                .map_or_else(|| terrain.elevation_m(at.position), |known| known.ground_amsl_m),
             passage: at.passage.unwrap_or(0),
-        }
-    });
-    points.collect()
+        });
+    }
+    points
 }
 
 fn passages(preview: &Preview) -> Vec<Passage> {
@@ -82,4 +115,47 @@ fn passages(preview: &Preview) -> Vec<Passage> {
         end: at(leg.end_s),
     });
     passages.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use flight_plan::{Edit, compile};
+    use terrain::Flat;
+
+    /// A forecast that goes on from the one before is the one that begins anew, whatever was done in between.
+    #[test]
+    fn from_edit_to_edit_it_is_the_forecast_of_the_plan() {
+        let (profile, terrain) = (Profile::default(), crate::assets::demo_terrain());
+        let program =
+            |plan: &FlightPlan| Arc::new(compile(plan.clone(), &profile, terrain.as_ref()).unwrap());
+        let mut plan = flight_plan::read(include_bytes!("../../../assets/plans/fire-watch.xml")).plan;
+        let mut forecaster = Forecaster::new(profile.clone(), terrain.clone());
+        forecaster.fly(&program(&plan)).unwrap();
+        for (fix, degrees) in [("RIDGE2", 10.0), ("CLIMB", 200.0), ("RIDGE2", 300.0)] {
+            let to = plan.fix(&fix.into()).unwrap().position.destination(degrees, 60.0);
+            plan = Edit::MoveFix { fix: fix.into(), to }.apply(&plan).unwrap();
+            let kept = forecaster.fly(&program(&plan)).unwrap();
+            let fresh = Forecaster::new(profile.clone(), terrain.clone()).fly(&program(&plan)).unwrap();
+            assert_eq!(kept.points.len(), fresh.points.len());
+            for (a, b) in kept.points.iter().zip(&fresh.points) {
+                // one is a sum over all of the way, the other over its parts
+                assert!((a.distance_m - b.distance_m).abs() < 1e-6);
+                assert_eq!(*a, Point { distance_m: a.distance_m, ..b.clone() });
+            }
+            assert_eq!((&kept.passages, &kept.waypoints), (&fresh.passages, &fresh.waypoints));
+        }
+    }
+
+    #[test]
+    fn a_flight_that_its_energy_does_not_allow_is_shown_as_far_as_it_goes() {
+        let profile = Profile { energy_j: 5e4, ..Profile::default() };
+        let plan = flight_plan::read(include_bytes!("../../../assets/plans/square.xml")).plan;
+        let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+        let Ok(program) = compile(plan, &Profile::default(), terrain.as_ref()) else { return };
+        let forecast = Forecaster::new(profile, terrain).fly(&Arc::new(program)).unwrap();
+        assert!(forecast.duration_s() > 60.0);
+        assert!(forecast.cut_short.as_ref().unwrap().contains("energy"));
+    }
 }

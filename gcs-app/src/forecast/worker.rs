@@ -1,9 +1,13 @@
 //! The worker: newest plan in, analysis out.
+//!
+//! Two threads: one checks, compiles and previews, and keeps from plan to plan what the next edit doesn't reach, so that a
+//! plan can be dragged about; the other looks at the path of a plan that was left alone, which takes longer.
 
 use super::Shared;
+use super::preview::Forecaster;
 use aircraft::Profile;
 use flight_exec::review::{Conditions, review, review_extremes};
-use flight_plan::{FlightPlan, Problem, Program};
+use flight_plan::{FlightPlan, Memory, Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -23,7 +27,7 @@ pub struct Question {
 pub struct Analysis {
     /// The document's version it belongs to.
     pub version: u64,
-    /// The plan's hash.
+    /// The plan's hash; empty until it is known.
     pub hash: String,
     /// What the checks found, and the review of the path if it was made.
     pub problems: Vec<Problem>,
@@ -40,7 +44,7 @@ pub struct Analysis {
 impl Analysis {
     /// The hash of this version of the document, when it is known.
     pub fn hash_of(&self, version: u64) -> Option<&str> {
-        (self.version == version).then_some(self.hash.as_str())
+        Some(self.hash.as_str()).filter(|hash| self.version == version && !hash.is_empty())
     }
     /// Why there is nothing to be drawn, as a sentence.
     pub fn why_no_forecast(&self) -> String {
@@ -52,25 +56,45 @@ impl Analysis {
     }
 }
 
-/// Rest between edits before the worker begins.
+/// The plan has to be left alone for so long before its path is looked at.
 const REST: Duration = Duration::from_millis(80);
+
+/// What the threads find out.
+enum Found {
+    Analysis(Analysis),
+    /// Of this version.
+    Hash(u64, String),
+    /// Of the path of this version.
+    Problems(u64, Vec<Problem>),
+}
+
+/// A path to be looked at.
+struct Path {
+    version: u64,
+    program: Arc<Program>,
+}
 
 /// The window's end of the worker. Dropping it ends the worker.
 #[derive(Debug)]
 pub struct Worker {
     questions: Sender<Question>,
-    answers: Receiver<Analysis>,
+    answers: Receiver<Found>,
     asked: u64,
+    known: Analysis,
 }
 
 impl Worker {
-    /// Starts the thread; `wake` is called when there is an answer.
+    /// Starts the threads; `wake` is called when there is an answer.
     pub fn spawn(terrain: Arc<dyn Terrain>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
         let (questions, inbox) = channel();
         let (outbox, answers) = channel();
-        let work = move || work(&inbox, &outbox, &terrain, wake.as_ref());
+        let (paths, to_review) = channel();
+        let (reviewer, ground) = (Outbox { found: outbox.clone(), wake: wake.clone() }, terrain.clone());
+        let review = move || review_paths(&to_review, &reviewer, &ground);
+        std::thread::Builder::new().name("review".into()).spawn(review)?;
+        let work = move || Bench::new(terrain).work(&inbox, &Outbox { found: outbox, wake }, &paths);
         std::thread::Builder::new().name("forecast".into()).spawn(work)?;
-        Ok(Self { questions, answers, asked: 0 })
+        Ok(Self { questions, answers, asked: 0, known: Analysis::default() })
     }
 
     /// Asks about a plan, unless that was the last thing asked.
@@ -82,9 +106,23 @@ impl Worker {
         }
     }
 
-    /// The newest answer, if there is one.
-    pub fn answer(&self) -> Option<Analysis> {
-        self.answers.try_iter().last()
+    /// What is known now, if that is more than before.
+    pub fn answer(&mut self) -> Option<Analysis> {
+        let mut news = false;
+        while let Ok(found) = self.answers.try_recv() {
+            news = true;
+            match found {
+                Found::Analysis(analysis) => self.known = analysis,
+                Found::Hash(version, hash) if version == self.known.version => self.known.hash = hash,
+                Found::Problems(version, problems) if version == self.known.version => {
+                    self.known.problems.extend(problems);
+                    self.known.reviewed = true;
+                }
+                // of a version that is history
+                Found::Hash(..) | Found::Problems(..) => {}
+            }
+        }
+        news.then(|| self.known.clone())
     }
 
     /// Something is still being worked out, given the version last answered.
@@ -93,45 +131,103 @@ impl Worker {
     }
 }
 
-fn work(
-    inbox: &Receiver<Question>,
-    outbox: &Sender<Analysis>,
-    terrain: &Arc<dyn Terrain>,
-    wake: &(dyn Fn() + Send + Sync),
-) {
-    let tell = |analysis: &Analysis| {
-        let told = outbox.send(analysis.clone());
-        wake();
+/// Where answers go.
+struct Outbox {
+    found: Sender<Found>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl Outbox {
+    /// False: nobody listens any more.
+    fn tell(&self, found: Found) -> bool {
+        let told = self.found.send(found).is_ok();
+        (self.wake)();
         told
-    };
-    let mut last = Analysis::default();
-    let mut newer = None;
-    while let Some(question) = newest(newer.take(), inbox) {
-        let (analysis, program) = analyse(&question, terrain, last);
-        last = analysis;
-        if tell(&last).is_err() {
-            return;
+    }
+}
+
+/// What the forecasting thread keeps from plan to plan.
+struct Bench {
+    terrain: Arc<dyn Terrain>,
+    /// For which aircraft.
+    aircraft: Option<String>,
+    memory: Memory,
+    forecaster: Forecaster,
+    last: Shared,
+}
+
+impl Bench {
+    fn new(terrain: Arc<dyn Terrain>) -> Self {
+        let profile = Profile::default();
+        Self {
+            memory: Memory::new(profile.clone(), terrain.clone()),
+            forecaster: Forecaster::new(profile, terrain.clone()),
+            terrain,
+            aircraft: None,
+            last: Shared::default(),
         }
-        newer = inbox.try_recv().ok();
-        // the path takes longer to be looked at than the plan: not while the plan is being changed
-        if let Some(program) = program.filter(|_| newer.is_none()) {
-            let profile = profile_of(&program.plan);
-            let conditions = Conditions::default();
-            let found = review(&program, &profile, terrain, conditions);
-            last.problems.extend(found.iter().cloned());
-            last.reviewed = true;
-            if tell(&last).is_err() {
+    }
+
+    /// Answers the newest question. What takes long, and is of no use while the plan is being changed, comes later: its hash,
+    /// and what there is to be said about its path.
+    fn work(mut self, inbox: &Receiver<Question>, outbox: &Outbox, paths: &Sender<Path>) {
+        let mut next = inbox.recv().ok();
+        while let Some(question) = next.take() {
+            let question = inbox.try_iter().last().unwrap_or(question);
+            let (analysis, program) = self.analyse(&question);
+            if !outbox.tell(Found::Analysis(analysis)) {
                 return;
             }
-            let more = review_extremes(&program, &profile, terrain, conditions, &found, &mut |_, _| {
-                newer = inbox.try_recv().ok();
-                newer.is_none()
-            });
-            last.problems.extend(more.iter().cloned());
-            if !more.is_empty() && tell(&last).is_err() {
-                return;
+            next = inbox.try_recv().ok();
+            if next.is_none() {
+                let hash = program
+                    .as_ref()
+                    .map_or_else(|| flight_plan::hash(&question.plan), |p| p.hash().to_string());
+                outbox.tell(Found::Hash(question.version, hash));
+                next = match inbox.recv_timeout(REST) {
+                    Ok(newer) => Some(newer),
+                    Err(RecvTimeoutError::Disconnected) => return,
+                    Err(RecvTimeoutError::Timeout) => {
+                        let path = program.map(|program| Path { version: question.version, program });
+                        // without a reviewer the path stays unreviewed, which is shown
+                        path.into_iter().for_each(|path| drop(paths.send(path)));
+                        inbox.recv().ok()
+                    }
+                };
             }
         }
+    }
+
+    /// Everything but the hash and the review of the path, and the program if the plan can be flown.
+    fn analyse(&mut self, question: &Question) -> (Analysis, Option<Arc<Program>>) {
+        let plan = &question.plan;
+        if self.aircraft.as_ref() != Some(&plan.aircraft) {
+            let profile = profile_of(plan);
+            self.memory = Memory::new(profile.clone(), self.terrain.clone());
+            self.forecaster = Forecaster::new(profile, self.terrain.clone());
+            self.aircraft = Some(plan.aircraft.clone());
+        }
+        let (program, problems) = match flight_plan::compile_again(plan.clone(), &mut self.memory) {
+            Ok(program) => (Some(Arc::new(program)), None),
+            Err(problems) => (None, Some(problems)),
+        };
+        let problems = problems.or_else(|| program.as_ref().map(|p| p.warnings.clone())).unwrap_or_default();
+        let flown = match &program {
+            Some(program) => self.forecaster.fly(program),
+            None => Err("This plan can't be flown yet: see its problems.".into()),
+        };
+        let no_forecast = flown.map(|forecast| self.last = forecast).err();
+        let version = question.version;
+        let analysis = Analysis {
+            version,
+            hash: String::new(),
+            problems,
+            reviewed: program.is_none(),
+            forecast: self.last.clone(),
+            forecast_version: version,
+            no_forecast,
+        };
+        (analysis, program)
     }
 }
 
@@ -139,47 +235,23 @@ fn profile_of(plan: &FlightPlan) -> Profile {
     Profile::by_name(&plan.aircraft).unwrap_or_default()
 }
 
-/// The newest question once there was a rest; `None` when nobody asks any more.
-fn newest(first: Option<Question>, inbox: &Receiver<Question>) -> Option<Question> {
-    let mut question = match first {
-        Some(question) => question,
-        None => inbox.recv().ok()?,
-    };
-    loop {
-        match inbox.recv_timeout(REST) {
-            Ok(newer) => question = newer,
-            Err(RecvTimeoutError::Timeout) => return Some(question),
-            Err(RecvTimeoutError::Disconnected) => return None,
+/// Looks at the path of the newest plan that was left alone, then at the extremes of its variables; the others can wait for ever.
+fn review_paths(paths: &Receiver<Path>, outbox: &Outbox, terrain: &Arc<dyn Terrain>) {
+    let mut next = paths.recv().ok();
+    while let Some(path) = next.take() {
+        let Path { version, program } = paths.try_iter().last().unwrap_or(path);
+        let (profile, conditions) = (profile_of(&program.plan), Conditions::default());
+        let found = review(&program, &profile, terrain, conditions);
+        if !outbox.tell(Found::Problems(version, found.clone())) {
+            return;
         }
+        let more = review_extremes(&program, &profile, terrain, conditions, &found, &mut |_, _| {
+            next = paths.try_recv().ok();
+            next.is_none()
+        });
+        if !more.is_empty() && !outbox.tell(Found::Problems(version, more)) {
+            return;
+        }
+        next = next.or_else(|| paths.recv().ok());
     }
-}
-
-/// Everything but the review of the path, and the program if the plan can be flown.
-fn analyse(
-    question: &Question,
-    terrain: &Arc<dyn Terrain>,
-    last: Analysis,
-) -> (Analysis, Option<Arc<Program>>) {
-    let plan = &question.plan;
-    let profile = profile_of(plan);
-    let (program, problems, hash) = match flight_plan::compile(plan.clone(), &profile, terrain.as_ref()) {
-        Ok(program) => {
-            let (problems, hash) = (program.warnings.clone(), program.hash().to_string());
-            (Some(Arc::new(program)), problems, hash)
-        }
-        Err(problems) => (None, problems, flight_plan::hash(plan)),
-    };
-    let flown = match &program {
-        Some(program) => super::preview::fly(program, &profile, terrain),
-        None => Err("This plan can't be flown yet: see its problems.".into()),
-    };
-    let (forecast, no_forecast) = match flown {
-        Ok(forecast) => (Arc::new(forecast), None),
-        Err(why) => (last.forecast, Some(why)),
-    };
-    let version = question.version;
-    let reviewed = program.is_none();
-    let analysis =
-        Analysis { version, hash, problems, reviewed, forecast, forecast_version: version, no_forecast };
-    (analysis, program)
 }

@@ -6,6 +6,7 @@ use flight_plan::{
     VariableValue, Variables, expression,
 };
 use geometry::LatLon;
+use std::collections::HashMap;
 
 /// Something on the map that can be dragged.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +96,8 @@ impl Sketch {
     /// Of a plan whose variables have these values.
     pub fn new(plan: &FlightPlan, variables: &Variables) -> Self {
         let home = plan.home().or(plan.runways.first()).map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
-        let reader = Reader { plan, env: Env { variables, flight: FlightState::on_ground(home) } };
+        let fixes = plan.fixes.iter().rev().map(|fix| (&fix.id, fix.position)).collect();
+        let reader = Reader { plan, fixes, env: Env { variables, flight: FlightState::on_ground(home) } };
         let mut sketch = Self::default();
         for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
             sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
@@ -209,13 +211,14 @@ impl Sketch {
 /// Reads places and numbers with the variables as they are.
 struct Reader<'a> {
     plan: &'a FlightPlan,
+    fixes: HashMap<&'a Id, LatLon>,
     env: Env<'a>,
 }
 
 impl Reader<'_> {
     fn place(&self, place: &Place) -> Option<LatLon> {
         let at = match place {
-            Place::Fix(id) => self.plan.fix(id)?.position,
+            Place::Fix(id) => *self.fixes.get(id)?,
             Place::Position(Value::Constant(at)) => *at,
             Place::Position(Value::Expression(source)) => {
                 expression::compile(source, self.plan).ok()?.position(&self.env).ok()?
