@@ -133,7 +133,8 @@ impl MapState {
         furniture::draw(&painter, view, scene, p);
         if response.clicked() && !on_handle {
             let picked = response.interact_pointer_pos().and_then(|at| path::leg_near(at, view, scene));
-            queue.view(ViewCommand::Select(picked.map(Selection::Leg)));
+            let written = picked.map(|leg| Selection::Leg(scene.document.written(&leg)));
+            queue.view(ViewCommand::Select(written));
         }
     }
 

@@ -93,8 +93,10 @@ pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Pale
         let stroke = Stroke::new(if is_default { 2.6 } else { 1.8 }, p.active);
         let style = if is_default { Style::Solid } else { Style::Dashed };
         polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
-        if let Some(end) = option.preview.last() {
-            let at = view.place(*end) + vec2(6.0, -6.0);
+        // not at its end, where the name of a fix is
+        let places: Vec<Pos2> = option.preview.iter().map(|at| view.place(*at)).collect();
+        if let Some(middle) = polyline::middle(&places) {
+            let at = middle + vec2(6.0, -6.0);
             let name = format!("{number} {}", option.label);
             text::haloed(painter, at, Align2::LEFT_BOTTOM, &name, 12.0, p.active, p);
         }

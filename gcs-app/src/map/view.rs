@@ -57,6 +57,11 @@ impl View {
         }
     }
 
+    /// How often the scale has doubled: views of the same octave differ by less than a factor of two.
+    pub fn octave(&self) -> i32 {
+        self.scale.max(1.0).log2().floor() as i32
+    }
+
     /// On the screen.
     pub fn screen(&self, m: Mercator) -> Pos2 {
         let middle = self.rect.center();

@@ -5,6 +5,7 @@ mod leg;
 use super::Scene;
 use super::field::{self, Change};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Selection};
+use crate::document::procedure_leg;
 use crate::theme;
 use crate::units::{self, Units};
 use egui::{RichText, ScrollArea, Ui};
@@ -22,9 +23,12 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let plan = scene.document.plan();
         match &scene.view.selection {
             None => summary(ui, scene),
-            Some(Selection::Leg(id)) => {
-                found(ui, plan.leg(id), |ui, context| leg::show(ui, scene, &context, queue))
-            }
+            Some(Selection::Leg(id)) => match plan.leg(id) {
+                Some(context) => leg::show(ui, scene, &context, queue),
+                None => found(ui, procedure_leg(plan, id), |ui, (procedure, leg)| {
+                    leg::show_in_procedure(ui, scene, procedure, leg)
+                }),
+            },
             Some(Selection::Stage(id)) => {
                 found(ui, plan.stage(id), |ui, stage| show_stage(ui, scene, stage, queue))
             }

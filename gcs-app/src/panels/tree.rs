@@ -202,8 +202,19 @@ impl Builder<'_> {
     fn procedures(&mut self, plan: &FlightPlan) {
         for procedure in &plan.procedures {
             let parameters: Vec<&str> = procedure.parameters.iter().map(|p| p.name.as_str()).collect();
-            let text = title(&procedure.name, procedure.id.as_str());
-            self.item(1, "PROC", &text, parameters.join(", "), Selection::Procedure(procedure.id.clone()));
+            let fold = format!("procedure {}", procedure.id);
+            let hidden = self.folded.contains(&fold);
+            self.push(Row {
+                depth: 1,
+                tag: "PROC",
+                text: title(&procedure.name, procedure.id.as_str()),
+                detail: parameters.join(", "),
+                selection: Some(Selection::Procedure(procedure.id.clone())),
+                folds: (!procedure.legs.is_empty()).then_some(fold),
+            });
+            if !hidden {
+                self.legs(&procedure.legs, 2);
+            }
         }
     }
 

@@ -186,3 +186,15 @@ fn keys_delete_and_reorder_the_selected_leg() {
     window.steps(2);
     assert_eq!(order(&window), ["side1", "side3", "side4"]);
 }
+
+const PROCEDURE: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Called" aircraft="trainer">
+  <procedures><procedure id="look" reference="36.33 -84.16" bearing="0"><TF id="inner" lat="36.33" lon="-84.16"/></procedure></procedures>
+  <mainPlan><stage id="m" type="mission"/></mainPlan></flightPlan>"#;
+
+#[test]
+fn a_leg_inside_a_procedure_can_be_selected_in_the_tree() {
+    let mut window = Window::open(PROCEDURE);
+    window.click("TF inner");
+    assert_eq!(window.app().view().selection, Some(Selection::Leg("inner".into())));
+    assert!(!window.shows("It is no longer in the plan."));
+}

@@ -10,7 +10,7 @@ use egui::{RichText, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{
     Act, Area, Call, DecideBefore, Edit, Id, Leg, LegAction, LegContext, LegKind, Pattern, Place,
-    PlanWaypoint, Scan, Trigger, TurnDirection, Value,
+    PlanWaypoint, Procedure, Scan, Trigger, TurnDirection, Value,
 };
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
@@ -34,6 +34,20 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, context: &LegContext<'_>, queue: &mu
     if ui.button("Delete this leg").clicked() {
         queue.edit(Edit::DeleteLeg { leg: leg.id.clone() });
     }
+}
+
+/// Draws the properties of a leg inside a procedure, which the window shows and doesn't change.
+pub fn show_in_procedure(ui: &mut Ui, scene: &Scene<'_>, procedure: &Procedure, leg: &Leg) {
+    heading(ui, leg.kind_name(), &leg.id);
+    field::row(ui, "Procedure", |ui| ui.label(procedure.id.as_str()));
+    let mut nothing = Queue::default();
+    ui.add_enabled_ui(false, |ui| {
+        altitude_row(ui, scene.units(), &leg.id, leg.altitude.as_ref(), &mut nothing);
+        speed_row(ui, scene.units(), &leg.id, leg.speed_mps.as_ref(), &mut nothing);
+        kind_rows(ui, scene, leg, &mut nothing);
+        number_rows(ui, scene.units(), leg, &mut nothing);
+    });
+    action_rows(ui, leg);
 }
 
 /// Commands that concern this leg of the plan that is being flown.
