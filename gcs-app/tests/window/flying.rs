@@ -24,6 +24,7 @@ fn report(hash: &str, acceptable: bool) -> ProposalReport {
         differs_in_m: None,
         differs_in_s: None,
         entry_needed: false,
+        entries: Vec::new(),
     }
 }
 

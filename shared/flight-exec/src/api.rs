@@ -11,7 +11,7 @@ pub use act::ResolvedAct;
 pub use command::{Command, Refusal};
 pub use event::Event;
 pub use place::{BranchOption, Branching, DecisionRequest, IterationPlace, Phase, PlacePointer, Status};
-pub use proposal::ProposalReport;
+pub use proposal::{EntryReport, ProposalReport};
 pub use waypoint::{Action, AircraftState, FARTHEST_M, Token, Waypoint};
 
 use flight_plan::Id;

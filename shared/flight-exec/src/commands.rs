@@ -1,12 +1,12 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
-use crate::api::{Command, Event, Output, Phase, Refusal};
+use crate::api::{Action, Command, Event, Output, Phase, Refusal};
 use crate::cursor::control::is_call;
 use crate::cursor::{Cursor, Doing};
 use crate::executor::{Executor, refusal};
 use crate::handed::{Handed, Onward};
 use crate::world::LoopCount;
-use flight_plan::{Id, Leg, LegKind, VariableValue};
+use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue, Variables};
 
 /// Most loops whose counts are set by command at a time.
 const MOST_COUNTS: usize = 64;
@@ -45,8 +45,11 @@ impl Executor {
         }
         self.state.started_s = Some(self.state.clock_s);
         self.state.emergency = None;
+        self.reset_variables(out);
         self.state.decisions.clear();
         self.state.requested.clear();
+        self.state.late.clear();
+        self.state.ahead = None;
         self.state.counts.clear();
         self.state.passages.clear();
         self.state.tail = None;
@@ -116,6 +119,7 @@ impl Executor {
 
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
+        self.check_taken_off()?;
         if let Some(wait) = self.state.wait {
             self.end_wait(wait, out);
             return Ok(());
@@ -161,7 +165,30 @@ impl Executor {
         here
     }
 
+    /// On the ground there is nothing to be flown but the take-off.
+    fn check_taken_off(&self) -> Result<(), Refusal> {
+        let takes_off = |h: &Handed| matches!(h.waypoint.action, Action::TakeOff { .. });
+        let on_ground = self.state.aircraft.as_ref().is_none_or(|a| a.on_ground);
+        if on_ground && self.state.handed.front().is_some_and(takes_off) {
+            let reason = "the aircraft has not taken off yet: wait until it is in the air";
+            return Err(refusal("on-ground", reason));
+        }
+        Ok(())
+    }
+
+    /// In the air nobody takes off.
+    pub(crate) fn check_not_a_take_off(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
+        let stage = program.stage(target).filter(|_| target.indices.is_empty());
+        let takes_off = stage.is_some_and(|s| s.kind == StageKind::TakeOff);
+        if takes_off && self.state.aircraft.as_ref().is_some_and(|a| !a.on_ground) {
+            return Err(refusal("in-the-air", "the aircraft is in the air already: name another leg"));
+        }
+        Ok(())
+    }
+
     fn go_to(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        self.flying_program()?;
+        self.check_taken_off()?;
         let section = self.state.tail.as_ref().and_then(|t| t.section);
         let cursor = self.cursor_at(leg, section)?;
         self.jump(cursor, out);
@@ -176,6 +203,7 @@ impl Executor {
             refusal("unknown-leg", reason)
         };
         let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
+        self.check_not_a_take_off(&program, &target)?;
         let now = self.place_reached();
         let mut cursor = now.moved_to(&target, &self.world());
         cursor.move_path_to(self.here_at_level_of(&now));
@@ -256,24 +284,47 @@ impl Executor {
         }
         let set = self.state.variables.set(&self.program.plan, name, value.clone());
         set.map_err(|e| refusal("bad-variable", e.to_string()))?;
+        if !self.is_flying() && !self.state.written.contains(name) {
+            self.state.written.push(name.clone());
+        }
         out.push(Output::Event(Event::VariableChanged { name: name.clone(), value, by: by.into() }));
         let earliest_s = self.state.last_refresh_s.map_or(0.0, |last| last + self.config.debounce_s);
         self.state.refresh_due_s = Some(self.state.clock_s.max(earliest_s));
         Ok(())
     }
 
-    /// The variables have changed: regenerates the pattern being flown and everything beyond it.
+    /// A flight begins with the plan's values, and those written since the last one: not with what that one left behind.
+    fn reset_variables(&mut self, out: &mut Vec<Output>) {
+        let initial = Variables::initial(&self.program.plan);
+        let written = std::mem::take(&mut self.state.written);
+        for name in self.program.plan.variables.iter().map(|v| &v.name).filter(|name| !written.contains(name))
+        {
+            let Some(value) =
+                initial.get(name).filter(|value| self.state.variables.get(name) != Some(*value))
+            else {
+                continue;
+            };
+            if self.state.variables.set(&self.program.plan, name, value.clone()).is_ok() {
+                let (name, value, by) = (name.clone(), value.clone(), "plan".into());
+                out.push(Output::Event(Event::VariableChanged { name, value, by }));
+            }
+        }
+    }
+
+    /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
     ///
-    /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no pattern
-    /// are refused by an event while the old pattern goes on.
+    /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no such leg
+    /// are refused by an event while the old one goes on.
     pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
-        let keep = self.alterable_from().max(1).min(self.state.handed.len());
+        let near = self.alterable_from();
+        let after_current = near.max(1).min(self.state.handed.len());
+        let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
         // a pattern that is over is not to be flown once more
         let begun = self.at_the_leg_begun(keep, &self.world());
         let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
-        match cursor.refresh_pattern(&self.world()) {
+        match cursor.refresh_leg(&self.world()) {
             Ok(true) => {
                 for handed in self.state.handed.iter_mut().take(keep) {
                     handed.pinned = true;

@@ -8,6 +8,7 @@ mod emit;
 mod enter;
 mod notes;
 mod place;
+mod refresh;
 
 pub use notes::{Mark, Notes, Trouble};
 
@@ -52,11 +53,26 @@ pub struct Cursor {
     /// chosen once more when the path is laid out anew from behind it.
     #[serde(default)]
     pub left_or_not: Option<(u64, bool)>,
+    /// What the points of this passage were laid out from.
+    #[serde(default)]
+    pub origin: Option<Origin>,
     /// The points of this passage (kept aside in a snapshot).
     #[serde(skip)]
     pub expansion: Option<Arc<Expansion>>,
     /// How often each intersection was passed.
     pub crossings: Vec<(Id, u64)>,
+    /// Those that are not listed any more were passed at most so often.
+    #[serde(default)]
+    pub uncounted: u64,
+}
+
+/// What a leg was laid out from, so that it can be told whether its own values have changed since.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// The end of the path.
+    pub path: PathState,
+    /// The wind that its turns are wide enough for, m/s.
+    pub wind_mps: f64,
 }
 
 /// What a cursor is doing at its leg.
@@ -165,8 +181,10 @@ impl Cursor {
             passage,
             given: 0,
             left_or_not: None,
+            origin: None,
             expansion: None,
             crossings: Vec::new(),
+            uncounted: 0,
         }
     }
 
@@ -258,6 +276,6 @@ impl Cursor {
 
     /// How often an intersection has been passed.
     pub fn crossings_of(&self, leg: &Id) -> u64 {
-        self.crossings.iter().find(|(id, _)| id == leg).map_or(0, |(_, n)| *n)
+        self.crossings.iter().find(|(id, _)| id == leg).map_or(self.uncounted, |(_, n)| *n)
     }
 }

@@ -1,12 +1,16 @@
 //! Intersections: who is asked, until when, and what was decided.
 
+mod lookout;
+
 use crate::api::{BranchOption, DecisionRequest, Event, Output, Refusal};
 use crate::choice::{By, Choice};
-use crate::cursor::Step;
+use crate::cursor::{Cursor, Step};
 use crate::executor::{Executor, refusal};
 use crate::world::World;
 use flight_plan::{Branch, DecideBefore, Fork, Id, Leg, LegPath, Program};
 use geometry::LatLon;
+pub(crate) use lookout::Ahead;
+use lookout::Way;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -43,16 +47,11 @@ impl Executor {
     /// Asks for decisions that came into the horizon, and makes those final whose deadline has passed.
     pub(crate) fn attend_decisions(&mut self, out: &mut Vec<Output>) {
         for pending in self.pending() {
-            let time_left_s = self.left_for(&pending).map_or(f64::INFINITY, |(_, left_s)| left_s);
             let key = (pending.leg.clone(), pending.crossing);
-            let soon = time_left_s <= self.config.ask_ahead_s;
-            if soon && !self.state.requested.contains(&key) {
-                self.state.requested.push(key);
-                if let Some(request) = self.request_for(&pending).filter(|_| !self.is_decided(&pending)) {
-                    out.push(Output::Event(Event::DecisionRequested(request)));
-                }
+            if !self.state.requested.contains(&key) {
+                self.ask_for(&pending, key, out);
             }
-            let due = time_left_s <= 0.0;
+            let due = self.left_for(&pending).is_some_and(|left| left.seconds <= 0.0);
             if let Some(branch) = pending.branch.clone().filter(|_| due && !self.is_decided(&pending)) {
                 let Pending { leg, crossing, by, .. } = pending;
                 self.record(Decision { leg, crossing, branch, by }, out);
@@ -60,10 +59,30 @@ impl Executor {
         }
     }
 
+    /// Once for each passing, when it is due soon. What comes too late to be asked in time is open until it can't be changed any
+    /// more.
+    fn ask_for(&mut self, pending: &Pending, key: (Id, u64), out: &mut Vec<Output>) {
+        let Some(left) = self.left_for(pending).filter(|l| l.seconds <= self.config.ask_ahead_s) else {
+            return;
+        };
+        self.state.requested.push(key.clone());
+        if self.is_decided(pending) {
+            return;
+        }
+        if left.seconds <= 0.0 && !self.is_too_close(pending) {
+            self.state.late.push(key);
+        }
+        out.extend(self.request_for(pending).map(|request| Output::Event(Event::DecisionRequested(request))));
+    }
+
     /// The first open question, for the status.
     pub(crate) fn open_decision(&self) -> Option<DecisionRequest> {
-        let open = self.pending().into_iter().find(|p| !self.is_decided(p))?;
-        self.request_for(&open)
+        let open = self.pending().into_iter().find(|p| !self.is_decided(p));
+        let beyond = || {
+            let ahead = self.state.ahead.as_ref()?;
+            (!self.has_decision(&ahead.request.leg, ahead.crossing)).then(|| ahead.request.clone())
+        };
+        open.map_or_else(beyond, |open| self.request_for(&open))
     }
 
     /// A decision is good for the passing of the intersection that is ahead, asked for or not; else for the next one, as long
@@ -112,6 +131,7 @@ impl Executor {
     pub(crate) fn forget_decision(&mut self, leg: &Id, crossing: u64) {
         self.state.decisions.retain(|d| d.leg != *leg || d.crossing > crossing);
         self.state.requested.retain(|(l, n)| l != leg || *n > crossing);
+        self.state.late.retain(|(l, n)| l != leg || *n > crossing);
     }
 
     /// Keeps a decision and tells about it.
@@ -152,45 +172,51 @@ impl Executor {
     }
 
     fn request_for(&self, pending: &Pending) -> Option<DecisionRequest> {
-        let Fork { branches, default, .. } = self.program.leg(&pending.leg)?.as_fork()?;
-        let (distance_left_m, time_left_s) = self.left_for(pending)?;
+        let before = &self.state.handed.get(pending.index)?.before;
+        self.request(&pending.leg, pending.crossing, before, self.left_for(pending)?)
+    }
+
+    /// What is asked at an intersection, seen by the cursor that stands before it.
+    pub(crate) fn request(
+        &self,
+        leg: &Id,
+        crossing: u64,
+        before: &Cursor,
+        left: Way,
+    ) -> Option<DecisionRequest> {
+        let Fork { branches, default, .. } = self.program.leg(leg)?.as_fork()?;
         let option = |branch: &Branch| BranchOption {
             branch: branch.id.clone(),
             label: branch.label.clone(),
-            preview: self.preview_of(pending, &branch.id).unwrap_or_default(),
+            preview: self.preview_of(leg, crossing, &branch.id, before.clone()),
         };
         Some(DecisionRequest {
-            leg: pending.leg.clone(),
+            leg: leg.clone(),
             options: branches.iter().map(option).collect(),
             default: default.cloned(),
-            distance_left_m,
-            time_left_s,
+            distance_left_m: left.metres,
+            time_left_s: left.seconds,
         })
     }
 
-    /// Metres of path and seconds left until a decision is due.
-    fn left_for(&self, pending: &Pending) -> Option<(f64, f64)> {
+    /// Way left until a decision is due.
+    fn left_for(&self, pending: &Pending) -> Option<Way> {
         let Fork { decide_before, .. } = self.program.leg(&pending.leg)?.as_fork()?;
+        let key = (pending.leg.clone(), pending.crossing);
+        let late = self.state.late.contains(&key);
+        let lead = if late { DecideBefore::Distance(self.stopping_distance_m()) } else { decide_before };
         let handed = self.state.handed.get(pending.index)?;
-        let path_m = self.path_left_m(handed.before.path.distance_m);
-        let speed_mps = handed.waypoint.airspeed_mps.max(1.0);
-        let left_m = match decide_before {
-            DecideBefore::Distance(metres) => path_m - metres,
-            DecideBefore::Time(seconds) => path_m - seconds * speed_mps,
-        };
-        Some((left_m.max(0.0), left_m.max(0.0) / speed_mps))
+        let way =
+            Way { metres: self.path_left_m(handed.before.path.distance_m), ..self.way_along(pending.index) };
+        Some(way.until_due(lead))
     }
 
     /// The beginning of the path that a branch would give, laid out by the cursor that stands before the intersection.
-    fn preview_of(&self, pending: &Pending, branch: &Id) -> Option<Vec<LatLon>> {
-        let mut cursor = self.state.handed.get(pending.index)?.before.clone();
-        let Pending { leg, crossing, .. } = pending;
+    fn preview_of(&self, leg: &Id, crossing: u64, branch: &Id, mut cursor: Cursor) -> Vec<LatLon> {
         let by = By::Somebody("preview".into());
-        let mut decisions =
-            vec![Decision { leg: leg.clone(), crossing: *crossing, branch: branch.clone(), by }];
-        decisions.extend(
-            self.state.decisions.iter().filter(|d| d.leg != *leg || d.crossing != *crossing).cloned(),
-        );
+        let mut decisions = vec![Decision { leg: leg.clone(), crossing, branch: branch.clone(), by }];
+        decisions
+            .extend(self.state.decisions.iter().filter(|d| d.leg != *leg || d.crossing != crossing).cloned());
         let world = World { decisions: &decisions, ..self.world() };
         let begin_m = cursor.path.distance_m;
         let mut positions = vec![cursor.path.last.position];
@@ -198,7 +224,7 @@ impl Executor {
             let Step::Waypoint(emission) = cursor.next(&world) else { break };
             positions.push(emission.position);
         }
-        Some(positions)
+        positions
     }
 
     /// The way may still lead to an intersection.

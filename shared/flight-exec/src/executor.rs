@@ -143,12 +143,16 @@ impl Executor {
         if self.state.refresh_due_s.is_some_and(|due| due <= by_now_s) {
             self.refresh(out);
         }
-        if self.state.review_due_s <= by_now_s {
+        let reviews = self.state.review_due_s <= by_now_s;
+        if reviews {
             self.state.review_due_s = self.state.clock_s + self.config.review_s;
             self.review(out);
         }
         self.fill(out);
         self.attend_decisions(out);
+        if reviews {
+            self.look_ahead(out);
+        }
     }
 
     /// Between start and finish, holding or not.

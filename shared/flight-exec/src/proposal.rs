@@ -1,15 +1,17 @@
 //! A plan put forward: whether it may be committed, what it changes, and where the aircraft would go.
 
-use crate::api::{Answer, Command, ProposalReport, Refusal};
+use crate::api::{Answer, Command, EntryReport, ProposalReport, Refusal};
 use crate::executor::{Executor, refusal};
-use flight_plan::{FlightPlan, Id, Leg, LegKind, Problem, Program, Stage};
-use std::collections::BTreeMap;
+use flight_plan::diff::changes;
+use flight_plan::{Change, Fate, Id, Problem, Program};
 use std::sync::Arc;
 
 /// Problems that a report lists.
 const PROBLEMS_MAX: usize = 50;
 /// Who asks when it is only tried what a proposal would do.
 const NOBODY: &str = "trial";
+/// So many legs are tried that might be entered.
+const MOST_ENTRIES: usize = 24;
 
 impl Executor {
     /// Keeps a proposal that may be committed, and tells what it would do. One that may not takes the place of an earlier
@@ -43,12 +45,13 @@ impl Executor {
             acceptable: !forbidden,
             problems,
             entry_needed: false,
-            ..differences(&self.program.plan, &program.plan)
+            ..differences(&self.program, program)
         };
-        match self.outcome(program) {
+        match self.outcome(program, None) {
             Ok(after) => self.tell_outcome(&after, &mut report),
             Err(refused) => {
                 report.entry_needed = refused.code == "entry-needed";
+                report.entries = self.entries(program);
                 report.problems.push(refused.reason);
             }
         }
@@ -56,19 +59,37 @@ impl Executor {
     }
 
     /// What a commit now would lead to: tried on a copy.
-    fn outcome(&self, program: &Arc<Program>) -> Result<Executor, Refusal> {
+    fn outcome(&self, program: &Arc<Program>, entry: Option<&Id>) -> Result<Executor, Refusal> {
         let mut copy = self.clone();
         let mut unheard = Vec::new();
-        copy.commit(program.hash(), None, &mut unheard)?;
+        copy.commit(program.hash(), entry, &mut unheard)?;
         if !copy.is_flying() {
             copy.command(Command::Start, NOBODY, &mut unheard)?;
         }
         Ok(copy)
     }
 
-    fn tell_outcome(&self, after: &Executor, report: &mut ProposalReport) {
+    /// Where each leg of the plan being flown that can be entered would lead; of very many, the first.
+    fn entries(&self, program: &Arc<Program>) -> Vec<EntryReport> {
+        let plan = self.state.emergency.as_ref().map(|e| &e.plan);
+        let section = plan.and_then(|id| program.plan.emergency_plans.iter().position(|p| p.id == *id));
+        let legs = program.stages(section).iter().flat_map(|stage| &stage.legs).take(MOST_ENTRIES);
+        let tried = legs.filter_map(|leg| {
+            let after = self.outcome(program, Some(&leg.id)).ok()?;
+            let position = after.state.handed.front()?.waypoint.position;
+            let in_m = after.to_current_m();
+            Some(EntryReport { leg: leg.id.clone(), position, in_m, in_s: in_m / self.ground_speed_mps() })
+        });
+        tried.collect()
+    }
+
+    fn ground_speed_mps(&self) -> f64 {
         let aircraft = self.state.aircraft.as_ref();
-        let speed_mps = aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.profile.min_airspeed_mps);
+        aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.profile.min_airspeed_mps)
+    }
+
+    fn tell_outcome(&self, after: &Executor, report: &mut ProposalReport) {
+        let speed_mps = self.ground_speed_mps();
         let next = after.state.handed.front();
         report.next_leg = next.map(|h| h.place.leg.clone());
         report.next_position = next.map(|h| h.waypoint.position);
@@ -99,23 +120,36 @@ fn listed<'a>(problems: impl Iterator<Item = &'a Problem>) -> Vec<String> {
     told
 }
 
-/// A report that knows only which legs and stages differ: those only in the new plan, only in the old one, and those that are not the
-/// same (a loop's body counts for itself).
-fn differences(old: &FlightPlan, new: &FlightPlan) -> ProposalReport {
-    let (old_parts, new_parts) = (parts(old), parts(new));
-    let only = |a: &BTreeMap<Id, Part>, b: &BTreeMap<Id, Part>| -> Vec<Id> {
-        a.keys().filter(|id| !b.contains_key(*id)).cloned().collect()
+/// A report that knows only which legs and stages differ, calls being the legs they stand for: those only in the new plan, only
+/// in the old one, and those that are another leg, at another place, or over fixes that moved (a loop's body counts for itself).
+fn differences(old: &Program, new: &Program) -> ProposalReport {
+    let (mut added, mut removed, mut changed) = (Vec::new(), Vec::new(), Vec::new());
+    for Change { part, id, fate, .. } in changes(old.flown(), new.flown()) {
+        let list = match (part, fate) {
+            ("leg", Fate::Added) => &mut added,
+            ("leg", Fate::Removed) => &mut removed,
+            ("leg" | "stage", Fate::Changed | Fate::Moved) => &mut changed,
+            _ => continue,
+        };
+        // not the legs of procedures: what is flown are their calls
+        list.extend(id.filter(|id| new.path(id).or(old.path(id)).is_some()));
+    }
+    // those of whole emergency plans too
+    let stages = |of: &Program, but: &Program| -> Vec<Id> {
+        let ids = of.flown().all_stages().map(|(_, stage)| &stage.id);
+        ids.filter(|id| but.path(id).is_none()).cloned().collect()
     };
-    let both = new_parts.iter().filter_map(|(id, part)| Some((id, *part == *old_parts.get(id)?)));
-    let (same, changed): (Vec<_>, Vec<_>) = both.partition(|(_, same)| *same);
+    added.extend(stages(new, old));
+    removed.extend(stages(old, new));
+    let parts = new.flown().all_stages().count() + new.flown().all_legs().len();
     ProposalReport {
         hash: "".into(),
         acceptable: false,
         problems: Vec::new(),
-        added: only(&new_parts, &old_parts),
-        removed: only(&old_parts, &new_parts),
-        changed: changed.into_iter().map(|(id, _)| id.clone()).collect(),
-        unchanged: same.len(),
+        unchanged: parts.saturating_sub(added.len() + changed.len()),
+        added,
+        removed,
+        changed,
         next_leg: None,
         next_position: None,
         next_in_m: None,
@@ -123,37 +157,8 @@ fn differences(old: &FlightPlan, new: &FlightPlan) -> ProposalReport {
         differs_in_m: None,
         differs_in_s: None,
         entry_needed: false,
+        entries: Vec::new(),
     }
-}
-
-/// A leg or stage without what is inside it, in its list.
-#[derive(PartialEq)]
-enum Part {
-    Leg(Box<Leg>, usize),
-    Stage(Box<Stage>),
-}
-
-fn parts(plan: &FlightPlan) -> BTreeMap<Id, Part> {
-    let stages = plan
-        .all_stages()
-        .map(|(_, s)| (s.id.clone(), Part::Stage(Box::new(Stage { legs: Vec::new(), ..s.clone() }))));
-    let legs = plan.all_legs();
-    let legs = legs.iter().map(|c| (c.leg.id.clone(), Part::Leg(Box::new(without_body(c.leg)), c.index)));
-    stages.chain(legs).collect()
-}
-
-fn without_body(leg: &Leg) -> Leg {
-    let kind = match &leg.kind {
-        LegKind::Iterative { form, count, until, turn, .. } => LegKind::Iterative {
-            form: *form,
-            count: count.clone(),
-            until: until.clone(),
-            turn: *turn,
-            body: Vec::new(),
-        },
-        other => other.clone(),
-    };
-    Leg { kind, ..leg.clone() }
 }
 
 #[cfg(test)]

@@ -200,6 +200,7 @@ impl Executor {
             self.state.emergency = None;
         }
         self.state.handed.clear();
+        self.state.ahead = None;
         self.state.held_at = None;
         let more = self.horizon(0, cursor.path.time_s);
         let stretch = lay_out(&cursor, &self.world(), false, false, more);

@@ -3,7 +3,7 @@
 use crate::actions::{Passage, Wait};
 use crate::api::{AircraftState, Phase};
 use crate::cursor::{Cursor, Trouble};
-use crate::decision::Decision;
+use crate::decision::{Ahead, Decision};
 use crate::handed::{Handed, Onward};
 use crate::world::LoopCount;
 use flight_plan::{Cause, Id, Variables};
@@ -16,6 +16,9 @@ use std::collections::VecDeque;
 pub(crate) struct State {
     pub phase: Phase,
     pub variables: Variables,
+    /// Those written since the last flight.
+    #[serde(default)]
+    pub written: Vec<Id>,
     pub handed: VecDeque<Handed>,
     /// Where the path goes on after the last waypoint handed out.
     pub tail: Option<Cursor>,
@@ -31,6 +34,12 @@ pub(crate) struct State {
     pub announced: Option<(u64, Id)>,
     pub decisions: Vec<Decision>,
     pub requested: Vec<(Id, u64)>,
+    /// Those of them that came into sight after their deadline.
+    #[serde(default)]
+    pub late: Vec<(Id, u64)>,
+    /// A question about an intersection beyond what is handed out.
+    #[serde(default)]
+    pub ahead: Option<Ahead>,
     pub counts: Vec<LoopCount>,
     /// See [`crate::world::World::released`].
     pub released: Option<u64>,
@@ -71,6 +80,7 @@ impl Default for State {
         Self {
             phase: Phase::Idle,
             variables: Variables::default(),
+            written: Vec::new(),
             handed: VecDeque::new(),
             tail: None,
             onward: Onward::Open,
@@ -80,6 +90,8 @@ impl Default for State {
             announced: None,
             decisions: Vec::new(),
             requested: Vec::new(),
+            late: Vec::new(),
+            ahead: None,
             counts: Vec::new(),
             released: None,
             waited: None,

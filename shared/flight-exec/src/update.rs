@@ -62,7 +62,7 @@ impl Executor {
             handed.before = bookmark.clone();
             handed.pinned = true;
         }
-        let refreshed = if same { Ok(false) } else { onward.refresh_pattern(&self.world()) };
+        let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
         }
@@ -73,7 +73,7 @@ impl Executor {
         let world = self.world();
         let current = self.state.handed.front().map(|h| &h.place.leg);
         let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
-        if let Some(current) = current {
+        if let Some(current) = current.filter(|path| self.is_of_the_plan_flown(path, new)) {
             let keep = self.alterable_from();
             let translate = |i: usize| {
                 let begun = self.at_the_leg_begun(i, &world);
@@ -86,16 +86,16 @@ impl Executor {
             return Ok(Carried::On { kept, onward });
         }
         let Some(entry) = entry else {
-            let reason = "the leg being flown is not in the new plan: name the leg to enter in the commit";
+            let reason =
+                "the leg being flown is not there in the new plan: name the leg to enter in the commit";
             return Err(refusal("entry-needed", reason));
         };
         let target = new.path(entry).ok_or_else(|| {
             refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
         })?;
+        self.check_not_a_take_off(new, &target)?;
         let now = self.place_reached();
-        let flown = self.state.emergency.as_ref().map(|e| &e.plan);
-        let entered = target.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
-        if entered.is_some() && entered != flown {
+        if target.emergency_plan.is_some() && !self.is_of_the_plan_flown(&target, new) {
             let reason =
                 format!("leg `{entry}` is of an emergency plan that is not being flown: name another leg");
             return Err(refusal("unknown-leg", reason));
@@ -105,6 +105,12 @@ impl Executor {
         here.last.level = now.path.last.level;
         cursor.move_path_to(here);
         Ok(Carried::Enter(Box::new(cursor)))
+    }
+
+    /// In the new plan too, a path is in the main plan, or in the emergency plan that is being flown.
+    fn is_of_the_plan_flown(&self, path: &LegPath, new: &Program) -> bool {
+        let plan = path.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
+        plan == self.state.emergency.as_ref().map(|e| &e.plan)
     }
 }
 
@@ -146,7 +152,8 @@ enum Carried {
 }
 
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
-/// identifiers. If its leg is gone, it is the beginning of `current` (nothing kept before it) or the end of it.
+/// identifiers. If its leg is gone, or in another of the document's plans, it is the beginning of `current` (nothing kept before
+/// it) or the end of it.
 fn translated(
     cursor: &Cursor,
     kept_leg: Option<&Id>,
@@ -155,12 +162,10 @@ fn translated(
     world: &World,
 ) -> Cursor {
     let known = cursor.loop_ids(world);
-    let own = cursor.leg(world).map(|l| &l.id).or(cursor.current_stage(world).map(|s| &s.id));
-    let same_kind = |id: &&Id| kind_of(world.program, id) == kind_of(new, id);
-    let target = own.filter(same_kind).and_then(|id| new.path(id));
-    let Some(target) = target else {
-        let fallback = kept_leg.and_then(|id| new.path(id)).unwrap_or_else(|| current.clone());
-        let mut placed = cursor.placed_at(&fallback, &known, new);
+    let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
+    let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
+        let fallback = kept_leg.and_then(|id| new.path(id)).filter(same_plan);
+        let mut placed = cursor.placed_at(fallback.as_ref().unwrap_or(current), &known, new);
         if kept_leg.is_some() {
             placed.doing = Doing::Flying;
         }
@@ -175,6 +180,18 @@ fn translated(
         leg_start: cursor.leg_start,
         ..moved
     }
+}
+
+/// Where the new plan has the leg (or stage) that a cursor is at; on the full turn of a loop, the beginning of that loop's body.
+fn same_place(cursor: &Cursor, known: &[Id], new: &Program, world: &World) -> Option<LegPath> {
+    let same_kind = |id: &&Id| kind_of(world.program, id) == kind_of(new, id);
+    if let Some(turned) = known.last().filter(|_| cursor.doing == Doing::Turning) {
+        let mut path = new.path(Some(turned).filter(same_kind)?)?;
+        path.indices.push(0);
+        return Some(path);
+    }
+    let own = cursor.leg(world).map(|l| &l.id).or(cursor.current_stage(world).map(|s| &s.id));
+    new.path(own.filter(same_kind)?)
 }
 
 /// Direction and trail of each loop that is still there.

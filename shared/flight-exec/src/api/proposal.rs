@@ -37,4 +37,20 @@ pub struct ProposalReport {
     pub differs_in_s: Option<f64>,
     /// The current leg is gone: the commit must name an entry leg.
     pub entry_needed: bool,
+    /// Then: where the aircraft would go for each leg that may be named (the first two dozen).
+    #[serde(default)]
+    pub entries: Vec<EntryReport>,
+}
+
+/// A leg that a commit may name, and the way there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct EntryReport {
+    /// The leg.
+    pub leg: Id,
+    /// The position the aircraft would fly to next.
+    pub position: LatLon,
+    /// Metres to that position.
+    pub in_m: f64,
+    /// Seconds to that position.
+    pub in_s: f64,
 }

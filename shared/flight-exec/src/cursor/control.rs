@@ -184,9 +184,11 @@ impl Cursor {
         match self.crossings.iter_mut().find(|(id, _)| id == leg) {
             Some((_, n)) => *n += 1,
             None => {
-                self.crossings.push((leg.clone(), 1));
+                self.crossings.push((leg.clone(), self.uncounted + 1));
                 let surplus = self.crossings.len().saturating_sub(MOST_CROSSINGS_KEPT);
-                self.crossings.drain(..surplus);
+                // a number is never given twice: what is known of one of them must not be taken for another
+                let forgotten = self.crossings.drain(..surplus).map(|(_, n)| n).max();
+                self.uncounted = self.uncounted.max(forgotten.unwrap_or(0));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Beginning a leg.
 
-use super::{Cursor, Doing, LoopFrame, Notes, Step, Trouble, Visit};
+use super::{Cursor, Doing, LoopFrame, Notes, Origin, Step, Trouble, Visit};
 use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion, runway};
 use crate::path::PathState;
@@ -82,12 +82,13 @@ impl Cursor {
         self.set_level_and_speed(leg, visit, &inside);
         let onward = self.onward(leg, world);
         let approach = Approach { reversed: visit, onward, ..self.approach(&self.path) };
+        self.origin = Some(Origin { path: self.path, wind_mps: world.flight.wind_mps });
         let expansion = expand(leg, &approach, &inside);
         self.fly_or_refuse(&leg.id, expansion, notes);
     }
 
     /// How it comes to its leg, forwards, the path ending at `path`.
-    fn approach<'a>(&self, path: &'a PathState) -> Approach<'a> {
+    pub(super) fn approach<'a>(&self, path: &'a PathState) -> Approach<'a> {
         let (level, airspeed_mps) = (self.level, self.airspeed_mps);
         Approach { path, level, airspeed_mps, reversed: None, onward: None }
     }
@@ -128,7 +129,7 @@ impl Cursor {
 
     /// For an orbit: where the path goes afterwards. Looked up by a cursor that skips it; an orbit after an orbit is
     /// approached as it comes.
-    fn onward(&self, leg: &Leg, world: &World) -> Option<LatLon> {
+    pub(super) fn onward(&self, leg: &Leg, world: &World) -> Option<LatLon> {
         if world.looking_ahead || !matches!(leg.kind, LegKind::Orbit { .. }) {
             return None;
         }
@@ -140,54 +141,6 @@ impl Cursor {
             Step::Waypoint(emission) => Some(emission.position),
             _ => None,
         }
-    }
-
-    /// Rebuilds the pattern it is in the middle of with the values of now. `Ok(true)`: it is another one.
-    ///
-    /// A scan and the patterns like it begin anew where the path is, without what is flown and unmoved; what goes round and
-    /// round (an orbit, a figure-eight) goes on at the same angle. A pattern flown backwards stays as it was flown on the way out.
-    ///
-    /// # Errors
-    /// The new values make no pattern; the old one stays.
-    pub fn refresh_pattern(&mut self, world: &World) -> Result<bool, Trouble> {
-        let leg = self.leg(world).filter(|_| self.doing == Doing::Flying);
-        let (Some(leg), Some(old)) = (leg, self.expansion.clone()) else {
-            return Ok(false);
-        };
-        let refused = |why: ExpandError| Trouble::Leg { leg: leg.id.clone(), reason: why.to_string() };
-        let fresh = self.regenerated(leg, &old, world).map_err(refused)?;
-        let Some(fresh) = fresh.filter(|f| f != old.as_ref()) else {
-            return Ok(false);
-        };
-        self.given = fresh.goes_on_at(self.given);
-        self.expansion = Some(Arc::new(fresh));
-        Ok(true)
-    }
-
-    /// The pattern of a leg with the values of now, if they are others and it can be changed in flight.
-    fn regenerated(
-        &self,
-        leg: &Leg,
-        old: &Expansion,
-        world: &World,
-    ) -> Result<Option<Expansion>, ExpandError> {
-        let (here, inside) = (self.approach(&self.path), self.inside(world));
-        Ok(match (old, &leg.kind) {
-            (Expansion::Scan(sweeps), LegKind::Scan(scan)) => {
-                sweeps.regenerated(scan, self.given, &here, &inside)?.map(Expansion::Scan)
-            }
-            (Expansion::Pattern(flight), LegKind::Pattern(pattern)) => {
-                flight.regenerated(pattern, self.given, &here, &inside)?.map(Expansion::Pattern)
-            }
-            (Expansion::Orbit(_), _) => {
-                // seen from where it was entered, so that the same values give the same circle
-                let start = Cursor { path: self.leg_start, ..self.clone() };
-                let approach =
-                    Approach { onward: start.onward(leg, world), ..self.approach(&self.leg_start) };
-                Some(expand(leg, &approach, &inside)?)
-            }
-            _ => None,
-        })
     }
 }
 

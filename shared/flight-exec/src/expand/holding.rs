@@ -12,6 +12,9 @@ pub struct Racetrack {
     pub entry: Vec<Point>,
     /// One lap; ends at the fix.
     pub lap: Vec<Point>,
+    /// Laps flown before, of one whose place it has taken.
+    #[serde(default)]
+    pub flown: u64,
     /// It ends at the first crossing (HF); else its laps are endless and the cursor leaves it (HA).
     pub once: bool,
 }
@@ -21,7 +24,7 @@ impl Racetrack {
     pub fn new(shape: &Shape, fix: Point, arrival_deg: f64, once: bool, tolerance_m: f64) -> Self {
         let mut entry = vec![fix];
         entry.extend(vertices(&shape.entry(arrival_deg), tolerance_m));
-        Self { entry, lap: vertices(&shape.lap(), tolerance_m), once }
+        Self { entry, lap: vertices(&shape.lap(), tolerance_m), flown: 0, once }
     }
 
     /// The point number `index`.
@@ -34,15 +37,19 @@ impl Racetrack {
         }
     }
 
-    /// The lap that is complete when `flown` points have been passed: 0 on arrival at the fix.
-    pub fn crossing(&self, flown: u64) -> Option<u64> {
-        let flown = usize::try_from(flown).ok()?;
-        if flown == 1 {
-            return Some(0);
-        }
-        let after = flown.checked_sub(self.entry.len())?;
-        let lap = self.points_of_a_lap();
-        after.is_multiple_of(lap).then(|| 1 + (after / lap) as u64)
+    /// The lap that is complete when `given` points have been passed, if they lead to the fix: 0 on the first arrival there.
+    pub fn crossing(&self, given: u64) -> Option<u64> {
+        let at_fix = match given.checked_sub(self.entry.len() as u64) {
+            Some(after) => after.is_multiple_of(self.points_of_a_lap() as u64),
+            None => given == 1,
+        };
+        at_fix.then(|| self.laps(given))
+    }
+
+    /// Laps that are complete when `given` points have been passed.
+    pub fn laps(&self, given: u64) -> u64 {
+        let after = given.checked_sub(self.entry.len() as u64);
+        self.flown + after.map_or(0, |after| 1 + after / self.points_of_a_lap() as u64)
     }
 
     /// At least one, whatever a snapshot says.

@@ -134,6 +134,34 @@ impl Expansion {
         }
     }
 
+    /// Laid out again as another one was, of which `given` points are given out: what that one did not begin with is put right,
+    /// so that the two can be compared.
+    pub fn as_flown_by(self, old: &Expansion, given: u64) -> Expansion {
+        match (self, old) {
+            (Expansion::Holding(fresh), Expansion::Holding(old)) => {
+                Expansion::Holding(holding::Racetrack { flown: old.flown, ..fresh })
+            }
+            (Expansion::UntilAltitude(fresh), Expansion::UntilAltitude(old)) if old.is_on_track(given) => {
+                Expansion::UntilAltitude(fresh.begun_as(old))
+            }
+            (fresh, _) => fresh,
+        }
+    }
+
+    /// Takes the place of one of which `given` points are given out, the path being `here`: laps count on, and a track whose
+    /// fix is behind is not begun again there.
+    pub fn after(self, old: &Expansion, given: u64, here: LatLon) -> Expansion {
+        match (self, old) {
+            (Expansion::Holding(fresh), Expansion::Holding(old)) => {
+                Expansion::Holding(holding::Racetrack { flown: old.laps(given), ..fresh })
+            }
+            (Expansion::UntilAltitude(fresh), Expansion::UntilAltitude(old)) if old.is_on_track(given) => {
+                Expansion::UntilAltitude(fresh.from_here(here))
+            }
+            (fresh, _) => fresh,
+        }
+    }
+
     /// The same pattern backwards, ending at `start`; `with_last`: beginning with its last point, because the path isn't there.
     pub fn reversed(self: &Arc<Self>, start: Point, with_last: bool) -> Expansion {
         let points = self.count().unwrap_or(0) + u64::from(with_last);

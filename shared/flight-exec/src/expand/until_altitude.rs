@@ -1,6 +1,7 @@
 //! A track from a fix, flown until an altitude is reached: points one after the other, as far as they are wanted.
 
 use super::Point;
+use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
 /// Time between two points, seconds: so much later than the altitude the track may be left.
@@ -34,6 +35,21 @@ impl Track {
         (steps <= MOST_POINTS).then(|| Point::fly(self.fix.position.destination(self.course_deg, reach_m)))
     }
 
+    /// The fix is behind, or the path began there, when `given` points are passed.
+    pub fn is_on_track(&self, given: u64) -> bool {
+        !self.to_fix || given > 1
+    }
+
+    /// The same course and speed, from where another one begins.
+    pub fn begun_as(self, other: &Self) -> Self {
+        Self { fix: other.fix, to_fix: other.to_fix, ..self }
+    }
+
+    /// The same course and speed, from a position.
+    pub fn from_here(self, here: LatLon) -> Self {
+        Self { fix: Point::fly(here), to_fix: false, ..self }
+    }
+
     /// The number of the place, from 0 at the fix, where `flown` points lead to.
     pub fn passing(&self, flown: u64) -> Option<u64> {
         flown.checked_sub(u64::from(self.to_fix))
@@ -43,7 +59,6 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::LatLon;
 
     #[test]
     fn it_leaves_the_fix_on_its_course_and_is_bounded() {

@@ -83,7 +83,7 @@ fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
 }
 
 /// Speed over the ground on a track in a wind, m/s; `None` if the wind is too strong for it. (Wind triangle.)
-pub(super) fn ground_speed_mps(airspeed_mps: f64, track_deg: f64, wind: Wind) -> Option<f64> {
+pub(crate) fn ground_speed_mps(airspeed_mps: f64, track_deg: f64, wind: Wind) -> Option<f64> {
     let along = Vec2::from_bearing_rad(track_deg.to_radians());
     let (with_mps, across_mps) = (wind.vector().dot(along), wind.vector().cross(along));
     let through_mps = (airspeed_mps * airspeed_mps - across_mps * across_mps).max(0.0).sqrt();

@@ -31,6 +31,7 @@ mod zones;
 
 use aircraft::{Profile, Wind};
 use alternates::Origin;
+pub(crate) use alternates::ground_speed_mps;
 pub use extremes::{MOST_TRIALS, review_extremes};
 use flight_plan::{Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value};
 use flights::Flights;

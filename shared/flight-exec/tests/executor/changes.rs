@@ -275,6 +275,52 @@ fn loops_keep_their_counters_through_an_update() {
     assert_eq!(rig.legs(), "s a b <l <b <a l a b n z");
 }
 
+/// On the full turn the loop is what is being flown, not the first leg of its body.
+#[test]
+fn on_the_full_turn_a_loop_survives_the_loss_of_its_first_leg() {
+    let legs = |first: &str| {
+        format!(
+            r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="2">{first}<TF id="b" fix="B2"/><TF id="c" fix="C2"/></iterative><TF id="z" fix="A3"/>"#
+        )
+    };
+    let mut rig = Rig::flying(&document(&legs(r#"<TF id="a" fix="B1"/>"#)));
+    rig.fly_to("l");
+    rig.update(&program(&document(&legs("")))).unwrap();
+    assert_eq!(rig.executor.status().place.unwrap().iterations[0].iteration, 2);
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "s a b c <l <c <b l b c z");
+}
+
+/// A leg that is now one of an emergency plan is not the leg that was being flown.
+#[test]
+fn a_leg_moved_to_an_emergency_plan_is_not_gone_on_with() {
+    let (leg, last) = (r#"<TF id="c" fix="C2"/>"#, r#"<stage id="b-land""#);
+    let arrival =
+        format!(r#"<stage id="b2" type="arrival" altitude="150" altitudeReference="agl">{leg}</stage>"#);
+    let new = document(&BASE.replace(leg, "")).replace(last, &format!("{arrival}{last}"));
+    let new = program(&new);
+    let mut rig = Rig::started(BASE);
+    rig.fly_to("c");
+    let report = rig.propose(&new);
+    assert!(report.entry_needed);
+    let entries: Vec<_> = report.entries.iter().map(|e| (e.leg.as_str(), e.in_m.round())).collect();
+    let way_m = |name| rig.position.distance_m(fix(name)).round();
+    assert_eq!(entries, [("a", way_m("A2")), ("b", way_m("B2")), ("d", way_m("C4"))]);
+    let commit =
+        |entry: Option<&str>| Command::Commit { hash: new.hash().clone(), entry: entry.map(Into::into) };
+    assert_eq!(rig.command(commit(None)).unwrap_err().code, "entry-needed");
+    assert_eq!(rig.command(commit(Some("c"))).unwrap_err().code, "unknown-leg");
+    rig.command(commit(Some("d"))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+    // and when it is the next one, the flight goes on where the main plan does
+    let mut rig = Rig::started(BASE);
+    rig.fly_to("b");
+    rig.update(&new).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b d");
+}
+
 /// Its passes back would never come to an end that counts.
 #[test]
 fn a_loop_that_becomes_forward_while_flown_back_goes_forward() {

@@ -246,6 +246,51 @@ fn an_emergency_on_a_leg_of_the_old_plan_finds_its_plan() {
     assert_eq!(rig.buffer[0].leg.as_str(), "b-df");
 }
 
+#[test]
+fn a_new_flight_does_not_begin_with_the_variables_of_the_last() {
+    let variables = r#"<variable name="stop" type="bool" initial="false"/>"#;
+    let legs = r#"<TF id="a" fix="A2"/><iterative id="l" form="forward" count="2" until="stop"><TF id="b" fix="B2"/><TF id="c" fix="C2"/></iterative>"#;
+    let mut rig = Rig::flying(&crate::rig::document_with(legs, variables, ""));
+    rig.fly_to("b");
+    let stop =
+        |value| Command::SetVariable { name: "stop".into(), value: flight_plan::VariableValue::Bool(value) };
+    rig.command(stop(true)).unwrap();
+    rig.fly_to_the_end();
+    rig.events.clear();
+    rig.position = crate::rig::HOME;
+    rig.flown.clear();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c b c");
+    // what is written between two flights is for the next one
+    rig.command(stop(true)).unwrap();
+    rig.events.clear();
+    rig.position = crate::rig::HOME;
+    rig.flown.clear();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c");
+}
+
+/// On the runway nothing can be flown to yet; in the air nobody takes off.
+#[test]
+fn taking_off_is_neither_skipped_on_the_ground_nor_begun_in_the_air() {
+    let mut rig = Rig::started(LEGS);
+    rig.steer();
+    let mut state = rig.state();
+    state.on_ground = true;
+    rig.step(Input::Aircraft(state));
+    for command in [Command::SkipLeg, Command::GoTo { leg: "b".into() }] {
+        assert_eq!(code(rig.command(command.clone())), "on-ground", "{command:?}");
+    }
+    state.on_ground = false;
+    rig.step(Input::Aircraft(state));
+    rig.command(Command::SkipLeg).unwrap();
+    rig.fly_to("b");
+    assert_eq!(code(rig.command(Command::GoTo { leg: "to".into() })), "in-the-air");
+    rig.fly_to_the_end();
+}
+
 /// Kills the executor at every waypoint and compares what the restored one does with what the first one does.
 #[test]
 fn killed_and_restored_anywhere_it_flies_the_same() {

@@ -344,6 +344,7 @@ fn turns_are_laid_out_for_the_greatest_ground_speed() {
         let mut rig = Rig::started(
             r#"<TF id="a" fix="B1"/><HF id="h" fix="B2" course="0" turn="right" length="800"/><TF id="z" fix="A3"/>"#,
         );
+        rig.steer();
         rig.wind_east_mps = wind_mps;
         rig.report();
         rig.command(flight_exec::Command::GoTo { leg: "h".into() }).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, same_passage};
-use flight_exec::{Event, Input, Output, Phase, PlacePointer, ResolvedAct};
+use flight_exec::{Command, Event, Input, Output, Phase, PlacePointer, ResolvedAct};
 use flight_plan::{Act, Id, Leg, LegKind, Trigger};
 use std::collections::BTreeMap;
 use std::mem::{Discriminant, discriminant};
@@ -238,7 +238,8 @@ fn nothing_while_muted(trace: &Trace, found: &mut Findings) {
 }
 
 fn plan_writes(trace: &Trace, found: &mut Findings) {
-    for step in trace.steps() {
+    // a start gives variables their initial values
+    for step in trace.steps().filter(|s| s.accepted() != Some(&Command::Start)) {
         let written = step.events().filter_map(|e| match e {
             Event::VariableChanged { name, value, by } if **by == *"plan" => Some((name, value)),
             _ => None,

@@ -100,6 +100,7 @@ impl Flight {
             8..14 => self.approach(),
             14..28 => self.order(),
             28..30 => self.update_somehow(),
+            30 if self.random.percent(50) => self.count_and_come_back(),
             30 => self.propose_only(),
             31 => self.command_twice(),
             32..34 => self.wait(),
@@ -249,6 +250,18 @@ impl Flight {
     fn propose_only(&mut self) {
         let which = self.random.below(2);
         self.propose(which);
+    }
+
+    /// A count is set for the loop being flown, which is left and entered again.
+    fn count_and_come_back(&mut self) {
+        let place = self.executor.status().place;
+        let Some(around) = place.and_then(|p| Some(p.iterations.first()?.leg.clone())) else { return };
+        let count = 5 + self.random.below(3) as u64;
+        self.command(Command::SetCount { leg: around.clone(), count });
+        self.command(Command::GoTo { leg: "z".into() });
+        self.fly_one();
+        self.command(Command::GoTo { leg: around });
+        self.fly_one();
     }
 
     fn command_twice(&mut self) {

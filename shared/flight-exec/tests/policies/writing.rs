@@ -44,8 +44,8 @@ pub fn procedures() -> String {
     let aside = |metres| at(start.destination(60.0, metres));
     format!(
         r#"<procedures>
-        <procedure id="gate" reference="{0} {1}" bearing="0"><TF id="a" {start}/><TF id="b" {bend}/>
-          <RF id="c" {end} centreLat="{2}" centreLon="{3}" turn="right"/><TF id="d" {exit}/></procedure>
+        <procedure id="gate" reference="{0} {1}" bearing="0"><TF id="ga" {start}/><TF id="gb" {bend}/>
+          <RF id="gc" {end} centreLat="{2}" centreLon="{3}" turn="right"/><TF id="gd" {exit}/></procedure>
         <procedure id="round" reference="{0} {1}" bearing="0"><parameter name="times"/>
           <iterative id="l" form="reverse" count="= times"><TF id="a" {a}/><TF id="b" {b}/></iterative>
           <intersection id="i" default="i-s" decideBefore="200m"><branch id="i-s" label="s" next="e"/>

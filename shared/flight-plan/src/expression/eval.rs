@@ -251,14 +251,17 @@ fn integer(operator: Operator, a: i64, b: i64) -> Result<i64, EvalError> {
     .ok_or(EvalError::Overflow)
 }
 
+/// Unlike in CEL, doubles too have no value where whole numbers have none: a condition must not hold by an infinity.
 fn real(operator: Operator, a: f64, b: f64) -> Result<f64, EvalError> {
-    match operator {
-        Operator::Add => Ok(a + b),
-        Operator::Subtract => Ok(a - b),
-        Operator::Multiply => Ok(a * b),
-        Operator::Divide => Ok(a / b),
-        _ => Err(mismatch("whole number")),
-    }
+    let value = match operator {
+        Operator::Add => a + b,
+        Operator::Subtract => a - b,
+        Operator::Multiply => a * b,
+        Operator::Divide if b == 0.0 => return Err(EvalError::DivisionByZero),
+        Operator::Divide => a / b,
+        _ => return Err(mismatch("whole number")),
+    };
+    Some(value).filter(|value| value.is_finite()).ok_or(EvalError::NotFinite)
 }
 
 fn equal(a: &Scalar, b: &Scalar) -> bool {

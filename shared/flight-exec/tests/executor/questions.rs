@@ -1,0 +1,85 @@
+//! When a decision is asked for: in time, whatever comes before the intersection, and by the speed over the ground.
+
+use crate::rig::{Rig, fix};
+use flight_exec::{Command, DecisionRequest, Event};
+
+fn fork(before: &str, due: &str) -> String {
+    format!(
+        r#"<TF id="a" fix="A3"/>{before}<intersection id="x" default="left" decideBefore="{due}">
+          <branch id="left" label="Left" next="l"/><branch id="right" label="Right" next="r"/>
+        </intersection>
+        <TF id="l" fix="B5" next="z"/><TF id="r" fix="C4" next="z"/><TF id="z" fix="A4"/>"#
+    )
+}
+
+fn asked(rig: &Rig) -> Option<DecisionRequest> {
+    rig.events.iter().find_map(|e| match e {
+        Event::DecisionRequested(request) => Some(request.clone()),
+        _ => None,
+    })
+}
+
+fn is_taken(rig: &Rig) -> bool {
+    rig.events.iter().any(|e| matches!(e, Event::DecisionTaken { .. }))
+}
+
+/// Many waypoints a kilometre: those handed out end long before the intersection.
+#[test]
+fn behind_an_orbit_or_a_holding_a_decision_is_asked_for_in_time() {
+    for (name, before) in [
+        ("orbit", r#"<orbit id="o" radius="150" turns="3" turn="left"><centre fix="B3"/></orbit>"#),
+        ("holding", r#"<HM id="o" fix="B3" turn="left" length="300" maxLaps="3"/>"#),
+    ] {
+        for due in ["60s", "1500m"] {
+            let mut rig = Rig::started(&fork(before, due));
+            while asked(&rig).is_none() {
+                assert!(rig.fly_one() && !is_taken(&rig), "{name} {due}: decided, and nobody was asked");
+            }
+            let request = asked(&rig).unwrap();
+            assert!(request.time_left_s > 30.0, "{name} {due}: {request:?}");
+            assert!(request.options.iter().all(|o| o.preview.len() > 1), "{name} {due}: {request:?}");
+            assert!(rig.executor.status().decision.is_some(), "{name} {due}");
+            rig.command(Command::Decide { leg: "x".into(), branch: "right".into() }).unwrap();
+            assert!(rig.executor.status().decision.is_none(), "{name} {due}");
+            rig.fly_to_the_end();
+            assert!(rig.legs().ends_with("r z"), "{name} {due}: {}", rig.legs());
+            let asked = rig.events.iter().filter(|e| matches!(e, Event::DecisionRequested(_))).count();
+            assert_eq!(asked, 1, "{name} {due}");
+        }
+    }
+}
+
+/// 25 m/s through the air, 14 m/s from behind: thirty seconds are 1170 m.
+#[test]
+fn seconds_are_counted_at_the_speed_over_the_ground() {
+    for (wind_east_mps, due_m) in [(14.0, 1170.0), (0.0, 750.0), (-10.0, 450.0)] {
+        let mut rig = Rig::started(&fork(r#"<TF id="b" fix="B3"/>"#, "30s"));
+        rig.wind_east_mps = wind_east_mps;
+        rig.fly_to("b");
+        for (off_m, expected) in [(20.0, false), (-20.0, true)] {
+            rig.position = fix("B3").destination(270.0, due_m + off_m);
+            rig.now += flight_exec::Time::from_secs(2);
+            rig.report();
+            assert_eq!(is_taken(&rig), expected, "{wind_east_mps} m/s, {off_m} m");
+        }
+    }
+}
+
+/// Brought near by a go-to: there is still time until the way can't be changed any more.
+#[test]
+fn a_question_that_comes_late_is_open_until_the_way_cannot_be_changed() {
+    let mut rig = Rig::started(&fork(r#"<TF id="y" fix="F5"/><TF id="b" fix="B3"/>"#, "1500m"));
+    rig.fly_to("a");
+    rig.position = fix("B3").destination(270.0, 1000.0);
+    rig.report();
+    rig.command(Command::GoTo { leg: "b".into() }).unwrap();
+    rig.steer();
+    let request = asked(&rig).unwrap();
+    assert!(request.time_left_s > 20.0 && !is_taken(&rig), "{request:?}");
+    rig.position = fix("B3").destination(270.0, 400.0);
+    rig.report();
+    assert!(!is_taken(&rig));
+    rig.position = fix("B3").destination(270.0, 100.0);
+    rig.report();
+    assert!(is_taken(&rig));
+}
