@@ -28,7 +28,7 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     }
     let mut drawing = Drawing::default();
     for (index, feature) in features.into_iter().enumerate() {
-        self::feature(index, feature, &mut drawing);
+        self::feature(index, feature, &mut drawing)?;
     }
     Ok(drawing)
 }
@@ -50,7 +50,7 @@ fn coordinates_are_wgs84(members: Option<&JsonObject>) -> Result<(), Error> {
     Err(Error::malformed("crs", reason))
 }
 
-fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) {
+fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) -> Result<(), Error> {
     let properties = feature.properties.unwrap_or_default();
     let text = |key: &str| properties.get(key).and_then(JsonValue::as_str).unwrap_or_default().to_owned();
     let name = if text("name").is_empty() { text("title") } else { text("name") };
@@ -62,7 +62,8 @@ fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) {
     };
     let marks = marks(&properties, &place, &mut drawing.notes);
     let Some(geometry) = feature.geometry else {
-        return drawing.notes.push("no-geometry", place, "this feature is left out: it has no geometry");
+        drawing.notes.push("no-geometry", place, "this feature is left out: it has no geometry");
+        return Ok(());
     };
     let ours = marks.iter().any(|(name, _)| name == "legwork");
     let mut shapes = Vec::new();
@@ -71,13 +72,11 @@ fn feature(index: usize, feature: geojson::Feature, drawing: &mut Drawing) {
         drawing.name = name.clone();
     }
     let description = text("description");
-    drawing.features.extend(shapes.into_iter().map(|shape| Feature {
-        place: place.clone(),
-        name: name.clone(),
-        description: description.clone(),
-        marks: marks.clone(),
-        shape,
-    }));
+    let (place, name, marks) = (&place, &name, &marks);
+    shapes.into_iter().try_for_each(|shape| {
+        let (place, name, marks) = (place.clone(), name.clone(), marks.clone());
+        drawing.add(Feature { place, name, description: description.clone(), marks, shape })
+    })
 }
 
 /// Our own marks; other properties are noted.

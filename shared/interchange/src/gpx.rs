@@ -5,7 +5,7 @@ use crate::drawing::{Drawing, Feature, Shape, Vertex};
 use crate::note::Notes;
 use crate::synthetic::altitude;
 use crate::xml::{self, Element, escaped};
-use crate::{Error, MAX_ITEMS, text_of};
+use crate::{Error, text_of};
 use flight_plan::{AltitudeReference, Value};
 use geometry::LatLon;
 use std::fmt::Write;
@@ -32,43 +32,34 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     lost(&root, KNOWN[0], &mut drawing.notes);
     for element in &root.children {
         match element.name.as_str() {
-            "wpt" => point(element, &mut drawing),
-            "rte" => line(element, element, &mut drawing),
+            "wpt" => point(element, &mut drawing)?,
+            "rte" => line(element, element, &mut drawing)?,
             "trk" => {
                 lost(element, KNOWN[1], &mut drawing.notes);
-                let segments = element.children.iter().filter(|c| c.name == "trkseg");
-                segments.for_each(|segment| line(element, segment, &mut drawing));
+                let mut segments = element.children.iter().filter(|c| c.name == "trkseg");
+                segments.try_for_each(|segment| line(element, segment, &mut drawing))?;
             }
             _ => {}
-        }
-        if drawing.features.len() > MAX_ITEMS {
-            return Err(Error::TooMany { what: "features", limit: MAX_ITEMS });
         }
     }
     Ok(drawing)
 }
 
-fn point(element: &Element, drawing: &mut Drawing) {
-    let Some(vertex) = vertex(element, &mut drawing.notes) else { return };
+fn point(element: &Element, drawing: &mut Drawing) -> Result<(), Error> {
+    let Some(vertex) = vertex(element, &mut drawing.notes) else { return Ok(()) };
     let marks = vec![("legwork".to_owned(), vertex.kind.clone())];
     let (place, name, description) =
         (element.place(), vertex.name.clone(), element.text_of("desc").to_owned());
-    drawing.features.push(Feature { place, name, description, marks, shape: Shape::Point(vertex) });
+    drawing.add(Feature { place, name, description, marks, shape: Shape::Point(vertex) })
 }
 
-fn line(named: &Element, element: &Element, drawing: &mut Drawing) {
+fn line(named: &Element, element: &Element, drawing: &mut Drawing) -> Result<(), Error> {
     lost(element, KNOWN[1], &mut drawing.notes);
     let points = element.children.iter().filter(|c| matches!(c.name.as_str(), "rtept" | "trkpt"));
     let vertices: Vec<Vertex> = points.filter_map(|p| vertex(p, &mut drawing.notes)).collect();
     let (place, name, description) =
         (element.place(), named.text_of("name").to_owned(), named.text_of("desc").to_owned());
-    drawing.features.push(Feature {
-        place,
-        name,
-        description,
-        marks: Vec::new(),
-        shape: Shape::Line(vertices),
-    });
+    drawing.add(Feature { place, name, description, marks: Vec::new(), shape: Shape::Line(vertices) })
 }
 
 fn vertex(element: &Element, notes: &mut Notes) -> Option<Vertex> {

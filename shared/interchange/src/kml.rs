@@ -5,7 +5,7 @@ use crate::drawing::{Drawing, Feature, Shape, Vertex, open_ring};
 use crate::note::Notes;
 use crate::synthetic::altitude;
 use crate::xml::{self, Element, escaped};
-use crate::{Error, MAX_ITEMS, MAX_POINTS, text_of};
+use crate::{Error, MAX_POINTS, text_of};
 use flight_plan::{Altitude, AltitudeReference, Value};
 use geometry::LatLon;
 use std::fmt::Write;
@@ -72,25 +72,23 @@ impl Reader {
     }
 
     fn placemark(&mut self, placemark: &Element) -> Result<(), Error> {
-        let before = self.drawing.features.len();
-        for child in &placemark.children {
-            self.geometry(placemark, child)?;
+        let mut shapes = Vec::new();
+        placemark.children.iter().try_for_each(|child| self.geometry(child, &mut shapes))?;
+        let place = place(placemark);
+        if shapes.is_empty() {
+            let message = "this placemark is left out: it has no point, line or polygon that can be read";
+            self.drawing.notes.push("no-geometry", place, message);
+            return Ok(());
         }
-        if self.drawing.features.len() == before {
-            let place = place(placemark);
-            self.drawing.notes.push(
-                "no-geometry",
-                place,
-                "this placemark is left out: it has no point, line or polygon that can be read",
-            );
-        }
-        if self.drawing.features.len() > MAX_ITEMS {
-            return Err(Error::TooMany { what: "placemarks", limit: MAX_ITEMS });
-        }
-        Ok(())
+        let (name, description) = (placemark.text_of("name"), placemark.text_of("description"));
+        let marks = marks(placemark, &mut self.drawing.notes);
+        shapes.into_iter().try_for_each(|shape| {
+            let (name, description) = (name.to_owned(), description.to_owned());
+            self.drawing.add(Feature { place: place.clone(), name, description, marks: marks.clone(), shape })
+        })
     }
 
-    fn geometry(&mut self, placemark: &Element, element: &Element) -> Result<(), Error> {
+    fn geometry(&mut self, element: &Element, into: &mut Vec<Shape>) -> Result<(), Error> {
         let shape = match element.name.as_str() {
             "Point" => self.coordinates(element, element)?.into_iter().next().map(Shape::Point),
             "LineString" | "LinearRing" => {
@@ -98,21 +96,14 @@ impl Reader {
             }
             "Polygon" => self.polygon(element)?,
             "MultiGeometry" => {
-                return element.children.iter().try_for_each(|child| self.geometry(placemark, child));
+                return element.children.iter().try_for_each(|child| self.geometry(child, into));
             }
             _ => {
                 self.lost(element);
                 None
             }
         };
-        let Some(shape) = shape else { return Ok(()) };
-        self.drawing.features.push(Feature {
-            place: place(placemark),
-            name: placemark.text_of("name").to_owned(),
-            description: placemark.text_of("description").to_owned(),
-            marks: marks(placemark, &mut self.drawing.notes),
-            shape,
-        });
+        into.extend(shape);
         Ok(())
     }
 

@@ -9,15 +9,19 @@ use zip::{ZipArchive, ZipWriter};
 /// Most files in it.
 const MAX_FILES: usize = 10_000;
 
+/// What an entry of the directory begins with (APPNOTE 4.3.12).
+const ENTRY: &[u8] = b"PK\x01\x02";
+
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
+    // before the directory is read: each entry takes memory
+    if bytes.windows(ENTRY.len()).filter(|window| *window == ENTRY).count() > MAX_FILES {
+        return Err(Error::TooMany { what: "packed files", limit: MAX_FILES });
+    }
     let broken = |error: &dyn std::fmt::Display| {
         Error::malformed("file", format!("this zip file can't be read: {error}"))
     };
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
-    if archive.len() > MAX_FILES {
-        return Err(Error::TooMany { what: "packed files", limit: MAX_FILES });
-    }
     let names: Vec<String> = archive
         .file_names()
         .map(|name| name.map(std::borrow::Cow::into_owned))

@@ -82,7 +82,7 @@ fn item(number: usize, line: &str, notes: &mut Notes) -> Result<Item, Error> {
         notes.again("autocontinue", &place, "an item that waits for the operator goes on by itself");
     }
     // a number beyond its range is saturated, and then no known frame or command
-    let params = [a, b, c, d, lat, lon, altitude];
+    let params = [a, b, c, d, lat, lon, altitude].map(|p: f64| if p.is_finite() { p } else { f64::NAN });
     Ok(Item { place, number: number as i64, frame: frame as u16, command: command as u16, params })
 }
 

@@ -173,10 +173,15 @@ fn local(name: &str) -> &str {
     name.rsplit_once(':').map_or(name, |(_, local)| local)
 }
 
+/// Text without the characters that XML can't hold, nor a plan therefore.
+pub fn held(text: &str) -> String {
+    let held = |c: &char| matches!(c, '\t' | '\n' | '\r' | '\u{20}'..='\u{fffd}' | '\u{10000}'..);
+    text.chars().filter(held).collect()
+}
+
 /// Text for between tags or into an attribute. Characters that XML can't hold are left out.
 pub fn escaped(text: &str) -> String {
-    let held = |c: &char| matches!(c, '\t' | '\n' | '\r' | '\u{20}'..='\u{fffd}' | '\u{10000}'..);
-    escape::escape(text.chars().filter(held).collect::<String>()).into_owned()
+    escape::escape(held(text)).into_owned()
 }
 
 #[cfg(test)]

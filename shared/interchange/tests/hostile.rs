@@ -175,6 +175,10 @@ fn floods_are_refused() {
         ),
         (
             Format::GeoJson,
+            format!("{{\"type\":\"Polygon\",\"coordinates\":[[{}[1,1]]]}}", "[1,1],[2,2],".repeat(500_001)),
+        ),
+        (
+            Format::GeoJson,
             format!(
                 "{{\"type\":\"FeatureCollection\",\"features\":[{}]}}",
                 feature.repeat(too_many).trim_end_matches(',')
@@ -183,6 +187,78 @@ fn floods_are_refused() {
     ] {
         let error = read(format, text.as_bytes(), &Assumptions::default()).unwrap_err();
         assert!(matches!(error, Error::TooMany { .. }), "{format:?}: {error}");
+    }
+}
+
+#[test]
+fn a_text_that_a_thousand_points_share_is_not_kept_a_thousand_times() {
+    let text = "x".repeat(MAX_BYTES / 1000);
+    let point = "<Point><coordinates>1,1</coordinates></Point>".repeat(1001);
+    let segment = "<trkseg><trkpt lat='1' lon='1'/></trkseg>".repeat(1001);
+    let points = "[1,1],".repeat(1001);
+    let points = points.trim_end_matches(',');
+    for (format, file) in [
+        (
+            Format::Kml,
+            format!(
+                "<kml><Placemark><description>{text}</description><MultiGeometry>{point}</MultiGeometry></Placemark></kml>"
+            ),
+        ),
+        (Format::Gpx, format!("<gpx><trk><desc>{text}</desc>{segment}</trk></gpx>")),
+        (
+            Format::GeoJson,
+            format!(
+                "{{\"type\":\"Feature\",\"properties\":{{\"name\":\"{text}\"}},\"geometry\":{{\"type\":\"MultiPoint\",\"coordinates\":[{points}]}}}}"
+            ),
+        ),
+    ] {
+        let error = read(format, file.as_bytes(), &Assumptions::default()).unwrap_err();
+        assert!(matches!(error, Error::TooMany { limit: MAX_BYTES, .. }), "{format:?}: {error}");
+    }
+}
+
+#[test]
+fn a_directory_of_many_packed_files_is_not_read() {
+    let entry = [b"PK\x01\x02".as_slice(), &[0; 42]].concat();
+    let error = read(Format::Kmz, &entry.repeat(10_001), &Assumptions::default()).unwrap_err();
+    assert!(error.to_string().contains("packed files"), "{error}");
+}
+
+#[test]
+fn a_runway_at_every_corner_is_refused() {
+    let runway = "<Placemark><ExtendedData><Data name='legwork'><value>runway</value></Data></ExtendedData><Point><coordinates>1,1</coordinates></Point></Placemark>";
+    let error =
+        read(Format::Kml, format!("<kml>{}</kml>", runway.repeat(101)).as_bytes(), &Assumptions::default());
+    assert!(error.unwrap_err().to_string().contains("runways"));
+}
+
+#[test]
+fn take_offs_that_lead_nowhere_are_not_looked_behind_again_and_again() {
+    let list = "1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t100\t1\n".repeat(MAX_ITEMS);
+    let import = read(Format::Waypoints, format!("QGC WPL 110\n{list}").as_bytes(), &Assumptions::default());
+    assert!(import.unwrap().plan.stages.is_empty());
+}
+
+#[test]
+fn characters_that_a_plan_cannot_hold_are_left_out_of_names() {
+    let kml = "<kml><Document><name>a\u{0}b</name><Placemark><name>c\u{1}d</name><Point><coordinates>1,2</coordinates></Point></Placemark></Document></kml>";
+    let geojson = r#"{"type":"Feature","properties":{"name":"c\u0001d"},"geometry":{"type":"Point","coordinates":[1,2]}}"#;
+    for (format, file) in [(Format::Kml, kml), (Format::GeoJson, geojson)] {
+        let plan = read(format, file.as_bytes(), &Assumptions::default()).unwrap().plan;
+        assert_eq!(plan.fixes[0].name, "cd");
+        assert_eq!(flight_plan::read(flight_plan::write(&plan)).plan, plan, "{format:?}");
+    }
+}
+
+#[test]
+fn a_number_that_is_infinite_is_none() {
+    for item in
+        ["18\t3\t0\t-11e40020\t0\t36\t1\t50", "16\t02e308\t0\t0\t0\t36\t1\t50", "19\tinf\t0\t0\t0\t36\t1\t50"]
+    {
+        let list = format!("QGC WPL 110\n1\t0\t3\t{item}\t1\n");
+        let plan = read(Format::Waypoints, list.as_bytes(), &Assumptions::default()).unwrap().plan;
+        assert!(!plan.stages.is_empty(), "{item}");
+        assert_eq!(flight_plan::read(flight_plan::write(&plan)).plan, plan, "{item}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Pure but for its storage: does what the flight asks of the journal, and knows when to sync and when to try again.
 
+use super::Saved;
 use super::log::Log;
-use super::record::Saved;
 use super::storage::Storage;
 use crate::clock::Time;
 use flight_plan::Program;

@@ -1,9 +1,9 @@
 //! Segments on a storage: begun with a state, appended to, replaced. After any error nothing more is appended:
 //! only a new segment, which begins with a whole state, can be trusted again.
 
-use super::frame::{self, PAYLOAD_MAX};
-use super::record::{self, Chapter, Saved};
 use super::storage::Storage;
+use super::{Chapter, Saved};
+use ::journal::frame::{self, PAYLOAD_MAX};
 use flight_plan::Program;
 use std::collections::BTreeSet;
 use std::io;
@@ -134,7 +134,7 @@ impl<S: Storage> Log<S> {
     pub fn chapter(&mut self, found: &Found) -> Result<Chapter, String> {
         let at_most = PAYLOAD_MAX as u64 + 2 * self.limits.bytes_max;
         let bytes = self.storage.read(&found.name, at_most).map_err(|e| e.to_string())?;
-        let mut chapter = record::read(&bytes).map_err(|e| e.to_string())?;
+        let mut chapter = ::journal::read(&bytes).map_err(|e| e.to_string())?;
         if chapter.number != found.number {
             return Err(format!("it is segment {} under the name of {}", chapter.number, found.number));
         }
@@ -263,7 +263,7 @@ impl<S: Storage> Log<S> {
             self.take_stock(&names);
         }
         programs.iter().try_for_each(|program| self.write_plan(program))?;
-        let payload = record::encode(saved).map_err(io::Error::other)?;
+        let payload = ::journal::encode(saved).map_err(io::Error::other)?;
         let number = self.next_number;
         let mut bytes = frame::header(number).to_vec();
         frame::append(number, 0, &payload, &mut bytes).map_err(io::Error::other)?;

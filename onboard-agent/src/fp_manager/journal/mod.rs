@@ -37,17 +37,7 @@
 //! folder synced; then what is older than the segment before is removed. Two states, two tails and at most 22 plans is all
 //! the space it takes.
 //!
-//! # A segment
-//!
-//! All numbers little-endian.
-//!
-//! ```text
-//! header  "LEGWORKJ" | version u32 = 1 | CRC-32 of magic, version and number | number u64
-//! frame   length u32 | !length u32 | index u32 | CRC-32 of number, index and payload | payload (CBOR)
-//! ```
-//!
-//! The complement makes every damaged length evident, the index every frame that is missing or in a wrong place. The
-//! first payload is a [`Saved`], each further one a turn, a list of [`Entry`].
+//! What a segment looks like: the crate `journal`.
 //!
 //! # Recovery
 //!
@@ -63,17 +53,16 @@
 mod clerk;
 #[cfg(test)]
 pub mod faulty;
-mod frame;
 mod keeper;
 mod log;
-mod record;
+mod notes;
 mod storage;
 #[cfg(test)]
 mod tests;
 
+pub use ::journal::{Reply, encode};
 pub use clerk::{Clerk, Job, Report};
-pub use frame::{End, NoSegment, Scan, scan};
 pub use keeper::Keeper;
 pub use log::{Found, Limits, Log};
-pub use record::{Chapter, Entry, Notes, Record, Reply, Saved, Unusable, encode, read};
+pub use notes::{Chapter, Entry, Notes, Record, Saved};
 pub use storage::{Folder, Storage};

@@ -5,6 +5,7 @@ use super::faulty::{Death, Faulty, Operation, Random};
 use super::*;
 use crate::clock::Time;
 use crate::fp_manager::{Config, Manager, compile, restart};
+use ::journal::frame;
 use flight_exec::{Executor, RequestId, Token};
 use proptest::prelude::*;
 use std::io::ErrorKind;
@@ -362,11 +363,11 @@ proptest! {
     fn garbage_in_place_of_a_state_or_a_turn_is_no_panic(garbage in proptest::collection::vec(any::<u8>(), 0..100)) {
         let mut bytes = frame::header(1).to_vec();
         frame::append(1, 0, &garbage, &mut bytes).unwrap();
-        prop_assert!(read(&bytes).is_err());
+        prop_assert!(::journal::read::<Notes>(&bytes).is_err());
         let mut bytes = frame::header(1).to_vec();
         frame::append(1, 0, &encode(&saved()).unwrap(), &mut bytes).unwrap();
         frame::append(1, 1, &garbage, &mut bytes).unwrap();
-        let chapter = read(&bytes).unwrap();
+        let chapter = ::journal::read::<Notes>(&bytes).unwrap();
         prop_assert!(chapter.turns.len() + usize::from(chapter.incomplete) == 1);
     }
 }

@@ -24,8 +24,9 @@ pub fn ends(path: &Feature, last: &Vertex) -> bool {
 pub fn stage(kind: StageKind, at: &Vertex, runways: &mut [Runway], names: &mut Names) -> Option<Stage> {
     let most_m = if kind == StageKind::TakeOff { TAKE_OFF_M } else { LAND_M };
     let distance_m = |r: &Runway| r.threshold.distance_m(at.position);
-    let near = runways.iter_mut().min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
-    let runway = near.filter(|r| distance_m(r) <= most_m)?;
+    let distances = runways.iter_mut().map(|r| (distance_m(r), r));
+    let near = distances.min_by(|(a_m, _), (b_m, _)| a_m.total_cmp(b_m));
+    let (_, runway) = near.filter(|(metres, _)| *metres <= most_m)?;
     if kind == StageKind::TakeOff && runway.heading_deg.is_nan() {
         runway.heading_deg = runway.threshold.bearing_deg(at.position);
     }

@@ -5,6 +5,7 @@ use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
 use crate::synthetic::{self, Assumptions};
+use crate::xml::held;
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
     Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanStyle,
@@ -12,10 +13,13 @@ use flight_plan::{
 };
 use geometry::LatLon;
 
+/// Most runways: each path looks for the nearest.
+const MAX_RUNWAYS: usize = 100;
+
 /// A drawing as a plan.
 ///
 /// # Errors
-/// More legs than are read.
+/// More legs or runways than are read.
 pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error> {
     let legs: usize =
         drawing.features.iter().map(|f| if let Shape::Line(l) = &f.shape { l.len() } else { 1 }).sum();
@@ -25,7 +29,7 @@ pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error
     let mut names = Names::default();
     let mut plan = synthetic::plan(assumptions);
     if !drawing.name.is_empty() {
-        plan.name = drawing.name;
+        plan.name = held(&drawing.name);
     }
     plan.runways.extend(
         assumptions.runway.iter().map(|r| Runway { id: names.take(r.id.as_str(), "runway"), ..r.clone() }),
@@ -35,6 +39,9 @@ pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error
     // runways first: paths take off from them and land on them
     let is_runway = |f: &Feature| f.mark("legwork") == Some("runway");
     let (runways, others): (Vec<_>, Vec<_>) = drawing.features.into_iter().partition(is_runway);
+    if runways.len() > MAX_RUNWAYS {
+        return Err(Error::TooMany { what: "runways", limit: MAX_RUNWAYS });
+    }
     runways.into_iter().chain(others).for_each(|f| importer.feature(f));
     importer.finish();
     if importer.plan.stages.is_empty() && importer.plan.fixes.is_empty() && importer.plan.zones.is_empty() {

@@ -11,6 +11,8 @@ pub use import::read;
 pub use of_plan::of;
 
 use crate::note::Notes;
+use crate::xml::held;
+use crate::{Error, MAX_BYTES, MAX_ITEMS, MAX_POINTS};
 use flight_plan::Altitude;
 use geometry::LatLon;
 
@@ -28,6 +30,38 @@ pub struct Drawing {
     pub features: Vec<Feature>,
     /// What was said while it was read.
     pub notes: Notes,
+    /// Bytes of the names and descriptions of the features that were added.
+    text_bytes: usize,
+    /// Their points and corners.
+    points: usize,
+}
+
+impl Drawing {
+    /// Made of features.
+    pub fn new(name: String, features: Vec<Feature>) -> Self {
+        Self { name, features, ..Self::default() }
+    }
+
+    /// Adds a feature that was read. A text counts for every feature that has it: so often it is written down in a plan.
+    ///
+    /// # Errors
+    /// More features, points or text than are read.
+    pub fn add(&mut self, mut feature: Feature) -> Result<(), Error> {
+        (feature.name, feature.description) = (held(&feature.name), held(&feature.description));
+        if self.features.len() >= MAX_ITEMS {
+            return Err(Error::TooMany { what: "features", limit: MAX_ITEMS });
+        }
+        self.text_bytes += feature.text_bytes();
+        if self.text_bytes > MAX_BYTES {
+            return Err(Error::TooMany { what: "bytes of names and descriptions", limit: MAX_BYTES });
+        }
+        self.points += feature.shape.points();
+        if self.points > MAX_POINTS {
+            return Err(Error::TooMany { what: "points", limit: MAX_POINTS });
+        }
+        self.features.push(feature);
+        Ok(())
+    }
 }
 
 /// Something drawn.
@@ -63,6 +97,16 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    fn points(&self) -> usize {
+        match self {
+            Shape::Point(_) => 1,
+            Shape::Line(line) => line.len(),
+            Shape::Area { outer, holes, .. } => outer.len() + holes.iter().map(Vec::len).sum::<usize>(),
+        }
+    }
+}
+
 /// A point of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vertex {
@@ -87,6 +131,11 @@ impl Feature {
     /// The value of a mark.
     pub fn mark(&self, name: &str) -> Option<&str> {
         self.marks.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str())
+    }
+
+    fn text_bytes(&self) -> usize {
+        let marks: usize = self.marks.iter().map(|(name, value)| name.len() + value.len()).sum();
+        self.place.len() + self.name.len() + self.description.len() + marks
     }
 
     /// A finite number of a mark.

@@ -25,7 +25,7 @@ pub fn of(export: &Export<'_>, format: Format, notes: &mut Notes) -> Drawing {
     if areas {
         features.extend(export.plan.zones.iter().map(|z| zone(z, notes)));
     }
-    Drawing { name: export.plan.name.clone(), features, notes: Notes::default() }
+    Drawing::new(export.plan.name.clone(), features)
 }
 
 fn path(export: &Export<'_>, notes: &mut Notes) -> Option<Feature> {

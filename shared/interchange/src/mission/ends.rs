@@ -10,14 +10,14 @@ use flight_plan::{Id, LegKind, StageKind, TurnDirection};
 use geometry::LatLon;
 
 impl Importer<'_> {
-    pub(super) fn take_off(&mut self, item: &Item, ahead: &dyn Fn() -> Option<LatLon>) {
+    pub(super) fn take_off(&mut self, item: &Item, ahead: Option<LatLon>) {
         if self.take_off.is_some() || !self.legs.is_empty() {
             return self.notes.push("second-take-off", &item.place, "a take-off in flight is left out");
         }
         if item.command == cmd::VTOL_TAKEOFF {
             self.notes.push("vtol", &item.place, "a vertical take-off becomes one from a runway");
         }
-        let Some(position) = self.home.map(|h| h.0).or(item.position()).or_else(ahead) else {
+        let Some(position) = self.home.map(|h| h.0).or(item.position()).or(ahead) else {
             return self.notes.push(
                 "no-position",
                 &item.place,
@@ -33,7 +33,7 @@ impl Importer<'_> {
             0.0
         });
         let direction =
-            Direction { heading_deg: item.param(4), towards: item.position().or_else(ahead), from: None };
+            Direction { heading_deg: item.param(4), towards: item.position().or(ahead), from: None };
         let naming = (&mut *self.names, &mut *self.notes);
         let id = self.runways.at("runway", (position, elevation_m), direction, &item.place, naming);
         let mut stage =

@@ -40,9 +40,8 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         speed_mps: None,
         last: None,
     };
-    for (index, entry) in mission.entries.iter().enumerate() {
-        let ahead = || mission.entries.iter().skip(index + 1).find_map(where_to);
-        importer.entry(entry, &ahead);
+    for (entry, ahead) in mission.entries.iter().zip(ahead(&mission.entries)) {
+        importer.entry(entry, ahead);
     }
     let mut plan = importer.finish();
     for mut zone in mission.zones {
@@ -78,6 +77,18 @@ fn where_to(entry: &Entry) -> Option<LatLon> {
     }
 }
 
+/// For each entry, where the aircraft goes next behind it.
+fn ahead(entries: &[Entry]) -> Vec<Option<LatLon>> {
+    let from_the_end = entries.iter().rev().scan(None, |next, entry| {
+        let ahead = *next;
+        *next = where_to(entry).or(ahead);
+        Some(ahead)
+    });
+    let mut ahead: Vec<_> = from_the_end.collect();
+    ahead.reverse();
+    ahead
+}
+
 /// A plan in the making.
 pub(super) struct Importer<'a> {
     pub(super) assumptions: &'a Assumptions,
@@ -96,7 +107,7 @@ pub(super) struct Importer<'a> {
 }
 
 impl Importer<'_> {
-    fn entry(&mut self, entry: &Entry, ahead: &dyn Fn() -> Option<LatLon>) {
+    fn entry(&mut self, entry: &Entry, ahead: Option<LatLon>) {
         let (place, number) = match entry {
             Entry::Item(item) => (&item.place, item.number),
             Entry::Leg { place, number, .. } | Entry::Landing { place, number, .. } => (place, *number),
@@ -117,7 +128,7 @@ impl Importer<'_> {
         }
     }
 
-    fn item(&mut self, item: &Item, ahead: &dyn Fn() -> Option<LatLon>) {
+    fn item(&mut self, item: &Item, ahead: Option<LatLon>) {
         match item.command {
             cmd::WAYPOINT | cmd::SPLINE_WAYPOINT => self.waypoint(item),
             cmd::LOITER_UNLIMITED | cmd::LOITER_TURNS | cmd::LOITER_TIME | cmd::LOITER_TO_ALTITUDE => {
@@ -190,7 +201,9 @@ impl Importer<'_> {
             cmd::LOITER_TURNS => self.orbit(item, position, signed_m, turn),
             cmd::LOITER_TIME => {
                 self.push(item, LegKind::Tf(waypoint(position, false)));
-                self.at_end(Act::Wait { seconds: Value::Constant(item.param(1).clamp(0.0, 1e6)) });
+                // no time is none to wait
+                let seconds = if item.param(1).is_finite() { item.param(1).clamp(0.0, 1e6) } else { 0.0 };
+                self.at_end(Act::Wait { seconds: Value::Constant(seconds) });
                 self.radius_lost(item, signed_m);
             }
             cmd::LOITER_TO_ALTITUDE => {

@@ -1,0 +1,25 @@
+//! What the FP Manager itself has recorded.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use usal::contract::GatewayRequest;
+
+/// What the FP Manager remembers beside the executor.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Notes {
+    /// Wanted of the gateway and not granted yet.
+    pub wanted: Option<GatewayRequest>,
+    /// The gateway or the pilot flies.
+    pub controlled: bool,
+    /// Alarms of the gateway that were answered by an emergency plan, or found none.
+    pub answered_alarms: BTreeSet<String>,
+}
+
+/// As [`::journal::Entry`].
+pub type Entry = ::journal::Entry<Notes>;
+/// As [`::journal::Record`].
+pub type Record = ::journal::Record<Notes>;
+/// As [`::journal::Saved`].
+pub type Saved = ::journal::Saved<Notes>;
+/// As [`::journal::Chapter`].
+pub type Chapter = ::journal::Chapter<Notes>;
