@@ -121,7 +121,7 @@ fn fly_all(seeds: Range<u64>) -> Tally {
                 return tally;
             }
             tally.fly(seed);
-            if (seed + 1) % 10_000 == 0 {
+            if (seed + 1).is_multiple_of(10_000) {
                 println!("{} sequences, up to seed {seed}", seed + 1 - seeds.start);
             }
         }
