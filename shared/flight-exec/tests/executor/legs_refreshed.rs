@@ -94,10 +94,13 @@ fn a_new_plan_changes_altitude_and_speed_of_the_leg_being_flown() {
     }
 }
 
+/// Whether the rest of a leg, as flown, is that of the new plan.
+type Arrived = fn(&[LatLon]) -> bool;
+
 /// Where a leg ends up after its own geometry was changed while it was flown.
 #[test]
 fn a_new_plan_changes_the_geometry_of_the_leg_being_flown() {
-    let cases: [(&str, &str, &str, fn(&[LatLon]) -> bool); 5] = [
+    let cases: [(&str, &str, &str, Arrived); 5] = [
         (
             "the fix of a holding",
             r#"<HM id="p" fix="C4" course="0" turn="right" length="600" maxLaps="4"/>"#,
