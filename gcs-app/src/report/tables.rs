@@ -232,6 +232,6 @@ mod tests {
     fn a_folder_that_cannot_be_made_is_named() {
         let file = tempfile::NamedTempFile::new().unwrap();
         let error = report::write(&report::record::tests::record(), &file.path().join("sub")).unwrap_err();
-        assert!(format!("{error:#}").contains("--report"), "{error:#}");
+        assert!(format!("{error:#}").contains("choose another"), "{error:#}");
     }
 }

@@ -318,6 +318,10 @@ impl Executor {
     pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
+        // the leg at whose end it circles is over: its new values are for the next time
+        if self.state.wait.is_some() {
+            return self.replan(out);
+        }
         let near = self.alterable_from();
         let after_current = near.max(1).min(self.state.handed.len());
         let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };

@@ -169,3 +169,31 @@ fn a_call_in_no_loop_is_iteration_zero() {
     let of_call = rig.flown.iter().find(|w| w.leg.as_str() == "k.q");
     assert_eq!(of_call.map(|w| w.altitude_amsl_m), Some(500.0));
 }
+
+#[test]
+fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_now() {
+    let legs = r#"<TF id="a" fix="B1"/>
+        <expandingSquare id="s" spacing="300" heading="30" radius="= r" turn="right"><centre fix="C4"/>
+          <action on="end"><wait seconds="20"/></action></expandingSquare>
+        <TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("s");
+    let waits = |rig: &Rig| {
+        let wait =
+            |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
+        rig.events.iter().filter(wait).count()
+    };
+    while waits(&rig) == 0 {
+        rig.fly_one();
+    }
+    let circle = rig.buffer[0].clone();
+    rig.now += Time::from_secs(5);
+    rig.set("r", 900.0).unwrap();
+    rig.now += Time::from_secs(10);
+    rig.report();
+    assert_eq!(rig.buffer[0], circle);
+    rig.now += Time::from_secs(10);
+    rig.report();
+    rig.fly_to_the_end();
+    assert_eq!((rig.legs().as_str(), waits(&rig)), ("a s z", 1));
+}
