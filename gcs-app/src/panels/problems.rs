@@ -16,8 +16,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             ui.spinner().on_hover_text("The path is being looked at");
         }
     });
-    if problems.is_empty() {
+    // warnings are for people to weigh
+    if !problems.iter().any(|problem| problem.is_error()) {
         ui.label(RichText::new("✔ This plan can be flown").color(p.good));
+    }
+    if problems.is_empty() {
         return;
     }
     let height = 44.0;

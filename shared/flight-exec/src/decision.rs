@@ -1,6 +1,6 @@
 //! Intersections: who is asked, until when, and what was decided.
 
-mod lookout;
+pub(crate) mod lookout;
 
 use crate::api::{BranchOption, DecisionRequest, Event, Output, Refusal};
 use crate::choice::{By, Choice};

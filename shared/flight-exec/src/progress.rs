@@ -18,6 +18,8 @@ impl Executor {
             Some(token) => {
                 let index = self.state.handed.iter().position(|h| h.waypoint.token == token);
                 if let Some(index) = index {
+                    // the next look at conditions counts from here: what comes does not depend on when the last one was
+                    self.state.review_due_s = self.state.clock_s;
                     self.fly_past(index, out);
                     self.arrive_at_current(out);
                 }

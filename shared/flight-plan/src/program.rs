@@ -21,6 +21,7 @@ pub struct Program {
     /// The same with its calls instantiated; `None`: it has no calls.
     flown: Option<FlightPlan>,
     hash: OnceLock<Arc<str>>,
+    forks: OnceLock<bool>,
     /// What the checks said that does not forbid flying.
     pub warnings: Vec<Problem>,
     ids: Arc<Ids>,
@@ -108,13 +109,20 @@ impl Program {
         if problems.iter().any(Problem::is_error) {
             return Err(problems);
         }
-        Ok(Self { plan, flown, hash: OnceLock::new(), warnings: problems, ids, expressions })
+        let (hash, forks) = (OnceLock::new(), OnceLock::new());
+        Ok(Self { plan, flown, hash, forks, warnings: problems, ids, expressions })
     }
 
     /// Hex SHA-256 of the plan's canonical XML: its identity. Computed when it is first asked for, because a plan that is being
     /// edited needs none.
     pub fn hash(&self) -> &Arc<str> {
         self.hash.get_or_init(|| xml::hash(&self.plan).into())
+    }
+
+    /// There is an intersection with several branches somewhere.
+    pub fn has_forks(&self) -> bool {
+        let forks = |leg: &Leg| leg.as_fork().is_some_and(|fork| fork.branches.len() > 1);
+        *self.forks.get_or_init(|| self.flown().all_legs().iter().any(|context| forks(context.leg)))
     }
 
     /// The plan that is flown: its calls are the legs they stand for (see [`crate::procedure`]).

@@ -82,6 +82,9 @@ impl Executor {
 
     /// The first intersection behind what is handed out, if it may be asked about now.
     fn sight(&self) -> Option<Sighted> {
+        if !self.program.has_forks() {
+            return None;
+        }
         let (mut cursor, waited) = self.onward_cursor()?;
         let stages = self.program.stages(cursor.section).iter().skip(cursor.stage);
         let lead_s = stages.filter_map(|s| self.longest_lead_s(&s.legs)).reduce(f64::max)?;

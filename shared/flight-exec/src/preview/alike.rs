@@ -1,13 +1,13 @@
 //! Whether two flights are one from here on: the same place in the plan, the same motion, the same waypoints ahead, whatever time
 //! it is and however much was flown and counted before.
 //!
-//! For plans whose conditions don't read the flight: then when a review of conditions is due makes no difference, nor does
-//! the energy left. What is compared with a tolerance are sums over the way so far, which carry rounding errors.
+//! For plans whose conditions don't read the flight: then the energy left makes no difference. What is compared with a tolerance are sums over the way so far, which carry rounding errors.
 
 use super::situation::Situation;
 use crate::actions::{Passage, Wait};
 use crate::api::Waypoint;
 use crate::cursor::{Cursor, LoopFrame, Mark};
+use crate::decision::lookout::Ahead;
 use crate::executor::Executor;
 use crate::handed::Handed;
 use crate::path::PathState;
@@ -115,6 +115,8 @@ impl<'a> Offset<'a> {
             && self.debounced(one.last_refresh_s, other.last_refresh_s)
             && pair(&one.refresh_due_s, &other.refresh_due_s, |a, b| self.instant(*a, *b))
             && self.instant(one.acted_s, other.acted_s)
+            && self.instant(one.review_due_s, other.review_due_s)
+            && pair(&one.ahead, &other.ahead, asks_the_same)
             && pair(&one.wait, &other.wait, |a, b| self.waits(a, b))
             && all(one.passages.iter(), other.passages.iter(), |a, b| self.passages(a, b))
             && pair(&one.tail, &other.tail, |a, b| self.cursors(a, b))
@@ -191,6 +193,12 @@ fn frames(one: &LoopFrame, other: &LoopFrame) -> bool {
     let place = |f: &LoopFrame| (f.index, f.iteration, f.reverse, f.mirrored, f.back, f.entered);
     place(one) == place(other)
         && (std::sync::Arc::ptr_eq(&one.trail, &other.trail) || one.trail == other.trail)
+}
+
+/// How far it is to the intersection is a sum over the way.
+fn asks_the_same(one: &Ahead, other: &Ahead) -> bool {
+    let asked = |ahead: &Ahead| (ahead.crossing, ahead.request.leg.clone());
+    asked(one) == asked(other)
 }
 
 fn pair<T>(one: &Option<T>, other: &Option<T>, alike: impl Fn(&T, &T) -> bool) -> bool {

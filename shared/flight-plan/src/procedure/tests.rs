@@ -61,7 +61,7 @@ fn a_call_becomes_a_loop_of_one_pass_with_its_own_properties() {
     let call = plan.leg(&"c".into()).unwrap().leg;
     assert_eq!((call.name.as_str(), call.actions.len(), call.speed_mps.is_some()), ("There", 1, true));
     let LegKind::Iterative {
-        form: IterativeForm::Forward,
+        form: IterativeForm::Once,
         count: Some(Value::Constant(1.0)),
         until: None,
         body,
