@@ -70,7 +70,12 @@ def test_the_qgc_plan_has_the_same_waypoints(plan, tmp_path):
     assert file["fileType"] == "Plan" and file["version"] == 1 and file["mission"]["version"] == 2
     items = []
     for item in file["mission"]["items"]:
-        items += item["TransectStyleComplexItem"]["Items"] if item["type"] == "ComplexItem" else [item]
+        if item.get("complexItemType") == "fwLandingPattern":
+            # the final approach and the touch-down; such a pattern has no numbers of its own
+            for place in (item["landingApproachCoordinate"], item["landCoordinate"]):
+                items.append({"doJumpId": len(items) + 1, "frame": 0, "params": [0.0] * 4 + place})
+        else:
+            items += item["TransectStyleComplexItem"]["Items"] if item["type"] == "ComplexItem" else [item]
     assert [i["doJumpId"] for i in items] == list(range(1, len(items) + 1))
     assert all(len(i["params"]) == 7 for i in items)
     agree([i["params"][4:] for i in items if i["frame"] == 0], reference(plan))

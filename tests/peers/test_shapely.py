@@ -42,7 +42,8 @@ def ours(area, spacing, heading, overshoot):
 
 
 def theirs(area, spacing, heading):
-    """Lines half a spacing inside both edges, clipped one by one: what a planner does with shapely."""
+    """Lines spread evenly, as few as are no more than a spacing apart, the outer ones half of that inside the edges; clipped one by one:
+    what a planner does with shapely."""
     started = time.perf_counter()
     # headings are clockwise from north, shapely's angles anticlockwise: turned by the heading, the lines run north
     turned = rotate(area, heading, origin=(0, 0))
@@ -51,7 +52,7 @@ def theirs(area, spacing, heading):
     pieces = []
     count = math.ceil((east - west) / spacing - 1e-9)
     for i in range(count):
-        across = min(west + spacing / 2 + i * spacing, east - spacing / 2)
+        across = west + (i + 0.5) * (east - west) / count
         pieces.append(turned.intersection(LineString([(across, south - 1), (across, north + 1)])))
     seconds = time.perf_counter() - started
     return rotate(union_all(pieces), -heading, origin=(0, 0)), seconds
