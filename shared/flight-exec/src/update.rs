@@ -62,11 +62,19 @@ impl Executor {
             handed.before = bookmark.clone();
             handed.pinned = true;
         }
+        self.forget_counts_of_loops_left();
         let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
         }
         self.replan_with(kept.len(), onward, false, out);
+    }
+
+    /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left.
+    fn forget_counts_of_loops_left(&mut self) {
+        let path = self.state.handed.front().and_then(|front| self.program.path(&front.place.leg));
+        let around: Vec<&Leg> = path.iter().flat_map(|path| self.program.chain(path)).collect();
+        self.state.counts.retain(|c| around.iter().any(|leg| leg.id == c.leg));
     }
 
     fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {

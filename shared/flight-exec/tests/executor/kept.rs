@@ -197,3 +197,44 @@ fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_
     rig.fly_to_the_end();
     assert_eq!((rig.legs().as_str(), waits(&rig)), ("a s z", 1));
 }
+
+#[test]
+fn a_count_ends_with_the_loop_that_a_new_plan_has_not() {
+    let body = r#"<TF id="b" fix="B2"/><TF id="c" fix="B3"/>"#;
+    let with =
+        |body: &str| program(&document(&format!(r#"<TF id="a" fix="B1"/>{body}<TF id="z" fix="A3"/>"#)));
+    let looped = with(&format!(r#"<iterative id="l" form="forward" count="2">{body}</iterative>"#));
+    let mut rig = Rig::new();
+    rig.update(&looped).unwrap();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to("b");
+    rig.command(Command::SetCount { leg: "l".into(), count: 4 }).unwrap();
+    rig.update(&with(body)).unwrap();
+    rig.update(&looped).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c b c z");
+    assert_eq!(arrivals(&rig), [1, 2], "as often as the plan says");
+}
+
+#[test]
+fn who_goes_again_to_the_leg_at_whose_end_it_circles_circles_anew() {
+    let wait = r#"<action on="end"><wait seconds="20"/></action>"#;
+    let climb =
+        format!(r#"<FA id="k" fix="B1" course="90" altitude="400" altitudeReference="amsl">{wait}</FA>"#);
+    let mut rig = Rig::started(&format!(r#"<TF id="a" fix="B1"/>{climb}<TF id="z" fix="A3"/>"#));
+    rig.fly_to("k");
+    rig.fly_one();
+    let waits = |rig: &Rig| {
+        let wait =
+            |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
+        rig.events.iter().filter(wait).count()
+    };
+    assert_eq!((waits(&rig), rig.executor.status().wait_left_s.is_some()), (1, true));
+    rig.command(Command::GoTo { leg: "k".into() }).unwrap();
+    assert_eq!(rig.executor.status().wait_left_s, None, "it has not begun");
+    while rig.leg() == "k" {
+        rig.fly_one();
+    }
+    rig.fly_to_the_end();
+    assert_eq!((rig.legs().as_str(), waits(&rig)), ("a k k z", 2));
+}

@@ -264,15 +264,16 @@ fn wait_begun(step: Step<'_>) -> Option<(&Id, u64, f64)> {
     })
 }
 
-/// A wait with the steps until the first that doesn't circle any more.
+/// A wait with the steps until the first that doesn't circle any more, or that leads to a circle which is another one.
 fn waits(trace: &Trace) -> Vec<(f64, f64, Vec<Step<'_>>)> {
     let begun = trace.steps().filter_map(|s| wait_begun(s).map(|(.., seconds)| (s, seconds)));
     let begun = begun.filter(|(s, _)| s.after.circles());
     let with_end = begun.map(|(step, seconds)| {
         let later = (step.at + 1..trace.moments.len()).map(|at| trace.step(at));
         let mut over = false;
-        let until = later
-            .take_while(|s| !std::mem::replace(&mut over, !s.after.circles() || wait_begun(*s).is_some()));
+        let elsewhere = |s: &Step| s.is_jump() && !s.keeps_its_leg();
+        let ends = |s: &Step| !s.after.circles() || wait_begun(*s).is_some() || elsewhere(s);
+        let until = later.take_while(|s| !std::mem::replace(&mut over, ends(s)));
         (step.moment.now.as_secs_f64(), seconds, until.collect())
     });
     with_end.collect()

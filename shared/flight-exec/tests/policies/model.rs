@@ -176,8 +176,9 @@ impl<'a> Model<'a, '_> {
                 self.program = Some(program);
                 entry.clone()
             }
-            Jump::GoOn { program, simply } => {
+            Jump::GoOn { program, leg, simply } => {
                 self.forget_other_forms(program);
+                self.leave_loops_not_around(leg, program);
                 self.program = Some(program);
                 let here = self.here.clone().filter(|_| simply && !self.stack.iter().any(|f| f.reverse));
                 after = here.clone();
@@ -208,6 +209,15 @@ impl<'a> Model<'a, '_> {
                 frame.visited.clear();
             }
         }
+    }
+
+    /// Loops that a new plan hasn't around the leg being flown are left, and their counts forgotten.
+    fn leave_loops_not_around(&mut self, leg: &Id, new: &Program) {
+        let path = new.path(leg);
+        let chain: Vec<&Leg> = path.iter().flat_map(|path| new.chain(path)).collect();
+        let around = |id: &Id| chain.iter().any(|l| l.id == *id && l.as_loop().is_some());
+        self.stack.retain(|f| f.id.as_ref().is_some_and(around));
+        self.counts.retain(|id, _| around(id));
     }
 
     fn is_control(&self, leg: &Id) -> bool {

@@ -35,9 +35,10 @@ pub enum Jump<'a> {
     Return(&'a Id),
     /// Another plan, entered at a leg.
     Enter(&'a Program, &'a Id),
-    /// Another plan, gone on with where the aircraft is; `simply`: nothing but the leg being flown was kept.
+    /// Another plan, gone on with where the aircraft is, on a leg; `simply`: nothing but the leg being flown was kept.
     GoOn {
         program: &'a Program,
+        leg: &'a Id,
         simply: bool,
     },
 }
@@ -135,10 +136,10 @@ fn order<'a>(
         }
         Command::Commit { entry, .. } if step.before.is_flying() => {
             let current = step.before.place().map(|p| &p.leg);
-            match entry.as_ref().filter(|e| Some(*e) != current) {
-                Some(entry) => Sight::Jump(Jump::Enter(program, entry)),
-                None => Sight::Jump(Jump::GoOn { program, simply: announced() && keeps_one_leg(step) }),
-            }
+            Sight::Jump(match (entry, current) {
+                (Some(entry), current) if Some(entry) != current => Jump::Enter(program, entry),
+                (_, leg) => Jump::GoOn { program, leg: leg?, simply: announced() && keeps_one_leg(step) },
+            })
         }
         _ => return None,
     })
