@@ -165,10 +165,13 @@ impl Executor {
         due_s.min_by(f64::total_cmp)
     }
 
-    /// The actions of legs in another plan: what was done stays done, found again by the action itself.
-    pub(crate) fn carry_passages_over(&mut self, old: &flight_plan::Program) {
+    /// The actions of legs in another plan: what was done stays done, found again by the action itself. A leg that flies is no longer
+    /// what it was as a loop or an intersection, and the other way round.
+    pub(crate) fn carry_passages_over(&mut self, old: &Program) {
         for passage in &mut self.state.passages {
             let (before, after) = (old.leg(&passage.leg), self.program.leg(&passage.leg));
+            let kind = |leg: &Leg| is_control(leg).then(|| leg.kind_name());
+            let after = after.filter(|leg| before.map(kind) == Some(kind(leg)));
             passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg));
         }
         self.state.passages.retain(|p| !p.done.is_empty());
@@ -239,7 +242,7 @@ pub(crate) struct Piece {
 }
 
 /// It flies nothing itself.
-fn is_control(leg: &Leg) -> bool {
+pub(crate) fn is_control(leg: &Leg) -> bool {
     matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. })
 }
 

@@ -1,5 +1,6 @@
 //! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
 
+use crate::actions::is_control;
 use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing, LoopFrame, Visit};
 use crate::executor::{Executor, refusal};
@@ -160,8 +161,8 @@ enum Carried {
 }
 
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
-/// identifiers. If its leg is gone, or in another of the document's plans, it is the beginning of `current` (nothing kept before
-/// it) or the end of it.
+/// identifiers. In the middle of a leg that has become another kind of leg, it is the beginning of that one, on the same passage. If
+/// its leg is gone, or in another of the document's plans, it is the beginning of `current` (nothing kept before it) or the end of it.
 fn translated(
     cursor: &Cursor,
     kept_leg: Option<&Id>,
@@ -172,6 +173,13 @@ fn translated(
     let known = cursor.loop_ids(world);
     let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
+        let unfinished = cursor.doing == Doing::Flying && !cursor.at_the_end_of_its_leg();
+        let other_form = cursor.leg(world).filter(|_| unfinished && kept_leg.is_some());
+        let other_form = other_form.filter(|leg| new.leg(&leg.id).is_some_and(|leg| !is_control(leg)));
+        if let Some(target) = other_form.and_then(|leg| new.path(&leg.id)).filter(same_plan) {
+            let passage = cursor.passage.saturating_sub(1);
+            return Cursor { passage, ..cursor.placed_at(&target, &known, new) };
+        }
         let fallback = kept_leg.and_then(|id| new.path(id)).filter(same_plan);
         let mut placed = cursor.placed_at(fallback.as_ref().unwrap_or(current), &known, new);
         if kept_leg.is_some() {

@@ -1,6 +1,6 @@
 //! What has been reached stays reached, and what has been chosen stays chosen: each of these a random flight has once found otherwise.
 
-use crate::rig::{Rig, document, document_with, program};
+use crate::rig::{Rig, document, document_with, fix, program};
 use flight_exec::{Command, Event, Time};
 use flight_plan::VariableValue;
 
@@ -237,4 +237,43 @@ fn who_goes_again_to_the_leg_at_whose_end_it_circles_circles_anew() {
     }
     rig.fly_to_the_end();
     assert_eq!((rig.legs().as_str(), waits(&rig)), ("a k k z", 2));
+}
+
+#[test]
+fn a_leg_that_becomes_another_kind_of_leg_is_flown_as_that_one() {
+    let orbit = r#"<orbit id="k" radius="200" turns="3" turn="left"><centre fix="C4"/></orbit>"#;
+    let track = r#"<TF id="k" fix="D2"><action on="end"><wait seconds="20"/></action></TF>"#;
+    let with = |leg: &str| document(&format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="z" fix="A3"/>"#));
+    let mut rig = Rig::flying(&with(orbit));
+    rig.fly_to("k");
+    (0..5).for_each(|_| drop(rig.fly_one()));
+    rig.update(&program(&with(track))).unwrap();
+    let flown = rig.flown.len();
+    while rig.leg() == "k" {
+        rig.fly_one();
+    }
+    rig.fly_to_the_end();
+    let to_its_fix =
+        |w: &flight_exec::Waypoint| w.leg.as_str() == "k" && w.position.distance_m(fix("D2")) < 1.0;
+    assert!(rig.flown[flown..].iter().any(to_its_fix));
+    let waited =
+        |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
+    assert_eq!((rig.legs().as_str(), rig.events.iter().filter(waited).count()), ("a k z", 1));
+}
+
+#[test]
+fn a_leg_that_becomes_an_intersection_does_its_actions_once() {
+    let photo = r#"<action on="end"><photo/></action>"#;
+    let track = format!(r#"<TF id="k" fix="C4">{photo}</TF>"#);
+    let fork = format!(
+        r#"<intersection id="k">{photo}<branch id="x" label="x" next="u"/><branch id="y" label="y" next="z"/></intersection><TF id="u" fix="C2"/>"#
+    );
+    let with = |leg: &str| document(&format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="z" fix="A3"/>"#));
+    let mut rig = Rig::flying(&with(&track));
+    rig.fly_to("k");
+    rig.update(&program(&with(&fork))).unwrap();
+    rig.steer();
+    rig.command(Command::Decide { leg: "k".into(), branch: "y".into() }).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!((rig.legs().as_str(), rig.acts.len()), ("a k z", 1));
 }

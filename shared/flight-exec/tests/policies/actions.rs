@@ -307,9 +307,14 @@ fn wait_is_flown(trace: &Trace, found: &mut Findings) {
     }
 }
 
+/// It begins when the gateway steers to the circle: one that an update puts in its place is another one.
 fn wait_left(trace: &Trace, found: &mut Findings) {
+    let mut steered = None;
     for step in trace.steps().filter(|s| s.after.is_flying() && !s.after.ahead.is_empty()) {
-        let begun = step.is_begun_now();
+        if let Some(Input::Progress { current }) = step.input() {
+            steered = *current;
+        }
+        let begun = step.is_begun_now() && steered == step.after.status.current;
         let left_s = step.after.status.wait_left_s;
         if left_s.is_some() || (step.after.circles() && begun) {
             let sound = left_s.is_some_and(|s| (0.0..20.001).contains(&s)) && step.after.circles();

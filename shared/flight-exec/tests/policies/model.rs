@@ -101,6 +101,10 @@ impl<'a> Model<'a, '_> {
             match sight {
                 Sight::Jump(jump) => return Some(jump),
                 Sight::Entered(place) => self.listen(place),
+                // a loop that is left, lost or not, has no count of its own any more
+                Sight::Arrived { leg, finished, of: Some(of), .. } if finished >= of => {
+                    self.counts.remove(leg);
+                }
                 other => self.note(&other),
             }
         }
@@ -113,6 +117,7 @@ impl<'a> Model<'a, '_> {
             Frame { id, iteration: i.iteration, reverse: i.reverse, visited: Vec::new() }
         };
         self.stack = place.iterations.iter().map(frame).collect();
+        self.counts.retain(|id, _| place.iterations.iter().any(|i| i.leg == *id));
         self.here = Some(place.leg.clone()).filter(|_| self.stack.is_empty());
     }
 

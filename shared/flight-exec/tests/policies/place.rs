@@ -106,8 +106,10 @@ fn place_is_the_waypoint(trace: &Trace, found: &mut Findings) {
     }
 }
 
+/// What the plan writes at the end of the leg before may change the way at once.
 fn entered_is_steered_to(trace: &Trace, found: &mut Findings) {
-    for step in trace.steps() {
+    let written = |s: &Step| s.events().any(|e| matches!(e, Event::VariableChanged { .. }));
+    for step in trace.steps().filter(|s| !written(s)) {
         let told = matches!(step.input(), Some(Input::Progress { current: Some(_) }));
         if let (Some(last), true) = (step.entered().last(), told) {
             let there = step.after.place().is_some_and(|p| same_passage(p, last));
