@@ -1,7 +1,7 @@
 //! Where everything is that has an identifier.
 
 use crate::{FlightPlan, Id, Leg, LegPath};
-use std::collections::HashMap;
+use foldhash::HashMap;
 use std::sync::Arc;
 
 /// A plan's identifiers, but those of its variables and branches. Unchanged by edits that leave every leg in its place.

@@ -15,6 +15,7 @@ pub use zone::{Zone, ZoneKind, ZoneShape, ZoneTime};
 
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use std::sync::Arc;
 
 /// An identifier of the document: letters, digits, `-`, `_`, `.`; unique, stable across edits.
@@ -22,7 +23,7 @@ use std::sync::Arc;
     Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
 )]
 #[serde(transparent)]
-pub struct Id(pub Arc<str>);
+pub struct Id(SmolStr);
 
 impl Id {
     /// From its text.

@@ -58,9 +58,11 @@ impl Path {
 
     /// The box that the path is in, `(south-west, north-east)` and some room around it; `None`: not said.
     pub fn around(&self, start: LatLon, end: LatLon) -> Option<(LatLon, LatLon)> {
-        /// More than a short line bulges towards its pole, degrees.
-        const ROOM_DEG: f64 = 0.001;
-        let short = matches!(self, Path::Line { length_m, .. } if *length_m <= SHORT_M);
+        /// The longest line of which it is said, metres.
+        const LONG_M: f64 = 50_000.0;
+        /// More than such a line bulges towards its pole, degrees: L² tan 70° / 8R is 135 m.
+        const ROOM_DEG: f64 = 0.002;
+        let short = matches!(self, Path::Line { length_m, .. } if *length_m <= LONG_M);
         let (south, north) = (start.lat_deg.min(end.lat_deg), start.lat_deg.max(end.lat_deg));
         let (west, east) = (start.lon_deg.min(end.lon_deg), start.lon_deg.max(end.lon_deg));
         let inside = south > -70.0 && north < 70.0 && west > -179.9 && east < 179.9;
@@ -171,6 +173,19 @@ mod tests {
                 prop_assert!(course_change_deg(path.course_start_deg(), exact.bearing_start_deg) < 1e-4);
                 prop_assert!(course_change_deg(path.course_end_deg(), exact.bearing_end_deg) < 1e-4);
             }
+        }
+
+        #[test]
+        fn a_line_stays_in_the_box_around_it(
+            lat in -70.0..70.0, lon in -179.0..179.0, course in 0.0..360.0, length_m in 10.0..50_000.0, share in 0.0..1.0,
+        ) {
+            let start = LatLon::new(lat, lon);
+            let end = start.destination(course, length_m);
+            let path = Path::line(start, end);
+            let Some((south_west, north_east)) = path.around(start, end) else { return Ok(()) };
+            let there = start.destination(course, share * length_m);
+            prop_assert!((south_west.lat_deg..=north_east.lat_deg).contains(&there.lat_deg));
+            prop_assert!((south_west.lon_deg..=north_east.lon_deg).contains(&there.lon_deg));
         }
 
         /// Beside the geodesic itself.

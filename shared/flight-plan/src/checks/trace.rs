@@ -40,7 +40,8 @@ impl<'i, 'a> Trace<'i, 'a> {
     /// Through the main plan, then through each emergency plan.
     pub fn of(view: &'i mut Inspection<'a>, recall: &'i mut Recall) -> Self {
         let plan = view.plan;
-        let steps = Vec::with_capacity(recall.total());
+        let legs: usize = plan.all_stages().map(|(_, stage)| stage.legs.len()).sum();
+        let steps = Vec::with_capacity(legs.max(recall.total()));
         let mut trace = Self { view, recall, steps, lists: Vec::new(), spots: Spots::default() };
         trace.stages(&plan.stages, None);
         for (index, emergency) in plan.emergency_plans.iter().enumerate() {

@@ -11,7 +11,7 @@ const NO_CORNER: &str = "has no such corner: choose a corner of its polygon or r
 /// The variable that an expression consists of.
 fn bound_to(id: &Id, source: &Arc<str>) -> Result<Id, EditError> {
     let word = source.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    if word { Ok(Id(source.clone())) } else { Err(not_applicable(id, COMPUTED)) }
+    if word { Ok(Id::new(source)) } else { Err(not_applicable(id, COMPUTED)) }
 }
 
 fn zone_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Option<&'a mut Zone> {

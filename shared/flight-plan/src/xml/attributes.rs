@@ -22,8 +22,20 @@ pub(super) struct Memory<'a>(Vec<Entry<'a>>);
 
 struct Entry<'a> {
     name: &'a str,
+    /// See [`bit`].
+    bit: u64,
     value: Cow<'a, str>,
     taken: Cell<bool>,
+}
+
+impl<'a> Entry<'a> {
+    fn new(name: &'a str, value: Cow<'a, str>) -> Self {
+        Self { name, bit: bit(name), value, taken: Cell::new(false) }
+    }
+
+    fn is_called(&self, name: &str, bit: u64) -> bool {
+        self.bit == bit && self.name == name
+    }
 }
 
 impl<'a> Attributes<'a> {
@@ -36,7 +48,7 @@ impl<'a> Attributes<'a> {
     ) -> Self {
         memory.0.clear();
         let list = plain(text, memory.0).unwrap_or_else(|| Self::any(text, place, problems));
-        let names = list.iter().fold(0, |names, entry| names | bit(entry.name));
+        let names = list.iter().fold(0, |names, entry| names | entry.bit);
         Self { list, place, names }
     }
 
@@ -76,10 +88,11 @@ impl<'a> Attributes<'a> {
     }
 
     fn find(&self, name: &str) -> Option<&Entry<'a>> {
-        if self.names & bit(name) == 0 {
+        let bit = bit(name);
+        if self.names & bit == 0 {
             return None;
         }
-        self.list.iter().find(|e| e.name == name)
+        self.list.iter().find(|e| e.is_called(name, bit))
     }
 
     /// It is there (and still to be taken).
@@ -100,7 +113,8 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// A bit for a name, by its length and first letter.
+/// A bit for a name, by its length and first letter: most names are told apart by it.
+#[inline]
 fn bit(name: &str) -> u64 {
     let first = name.as_bytes().first().map_or(0, |b| usize::from(*b));
     1 << ((first + 7 * name.len()) % 64)
@@ -109,8 +123,9 @@ fn bit(name: &str) -> u64 {
 /// Attributes as nearly every document has them: `name="value"`, no references, no line breaks, no name twice.
 /// `None`: something else.
 fn plain<'a>(text: &'a str, mut list: Vec<Entry<'a>>) -> Option<Vec<Entry<'a>>> {
-    let special = |b: &&u8| matches!(b, b'&' | b'<' | b'\t' | b'\n' | b'\r');
-    if text.as_bytes().iter().filter(special).count() > 0 {
+    let special = |b: &u8| matches!(b, b'&' | b'<' | b'\t' | b'\n' | b'\r');
+    // all of them: without a way out, many are looked at at once
+    if text.as_bytes().iter().fold(false, |found, b| found | special(b)) {
         return None;
     }
     let mut rest = text;
@@ -127,11 +142,12 @@ fn plain<'a>(text: &'a str, mut list: Vec<Entry<'a>>) -> Option<Vec<Entry<'a>>> 
         let (value, behind) = behind.split_at_checked(length)?;
         rest = behind.strip_prefix('"')?;
         let separate = rest.is_empty() || rest.starts_with(' ');
-        if name.is_empty() || !separate || list.len() >= MAX_ATTRIBUTES || list.iter().any(|e| e.name == name)
-        {
+        let entry = Entry::new(name, Cow::Borrowed(value));
+        let again = list.iter().any(|e| e.is_called(name, entry.bit));
+        if name.is_empty() || !separate || again || list.len() >= MAX_ATTRIBUTES {
             return None;
         }
-        list.push(Entry { name, value: Cow::Borrowed(value), taken: Cell::new(false) });
+        list.push(entry);
     }
 }
 
@@ -147,7 +163,7 @@ fn entry<'a>(attribute: &Attribute<'a>, list: &[Entry<'a>]) -> Result<Entry<'a>,
         Some(_) => {
             Err(("bad-character", format!("`{}` contains a character that XML does not allow", shown(name))))
         }
-        None => Ok(Entry { name, value, taken: Cell::new(false) }),
+        None => Ok(Entry::new(name, value)),
     }
 }
 

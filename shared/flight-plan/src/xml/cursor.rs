@@ -2,6 +2,7 @@
 
 use super::attributes::{Attributes, Memory};
 use crate::{Location, Problem};
+use memchr::{memchr_iter, memrchr};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -254,9 +255,9 @@ impl Place<'_> {
     /// Moves on to a byte offset (an earlier one is answered with the present place).
     pub fn advance(&mut self, offset: usize) -> Location {
         let between = self.text.as_bytes().get(self.offset..offset).unwrap_or(b"");
-        let last_line = match between.iter().rposition(|b| *b == b'\n') {
+        let last_line = match memrchr(b'\n', between) {
             Some(end) => {
-                self.line += between.iter().filter(|b| **b == b'\n').count();
+                self.line += memchr_iter(b'\n', between).count();
                 self.column = 1;
                 between.get(end + 1..).unwrap_or(b"")
             }

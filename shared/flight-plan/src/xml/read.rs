@@ -102,7 +102,7 @@ fn encoding_problem(bytes: &[u8], error: Utf8Error) -> Option<Problem> {
 fn character_problem(text: &str) -> Option<Problem> {
     // of ASCII, only control characters are not allowed: a quick look at all bytes at once
     let harmless = |b: &u8| (b' '..0x80).contains(b) || matches!(b, b'\t' | b'\n' | b'\r');
-    if text.as_bytes().chunks(1024).all(|chunk| chunk.iter().filter(|b| harmless(b)).count() == chunk.len()) {
+    if text.as_bytes().chunks(1024).all(|chunk| chunk.iter().fold(true, |all, b| all & harmless(b))) {
         return None;
     }
     let (offset, character) = text.char_indices().find(|(_, c)| !attributes::allowed(*c))?;
