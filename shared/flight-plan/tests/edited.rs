@@ -3,8 +3,8 @@
 
 use aircraft::Profile;
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, FlightPlan, Id, Leg, Memory, Problem, Program, Spot, Value, check,
-    check_again, compile, compile_again, read,
+    Altitude, AltitudeReference, Edit, FlightPlan, Id, Leg, Memory, Problem, Program, Spot, Value,
+    VariableValue, check, check_again, compile, compile_again, read,
 };
 use geometry::LatLon;
 use proptest::collection::vec;
@@ -28,7 +28,7 @@ fn plans() -> Vec<FlightPlan> {
         "bad/duplicate-argument",
     ];
     let plan = |name: &str| read(std::fs::read(folder.join(format!("{name}.xml"))).unwrap()).plan;
-    names.into_iter().map(plan).chain([tracks(12), nested()]).collect()
+    names.into_iter().map(plan).chain([tracks(12), nested(), varied()]).collect()
 }
 
 const AROUND: [&str; 2] = [
@@ -53,6 +53,16 @@ fn nested() -> FlightPlan {
         <RF id="r" lat="36.32" lon="-84.18" centreLat="36.32" centreLon="-84.19" turn="left"/></iterative></iterative>
         <intersection id="i" default="on"><branch id="on"/><branch id="back" next="a"/></intersection><TF id="z" lat="36.33" lon="-84.2"/>"#;
     read(format!("{}{legs}{}", AROUND[0], AROUND[1])).plan
+}
+
+/// Legs whose altitude and speed are said around them, and an expression that names a fix.
+fn varied() -> FlightPlan {
+    let variables = r#"<variables><variable name="h" type="number" initial="500"/><variable name="v" type="number" initial="24"/></variables>"#;
+    let legs = r#"<TF id="a" fix="A" altitude="= distance_to('A') > 2000.0 ? 520.0 : 510.0" altitudeReference="amsl"/><iterative id="i" form="forward" count="2" altitude="= h" altitudeReference="amsl">
+        <TF id="b" lat="36.31" lon="-84.2"/><TF id="c" lat="36.31" lon="-84.19"/></iterative></stage>
+        <stage id="t" type="en-route" altitude="500" altitudeReference="amsl" speed="= v"><TF id="d" lat="36.33" lon="-84.2"/><TF id="e" lat="36.32" lon="-84.2"/>"#;
+    let around = AROUND.map(|text| text.replace("</runways>", &format!("</runways>{variables}")));
+    read(format!("{}{legs}{}", around[0], around[1])).plan
 }
 
 /// What a random edit is made of: which kind, and numbers to choose with.
@@ -101,6 +111,21 @@ fn edit(plan: &FlightPlan, (kind, a, b, north, east): Choice) -> Option<Edit> {
     })
 }
 
+/// A variable begins with another value of its type.
+fn begin_otherwise(plan: &FlightPlan, (_, a, _, north, east): Choice) -> Option<FlightPlan> {
+    let mut plan = plan.clone();
+    let number = a % plan.variables.len().max(1);
+    let initial = &mut plan.variables.get_mut(number)?.initial;
+    match initial {
+        VariableValue::Bool(b) => *b = !*b,
+        VariableValue::Number(x) => *x += 1e4 * north,
+        VariableValue::Text(text) => text.push('x'),
+        VariableValue::Position(p) => *p = LatLon::new(36.31 + north, -84.19 + east),
+        VariableValue::Polygon(corners) => corners.iter_mut().for_each(|p| p.lat_deg += north),
+    }
+    Some(plan)
+}
+
 /// The program as anybody can see it.
 fn seen(program: &Program) -> impl PartialEq + std::fmt::Debug + use<> {
     let flown = program.flown();
@@ -138,7 +163,7 @@ proptest! {
     /// Whatever was edited, fixed as proposed, or undone.
     #[test]
     fn an_edited_plan_is_checked_and_compiled_as_if_it_were_new(
-        base in 0..10_usize, edits in vec((choice(), 0..8_u8), 1..8),
+        base in 0..11_usize, edits in vec((choice(), 0..9_u8), 1..8),
     ) {
         let ground: Arc<dyn Terrain> = Arc::new(Flat(300.0));
         let mut memories = [(); 2].map(|()| Memory::new(Profile::default(), ground.clone()));
@@ -150,6 +175,7 @@ proptest! {
             let edited = match how {
                 0 => history.first().cloned(),
                 1 => fix().and_then(|fix| fix.apply(&plan).ok()).map(Arc::new),
+                2 => begin_otherwise(&plan, choice).map(Arc::new),
                 _ => edit(&plan, choice).and_then(|edit| edit.apply(&plan).ok()).map(Arc::new),
             };
             history.extend(edited);
@@ -184,6 +210,7 @@ fn an_edit_of_one_leg_costs_what_a_few_legs_cost() {
     let edits = [
         Edit::MoveWaypoint { leg: "leg-300".into(), to: LatLon::new(36.451, -84.199) },
         Edit::DeleteLeg { leg: "leg-300".into() },
+        Edit::MoveFix { fix: "A".into(), to: LatLon::new(36.451, -84.199) },
         Edit::SetSpeed { of: "leg-300".into(), speed_mps: Some(Value::Constant(22.0)) },
         Edit::PasteLeg {
             leg: Box::new(plan.leg(&"leg-296".into()).unwrap().leg.clone()),

@@ -1,9 +1,10 @@
 //! What one check leaves for the next: after an edit nearly every leg of a plan is what it was.
 
 use super::inspection::{Expressions, Inspection};
+use super::setting::{Moved, Setting};
 use super::step::{Around, Point, Step};
 use crate::ids::Ids;
-use crate::{EmergencyChoice, Fix, FlightPlan, Id, Leg, Runway, StageKind, Variable};
+use crate::{FlightPlan, Leg};
 use aircraft::Profile;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -39,44 +40,6 @@ pub(super) struct Last {
     ids: Arc<Ids>,
 }
 
-/// Everything beside the legs and what is around them that the rules about one leg may look at.
-#[derive(PartialEq)]
-struct Setting {
-    fixes: Vec<Fix>,
-    runways: Vec<Runway>,
-    variables: Vec<Variable>,
-    emergency: EmergencyChoice,
-    emergency_plans: Vec<Id>,
-    /// The runway that the first take-off stage names, if there is one.
-    take_off: Option<Option<Id>>,
-}
-
-impl Setting {
-    fn of(plan: &FlightPlan) -> Self {
-        Self {
-            fixes: plan.fixes.clone(),
-            runways: plan.runways.clone(),
-            variables: plan.variables.clone(),
-            emergency: plan.emergency.clone(),
-            emergency_plans: plan.emergency_plans.iter().map(|e| e.id.clone()).collect(),
-            take_off: take_off(plan).map(Option::<&Id>::cloned),
-        }
-    }
-
-    fn is_of(&self, plan: &FlightPlan) -> bool {
-        self.fixes == plan.fixes
-            && self.runways == plan.runways
-            && self.variables == plan.variables
-            && self.emergency == plan.emergency
-            && self.take_off.as_ref().map(Option::as_ref) == take_off(plan)
-            && self.emergency_plans.iter().eq(plan.emergency_plans.iter().map(|e| &e.id))
-    }
-}
-
-fn take_off(plan: &FlightPlan) -> Option<Option<&Id>> {
-    plan.stages.iter().find(|stage| stage.kind == StageKind::TakeOff).map(|stage| stage.runway.as_ref())
-}
-
 impl Last {
     /// Keeps a check for the next one.
     pub fn of(inspection: Inspection) -> Self {
@@ -98,6 +61,7 @@ pub(super) struct Recall {
     left: usize,
     /// Of each new step: the old one of the same leg, and what followed that.
     from: Vec<Option<Origin>>,
+    moved: Moved,
     pub expressions: Arc<Expressions>,
     pub ids: Arc<Ids>,
 }
@@ -117,20 +81,19 @@ const AHEAD: usize = 8;
 impl Recall {
     /// What may be remembered for a plan.
     pub fn of(last: Option<Last>, plan: &FlightPlan) -> Self {
-        match last.filter(|last| last.setting.is_of(plan)) {
-            Some(Last { steps, expressions, ids, .. }) => {
-                let total = steps.len();
-                Self {
-                    old: steps.into_iter(),
-                    total,
-                    ahead: AHEAD,
-                    left: 4 * total,
-                    from: Vec::with_capacity(total),
-                    expressions,
-                    ids,
-                }
-            }
-            None => Self::default(),
+        let known = last.and_then(|last| Some((last.setting.moved(plan, &last.expressions)?, last)));
+        let Some((moved, Last { steps, mut expressions, ids, .. })) = known else { return Self::default() };
+        moved.forget(&mut expressions);
+        let total = steps.len();
+        Self {
+            old: steps.into_iter(),
+            total,
+            ahead: AHEAD,
+            left: 4 * total,
+            from: Vec::with_capacity(total),
+            moved,
+            expressions,
+            ids,
         }
     }
 
@@ -157,8 +120,10 @@ impl Recall {
         };
         let number = self.total - self.old.len() - 1;
         let before = before.map(|before| self.was(before));
-        let same =
-            Arc::ptr_eq(&step.around, around) && step.start == start && step.before.map(Some) == before;
+        let same = Arc::ptr_eq(&step.around, around)
+            && step.start == start
+            && step.before.map(Some) == before
+            && !self.moved.is_read_by(leg);
         self.from.push(Some(Origin { number, after: step.after, same }));
         same.then_some(step)
     }
@@ -183,7 +148,8 @@ impl Recall {
     /// What a list has around it: that of the last check, if it is the same.
     pub fn around(&self, new: Around) -> Arc<Around> {
         let old = self.old.as_slice().iter().take(AHEAD).map(|step| &step.around);
-        old.into_iter().find(|old| ***old == new).cloned().unwrap_or_else(|| Arc::new(new))
+        let mut same = old.filter(|old| ***old == new && !self.moved.is_read_around(old));
+        same.next().cloned().unwrap_or_else(|| Arc::new(new))
     }
 
     fn origin(&self, step: usize) -> Option<Origin> {

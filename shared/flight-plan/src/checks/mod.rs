@@ -29,6 +29,7 @@ mod rf;
 mod runways;
 mod scans;
 mod segments;
+mod setting;
 mod spacings;
 mod speeds;
 mod stages;

@@ -91,6 +91,13 @@ impl Around {
         inner.or(self.stage.speed_mps.as_ref())
     }
 
+    /// Every altitude and speed around the legs, metres and m/s.
+    pub fn numbers(&self) -> impl Iterator<Item = &Value<f64>> {
+        let of = |altitude, speed| Option::map(altitude, |a: &Altitude| &a.metres).into_iter().chain(speed);
+        let loops = self.loops.iter().flat_map(move |l| of(l.altitude.as_ref(), l.speed_mps.as_ref()));
+        loops.chain(of(self.stage.altitude.as_ref(), self.stage.speed_mps.as_ref()))
+    }
+
     /// What the legs inside a loop have around them.
     pub fn inside(&self, leg: &Leg, form: IterativeForm) -> Self {
         let mut inside = self.clone();

@@ -59,9 +59,9 @@ pub fn compile_with(source: &str, names: &Names) -> Result<Expression, Expressio
         .max_recursion_depth(2 * MAX_DEPTH as u16)
         .parse_with_source_info(source)
         .map_err(|errors| syntax_error(source, errors))?;
-    let mut checker = Checker { names, source, places, variables: Vec::new() };
+    let mut checker = Checker { names, source, places, variables: Vec::new(), fixes: Vec::new() };
     let (node, kind) = checker.check(&tree, 0)?;
-    Ok(Expression { kind, variables: checker.variables, node })
+    Ok(Expression { kind, variables: checker.variables, fixes: checker.fixes, node })
 }
 
 /// For messages: long sources are cut.
@@ -109,6 +109,7 @@ struct Checker<'a> {
     source: &'a str,
     places: SourceInfo,
     variables: Vec<Id>,
+    fixes: Vec<Id>,
 }
 
 impl Checker<'_> {
@@ -297,7 +298,9 @@ impl Checker<'_> {
                         format!("there is no fix `{}`: add it or correct its name", id.inner()),
                     )
                 };
-                Node::Position(*fix.ok_or_else(unknown)?)
+                let position = *fix.ok_or_else(unknown)?;
+                self.fixes.push(Id::new(id.inner()));
+                Node::Position(position)
             }
             _ => *self.expect(to, Type::Position, depth)?,
         };

@@ -71,6 +71,8 @@ pub struct Expression {
     pub kind: Type,
     /// Variables it reads, each once.
     pub variables: Vec<Id>,
+    /// Fixes that it names, whose positions are in it.
+    pub fixes: Vec<Id>,
     node: Node,
 }
 
