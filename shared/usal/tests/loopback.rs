@@ -215,9 +215,8 @@ async fn request_whose_deadline_has_passed_is_not_executed() {
     within(call).await.unwrap();
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn repeated_request_ids_are_executed_once() {
-    let net = Net::open().await;
+/// A service that does whatever it is asked, and how often it did.
+fn counting(net: &Net) -> (Arc<AtomicUsize>, tokio::task::JoinHandle<()>) {
     let mut server = net.hub.serve(gateway::REQUEST).unwrap();
     let executed = Arc::new(AtomicUsize::new(0));
     let count = executed.clone();
@@ -227,6 +226,13 @@ async fn repeated_request_ids_are_executed_once() {
             incoming.answer(Ok(Empty {}));
         }
     });
+    (executed, service)
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn repeated_request_ids_are_executed_once() {
+    let net = Net::open().await;
+    let (executed, service) = counting(&net);
     let outside = outside_client(&net.endpoint).await;
     for (id, total) in [("7", 1), ("7", 1), ("8", 2), ("7", 2)] {
         let reply =
@@ -254,15 +260,7 @@ async fn repeated_request_ids_are_executed_once() {
 #[tokio::test(flavor = "multi_thread")]
 async fn clients_that_use_the_same_ids_get_their_own_answers() {
     let net = Net::open().await;
-    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
-    let executed = Arc::new(AtomicUsize::new(0));
-    let count = executed.clone();
-    let service = tokio::spawn(async move {
-        while let Some(incoming) = server.recv().await {
-            count.fetch_add(1, Ordering::SeqCst);
-            incoming.answer(Ok(Empty {}));
-        }
-    });
+    let (executed, service) = counting(&net);
     let outside = outside_client(&net.endpoint).await;
     let [hold, resume] = [br#"{"request":"hold"}"#.as_slice(), br#"{"request":"resume"}"#];
     // (id and asker, what, executed in all)

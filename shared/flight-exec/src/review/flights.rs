@@ -109,7 +109,7 @@ impl Flights {
         self.main.iter().chain(self.emergencies.values())
     }
 
-    /// The plan as it stands and with other branches, as far as these end; at least one of them does, or there are none.
+    /// The plan as it stands and with other branches: those of these flights that end.
     pub fn whole(&self) -> impl Iterator<Item = &Preview> {
         self.planned.iter().chain(self.chosen.iter().filter_map(|(_, preview)| preview.as_ref().ok()))
     }

@@ -13,7 +13,7 @@ fn flying(legs: &str) -> Rig {
 }
 
 /// What was done, as `leg:act`.
-fn done(rig: &Rig) -> Vec<String> {
+pub(super) fn done(rig: &Rig) -> Vec<String> {
     rig.acts.iter().map(|(leg, _, act)| format!("{leg}:{act}")).collect()
 }
 
@@ -22,12 +22,12 @@ fn action(when: &str) -> String {
 }
 
 /// 2 km from B1 to C1, 2 km on to D1.
-fn two_legs(actions: &str) -> String {
+pub(super) fn two_legs(actions: &str) -> String {
     format!(r#"<TF id="a" fix="B1"/><TF id="p" fix="C1">{actions}</TF><TF id="z" fix="D1"/>"#)
 }
 
 /// On leg `p`, so many metres from its begin.
-fn at(rig: &mut Rig, metres: f64) {
+pub(super) fn at(rig: &mut Rig, metres: f64) {
     rig.position = fix("B1").destination(90.0, metres);
     rig.now += Time::from_secs(1);
     rig.report();

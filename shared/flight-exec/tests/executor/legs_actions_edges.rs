@@ -1,5 +1,6 @@
 //! Actions where one might be lost or done twice: at corners, with values that change, where plans change, when legs are skipped.
 
+use crate::legs_actions::{at, done, two_legs};
 use crate::rig::{Rig, document_with, fix, program};
 use flight_exec::{Command, Event, ResolvedAct, Time};
 
@@ -7,22 +8,6 @@ const VARIABLES: &str = r#"<variable name="n" type="number" initial="100" min="0
 
 fn flying(legs: &str) -> Rig {
     Rig::flying(&document_with(legs, VARIABLES, ""))
-}
-
-/// What was done, as `leg:act`.
-fn done(rig: &Rig) -> Vec<String> {
-    rig.acts.iter().map(|(leg, _, act)| format!("{leg}:{act}")).collect()
-}
-
-fn two_legs(actions: &str) -> String {
-    format!(r#"<TF id="a" fix="B1"/><TF id="p" fix="C1">{actions}</TF><TF id="z" fix="D1"/>"#)
-}
-
-/// On leg `p`, so many metres from its begin.
-fn at(rig: &mut Rig, metres: f64) {
-    rig.position = fix("B1").destination(90.0, metres);
-    rig.now += Time::from_secs(2);
-    rig.report();
 }
 
 /// Outside a corner it is abeam of neither piece: ahead of the end of one, behind the beginning of the next.
