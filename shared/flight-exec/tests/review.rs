@@ -214,6 +214,42 @@ fn a_holding_is_held_against_zones_where_no_leg_of_it_is_written() {
     assert_eq!(broken(zone, hold, Conditions::default()), on("keep-out", "h"));
 }
 
+/// 25 m/s with 14 m/s behind are 39 m/s over the ground: with 45° of bank, a radius of 155 m.
+#[test]
+fn a_turn_that_the_wind_makes_too_wide() {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let found = |leg: &str, wind_mps: f64| {
+        let conditions = Conditions { wind: Wind::from_direction(270.0, wind_mps), ..Conditions::default() };
+        let document = rectangle("", leg);
+        let program = Arc::new(compile_document(&document, &Profile::default(), flat.as_ref()).unwrap());
+        let problems = review(&program, &Profile::default(), &flat, conditions);
+        let tight: Vec<_> = problems.into_iter().filter(|p| p.code == "turn-too-tight").collect();
+        let fixed = tight.iter().all(|p| {
+            let plan = p.fix.as_ref().unwrap().apply(&program.plan).unwrap();
+            let slower = Arc::new(compile(plan, &Profile::default(), flat.as_ref()).unwrap());
+            let left = review(&slower, &Profile::default(), &flat, conditions);
+            left.iter().all(|p| p.code != "turn-too-tight")
+        });
+        assert!(fixed, "{:?}", shown(&tight));
+        tight.iter().map(Problem::is_error).collect::<Vec<_>>()
+    };
+    let orbit = |radius: u32| {
+        format!(
+            r#"<orbit id="o" radius="{radius}" turns="1" turn="left"><centre fix="A"/></orbit><DF id="z" fix="D"/>"#
+        )
+    };
+    let eight =
+        r#"<figureEight id="o" radius="150" turn="left"><centre fix="A"/></figureEight><DF id="z" fix="D"/>"#;
+    let square = r#"<expandingSquare id="o" spacing="280" radius="500" turn="right"><centre fix="A"/></expandingSquare>"#;
+    assert_eq!(found(&orbit(150), 14.0), [true]);
+    assert_eq!(found(&orbit(170), 14.0), [false; 0]);
+    assert_eq!(found(&orbit(150), 8.0), [false; 0]);
+    assert_eq!(found(&orbit(150), 0.0), [false; 0]);
+    assert_eq!(found(eight, 14.0), [true]);
+    assert_eq!(found(square, 14.0), [false]);
+    assert_eq!(found(square, 8.0), [false; 0]);
+}
+
 #[test]
 fn a_turn_that_the_wind_carries_into_a_zone() {
     // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind

@@ -23,6 +23,7 @@ mod powered;
 mod prepared;
 mod refused;
 mod terrain_clearance;
+mod turns;
 mod unknown_terrain;
 mod unseen;
 mod waypoints;
@@ -86,7 +87,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 13] = [
+const RULES: [Rule; 14] = [
     refused::check,
     unseen::check,
     zones::check,
@@ -94,6 +95,7 @@ const RULES: [Rule; 13] = [
     terrain_clearance::check,
     ceiling::check,
     altitudes::check,
+    turns::check,
     waypoints::check,
     endurance::check,
     landings::check,

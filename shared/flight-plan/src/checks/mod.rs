@@ -21,6 +21,7 @@ mod memory;
 mod orbits;
 mod order;
 mod path;
+mod pattern_turns;
 mod patterns;
 mod procedures;
 mod references;
@@ -68,7 +69,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 39] = {
+const RULES: [Rule; 40] = {
     use Rule::{Leg, Plan};
     [
         Plan(empty::check),
@@ -98,6 +99,7 @@ const RULES: [Rule; 39] = {
         Leg(patterns::check),
         Leg(levels::check),
         Leg(spacings::check),
+        Leg(pattern_turns::check),
         Leg(actions::check),
         Plan(speeds::check),
         Leg(speeds::leg),

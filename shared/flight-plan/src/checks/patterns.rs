@@ -168,7 +168,7 @@ mod tests {
 
     fn spiral(inner: i32, outer: i32) -> String {
         let radii =
-            format!(r#"innerRadius="{inner}" outerRadius="{outer}" spacing="150" direction="inward""#);
+            format!(r#"innerRadius="{inner}" outerRadius="{outer}" spacing="300" direction="inward""#);
         about("spiral", &radii)
     }
 

@@ -1,8 +1,7 @@
 //! `bad-spacing`: no distance between tracks, or a camera that gives none; `too-many-tracks`: so small a one that the
-//! pattern would never end; `tracks-too-close`: the aircraft can't turn from one into the next.
+//! pattern would never end.
 
 use super::Inspection;
-use super::remedy::{changed, slower, speed_for_radius_mps};
 use super::step::Step;
 use crate::{AltitudeReference, Area, LegKind, Pattern, Problem, Spacing, Value};
 use geometry::LocalFrame;
@@ -24,7 +23,6 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             format!("make the spacing at least {least_m:.2} m: {MOST_TRACKS} tracks are too many already");
         problems.push(Problem::error("too-many-tracks", message).of(&leg.id));
     }
-    problems.extend(too_close(view, step, spacing_m));
 }
 
 fn spacing_of(kind: &LegKind) -> Option<&Spacing> {
@@ -72,6 +70,11 @@ fn wrong(view: &Inspection, step: &Step, spacing: &Spacing) -> Option<&'static s
     }
 }
 
+/// The distance between the tracks of a leg that has such, metres; more than 0.
+pub(super) fn spacing_m(view: &Inspection, step: &Step) -> Option<f64> {
+    metres(view, step, spacing_of(&step.leg.kind)?)
+}
+
 /// S = 2·h·tan(FOV/2)·(1 − overlap), metres; more than 0.
 fn metres(view: &Inspection, step: &Step, spacing: &Spacing) -> Option<f64> {
     let metres = match spacing {
@@ -112,37 +115,12 @@ fn across_m(view: &Inspection, area: &Area) -> Option<f64> {
     }
 }
 
-/// The square's turns of 90° need r·tan 45° at both ends of its first legs, which are as long as the spacing.
-fn too_close(view: &Inspection, step: &Step, spacing_m: f64) -> Option<Problem> {
-    let leg = &step.leg;
-    let LegKind::Pattern(Pattern::ExpandingSquare { .. }) = &leg.kind else { return None };
-    let needed_m = 2.0 * view.turn_radius_m(step.speed_mps);
-    let message = format!(
-        "make the spacing {needed_m:.0} m or fly slower: the aircraft can't turn within tracks of {spacing_m:.0} m"
-    );
-    let fix = slower(view, &leg.id, speed_for_radius_mps(view, spacing_m / 2.0)).or_else(|| {
-        changed(leg, |kind| {
-            let LegKind::Pattern(Pattern::ExpandingSquare { spacing, .. }) = kind else { return None };
-            *spacing = Spacing::Metres(Value::Constant(needed_m.ceil()));
-            Some(())
-        })
-    });
-    let problem = Problem::warning("tracks-too-close", message).of(&leg.id);
-    (spacing_m < needed_m).then(|| problem.perhaps_fixed_by(fix))
-}
-
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::check_legs;
 
     fn scan(attributes: &str) -> String {
         format!(r#"<scan id="s" {attributes}><area fix="A" radius="500"/></scan>"#)
-    }
-
-    fn square(spacing: u32) -> String {
-        format!(
-            r#"<expandingSquare id="s" spacing="{spacing}" radius="2000" turn="left"><centre fix="A"/></expandingSquare>"#
-        )
     }
 
     #[test]
@@ -170,11 +148,5 @@ mod tests {
             (&camera("60", "0.3", r#"height="0""#), &["bad-spacing"]),
             (&camera("0.001", "0.3", r#"height="120""#), &["too-many-tracks"]),
         ]);
-    }
-
-    #[test]
-    fn an_expanding_square_has_room_for_its_turns() {
-        check_legs(&[(&square(280), &[]), (&square(200), &["tracks-too-close"])]);
-        fixed_legs(&[(&square(200), "tracks-too-close"), (&square(50), "tracks-too-close")]);
     }
 }
