@@ -12,6 +12,7 @@ mod legs;
 mod legs_actions;
 mod legs_actions_edges;
 mod legs_changes;
+mod legs_concave;
 mod legs_courses;
 mod legs_flown;
 mod legs_patterns;

@@ -105,9 +105,14 @@ fn first_moment(ring: &[Vec2]) -> (Vec2, f64) {
 
 /// Distance from a point to a straight piece, metres.
 pub(crate) fn distance_to_segment_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
+    (p - foot(a, b, p)).length()
+}
+
+/// The place of a straight piece that is nearest to a point.
+pub(super) fn foot(a: Vec2, b: Vec2, p: Vec2) -> Vec2 {
     let way = b - a;
     let share = ((p - a).dot(way) / way.dot(way)).clamp(0.0, 1.0);
-    (p - a - way * share).length()
+    a + way * share
 }
 
 /// Convex hull, anticlockwise, without collinear corners (monotone chain).

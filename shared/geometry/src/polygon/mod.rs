@@ -2,9 +2,11 @@
 
 mod measure;
 mod validity;
+mod way;
 
 pub(crate) use measure::{distance_to_segment_m, signed_area_m2};
 pub use validity::PolygonError;
+pub use way::{Interior, Looks};
 
 use crate::{Flattening, LatLon, LocalFrame, Vec2};
 use std::f64::consts::TAU;

@@ -2,16 +2,19 @@
 //!
 //! A scan is a set of parallel *lines* across the polygon, numbered from its left edge, flown as
 //! *tracks*, numbered in flight order. A line that crosses a gap (a hole, a bay of a concave
-//! outline) has several scanning segments; the gap between them is flown over, marked as transit.
+//! outline) has several scanning segments. [`Scan`] goes line by line and marks the gap between them as transit; [`CellScan`]
+//! is what an aircraft flies that is to stay over the area: cell by cell, with ways inside from one to the next.
 //! Nothing is stored per line: a million tracks take the memory of the polygon.
 
 mod camera;
+mod cells;
 mod coverage;
 mod order;
 mod outline;
 mod segments;
 
 pub use camera::camera_spacing_m;
+pub use cells::CellScan;
 pub use coverage::coverage;
 pub(crate) use order::Order;
 pub use segments::{ScanWaypoint, Segment, Segments, Waypoints};
@@ -106,6 +109,14 @@ pub enum ScanError {
     /// More lines than can be counted.
     #[error("a spacing of {0} m gives more lines than can be counted: widen it")]
     TooManyLines(f64),
+    /// A concave area with more cells than are told apart.
+    #[error(
+        "an area of {corners} corners is too intricate to be flown cell by cell: simplify it, or give an overshoot of half its gaps"
+    )]
+    TooIntricate {
+        /// Of the area.
+        corners: usize,
+    },
     /// The camera is not above the ground.
     #[error("the camera is {0} m above the ground: it must be a positive number")]
     CameraHeight(f64),

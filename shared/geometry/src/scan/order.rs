@@ -22,6 +22,10 @@ impl Order {
         Self::new(lines, step as u64, corner)
     }
 
+    pub fn lines(&self) -> u64 {
+        self.lines
+    }
+
     pub fn step(&self) -> u64 {
         self.step
     }

@@ -157,7 +157,7 @@ impl Sweep {
     /// `overshoot_m`: by how much the line itself goes on.
     #[inline]
     pub fn go_to(&mut self, outline: &Outline, across_m: f64, strip_m: f64, overshoot_m: f64) {
-        if !(self.slab.0 <= across_m && across_m < self.slab.1) {
+        if !self.is_between_corners(across_m) {
             self.enter_slab(outline, across_m);
         }
         self.bounds_m.clear();
@@ -168,6 +168,11 @@ impl Sweep {
         } else if !self.bounds_m.is_sorted_by(|a, b| a < b) {
             self.tidy();
         }
+    }
+
+    /// Whether no corner of the outline is between the line it is at and another one.
+    pub fn is_between_corners(&self, across_m: f64) -> bool {
+        self.slab.0 <= across_m && across_m < self.slab.1
     }
 
     fn enter_slab(&mut self, outline: &Outline, across_m: f64) {

@@ -9,7 +9,7 @@ use crate::world::World;
 use flight_plan::{Scan, ScanEntry, ScanStyle};
 use geometry::LatLon;
 use geometry::pattern::creeping_heading_deg;
-use geometry::scan::{Corner, Entry, Scan as Pattern, ScanParameters};
+use geometry::scan::{CellScan as Pattern, Corner, Entry, ScanParameters};
 use serde::{Deserialize, Serialize};
 
 /// Numbers and positions only.

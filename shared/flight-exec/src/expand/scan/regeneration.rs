@@ -1,7 +1,6 @@
 //! A sweep with other values, in flight.
 
 use super::super::ExpandError;
-use super::super::remade::Remade;
 use super::super::track::Approach;
 use super::Sweep;
 use super::layout::LaidOut;
@@ -23,7 +22,7 @@ impl Sweep {
     pub fn regenerated(
         &self,
         (scan, second): (&Scan, bool),
-        (given, at): (u64, LatLon),
+        (given, at, follows): (u64, LatLon, bool),
         approach: &Approach,
         world: &World,
     ) -> Result<Option<Self>, ExpandError> {
@@ -43,10 +42,15 @@ impl Sweep {
         let stays = !turned && recipe.spacing_m == self.recipe.spacing_m;
         recipe.grid = self.laid_out().filter(|_| stays).map(LaidOut::grid);
         let laid_out = recipe.lay_out(at)?;
-        Ok(Some(Self::resumed(recipe, laid_out, self.flown_until(given), at)))
+        Self::resumed(recipe, laid_out, self.flown_until(given), (at, follows)).map(Some)
     }
 
-    fn resumed(recipe: Recipe, laid_out: LaidOut, flown: Vec<(LatLon, LatLon)>, from: LatLon) -> Self {
+    fn resumed(
+        recipe: Recipe,
+        laid_out: LaidOut,
+        flown: Vec<(LatLon, LatLon)>,
+        (from, follows): (LatLon, bool),
+    ) -> Result<Self, ExpandError> {
         let all = laid_out.pattern.tracks();
         let mut done: Vec<u64> = flown.iter().filter_map(|f| laid_out.unmoved(f)).collect();
         done.sort_unstable();
@@ -58,21 +62,12 @@ impl Sweep {
         left_out.sort_unstable();
         let nearer_low =
             laid_out.ends_of(first).is_none_or(|(low, high)| (low - at).length() <= (high - at).length());
-        Self {
-            tracks: all.saturating_sub(left_out.len() as u64),
-            recipe,
-            entry: from,
-            first,
-            along_first: nearer_low,
-            left_out,
-            flown,
-            laid_out: Remade::of(laid_out),
-        }
+        Self::begun(recipe, laid_out, (from, follows), (first, nearer_low), (left_out, flown))
     }
 
     /// The latest tracks that are flown when `given` points are.
     fn flown_until(&self, given: u64) -> Vec<(LatLon, LatLon)> {
-        let complete = (given / 2).min(self.tracks);
+        let complete = self.stretches().map_or(0, |s| s.complete(given));
         let latest = complete.saturating_sub(MOST_FLOWN)..complete;
         let old = (MOST_FLOWN - (latest.end - latest.start)) as usize;
         let before = self.flown.iter().skip(self.flown.len().saturating_sub(old)).copied();

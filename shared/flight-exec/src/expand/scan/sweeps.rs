@@ -35,7 +35,7 @@ impl Sweeps {
             if second && scan.style != ScanStyle::CrissCross {
                 break;
             }
-            let sweep = Sweep::new(Recipe::of(scan, second, approach, world)?, at)?;
+            let sweep = Sweep::new(Recipe::of(scan, second, approach, world)?, at, second)?;
             at = sweep.end().unwrap_or(at);
             sweeps.push(Numbered { second, sweep });
         }
@@ -47,7 +47,7 @@ impl Sweeps {
         self.sweeps.iter().map(|s| s.sweep.count()).fold(0, u64::saturating_add)
     }
 
-    /// The point number `index`: two a track.
+    /// The point number `index`.
     pub fn point(&self, index: u64) -> Option<Point> {
         let (number, index) = self.locate(index)?;
         self.sweeps.get(number)?.sweep.point(index)
@@ -80,6 +80,8 @@ impl Sweeps {
         let last = self.sweeps.len().saturating_sub(1);
         let (current, within) =
             self.locate(given).unwrap_or((last, self.sweeps.get(last).map_or(0, |s| s.sweep.count())));
+        // the path is over the area already
+        let begun = given > 0 || self.sweeps.first().is_some_and(|s| s.sweep.follows);
         let mut at = approach.path.last.position;
         let mut sweeps = Vec::new();
         let numbered = || self.sweeps.iter().enumerate();
@@ -89,7 +91,8 @@ impl Sweeps {
                 Ordering::Equal => within,
                 Ordering::Greater => 0,
             };
-            let fresh = old.sweep.regenerated((scan, old.second), (flown, at), approach, world)?;
+            let follows = begun || !sweeps.is_empty();
+            let fresh = old.sweep.regenerated((scan, old.second), (flown, at, follows), approach, world)?;
             let Some(sweep) = fresh else { return Ok(None) };
             at = sweep.end().unwrap_or(at);
             sweeps.push(Numbered { second: old.second, sweep });
