@@ -5,13 +5,13 @@ use crate::state::{Aboard, Ticket};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
-use usal::contract::{Empty, Stamped};
+use usal::contract::{Command, Empty, Stamped};
 use usal::topics::{FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
 
 /// A command is answered within this time, or the operator learns that it was not.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
-/// A plan is checked aboard; a big one takes its time.
+/// A plan is checked aboard, and what changes the flight is flown ahead; a big one takes its time.
 const PLAN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Serves orders until the window's end of the link is gone.
@@ -168,6 +168,14 @@ async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) 
     outlet.tell(News::Answer { ticket, result }).await;
 }
 
+/// What may have to be looked at first is not answered at once.
+fn timeout(command: &Command) -> Duration {
+    match command {
+        Command::SetVariable { .. } | Command::Commit { .. } => PLAN_TIMEOUT,
+        _ => COMMAND_TIMEOUT,
+    }
+}
+
 async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
     match call {
         Call::Propose(proposal) => {
@@ -175,7 +183,7 @@ async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
             Ok(Reply::Proposal(Box::new(report)))
         }
         Call::Plan(command) => {
-            session.call(fp_manager::COMMAND, &command, COMMAND_TIMEOUT).await.map(|_| Reply::Done)
+            session.call(fp_manager::COMMAND, &command, timeout(&command)).await.map(|_| Reply::Done)
         }
         Call::Gateway(request) => {
             session.call(gateway::REQUEST, &request, COMMAND_TIMEOUT).await.map(|_| Reply::Done)

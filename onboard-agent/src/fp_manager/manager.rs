@@ -10,7 +10,7 @@ use super::liaison::Liaison;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
-use flight_exec::{Answer, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
+use flight_exec::{Answer, Conditions, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
 use flight_plan::{Id, Problem, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -62,6 +62,10 @@ pub struct Manager {
     /// Highest token that the autopilot was seen steering to.
     pub(super) steered: Token,
     pub(super) last_request: u64,
+    /// Commands that may have taken the flight elsewhere.
+    turns: u64,
+    /// The time of day when it was told last, seconds since 1970.
+    day: Option<(Time, i64)>,
     /// As recorded last.
     pub(super) noted: Notes,
     pub(super) replies: VecDeque<Reply>,
@@ -84,6 +88,8 @@ impl Manager {
             timeline: Timeline::new(base),
             steered: Token(0),
             last_request: 0,
+            turns: 0,
+            day: None,
             noted: Notes::default(),
             replies: VecDeque::new(),
             returning: false,
@@ -101,10 +107,24 @@ impl Manager {
         self.liaison.is_joined()
     }
 
-    /// The wind as it is measured; calm, as long as nothing is known.
-    pub fn wind(&self) -> Wind {
+    /// The wind as it is measured (calm, as long as nothing is known), and the time of day.
+    pub fn conditions(&self, now: Time) -> Conditions {
         let state = self.aircraft.state();
-        state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps })
+        let wind =
+            state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps });
+        let since_s = |then| now.saturating_sub(then).as_secs();
+        let start_unix_s = self.day.map(|(then, unix_s)| unix_s.saturating_add_unsigned(since_s(then)));
+        Conditions { wind, start_unix_s, ..Conditions::default() }
+    }
+
+    /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites tell it.
+    pub fn time_of_day(&mut self, now: Time, unix_s: i64) {
+        self.day = Some((now, unix_s));
+    }
+
+    /// Counts up when the flight may go elsewhere than it was to.
+    pub fn turns(&self) -> u64 {
+        self.turns
     }
 
     /// Fresh variables of the gateway; they reach the executor with the next tick.
@@ -161,6 +181,8 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
         let starts = command == Command::Start;
+        // what is written is looked at one after the other
+        self.turns += u64::from(!matches!(command, Command::SetVariable { .. }));
         let leaves_emergency = matches!(command, Command::ReturnToMain { .. });
         let request = self.next_request();
         let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);

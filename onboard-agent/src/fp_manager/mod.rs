@@ -11,6 +11,7 @@ pub mod journal;
 #[cfg(test)]
 mod kills;
 mod liaison;
+mod looks;
 mod manager;
 mod proposals;
 mod publish;

@@ -1,10 +1,9 @@
 //! A plan put forward: checked, compiled and its path reviewed on a thread of its own, its document kept on the disk,
-//! while the flight goes on.
+//! while the flight goes on. In flight that is the path ahead, from where the aircraft is.
 
 use super::journal::Keeper;
 use super::{Config, listed};
-use aircraft::Wind;
-use flight_exec::{Conditions, compile_and_review};
+use flight_exec::{Conditions, Executor, compile_and_review, compile_and_review_ahead};
 use flight_plan::{Problem, Program};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -14,8 +13,8 @@ use tokio::time::Instant;
 use usal::Incoming;
 use usal::contract::{ProposalReport, Propose, Refusal};
 
-/// In lockstep time stands for so long (wall-clock) while a proposal is looked at; the others wait for five seconds at most.
-const LOCKSTEP_PATIENCE: Duration = Duration::from_secs(4);
+/// In lockstep time stands for so long (wall-clock) while something is looked at; the others wait for five seconds at most.
+pub(super) const LOCKSTEP_PATIENCE: Duration = Duration::from_secs(4);
 
 type Asked = Incoming<Propose, ProposalReport>;
 
@@ -25,6 +24,14 @@ pub struct Fit {
     pub program: Arc<Program>,
     /// The document.
     pub xml: Vec<u8>,
+}
+
+/// What a plan is looked at for.
+pub struct Sight {
+    /// Wind and time of day.
+    pub conditions: Conditions,
+    /// The flight that it would take over; `None`: on the ground.
+    pub flight: Option<Executor>,
 }
 
 type Looked = Result<Fit, Vec<Problem>>;
@@ -49,14 +56,14 @@ enum Step {
 }
 
 impl Desk {
-    /// Begins to look at a proposal in a wind; one that comes while another is on the desk is refused.
-    pub fn take(&mut self, asked: Asked, config: &Config, wind: Wind) {
+    /// Begins to look at a proposal; one that comes while another is on the desk is refused.
+    pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
             return asked.answer(Err(Refusal { code: "busy".into(), reason: reason.into() }));
         }
         let (xml, config) = (asked.request.xml.clone(), config.clone());
-        let work = tokio::task::spawn_blocking(move || look(&xml, &config, wind));
+        let work = tokio::task::spawn_blocking(move || look(&xml, &config, &sight));
         self.0 = Some(Proposal { asked, since: Instant::now(), step: Step::Looking(work) });
     }
 
@@ -106,14 +113,15 @@ fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
 ///
 /// # Errors
 /// Its problems.
-pub fn looked_at(xml: &str, config: &Config, wind: Wind) -> Outcome {
-    outcome(look(xml, config, wind)).map(|fit| fit.program)
+pub fn looked_at(xml: &str, config: &Config, sight: &Sight) -> Outcome {
+    outcome(look(xml, config, sight)).map(|fit| fit.program)
 }
 
-fn look(xml: &str, config: &Config, wind: Wind) -> Looked {
-    // when the flight begins is not known: zones with periods count as active
-    let conditions = Conditions { wind, ..Conditions::default() };
-    let program = compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, conditions)?;
+fn look(xml: &str, config: &Config, sight: &Sight) -> Looked {
+    let program = match &sight.flight {
+        Some(flight) => compile_and_review_ahead(xml.as_bytes(), flight, sight.conditions)?,
+        None => compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, sight.conditions)?,
+    };
     // neither is for the flight to wait for: the hash is worked out when it is first asked for
     program.hash();
     let xml = flight_plan::write(&program.plan).into_bytes();
@@ -124,6 +132,6 @@ fn outcome(looked: Looked) -> Result<Fit, Refusal> {
     looked.map_err(|problems| Refusal { code: "plan-errors".into(), reason: listed(&problems) })
 }
 
-fn broken(error: &tokio::task::JoinError) -> Problem {
-    Problem::error("not-reviewed", format!("the review of this plan failed; please report it: {error}"))
+pub(super) fn broken(error: &tokio::task::JoinError) -> Problem {
+    Problem::error("not-reviewed", format!("the review of the path failed; please report it: {error}"))
 }

@@ -2,14 +2,15 @@
 
 use super::Config;
 use super::journal::Keeper;
+use super::looks::{Asked, Looks, Verdict};
 use super::manager::{Effect, Manager, OPERATOR};
-use super::proposals::{Desk, looked_at};
+use super::proposals::{Desk, Sight, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
 use crate::clock::{Clock, Time};
 use crate::{Shutdown, alone};
 use anyhow::Context;
-use flight_plan::Program;
+use flight_plan::{Problem, Program};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::Instant;
@@ -70,6 +71,7 @@ struct Ears {
     position: VariableSubscriber<Position>,
     air: VariableSubscriber<Air>,
     power: VariableSubscriber<Power>,
+    gps: VariableSubscriber<Gps>,
     navigation: VariableSubscriber<Navigation>,
     state: VariableSubscriber<GatewayStatus>,
     events: EventSubscriber<TimedGatewayEvent>,
@@ -83,6 +85,7 @@ impl Ears {
             position: session.follow(gateway::POSITION)?,
             air: session.follow(gateway::AIR)?,
             power: session.follow(gateway::POWER)?,
+            gps: session.follow(gateway::GPS)?,
             navigation: session.follow(gateway::NAVIGATION)?,
             state: session.follow(gateway::STATE)?,
             // old progress and old alarms are of no interest to one who comes back
@@ -146,6 +149,7 @@ pub(super) struct Shell {
     pub(super) publishers: Publishers,
     pending: Pending,
     desk: Desk,
+    looks: Looks,
 }
 
 /// Runs the FP Manager until `shutdown`.
@@ -174,8 +178,8 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let session = session.clone();
     let pending = Pending::default();
     let manager = past.manager;
-    let desk = Desk::default();
-    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending, desk };
+    let (desk, looks) = (Desk::default(), Looks::default());
+    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending, desk, looks };
     let troubles = past.troubles.into_iter();
     let told = troubles.map(|reason| Effect::Event(PlanEvent::NotJournalled { reason })).collect();
     shell.perform(told).await;
@@ -183,7 +187,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     loop {
         tokio::select! {
             () = shutdown.requested() => break,
-            beat = next_beat(&mut shell.clock, shell.desk.holds_time_until()) => {
+            beat = next_beat(&mut shell.clock, held_until(&shell.desk, &shell.looks)) => {
                 anyhow::ensure!(beat.is_some(), "the network session was closed");
                 shell.beat(&mut ears).await;
             }
@@ -192,6 +196,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
                 shell.occurred(occurrence.context("the network session was closed")?).await;
             }
             (incoming, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, looked).await,
+            problems = shell.looks.next() => shell.looked_ahead(problems).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -202,7 +207,12 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     Ok(())
 }
 
-/// The next beat; in lockstep, what was proposed before is looked at first.
+/// In lockstep, time stands until then, while something is looked at.
+fn held_until(desk: &Desk, looks: &Looks) -> Option<Instant> {
+    [desk.holds_time_until(), looks.holds_time_until()].into_iter().flatten().min()
+}
+
+/// The next beat; in lockstep, what was asked before is looked at first.
 async fn next_beat(clock: &mut Clock, held_until: Option<Instant>) -> Option<Time> {
     if let Some(until) = held_until.filter(|_| clock.is_simulated()) {
         tokio::time::sleep_until(until).await;
@@ -221,7 +231,7 @@ impl Shell {
         else {
             return Ok(());
         };
-        let program = looked_at(&xml, &self.config, self.manager.wind());
+        let program = looked_at(&xml, &self.config, &self.sight());
         let report = self.propose(program, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
         self.command(commit, OPERATOR, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
@@ -266,6 +276,8 @@ impl Shell {
         ears.position.take_new().iter().for_each(|r| aircraft.position(r.stamped.value));
         ears.air.take_new().iter().for_each(|r| aircraft.air(r.stamped.value));
         ears.power.take_new().iter().for_each(|r| aircraft.power(r.stamped.value));
+        let unix_s = ears.gps.take_new().and_then(|r| r.stamped.value.unix_s);
+        unix_s.into_iter().for_each(|unix_s| self.manager.time_of_day(now, unix_s));
         let there = ears.presence.is_alive(GATEWAY);
         if there && !ears.gateway_there {
             self.manager.gateway_appeared(now, &mut effects);
@@ -314,8 +326,7 @@ impl Shell {
                 let id = incoming.id().map(str::to_owned);
                 let by = incoming.from().unwrap_or(OPERATOR).to_owned();
                 let (command, reply) = incoming.split();
-                let answer = self.command(command, &by, id.as_deref()).await;
-                reply(answer.map(|()| Empty {}));
+                self.asked(Asked { command, by, id, reply: Box::new(reply) }).await;
             }
         }
         self.publishers.hurry();
@@ -330,7 +341,47 @@ impl Shell {
             let reason = format!("the plan is at revision {revision} by now: look at it, then propose again");
             return incoming.answer(Err(refusal("stale-revision", reason)));
         }
-        self.desk.take(incoming, &self.config, self.manager.wind());
+        let sight = self.sight();
+        self.desk.take(incoming, &self.config, sight);
+    }
+
+    /// What a plan put forward now is looked at for.
+    fn sight(&self) -> Sight {
+        let flight = Some(self.manager.executor()).filter(|executor| executor.is_under_way());
+        Sight { conditions: self.manager.conditions(self.clock.now()), flight: flight.cloned() }
+    }
+
+    /// What leads to where nobody has looked is looked at first.
+    async fn asked(&mut self, asked: Asked) {
+        if self.looks.concern(&asked, &self.manager) {
+            self.looks.take(asked);
+            return self.look_on().await;
+        }
+        self.give(asked).await;
+    }
+
+    async fn give(&mut self, asked: Asked) {
+        let Asked { command, by, id, reply } = asked;
+        let answer = self.command(command, &by, id.as_deref()).await;
+        reply(answer.map(|()| Empty {}));
+    }
+
+    /// The command that was the first to wait has been looked at.
+    async fn looked_ahead(&mut self, problems: Vec<Problem>) {
+        match self.looks.decide(&problems, &self.manager) {
+            Some(Verdict::Give(asked)) => self.give(asked).await,
+            Some(Verdict::Refuse(asked, refusal)) => (asked.reply)(Err(refusal)),
+            Some(Verdict::Again) | None => {}
+        }
+        self.look_on().await;
+        self.publishers.hurry();
+    }
+
+    /// Goes on with what waits for a look.
+    async fn look_on(&mut self) {
+        while let Some(asked) = self.looks.begin(&self.manager, self.clock.now()) {
+            self.give(asked).await;
+        }
     }
 
     /// A proposal has been looked at. The executor sees to it that the plan it was made for is still the one being flown.

@@ -48,6 +48,12 @@ pub struct FakeGateway {
     navigation: VariablePublisher<Navigation>,
     status: VariablePublisher<GatewayStatus>,
     events: EventPublisher<TimedGatewayEvent>,
+    power: VariablePublisher<Power>,
+    gps: VariablePublisher<Gps>,
+    /// Share of the energy left.
+    pub battery: f64,
+    /// Time of day at the start, if satellites tell it.
+    pub unix_s: Option<i64>,
     _announcement: Announcement,
     time_s: f64,
 }
@@ -79,6 +85,10 @@ impl FakeGateway {
             navigation: session.publish(gateway::NAVIGATION).unwrap(),
             status: session.publish(gateway::STATE).unwrap(),
             events: session.emitter(gateway::EVENTS).unwrap(),
+            power: session.publish(gateway::POWER).unwrap(),
+            gps: session.publish(gateway::GPS).unwrap(),
+            battery: 1.0,
+            unix_s: None,
             _announcement: session.announce(GATEWAY).unwrap(),
             time_s: 0.0,
         }
@@ -138,6 +148,10 @@ impl FakeGateway {
         for value in self.flying.events.drain(..) {
             self.events.emit(&Stamped { time_s, validity_s: 1.0, value });
         }
+        let power = Power { voltage_v: 24.0, current_a: 10.0, battery: self.battery };
+        self.power.set(time_s, 1.0, &power);
+        let unix_s = self.unix_s.map(|start| start + time_s as i64);
+        self.gps.set(time_s, 1.0, &Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s });
         self.position.set(time_s, 1.0, &self.flying.position());
         self.navigation.set(time_s, 1.0, &self.flying.navigation());
         self.status.set(time_s, 1.0, &self.flying.status());

@@ -1,6 +1,7 @@
 //! The FP Manager over loopback, with a gateway that flies at a waypoint a step.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod ahead;
 mod fake_gateway;
 
 use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
@@ -8,6 +9,7 @@ use onboard_agent::alone::Taken;
 use onboard_agent::{Trigger, fp_manager, shutdown};
 use sha2::{Digest, Sha256};
 use std::path::Path;
+use std::sync::Arc;
 use tokio::process::Child;
 use tokio::task::JoinHandle;
 use usal::contract::*;
@@ -47,11 +49,17 @@ struct Flight {
 
 impl Flight {
     async fn new(state_dir: Option<&Path>) -> Self {
+        Self::over(Arc::new(terrain::Tiles::new()), state_dir).await
+    }
+
+    /// Over some ground.
+    async fn over(terrain: Arc<dyn terrain::Terrain>, state_dir: Option<&Path>) -> Self {
         let endpoint = free_endpoint();
         let gateway = FakeGateway::open(&endpoint).await;
         let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
         let config = fp_manager::Config {
             simulated: true,
+            terrain,
             state_dir: state_dir.map(Into::into),
             ..fp_manager::Config::new("uav1", &endpoint)
         };

@@ -155,6 +155,11 @@ impl Executor {
         }
     }
 
+    /// A plan is being flown, and where the aircraft is is known: what is ahead of it can be looked at.
+    pub fn is_under_way(&self) -> bool {
+        self.is_flying() && self.state.aircraft.is_some()
+    }
+
     /// Between start and finish, holding or not.
     pub(crate) fn is_flying(&self) -> bool {
         matches!(self.state.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)

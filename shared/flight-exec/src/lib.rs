@@ -36,5 +36,8 @@ pub use api::*;
 pub use config::Config;
 pub use executor::Executor;
 pub use preview::{Preview, PreviewError, preview};
-pub use review::{Conditions, Margins, compile_and_review, review, review_extremes};
+pub use review::{
+    Conditions, Margins, compile_and_review, compile_and_review_ahead, review, review_ahead, review_command,
+    review_extremes,
+};
 pub use snapshot::{RestoreError, Snapshot};

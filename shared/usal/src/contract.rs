@@ -87,6 +87,9 @@ pub struct Gps {
     pub satellites: u8,
     /// Horizontal dilution of precision.
     pub hdop: f64,
+    /// Time of day, whole seconds since 1970-01-01T00:00:00Z; `None`: the autopilot doesn't know it (yet).
+    #[serde(default)]
+    pub unix_s: Option<i64>,
 }
 
 /// Gateway variable `engine`.

@@ -259,7 +259,7 @@ mod tests {
                 east_mps: 0.0,
                 down_mps: 0.0,
             }),
-            Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8 }),
+            Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None }),
             Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 0.5 }),
             Report::Power(Power { voltage_v: 24.0, current_a: 12.0, battery: 0.8 }),
         ]
@@ -269,7 +269,9 @@ mod tests {
     fn each_fault_raises_its_alarm_in_time_and_clears_it() {
         type Spoil = fn(&mut Vec<Report>);
         let cases: [(&str, i64, Spoil); 5] = [
-            ("gps-lost", 10, |r| r[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0 })),
+            ("gps-lost", 10, |r| {
+                r[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None })
+            }),
             ("engine-out", 10, |r| {
                 r[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 })
             }),

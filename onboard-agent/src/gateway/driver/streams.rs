@@ -10,7 +10,7 @@ use std::time::Duration;
 const MISSING: Duration = Duration::from_secs(3);
 
 /// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
-const WANTED: [(u32, u32); 12] = [
+const WANTED: [(u32, u32); 13] = [
     (GLOBAL_POSITION_INT_DATA::ID, 100),
     (ATTITUDE_DATA::ID, 100),
     (MISSION_CURRENT_DATA::ID, 100),
@@ -21,6 +21,7 @@ const WANTED: [(u32, u32); 12] = [
     (RPM_DATA::ID, 500),
     (EFI_STATUS_DATA::ID, 1000),
     (SCALED_PRESSURE_DATA::ID, 1000),
+    (SYSTEM_TIME_DATA::ID, 1000),
     (EXTENDED_SYS_STATE_DATA::ID, 500),
     (HOME_POSITION_DATA::ID, 0),
 ];

@@ -12,6 +12,8 @@ const FASTEST_MPS: f64 = 300.0;
 const JUMP_M: f64 = 500.0;
 /// After so many jumps in a row to about the same place, it is believed.
 const BELIEVED_AFTER: u32 = 10;
+/// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not heard it from a satellite.
+const NO_TIME_BEFORE_US: u64 = 1_577_836_800_000_000;
 /// The autopilot's clock went back by more than this: it started anew, ms.
 const REBOOT_MS: u32 = 2000;
 
@@ -27,6 +29,8 @@ pub struct Readings {
     last_fix: Option<(Time, LatLon)>,
     jumps: u32,
     boot_ms: Option<u32>,
+    /// The time of day when it was told last, seconds since 1970.
+    day: Option<(Time, i64)>,
 }
 
 impl Readings {
@@ -42,7 +46,13 @@ impl Readings {
             MavMessage::WIND(m) => self.wind(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
             MavMessage::GPS_RAW_INT(m) => {
-                out.push(Report::Gps(gps(m)));
+                out.push(Report::Gps(gps(m, self.unix_s(now))));
+                Some(())
+            }
+            MavMessage::SYSTEM_TIME(m) => {
+                let known = Some(m.time_unix_usec).filter(|us| *us >= NO_TIME_BEFORE_US);
+                let unix_s = known.and_then(|us| i64::try_from(us / 1_000_000).ok());
+                self.day = unix_s.map(|unix_s| (now, unix_s));
                 Some(())
             }
             MavMessage::SYS_STATUS(m) => power(m).map(|p| out.push(Report::Power(p))),
@@ -83,6 +93,11 @@ impl Readings {
         let jumped = flat_m > reach_m;
         self.jumps = if jumped { self.jumps + 1 } else { 0 };
         !jumped || self.jumps > BELIEVED_AFTER
+    }
+
+    fn unix_s(&self, now: Time) -> Option<i64> {
+        let (then, unix_s) = self.day?;
+        Some(unix_s.saturating_add_unsigned(now.saturating_sub(then).as_secs()))
     }
 
     fn hud(&mut self, m: &VFR_HUD_DATA) -> Option<Air> {
@@ -148,11 +163,12 @@ fn attitude(m: &ATTITUDE_DATA) -> Option<Attitude> {
     })
 }
 
-fn gps(m: &GPS_RAW_INT_DATA) -> Gps {
+fn gps(m: &GPS_RAW_INT_DATA, unix_s: Option<i64>) -> Gps {
     Gps {
         fix_3d: m.fix_type as u32 >= GpsFixType::GPS_FIX_TYPE_3D_FIX as u32,
         satellites: m.satellites_visible,
         hdop: f64::from(m.eph) / 100.0,
+        unix_s,
     }
 }
 

@@ -15,6 +15,7 @@ use crate::api::{
     Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, RequestId, Time,
     Token, Waypoint,
 };
+use crate::executor::Executor;
 use aircraft::{Guided, Profile, Target, Wind};
 use flight_plan::{Id, Program};
 use std::sync::Arc;
@@ -50,6 +51,20 @@ impl<'a> Flight<'a> {
     /// A flight in the middle.
     pub(super) fn resumed(given: Circumstances<'a>, at: Situation) -> Self {
         Self { given, at, out: Vec::new(), result: empty() }
+    }
+
+    /// Goes on with a flight under way; who holds it up (a hold, the gateway) does so no longer. `None` as in
+    /// [`Situation::under_way`].
+    pub(super) fn under_way(executor: Executor, given: Circumstances<'a>) -> Option<Self> {
+        let triggers = given.scenario.triggers.len();
+        let mut flight = Self::resumed(given, Situation::under_way(executor, triggers)?);
+        flight.note_current();
+        flight.report();
+        flight.tell(Input::GatewayControls(false));
+        if flight.at.executor.status_phase() == Phase::Holding {
+            flight.command(Command::Resume);
+        }
+        Some(flight)
     }
 
     /// Begins a flight. `watched`: what is read of the plan is taken down.
@@ -96,6 +111,12 @@ impl<'a> Flight<'a> {
             }
         }
         Ok(false)
+    }
+
+    pub(super) fn flown(mut self, progress: Progress) -> Result<Preview, PreviewError> {
+        while self.on_to_the_next_leg(progress)? {}
+        self.close();
+        Ok(self.result)
     }
 
     fn is_over(&self) -> bool {

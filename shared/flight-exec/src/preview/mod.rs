@@ -16,6 +16,7 @@ pub use scenario::{Act, Scenario, Trigger, When};
 
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::config::Config;
+use crate::executor::Executor;
 use aircraft::{Profile, Wind};
 use flight::{Circumstances, Flight};
 use flight_plan::{Id, Program};
@@ -238,8 +239,19 @@ pub fn preview_with(
     progress: &mut dyn FnMut(&Advance) -> bool,
 ) -> Result<Preview, PreviewError> {
     let given = Circumstances { wind, scenario, options };
-    let mut flight = Flight::new(program, profile, terrain, start, given, false)?;
-    while flight.on_to_the_next_leg(progress)? {}
-    flight.close();
-    Ok(flight.result)
+    Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
+}
+
+/// Flies on from where a flight under way is, with what is left of its energy; times are seconds from now.
+///
+/// # Errors
+/// As [`preview`]; `NoStart`: nothing is being flown.
+pub(crate) fn preview_on(
+    flight: Executor,
+    wind: Wind,
+    scenario: &Scenario,
+    options: &Options,
+) -> Result<Preview, PreviewError> {
+    let given = Circumstances { wind, scenario, options };
+    Flight::under_way(flight, given).ok_or(PreviewError::NoStart)?.flown(&mut |_| true)
 }

@@ -2,9 +2,9 @@
 
 use super::scenario::Moment;
 use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
-use crate::api::Waypoint;
+use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
-use aircraft::{Aircraft, Guidance, Profile};
+use aircraft::{Aircraft, Guidance, Profile, Target};
 use flight_plan::{Id, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -77,10 +77,46 @@ impl Situation {
         triggers: usize,
         options: &Options,
     ) -> Result<Self, PreviewError> {
-        Ok(Self {
-            executor: Executor::new(options.config.clone(), terrain.clone(), profile.clone()),
-            aircraft: placed(program, profile, start)?,
-            guidance: Guidance::new(profile.clone()),
+        let executor = Executor::new(options.config.clone(), terrain.clone(), profile.clone());
+        Ok(Self::at_first(executor, placed(program, profile, start)?, triggers))
+    }
+
+    /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.
+    /// `None`: nothing is being flown, or nothing is known of the aircraft.
+    pub fn under_way(mut executor: Executor, triggers: usize) -> Option<Self> {
+        let told = executor.state.aircraft.filter(|_| executor.is_flying())?;
+        // a preview counts time from its own beginning; the executor's clock goes on
+        executor.last_step = Some(Time::ZERO);
+        let place = |new: fn(Profile, geometry::LatLon, f64, f64) -> Aircraft| {
+            new(executor.profile.clone(), told.position, told.altitude_amsl_m, told.track_deg)
+        };
+        let mut aircraft = place(if told.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
+        aircraft.set_battery_share(told.battery);
+        let mut at = Self::at_first(executor, aircraft, triggers);
+        at.moment.place = at.executor.place();
+        let begun = |place| LegPassage {
+            place,
+            start_s: 0.0,
+            end_s: 0.0,
+            distance_m: 0.0,
+            energy_j: at.used_j(),
+            waypoints: 0,
+        };
+        at.passage = at.moment.place.clone().map(begun);
+        if !at.executor.is_muted() {
+            at.buffer = at.executor.ahead().cloned().collect();
+        }
+        if let Some(front) = at.buffer.front() {
+            at.guidance.direct(at.aircraft.state(), Target::from(front));
+        }
+        Some(at)
+    }
+
+    fn at_first(executor: Executor, aircraft: Aircraft, triggers: usize) -> Self {
+        Self {
+            guidance: Guidance::new(aircraft.profile().clone()),
+            executor,
+            aircraft,
             buffer: VecDeque::new(),
             moment: Moment::default(),
             now_us: 0,
@@ -97,7 +133,7 @@ impl Situation {
             passages: 0,
             waypoints: 0,
             renumbering: Renumbering::default(),
-        })
+        }
     }
 
     /// Since the start, seconds.

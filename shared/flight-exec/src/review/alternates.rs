@@ -3,7 +3,7 @@
 use super::View;
 use super::flown::Flown;
 use aircraft::{Profile, Wind};
-use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway, Variables};
+use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway};
 use geometry::geodesy::normalise_180;
 use geometry::{LatLon, Vec2};
 
@@ -73,8 +73,7 @@ fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternat
 
 /// The places of a plan's legs in document order, and the threshold.
 fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
-    let variables = Variables::initial(view.program.flown());
-    let env = Env { variables: &variables, flight: FlightState::on_ground(runway.threshold) };
+    let env = Env { variables: &view.variables, flight: FlightState::on_ground(runway.threshold) };
     let legs = plan.stages.iter().flat_map(|s| &s.legs);
     let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
     let mut route: Vec<LatLon> = places.take(MOST_PLACES).chain([runway.threshold]).collect();

@@ -4,10 +4,10 @@
 //! start, then two of them at a time; [`MOST_TRIALS`] plans in all. A trial is the plan with other values at the start: checked,
 //! compiled and reviewed like any other.
 
+use super::ahead::read_by_geometry;
 use super::{Conditions, once, review};
 use aircraft::Profile;
-use flight_plan::{Id, Problem, Program, Severity, Use, Variable, VariableValue};
-use std::collections::HashSet;
+use flight_plan::{Problem, Program, Severity, Variable, VariableValue};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -42,15 +42,7 @@ pub fn review_extremes(
 
 /// The numbers that some leg's place, size, altitude, speed or count depends on, in the plan's order.
 fn used(program: &Program) -> Vec<&Variable> {
-    let mut names: HashSet<&Id> = HashSet::new();
-    let mut read = |source: &Arc<str>, used: Use| {
-        if let (true, Ok(expression)) = (used != Use::Condition, program.expression(source)) {
-            names.extend(&expression.variables);
-        }
-    };
-    let flown = program.flown();
-    flown.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut read));
-    flown.all_legs().iter().for_each(|context| context.leg.for_each_geometric_expression(&mut read));
+    let names = read_by_geometry(program);
     let number = |v: &&Variable| matches!(v.initial, VariableValue::Number(_)) && names.contains(&v.name);
     program.plan.variables.iter().filter(number).collect()
 }
@@ -123,6 +115,7 @@ fn not_tried(variable: &Variable) -> Problem {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use flight_plan::Id;
 
     fn variable(name: &str, (initial, min, max): (f64, Option<f64>, Option<f64>)) -> Variable {
         Variable {

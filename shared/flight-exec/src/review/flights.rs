@@ -2,18 +2,23 @@
 //!
 //! The main plan once for each branch of the intersection that has most, then once for each branch that was not taken so far, at
 //! most [`MOST_FLIGHTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
-//! once, from the point of those flights that is farthest from where it leads. By the preview, with real counts, conditions and energy:
+//! once, from the point of those flights that is farthest from where it leads. Of a flight under way, what is ahead of it: it begins
+//! behind the waypoints that can't be altered any more, with the energy that is left. By the preview, with real counts, conditions and energy:
 //! the plan as it stands, the plan with the branches of each of those flights, and each of those emergency plans from that point.
 
 use super::alternates::Origin;
 use super::flown::{Flown, Point, fly, tireless};
 use super::in_force::InForce;
-use super::layout::{Way, counts, decisions, lay_out};
-use crate::api::{Command, Event};
+use super::layout::{LaidOut, Outset, Way, counts, decisions, lay_out};
+use crate::api::{AircraftState, Command, Event, Output};
 use crate::config::Config;
+use crate::cursor::Cursor;
+use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::path::{Level, Passing, PathState};
-use crate::preview::{Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview};
+use crate::preview::{
+    Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
+};
 use aircraft::{Aircraft, Profile, Wind};
 use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Variables};
 use geometry::LatLon;
@@ -44,6 +49,8 @@ pub(super) struct Flights {
     pub refused: Vec<(Id, String)>,
     /// Every flight of the main plan came to its end.
     pub complete: bool,
+    /// They begin in the middle of a flight.
+    pub under_way: bool,
 }
 
 /// A branch that is chosen at the first crossing of an intersection.
@@ -61,16 +68,55 @@ struct Circumstances<'a> {
     tireless: Profile,
     terrain: &'a Arc<dyn Terrain>,
     wind: Wind,
+    /// Of a flight under way: as it is.
     executor: Executor,
+    under_way: bool,
 }
 
 impl Circumstances<'_> {
     /// A flight with real counts, conditions and energy.
-    fn preview(&self, start: Start, commands: Vec<Command>) -> Result<Preview, PreviewError> {
+    fn preview(&self, from: Beginning, commands: Vec<Command>) -> Result<Preview, PreviewError> {
+        let alarm = commands.iter().any(|command| matches!(command, Command::Emergency { .. }));
         let then = commands.into_iter().map(Act::Command).collect();
         let scenario = Scenario { triggers: vec![Trigger { at: When::After { seconds: 0.0 }, then }] };
         let options = Options { most_s: 6.0 * 3600.0, step_s: 0.2, ..Options::default() };
-        preview(self.program, self.profile, self.terrain, self.wind, start, &scenario, &options)
+        if self.under_way {
+            let mut flight = self.moved_to(from);
+            // an emergency plan is flown whatever is being answered now
+            flight.state.emergency.take_if(|_| alarm);
+            return preview_on(flight, self.wind, &scenario, &options);
+        }
+        preview(self.program, self.profile, self.terrain, self.wind, from.start(), &scenario, &options)
+    }
+
+    /// The flight under way as it would be somewhere else.
+    fn moved_to(&self, to: Beginning) -> Executor {
+        let mut executor = self.executor.clone();
+        executor.state.aircraft = executor.state.aircraft.map(|aircraft| AircraftState {
+            position: to.position,
+            altitude_amsl_m: to.altitude_amsl_m,
+            track_deg: to.heading_deg,
+            battery: 1.0 - to.used_j / self.profile.energy_j,
+            on_ground: to.on_ground,
+            ..aircraft
+        });
+        executor
+    }
+
+    /// Where the main plan is begun, or gone on with.
+    fn outset(&self, from: Beginning) -> Outset {
+        if !self.under_way {
+            return from.outset(None, &self.tireless);
+        }
+        let near = self.executor.alterable_from();
+        let laid_out = |h: &crate::handed::Handed| LaidOut {
+            waypoint: h.waypoint.clone(),
+            wanted_amsl_m: h.waypoint.altitude_amsl_m,
+            passage: h.passage,
+            over_unknown_ground: false,
+        };
+        let kept = self.executor.state.handed.iter().take(near).map(laid_out).collect();
+        Outset { kept, cursor: self.executor.bookmark(near) }
     }
 }
 
@@ -81,14 +127,40 @@ struct Beginning {
     altitude_amsl_m: f64,
     heading_deg: f64,
     on_ground: bool,
+    /// Energy used before, joules.
+    used_j: f64,
 }
 
 impl Flights {
     pub fn of(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>, wind: Wind) -> Self {
         let executor = executor(program, profile, terrain);
-        let given = Circumstances { program, profile, tireless: tireless(profile), terrain, wind, executor };
-        let beginning = beginning(program, terrain.as_ref());
-        let planned = given.preview(beginning.start(), Vec::new());
+        let (tireless, under_way) = (tireless(profile), false);
+        let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
+        Self::flown(&given, beginning(program, terrain.as_ref()))
+    }
+
+    /// Those ahead of a flight under way; `None`: nothing is being flown, or nothing is known of the aircraft.
+    pub fn ahead(flight: &Executor, wind: Wind) -> Option<Self> {
+        let aircraft = flight.state.aircraft.filter(|_| flight.is_flying())?;
+        let mut executor = flight.clone();
+        let mut told = Vec::new();
+        // the legs under way as they will be in a moment
+        if executor.state.refresh_due_s.is_some() {
+            executor.refresh(&mut told);
+        }
+        let (program, profile, terrain) = (&flight.program, &flight.profile, &flight.terrain);
+        let (tireless, under_way) = (tireless(profile), true);
+        let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
+        let mut flights = Self::flown(&given, Beginning::of(&aircraft, profile));
+        flights.refused.extend(told.into_iter().filter_map(|output| match output {
+            Output::Event(Event::PatternRefused { leg, reason }) => Some((leg, reason)),
+            _ => None,
+        }));
+        Some(flights)
+    }
+
+    fn flown(given: &Circumstances, beginning: Beginning) -> Self {
+        let planned = given.preview(beginning, Vec::new());
         let mut flights = Self {
             main: Vec::new(),
             emergencies: BTreeMap::new(),
@@ -98,9 +170,10 @@ impl Flights {
             taken: HashSet::new(),
             refused: Vec::new(),
             complete: true,
+            under_way: given.under_way,
         };
-        flights.fly_main(&given, beginning);
-        flights.fly_emergencies(&given);
+        flights.fly_main(given, beginning);
+        flights.fly_emergencies(given, beginning.used_j);
         flights
     }
 
@@ -116,14 +189,17 @@ impl Flights {
 
     fn fly_main(&mut self, given: &Circumstances, beginning: Beginning) {
         let program = given.program;
-        let counts = counts(program);
-        let mut ways: Vec<Way> = (0..variants(program).min(MOST_FLIGHTS as u64)).map(Way::all).collect();
+        let from = given.outset(beginning).cursor;
+        let counts = counts(&given.executor, &from);
+        // under way, many an intersection is behind: each further way is one that the flights so far come to
+        let variants = if given.under_way { 1 } else { variants(program).min(MOST_FLIGHTS as u64) };
+        let mut ways: Vec<Way> = (0..variants).map(Way::all).collect();
         let mut flown: Vec<(Way, HashSet<Id>)> = Vec::new();
         while let Some(way) = ways.pop().or_else(|| self.unseen(program, &flown)) {
-            let path = beginning.path(&given.tireless);
-            let layout = lay_out(&given.executor, None, path, &counts, &decisions(program, &way));
+            let decisions = decisions(program, &way, &from);
+            let layout = lay_out(&given.executor, given.outset(beginning), &counts, &decisions);
             self.complete &= layout.complete;
-            self.fly_chosen(given, beginning, choices(program, &way, &layout.taken));
+            self.fly_chosen(given, beginning, choices(&decisions, &from, &layout.taken));
             flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
             self.taken.extend(layout.taken.iter().cloned());
             self.refused.extend(layout.refused.iter().cloned());
@@ -139,7 +215,7 @@ impl Flights {
             return;
         }
         let decide = |c: &Choice| Command::Decide { leg: c.leg.clone(), branch: c.branch.clone() };
-        let preview = given.preview(beginning.start(), choices.iter().map(decide).collect());
+        let preview = given.preview(beginning, choices.iter().map(decide).collect());
         self.chosen.push((choices, preview));
     }
 
@@ -163,9 +239,10 @@ impl Flights {
         })
     }
 
-    fn fly_emergencies(&mut self, given: &Circumstances) {
+    /// `used_j`: the energy used by now. Whether what is left there lasts is asked of every point of the flights as they are
+    /// flown, and not of these.
+    fn fly_emergencies(&mut self, given: &Circumstances, used_j: f64) {
         let program = given.program;
-        let counts = counts(program);
         let in_force = InForce::of(program);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MOST_EMERGENCY_PLANS) {
             let Some(worst) = self.worst_for(program, plan, index, &in_force) else { continue };
@@ -174,16 +251,20 @@ impl Flights {
                 altitude_amsl_m: worst.altitude_amsl_m,
                 heading_deg: worst.course_deg,
                 on_ground: false,
+                used_j,
             };
-            let path = beginning.path(&given.tireless);
-            let decisions = decisions(program, &Way::default());
-            let layout = lay_out(&given.executor, Some(index), path, &counts, &decisions);
+            let outset = beginning.outset(Some(index), &given.tireless);
+            let (counts, decisions) = (
+                counts(&given.executor, &outset.cursor),
+                decisions(program, &Way::default(), &outset.cursor),
+            );
+            let layout = lay_out(&given.executor, outset, &counts, &decisions);
             self.refused.extend(layout.refused.iter().cloned());
             let aircraft = beginning.aircraft(&given.tireless);
             let flown = fly(aircraft, layout, given.wind, Some(index), worst.time_s);
             self.emergencies.insert(index, flown);
             let alarm = Command::Emergency { cause: Cause::Operator, plan: Some(plan.id.clone()) };
-            self.landings.insert(index, given.preview(beginning.start(), vec![alarm]));
+            self.landings.insert(index, given.preview(beginning, vec![alarm]));
         }
     }
 
@@ -213,7 +294,8 @@ impl Flights {
 /// Points of a previewed flight, so many seconds apart, with the energy used by then: within a passage it is used evenly.
 pub(super) fn points(planned: &Preview, every_s: f64) -> Vec<Origin> {
     let mut used_j = Vec::with_capacity(planned.legs.len());
-    let mut sum_j = 0.0;
+    // what was used before its first passage
+    let mut sum_j = planned.energy_j - planned.legs.iter().map(|passage| passage.energy_j).sum::<f64>();
     for passage in &planned.legs {
         used_j.push(sum_j);
         sum_j += passage.energy_j;
@@ -268,6 +350,7 @@ fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
             altitude_amsl_m: runway.elevation_amsl_m,
             heading_deg: runway.heading_deg,
             on_ground: true,
+            used_j: 0.0,
         };
     }
     let variables = Variables::initial(program.flown());
@@ -282,13 +365,14 @@ fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
         Some(AltitudeReference::Agl) => terrain.elevation_m(position).unwrap_or(0.0),
         _ => 0.0,
     };
-    Beginning { position, altitude_amsl_m: metres + ground_m, heading_deg: 0.0, on_ground: false }
+    let altitude_amsl_m = metres + ground_m;
+    Beginning { position, altitude_amsl_m, heading_deg: 0.0, on_ground: false, used_j: 0.0 }
 }
 
 /// The branches of a way at the intersections that it comes to, in the plan's order.
-fn choices(program: &Program, way: &Way, taken: &HashSet<(Id, Id)>) -> Vec<Choice> {
-    let first = decisions(program, way).into_iter().filter(|decision| decision.crossing == 1);
-    let choices = first.map(|decision| Choice { leg: decision.leg, branch: decision.branch });
+fn choices(decisions: &[Decision], from: &Cursor, taken: &HashSet<(Id, Id)>) -> Vec<Choice> {
+    let first = decisions.iter().filter(|d| d.crossing == from.crossings_of(&d.leg) + 1);
+    let choices = first.map(|d| Choice { leg: d.leg.clone(), branch: d.branch.clone() });
     choices.filter(|c| taken.contains(&(c.leg.clone(), c.branch.clone()))).collect()
 }
 
@@ -304,6 +388,16 @@ fn takes(planned: &Preview, choices: &[Choice]) -> bool {
 }
 
 impl Beginning {
+    fn of(aircraft: &AircraftState, profile: &Profile) -> Self {
+        Self {
+            position: aircraft.position,
+            altitude_amsl_m: aircraft.altitude_amsl_m,
+            heading_deg: aircraft.track_deg,
+            on_ground: aircraft.on_ground,
+            used_j: (1.0 - aircraft.battery) * profile.energy_j,
+        }
+    }
+
     fn start(&self) -> Start {
         if self.on_ground {
             return Start::Runway;
@@ -313,15 +407,15 @@ impl Beginning {
     }
 
     fn aircraft(&self, profile: &Profile) -> Aircraft {
-        if self.on_ground {
-            return Aircraft::on_runway(
-                profile.clone(),
-                self.position,
-                self.altitude_amsl_m,
-                self.heading_deg,
-            );
-        }
-        Aircraft::in_flight(profile.clone(), self.position, self.altitude_amsl_m, self.heading_deg)
+        let place = if self.on_ground { Aircraft::on_runway } else { Aircraft::in_flight };
+        let mut aircraft = place(profile.clone(), self.position, self.altitude_amsl_m, self.heading_deg);
+        aircraft.use_energy(self.used_j);
+        aircraft
+    }
+
+    /// At the beginning of the main plan (`None`) or an emergency plan.
+    fn outset(&self, section: Option<usize>, profile: &Profile) -> Outset {
+        Outset { kept: Vec::new(), cursor: Cursor::start(section, self.path(profile), 0) }
     }
 
     fn path(&self, profile: &Profile) -> PathState {

@@ -5,7 +5,6 @@ use crate::choice::{By, Choice};
 use crate::cursor::{Cursor, Doing, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
-use crate::path::PathState;
 use crate::world::{LoopCount, World};
 use flight_plan::{AltitudeReference, Id, LegKind, Program};
 use std::collections::{HashMap, HashSet};
@@ -48,8 +47,29 @@ fn legs(program: &Program) -> impl Iterator<Item = &flight_plan::Leg> {
     program.flown().all_legs().into_iter().map(|context| context.leg)
 }
 
-/// Counts for every loop.
-pub(super) fn counts(program: &Program) -> Vec<LoopCount> {
+/// Where a way begins: behind waypoints that are flown anyway.
+pub(super) struct Outset {
+    pub kept: Vec<LaidOut>,
+    pub cursor: Cursor,
+}
+
+/// Counts for every loop; those that it begins in go on to the end of their next pass.
+pub(super) fn counts(executor: &Executor, from: &Cursor) -> Vec<LoopCount> {
+    let world = executor.world();
+    let going_on = from.loops.iter().zip(from.chain(&world)).filter_map(|(frame, leg)| {
+        let set = world.count_of(&leg.id, frame.activation).map(|n| n as f64);
+        let most = match leg.as_loop()?.count {
+            Some(flight_plan::Value::Constant(n)) => set.unwrap_or(*n),
+            _ => set.unwrap_or(f64::INFINITY),
+        };
+        let count = most.min(frame.iteration as f64 + 1.0) as u64;
+        Some(LoopCount { leg: leg.id.clone(), activation: Some(frame.activation), count })
+    });
+    going_on.chain(first_counts(world.program)).collect()
+}
+
+/// Counts for every loop that is entered.
+fn first_counts(program: &Program) -> Vec<LoopCount> {
     let is_loop = |leg: &&flight_plan::Leg| matches!(leg.kind, LegKind::Iterative { .. });
     let count = |leg: &flight_plan::Leg| {
         let LegKind::Iterative { count: Some(flight_plan::Value::Constant(n)), .. } = &leg.kind else {
@@ -87,14 +107,15 @@ impl Way {
     }
 }
 
-/// The branch for each of the first crossings of each intersection: after the way's own the others in turn.
-pub(super) fn decisions(program: &Program, way: &Way) -> Vec<Decision> {
+/// The branch for each of the next crossings of each intersection: after the way's own the others in turn.
+pub(super) fn decisions(program: &Program, way: &Way, from: &Cursor) -> Vec<Decision> {
     let mut decisions = Vec::new();
     for leg in legs(program) {
         let LegKind::Intersection { branches, .. } = &leg.kind else { continue };
         let first = way.named.get(&leg.id).copied().unwrap_or(way.others);
-        for crossing in 1..=CROSSINGS {
-            let which = (first + crossing - 1) % (branches.len() as u64).max(1);
+        for next in 0..CROSSINGS {
+            let crossing = from.crossings_of(&leg.id) + next + 1;
+            let which = (first + next) % (branches.len() as u64).max(1);
             let branch = branches.get(which as usize).map(|b| b.id.clone());
             let decision = |branch| Decision {
                 leg: leg.id.clone(),
@@ -108,19 +129,18 @@ pub(super) fn decisions(program: &Program, way: &Way) -> Vec<Decision> {
     decisions
 }
 
-/// The waypoints of the main plan (`None`) or an emergency plan from a place.
+/// The waypoints from an outset to the end of its plan.
 pub(super) fn lay_out(
     executor: &Executor,
-    section: Option<usize>,
-    from: PathState,
+    Outset { kept, mut cursor }: Outset,
     counts: &[LoopCount],
     decisions: &[Decision],
 ) -> Layout {
-    let mut layout = Layout::default();
+    let mut layout = Layout { waypoints: kept, ..Layout::default() };
     let mut world = World { counts, decisions, ..executor.world() };
-    let mut cursor = Cursor::start(section, from, 0);
+    let from_s = cursor.path.time_s;
     let endless = shortened(world.program);
-    while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from.time_s < MOST_S {
+    while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from_s < MOST_S {
         let released = release(&mut world, &cursor);
         let loops = cursor.place(&world).iterations;
         if released || loops.iter().any(|iteration| endless.contains(&iteration.leg)) {

@@ -7,6 +7,7 @@
 //!
 //! The work is bounded: the module `flights` says by what. What was not seen is told (`not-reviewed`).
 
+mod ahead;
 mod alternates;
 mod altitudes;
 mod ceiling;
@@ -30,11 +31,14 @@ mod waypoints;
 mod ways;
 mod zones;
 
+pub use ahead::{compile_and_review_ahead, review_ahead, review_command};
 use aircraft::{Profile, Wind};
 use alternates::Origin;
 pub(crate) use alternates::ground_speed_mps;
 pub use extremes::{MOST_TRIALS, review_extremes};
-use flight_plan::{Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value};
+use flight_plan::{
+    Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value, Variables,
+};
 use flights::Flights;
 use in_force::InForce;
 use prepared::Zones;
@@ -47,7 +51,8 @@ use terrain::Terrain;
 pub struct Conditions {
     /// The wind on the whole flight.
     pub wind: Wind,
-    /// When it starts, seconds since 1970-01-01T00:00:00Z; `None`: not known, zones are taken as always active.
+    /// When it starts (of a flight under way: now), seconds since 1970-01-01T00:00:00Z; `None`: not known, zones are taken as
+    /// always active.
     pub start_unix_s: Option<i64>,
     /// What is kept in reserve.
     pub margins: Margins,
@@ -79,6 +84,8 @@ struct View<'a> {
     profile: &'a Profile,
     terrain: &'a dyn Terrain,
     conditions: Conditions,
+    /// Their values where the flights begin.
+    variables: Variables,
     flights: Flights,
     zones: Zones,
     in_force: InForce,
@@ -113,18 +120,30 @@ pub fn review(
     terrain: &Arc<dyn Terrain>,
     conditions: Conditions,
 ) -> Vec<Problem> {
-    let view = View {
-        program,
-        profile,
-        terrain: terrain.as_ref(),
-        conditions,
-        flights: Flights::of(program, profile, terrain, conditions.wind),
-        zones: Zones::of(program, profile, conditions),
-        in_force: InForce::of(program),
-    };
-    let mut problems = Vec::new();
-    RULES.iter().for_each(|rule| rule(&view, &mut problems));
-    once(problems, &program.warnings)
+    let flights = Flights::of(program, profile, terrain, conditions.wind);
+    let variables = Variables::initial(program.flown());
+    View::new(program, profile, terrain.as_ref(), conditions, variables, flights).problems()
+}
+
+impl<'a> View<'a> {
+    fn new(
+        program: &'a Program,
+        profile: &'a Profile,
+        terrain: &'a dyn Terrain,
+        conditions: Conditions,
+        variables: Variables,
+        flights: Flights,
+    ) -> Self {
+        let (zones, in_force) = (Zones::of(program, profile, conditions), InForce::of(program));
+        Self { program, profile, terrain, conditions, variables, flights, zones, in_force }
+    }
+
+    /// What every rule finds.
+    fn problems(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        RULES.iter().for_each(|rule| rule(self, &mut problems));
+        once(problems, &self.program.warnings)
+    }
 }
 
 impl View<'_> {
@@ -196,10 +215,20 @@ pub fn compile_and_review(
     terrain: &Arc<dyn Terrain>,
     conditions: Conditions,
 ) -> Result<Arc<Program>, Vec<Problem>> {
+    reviewed(document, profile, terrain, |program| review(program, profile, terrain, conditions))
+}
+
+/// Reads, checks and compiles a document, and looks at the program.
+fn reviewed(
+    document: &[u8],
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    look: impl FnOnce(&Arc<Program>) -> Vec<Problem>,
+) -> Result<Arc<Program>, Vec<Problem>> {
     let (program, places) =
         flight_plan::compile_reading(flight_plan::read(document), profile, terrain.as_ref())?;
     let mut program = Arc::new(program);
-    let mut problems = review(&program, profile, terrain, conditions);
+    let mut problems = look(&program);
     places.locate(&mut problems);
     if problems.iter().any(Problem::is_error) {
         problems.splice(0..0, program.warnings.iter().cloned());

@@ -12,7 +12,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         let missing = origins.iter().filter(applies).map(|from| (missing_j(view, &alternate, from), from));
         let worst = missing.max_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((missing_j, from)) = worst.filter(|(missing_j, _)| *missing_j > 0.0) {
-            problems.push(problem(&alternate, from, missing_j));
+            problems.push(problem(view, &alternate, from, missing_j));
         }
     }
 }
@@ -29,9 +29,10 @@ fn missing_j(view: &View, alternate: &Alternate, from: &Origin) -> f64 {
     needed_j - (profile.energy_j - from.used_j)
 }
 
-fn problem(alternate: &Alternate, from: &Origin, missing_j: f64) -> Problem {
+fn problem(view: &View, alternate: &Alternate, from: &Origin, missing_j: f64) -> Problem {
+    let since = if view.flights.under_way { "from now" } else { "after the start" };
     let message = format!(
-        "shorten the plan, or name a nearer emergency plan: from {from}, {:.0} min after the start, `{}` lacks {:.0} kJ to runway `{}`",
+        "shorten the plan, or name a nearer emergency plan: from {from}, {:.0} min {since}, `{}` lacks {:.0} kJ to runway `{}`",
         from.time_s / 60.0,
         alternate.plan.id,
         missing_j / 1e3,

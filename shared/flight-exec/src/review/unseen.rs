@@ -9,6 +9,10 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for context in flown.all_legs() {
         let LegKind::Intersection { branches, .. } = &context.leg.kind else { continue };
         let leg = &context.leg.id;
+        // under way, what no flight comes to is behind
+        if view.flights.under_way && !view.flights.taken.iter().any(|(passed, _)| passed == leg) {
+            continue;
+        }
         let seen = |branch| view.flights.taken.contains(&(leg.clone(), branch));
         let unseen = branches.iter().filter(|b| branches.len() > 1 && !seen(b.id.clone()));
         // an emergency plan is flown once

@@ -1,0 +1,118 @@
+//! What is ahead of a flight under way, held against the same rules as a whole plan: from where the aircraft is, with the
+//! present values of the variables, the energy that is left, the wind and the time of day.
+//!
+//! So a change in flight is looked at before it takes effect: tried on a copy of the executor, which is then flown ahead. What is
+//! wrong with the present flight just as much is not the change's fault: it is told as a warning.
+
+use super::flights::Flights;
+use super::{Conditions, View, reviewed};
+use crate::api::Command;
+use crate::executor::Executor;
+use flight_plan::{Act, Id, Problem, Program, Severity, Use};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Every problem of the path ahead of a flight under way, each once for a leg; none if nothing is being flown, or nothing is
+/// known of the aircraft.
+///
+/// The present plan is flown to its end, and so are the emergency plans from the points of that path that are worst for them.
+/// [`Conditions::start_unix_s`] is now; the path up to the waypoints that can't be altered any more counts as well.
+pub fn review_ahead(flight: &Executor, conditions: Conditions) -> Vec<Problem> {
+    let Some(flights) = Flights::ahead(flight, conditions.wind) else { return Vec::new() };
+    let (program, terrain) = (flight.program.as_ref(), flight.terrain.as_ref());
+    let variables = flight.variables().clone();
+    View::new(program, &flight.profile, terrain, conditions, variables, flights).problems()
+}
+
+/// What a command of `by` would bring about (see [`Executor::changes_what_is_flown`]): errors forbid it. None, if the executor
+/// itself refuses it.
+pub fn review_command(
+    flight: &Executor,
+    by: &str,
+    command: &Command,
+    conditions: Conditions,
+) -> Vec<Problem> {
+    let mut changed = flight.clone();
+    match changed.command(command.clone(), by, &mut Vec::new()) {
+        Ok(()) => brought_about(flight, &changed, conditions),
+        Err(_) => Vec::new(),
+    }
+}
+
+/// As [`super::compile_and_review`], for a plan that would take over a flight under way where that is. A plan in which the leg to enter has
+/// still to be named is checked, and looked at with that leg by [`review_command`] when it is committed.
+///
+/// # Errors
+/// As [`super::compile_and_review`].
+pub fn compile_and_review_ahead(
+    document: &[u8],
+    flight: &Executor,
+    conditions: Conditions,
+) -> Result<Arc<Program>, Vec<Problem>> {
+    reviewed(document, &flight.profile, &flight.terrain, |program| {
+        let mut changed = flight.clone();
+        changed.proposed = Some(program.clone());
+        match changed.commit(program.hash(), None, &mut Vec::new()) {
+            Ok(()) => brought_about(flight, &changed, conditions),
+            Err(_) => Vec::new(),
+        }
+    })
+}
+
+/// The problems of a changed flight; those that the present one has as well are warnings.
+fn brought_about(present: &Executor, changed: &Executor, conditions: Conditions) -> Vec<Problem> {
+    let mut found = review_ahead(changed, conditions);
+    if found.iter().any(Problem::is_error) {
+        let known = review_ahead(present, conditions);
+        for problem in found.iter_mut().filter(|problem| known.contains(problem)) {
+            problem.severity = Severity::Warning;
+        }
+    }
+    found
+}
+
+impl Executor {
+    /// In flight, a command that leads to where nobody has looked: another plan, or a value that legs are laid out from. It is for
+    /// [`review_command`] before it is given.
+    pub fn changes_what_is_flown(&self, command: &Command) -> bool {
+        self.is_under_way()
+            && match command {
+                Command::Commit { .. } => true,
+                Command::SetVariable { name, .. } => laid_out_from(&self.program).contains(name),
+                _ => false,
+            }
+    }
+}
+
+/// Variables that some leg's place, size, altitude, speed or count depends on.
+pub(super) fn read_by_geometry(program: &Program) -> HashSet<&Id> {
+    let mut names: HashSet<&Id> = HashSet::new();
+    let mut read = |source: &Arc<str>, used: Use| {
+        if let (true, Ok(expression)) = (used != Use::Condition, program.expression(source)) {
+            names.extend(&expression.variables);
+        }
+    };
+    let flown = program.flown();
+    flown.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut read));
+    flown.all_legs().iter().for_each(|context| context.leg.for_each_geometric_expression(&mut read));
+    names
+}
+
+/// These, and those that actions of the plan work them out from.
+fn laid_out_from(program: &Program) -> HashSet<&Id> {
+    let mut names = read_by_geometry(program);
+    let legs = program.flown().all_legs();
+    let acts: Vec<&Act> = legs.iter().flat_map(|c| &c.leg.actions).map(|action| &action.act).collect();
+    loop {
+        let known = names.len();
+        for act in &acts {
+            let Act::Set { variable, to } = act else { continue };
+            if let (true, Ok(expression)) = (names.contains(variable), program.expression(to)) {
+                names.extend(&expression.variables);
+            }
+        }
+        if names.len() == known {
+            return names;
+        }
+    }
+}
