@@ -241,17 +241,26 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
         opaque_id: 0,
     });
     // a quarter of the items is lost, and every step brings an early "accepted"
-    rig.driver.order(rig.now, OrderId(1), Order::Upload { items: list.clone() });
-    let mut seed = 5_u32;
+    let (mut seed, mut tried) = (5_u32, 1);
+    rig.driver.order(rig.now, OrderId(tried), Order::Upload { items: list.clone() });
     for _ in 0..3000 {
         rig.driver.receive(rig.now, header, &ack);
         rig.step(&mut |t, m| {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            !(t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_)) && seed >> 30 == 0)
+            let is_item = t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_));
+            if is_item {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            }
+            !is_item || seed >> 30 != 0
         });
-        if rig.driver.take_reports().contains(&Report::Done(OrderId(1))) {
+        let reports = rig.driver.take_reports();
+        if reports.contains(&Report::Done(OrderId(tried))) {
             assert!(is_on_board(&rig, &list, 0), "a false claim");
             return;
+        }
+        // one that lost too much says so
+        if reports.iter().any(|r| matches!(r, Report::Failed(id, _) if id.0 == tried)) {
+            tried += 1;
+            rig.driver.order(rig.now, OrderId(tried), Order::Upload { items: list.clone() });
         }
     }
     panic!("no outcome");
