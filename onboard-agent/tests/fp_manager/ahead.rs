@@ -38,19 +38,22 @@ fn refused<A: std::fmt::Debug>(answer: Result<A, CallError>) -> Refusal {
 }
 
 impl Flight {
+    /// In the air, and holding: the gateway flies a waypoint a step, and an answer takes as many as it takes.
     async fn searching() -> Self {
         let mut flight = Self::over(Arc::new(Hill), None).await;
         flight.load(&searching()).await;
         flight.start().await;
         flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "take-off")).await;
+        flight.command(Command::Hold).await.unwrap();
         flight
     }
 
-    /// Flies on; where the scan was flown.
+    /// Flies on; where the scan was flown (what was steered to when the hold came, and the place of the hold, left out).
     async fn scanned(&mut self) -> Vec<LatLon> {
+        self.command(Command::Resume).await.unwrap();
         self.step_until(|g| g.finished()).await;
         let scan = self.gateway.flown.iter().filter(|w| w.leg.as_str() == "s");
-        scan.map(|w| w.position).collect()
+        scan.rev().take(5).map(|w| w.position).collect()
     }
 }
 
