@@ -5,7 +5,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use geometry::scan::{Corner, Entry, Scan, ScanParameters};
+use geometry::scan::{CellScan, Corner, Entry, Scan, ScanParameters};
 use geometry::{LatLon, LocalFrame, Polygon, Vec2};
 use std::time::{Duration, Instant};
 
@@ -27,16 +27,19 @@ fn concave() -> Polygon {
     Polygon::new((0..100).map(corner).collect(), vec![]).unwrap()
 }
 
-fn scan(polygon: &Polygon, lines: f64) -> Scan {
-    let parameters = ScanParameters {
+fn parameters(polygon: &Polygon, lines: f64) -> ScanParameters {
+    ScanParameters {
         spacing_m: polygon.width_m(90.0) / lines,
         grid: None,
         heading_deg: Some(90.0),
         overshoot_m: 0.0,
         entry: Entry::Corner(Corner::StartLeft),
         turn_radius_m: 0.0,
-    };
-    Scan::new(polygon, &parameters).unwrap()
+    }
+}
+
+fn scan(polygon: &Polygon, lines: f64) -> Scan {
+    Scan::new(polygon, &parameters(polygon, lines)).unwrap()
 }
 
 /// Sum over all segments, so that nothing is optimised away, and their number.
@@ -160,6 +163,17 @@ fn lines_over_a_concave_polygon(bencher: Bencher) {
     bencher
         .counter(ItemsCount::new(LINES as usize))
         .bench(|| fly_segments(&scan(black_box(&polygon), LINES)));
+}
+
+/// What an aircraft flies of it that stays over the area: the cells found, and the first thousand tracks.
+#[divan::bench]
+fn cells_of_a_concave_polygon(bencher: Bencher) {
+    let polygon = concave();
+    let parameters = parameters(&polygon, LINES);
+    bencher.counter(ItemsCount::new(LINES as usize)).bench(|| {
+        let cells = CellScan::new(black_box(&polygon), &parameters).unwrap();
+        cells.ends(0..1000).flatten().map(|(low, high)| low.e + high.e).sum::<f64>()
+    });
 }
 
 #[divan::bench]

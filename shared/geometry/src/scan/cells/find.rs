@@ -74,13 +74,13 @@ impl<'a> Finder<'a> {
 
     /// Adds a line; `alike`: no corner of the area is between it and the one before.
     fn add(&mut self, line: u64, pieces: &[Span], alike: bool) -> Result<(), ScanError> {
+        // prolonged pieces may join and part anywhere, others only at corners
+        if alike && self.scan.overshoot_m == 0.0 && self.open.len() == pieces.len() {
+            self.go_on_with_all(line, pieces);
+            return Ok(());
+        }
         let before = std::mem::take(&mut self.open);
-        // prolonged ones may join and part anywhere
-        let partners = if alike && self.scan.overshoot_m == 0.0 && before.len() == pieces.len() {
-            (0..pieces.len()).map(|i| vec![i]).collect()
-        } else {
-            meetings(&before, pieces)
-        };
+        let partners = meetings(&before, pieces);
         let mut met = vec![0_usize; before.len()];
         partners.iter().flatten().for_each(|&i| met.iter_mut().skip(i).take(1).for_each(|n| *n += 1));
         for (number, (piece, partners)) in pieces.iter().zip(partners).enumerate() {
@@ -104,6 +104,16 @@ impl<'a> Finder<'a> {
             self.open.push((*piece, cell));
         }
         Ok(())
+    }
+
+    fn go_on_with_all(&mut self, line: u64, pieces: &[Span]) {
+        let across_m = self.scan.lines.across_m(line);
+        let mut open = std::mem::take(&mut self.open);
+        for (number, ((old, cell), piece)) in open.iter_mut().zip(pieces).enumerate() {
+            *old = *piece;
+            self.go_on(*cell, line, number, self.scan.ends_of(across_m, *piece));
+        }
+        self.open = open;
     }
 
     /// Whether the turns between pieces of two lines need nobody to go far beside the area.
