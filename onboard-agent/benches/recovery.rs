@@ -48,6 +48,7 @@ fn aircraft(n: u64) -> AircraftState {
         wind_east_mps: 3.0,
         wind_north_mps: 1.0,
         battery: 0.8,
+        fuel: None,
         on_ground: false,
     }
 }

@@ -49,6 +49,7 @@ impl Aircraft {
             wind_east_mps,
             wind_north_mps,
             battery: self.power.map_or(1.0, |p| p.battery.clamp(0.0, 1.0)),
+            fuel: self.power.and_then(|p| p.fuel).filter(|f| f.is_finite()).map(|f| f.clamp(0.0, 1.0)),
             on_ground: p.on_ground,
         })
     }

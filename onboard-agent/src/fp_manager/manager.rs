@@ -303,6 +303,7 @@ impl Manager {
                     self.feeder.push(Feed { cancel_after, waypoints })
                 }
                 Output::Hold => self.liaison.want(GatewayRequest::Hold),
+                Output::Safe => self.liaison.want(GatewayRequest::Safe),
                 Output::Event(event) => self.happened(event, out),
                 Output::Answer { result, .. } => answer = Some(result),
                 Output::Act { leg, passage, act } => out.extend(invocation(leg, passage, act)),

@@ -81,6 +81,7 @@ fn state(position: LatLon) -> AircraftState {
         wind_east_mps: 0.0,
         wind_north_mps: 0.0,
         battery: 1.0,
+        fuel: None,
         on_ground: false,
     }
 }

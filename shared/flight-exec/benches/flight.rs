@@ -75,6 +75,7 @@ impl Flying {
             wind_east_mps: 0.0,
             wind_north_mps: 0.0,
             battery: 1.0,
+            fuel: None,
             on_ground: false,
         };
         self.step(Input::Aircraft(state));
@@ -160,4 +161,14 @@ fn review_a_plan_of_two_hours(bencher: Bencher) {
     println!("reviewed flight: {:.0} s", planned.unwrap().time_s);
     let conditions = flight_exec::Conditions::default();
     bencher.bench_local(|| flight_exec::review(&program, &profile, &terrain, conditions));
+}
+
+/// Out and back over many legs, a leg of it. Beside the figure for a tenth of them: a long trail must not cost more than a short one.
+#[divan::bench(args = [1_000, 10_000], sample_count = 5, sample_size = 1)]
+fn out_and_back_over_legs(bencher: Bencher, legs: usize) {
+    let fix = ["A", "B", "C"];
+    let body: String = (0..legs).map(|n| format!(r#"<TF id="t{n}" fix="{}"/>"#, fix[n % 3])).collect();
+    let plan = format!(r#"<iterative id="l" form="reverse" count="1000000">{body}</iterative>"#);
+    let mut flying = Flying::start(&plan);
+    bencher.counter(ItemsCount::new(2 * legs)).bench_local(|| (0..2 * legs).for_each(|_| flying.progress()));
 }

@@ -89,6 +89,8 @@ pub enum Output {
     },
     /// Hold where the aircraft is.
     Hold,
+    /// The gateway shall bring the aircraft home: Safe mode.
+    Safe,
     /// The one answer to a request.
     Answer {
         /// Which.

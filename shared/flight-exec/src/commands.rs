@@ -29,6 +29,10 @@ impl Executor {
             Command::SetVariable { name, value } => self.set_variable(&name, value, by, out),
             Command::Emergency { cause, plan } => self.emergency(cause, plan, out),
             Command::ReturnToMain { leg } => self.return_to_main(&leg, out),
+            Command::AbortToSafe => {
+                self.abort_to_safe(out);
+                Ok(())
+            }
             Command::Commit { hash, entry } => self.commit(&hash, entry.as_ref(), out),
         }
     }
@@ -70,9 +74,22 @@ impl Executor {
 
     /// Holds here and remembers the place.
     pub(crate) fn hold(&mut self, out: &mut Vec<Output>) {
+        self.stay_here(out);
+        out.push(Output::Hold);
+    }
+
+    /// The plan stays at its place, whoever flies meanwhile.
+    fn stay_here(&mut self, out: &mut Vec<Output>) {
         self.state.held_at = self.state.aircraft.as_ref().map(|a| a.position);
         self.enter_phase(Phase::Holding, out);
-        out.push(Output::Hold);
+    }
+
+    /// Never refused: with or without a plan, the gateway decides whether there is anything to be brought home.
+    fn abort_to_safe(&mut self, out: &mut Vec<Output>) {
+        if self.is_flying() {
+            self.stay_here(out);
+        }
+        out.push(Output::Safe);
     }
 
     fn resume(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
@@ -138,7 +155,7 @@ impl Executor {
         // after a resume the leg's first waypoint is the place where the hold was given
         let of_leg = self.state.handed.iter().take_while(|h| h.passage == front.passage).count();
         let mut cursor = self.bookmark(of_leg);
-        cursor.abandon_leg();
+        cursor.abandon_leg(front.passage);
         cursor.move_path_to(self.here_at_level_of(&cursor));
         let mut probe = cursor.clone();
         if matches!(probe.next(&self.world()), crate::cursor::Step::Ended { .. }) {
@@ -345,10 +362,12 @@ impl Executor {
 }
 
 impl Cursor {
-    /// Leaves the leg it is in, whatever is left of it, a wait at its end included.
-    pub(crate) fn abandon_leg(&mut self) {
+    /// Leaves the leg it is in, whatever is left of it, a wait at its end included. After an update the passage may be one that it is
+    /// about to go on with in another form.
+    pub(crate) fn abandon_leg(&mut self, passage: u64) {
         self.expansion = None;
-        if self.doing == Doing::Waiting {
+        let goes_on = self.doing == Doing::Arriving && self.passage < passage;
+        if goes_on || self.doing == Doing::Waiting {
             self.doing = Doing::Flying;
         }
     }

@@ -9,8 +9,10 @@ mod enter;
 mod notes;
 mod place;
 mod refresh;
+mod trail;
 
 pub use notes::{Mark, Notes, Trouble};
+pub use trail::{Trail, Visit};
 
 use crate::api::Action;
 use crate::expand::{Expansion, Point};
@@ -104,28 +106,16 @@ pub struct LoopFrame {
     /// The loop as a whole is flown backwards: its passes end at the body's start.
     pub mirrored: bool,
     /// Legs of the body passed on the last forward pass, in order.
-    pub trail: Arc<Vec<Visit>>,
+    pub trail: Trail,
     /// On a pass back: how many of the trail's legs are still to be flown.
     pub back: usize,
+    /// Patterns of the body as they were flown last, by their index: flown again where the values of now make none.
+    #[serde(default)]
+    pub patterns: rpds::HashTrieMapSync<usize, Arc<Expansion>>,
     /// Where the path was when the loop was entered.
     pub entered: Passing,
     /// Number of the last passage before this activation: tells activations of the loop apart.
     pub activation: u64,
-}
-
-/// A leg passed on a forward pass, remembered for the way back.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Visit {
-    /// Its index in its list.
-    pub index: usize,
-    /// Where the path was before it.
-    pub start: Passing,
-    /// Where the path was after it.
-    pub end: Passing,
-    /// The trail inside it, if it is a loop.
-    pub inner: Option<Arc<Vec<Visit>>>,
-    /// What was flown, if it is a pattern.
-    pub flown: Option<Arc<Expansion>>,
 }
 
 /// A waypoint on its way out.

@@ -214,7 +214,8 @@ impl Executor {
             altitude_amsl_m: a.altitude_amsl_m,
             airspeed_mps: a.airspeed_mps,
             battery: a.battery,
-            fuel: a.battery,
+            // an electric aircraft has its energy nowhere else
+            fuel: a.fuel.unwrap_or(a.battery),
             wind_mps: a.wind_east_mps.hypot(a.wind_north_mps),
             position: a.position,
         }

@@ -188,7 +188,7 @@ fn handed(
         wait_s: emission.wait_s,
         sealed: emission.sealed,
         passage: after.passage,
-        activations: after.loops.iter().map(|frame| frame.activation).collect(),
+        activations: after.activations(),
         leg_start_m: after.leg_start.distance_m,
         end_m: after.path.distance_m,
         end_s: after.path.time_s,

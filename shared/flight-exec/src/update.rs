@@ -2,10 +2,11 @@
 
 use crate::actions::is_control;
 use crate::api::{Event, Output, Phase, Refusal};
-use crate::cursor::{Cursor, Doing, LoopFrame, Visit};
+use crate::cursor::{Cursor, Doing, LoopFrame, Trail, Visit};
 use crate::executor::{Executor, refusal};
 use crate::world::World;
 use flight_plan::{Id, Leg, LegPath, Program};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Executor {
@@ -59,9 +60,15 @@ impl Executor {
     ) {
         let same = self.program == program;
         self.activate(program, out);
-        for (handed, bookmark) in self.state.handed.iter_mut().zip(kept) {
+        let world = self.world();
+        let behind = kept.iter().skip(1).chain([&onward]);
+        let places: Vec<_> = behind.map(|at| (at.place(&world), at.activations())).collect();
+        for ((handed, bookmark), (place, activations)) in self.state.handed.iter_mut().zip(kept).zip(places) {
             handed.before = bookmark.clone();
             handed.pinned = true;
+            if place.leg == handed.place.leg {
+                (handed.place, handed.activations) = (place, activations);
+            }
         }
         self.forget_counts_of_loops_left();
         let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
@@ -231,24 +238,25 @@ fn restore_trails(
         }
         *frame = LoopFrame {
             index: frame.index,
-            trail: Arc::new(remap(&before.trail, old_leg, leg)),
+            trail: remap(before.trail.iter(), old_leg, leg),
+            patterns: rpds::HashTrieMapSync::default(),
             ..before.clone()
         };
-        let flown_back = before.trail.iter().take(before.back);
-        frame.back = remap(&flown_back.cloned().collect::<Vec<_>>(), old_leg, leg).len();
+        frame.back = remap(before.trail.iter().take(before.back), old_leg, leg).len();
     }
 }
 
 /// A trail in the new body: legs that are gone are left out.
-fn remap(trail: &[Visit], old: &Leg, new: &Leg) -> Vec<Visit> {
+fn remap<'a>(trail: impl Iterator<Item = &'a Visit>, old: &Leg, new: &Leg) -> Trail {
+    let places: HashMap<&Id, usize> = new.body().iter().enumerate().map(|(i, leg)| (&leg.id, i)).collect();
     let moved = |visit: &Visit| {
         let leg = old.body().get(visit.index)?;
-        let index = new.body().iter().position(|l| l.id == leg.id)?;
+        let index = *places.get(&leg.id)?;
         let inner = visit.inner.as_ref().zip(new.body().get(index));
-        let inner = inner.map(|(inner, new_leg)| Arc::new(remap(inner, leg, new_leg)));
-        Some(Visit { index, inner, ..visit.clone() })
+        let inner = inner.map(|(inner, new_leg)| remap(inner.iter(), leg, new_leg));
+        Some(Visit { inner, flown: visit.flown.clone(), ..Visit::new(index, visit.start, visit.end) })
     };
-    trail.iter().filter_map(moved).collect()
+    trail.filter_map(moved).collect()
 }
 
 fn kind_of(program: &Program, id: &Id) -> Option<&'static str> {

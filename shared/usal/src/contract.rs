@@ -112,6 +112,9 @@ pub struct Power {
     pub current_a: f64,
     /// Share of the energy left, 0..1.
     pub battery: f64,
+    /// Share of the fuel left, 0..1; nothing, if the autopilot tells of no tank.
+    #[serde(default)]
+    pub fuel: Option<f64>,
 }
 
 /// What the gateway is doing (design table: exhaustive transitions).

@@ -126,6 +126,7 @@ impl Flight {
             wind_east_mps: 0.0,
             wind_north_mps: 0.0,
             battery: 0.9,
+            fuel: None,
             on_ground: false,
         }));
         let current = self.buffer.front().map(|w| w.token);
@@ -152,7 +153,7 @@ impl Flight {
                     assert_eq!((Some(request), answered), (asked, None), "{told}");
                     answered = Some(result.is_ok());
                 }
-                Output::Hold | Output::Act { .. } | Output::Event(_) => {}
+                Output::Hold | Output::Safe | Output::Act { .. } | Output::Event(_) => {}
             }
         }
         assert_eq!(answered.is_some(), asked.is_some(), "one answer: {told}");

@@ -261,7 +261,7 @@ mod tests {
             }),
             Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None }),
             Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 0.5 }),
-            Report::Power(Power { voltage_v: 24.0, current_a: 12.0, battery: 0.8 }),
+            Report::Power(Power { voltage_v: 24.0, current_a: 12.0, battery: 0.8, fuel: None }),
         ]
     }
 
@@ -276,7 +276,7 @@ mod tests {
                 r[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 })
             }),
             ("energy-low", 20, |r| {
-                r[5] = Report::Power(Power { voltage_v: 20.0, current_a: 12.0, battery: 0.1 })
+                r[5] = Report::Power(Power { voltage_v: 20.0, current_a: 12.0, battery: 0.1, fuel: None })
             }),
             ("autopilot-silent", 30, Vec::clear),
             ("position-stale", 10, |r| r.retain(|r| !matches!(r, Report::Fix(_)))),

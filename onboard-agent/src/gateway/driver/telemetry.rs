@@ -26,6 +26,7 @@ pub struct Readings {
     temperature_c: f64,
     throttle: f64,
     engine_temperature_c: f64,
+    fuel: Option<f64>,
     last_fix: Option<(Time, LatLon)>,
     jumps: u32,
     boot_ms: Option<u32>,
@@ -55,7 +56,8 @@ impl Readings {
                 self.day = unix_s.map(|unix_s| (now, unix_s));
                 Some(())
             }
-            MavMessage::SYS_STATUS(m) => power(m).map(|p| out.push(Report::Power(p))),
+            MavMessage::SYS_STATUS(m) => self.power(m).map(|p| out.push(Report::Power(p))),
+            MavMessage::FUEL_STATUS(m) => self.tank(m),
             MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push(Report::Engine(e))),
             MavMessage::EFI_STATUS(m) => self.efi(m),
             MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(h)),
@@ -137,6 +139,22 @@ impl Readings {
         })
     }
 
+    fn power(&self, m: &SYS_STATUS_DATA) -> Option<Power> {
+        (0..=100).contains(&m.battery_remaining).then(|| Power {
+            voltage_v: f64::from(m.voltage_battery) / 1e3,
+            current_a: f64::from(m.current_battery) / 1e2,
+            battery: f64::from(m.battery_remaining) / 100.0,
+            fuel: self.fuel,
+        })
+    }
+
+    /// It is published with the battery.
+    fn tank(&mut self, m: &FUEL_STATUS_DATA) -> Option<()> {
+        (0..=100).contains(&m.percent_remaining).then_some(())?;
+        self.fuel = Some(f64::from(m.percent_remaining) / 100.0);
+        Some(())
+    }
+
     fn efi(&mut self, m: &EFI_STATUS_DATA) -> Option<()> {
         m.cylinder_head_temperature.is_finite().then_some(())?;
         self.engine_temperature_c = f64::from(m.cylinder_head_temperature);
@@ -170,14 +188,6 @@ fn gps(m: &GPS_RAW_INT_DATA, unix_s: Option<i64>) -> Gps {
         hdop: f64::from(m.eph) / 100.0,
         unix_s,
     }
-}
-
-fn power(m: &SYS_STATUS_DATA) -> Option<Power> {
-    (0..=100).contains(&m.battery_remaining).then(|| Power {
-        voltage_v: f64::from(m.voltage_battery) / 1e3,
-        current_a: f64::from(m.current_battery) / 1e2,
-        battery: f64::from(m.battery_remaining) / 100.0,
-    })
 }
 
 fn home(m: &HOME_POSITION_DATA) -> Option<Report> {

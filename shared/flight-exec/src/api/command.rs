@@ -55,6 +55,9 @@ pub enum Command {
         /// The leg to go to.
         leg: Id,
     },
+    /// Have the gateway fly the aircraft to safety, whatever the plan says: its Safe mode, which a command of the gateway ends. A
+    /// plan that is being flown holds until it is resumed.
+    AbortToSafe,
     /// Make the proposed plan the active one.
     Commit {
         /// Hash of the proposal.

@@ -90,6 +90,9 @@ pub struct AircraftState {
     pub wind_north_mps: f64,
     /// Share of the energy left, 0..1.
     pub battery: f64,
+    /// Share of the fuel left, 0..1; `None`: nobody tells of a tank.
+    #[serde(default)]
+    pub fuel: Option<f64>,
     /// On the ground.
     pub on_ground: bool,
 }
@@ -105,6 +108,7 @@ impl AircraftState {
             self.wind_east_mps,
             self.wind_north_mps,
             self.battery,
+            self.fuel.unwrap_or(0.0),
         ];
         self.position.is_valid() && numbers.iter().all(|n| n.is_finite())
     }

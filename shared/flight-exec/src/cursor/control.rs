@@ -1,6 +1,6 @@
 //! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
 
-use super::{Cursor, Doing, LoopFrame, Mark, Notes, Visit};
+use super::{Cursor, Doing, LoopFrame, Mark, Notes, Trail, Visit};
 use crate::choice::{By, Choice};
 use crate::expand::Expansion;
 use crate::expand::track::turn_round;
@@ -26,17 +26,16 @@ impl Cursor {
             self.mark(leg, notes);
         }
         let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));
-        self.go_on_from(leg, flown.filter(|_| pattern), None, world);
+        let flown = flown.filter(|_| pattern);
+        let whole = flown.clone().filter(|f| f.count().is_some_and(|points| points > 0));
+        if let Some((frame, whole)) = self.loops.last_mut().filter(|f| !f.reverse).zip(whole) {
+            frame.patterns.insert_mut(self.index, whole);
+        }
+        self.go_on_from(leg, flown, None, world);
     }
 
     /// The leg it is at is behind: back along the trail, or on to the leg's successor.
-    fn go_on_from(
-        &mut self,
-        leg: &Leg,
-        flown: Option<Arc<Expansion>>,
-        inner: Option<Arc<Vec<Visit>>>,
-        world: &World,
-    ) {
+    fn go_on_from(&mut self, leg: &Leg, flown: Option<Arc<Expansion>>, inner: Option<Trail>, world: &World) {
         self.doing = Doing::Arriving;
         if let Some(frame) = self.loops.last_mut().filter(|frame| frame.reverse) {
             frame.back = frame.back.saturating_sub(1);
@@ -67,16 +66,12 @@ impl Cursor {
         self.doing = if over { Doing::Ended } else { Doing::Arriving };
     }
 
-    /// Keeps what a pass back would need; erases the trail since the last visit of the same leg, so that jumps back can't
-    /// make it grow.
-    fn remember(&mut self, world: &World, flown: Option<Arc<Expansion>>, inner: Option<Arc<Vec<Visit>>>) {
+    /// Keeps what a pass back would need.
+    fn remember(&mut self, world: &World, flown: Option<Arc<Expansion>>, inner: Option<Trail>) {
         let goes_back = self.goes_back_later(world);
         let (index, start, end) = (self.index, self.leg_start.last, self.path.last);
         if let Some(frame) = self.loops.last_mut().filter(|_| goes_back) {
-            let trail = Arc::make_mut(&mut frame.trail);
-            let again = trail.iter().position(|v| v.index == index).unwrap_or(trail.len());
-            trail.truncate(again);
-            trail.push(Visit { index, start, end, inner, flown });
+            frame.trail.pass(Visit { inner, flown, ..Visit::new(index, start, end) });
         }
     }
 
@@ -118,7 +113,7 @@ impl Cursor {
         frame.reverse ^= passes.form == IterativeForm::Reverse;
         frame.back = frame.trail.len();
         if !frame.reverse {
-            frame.trail = Arc::default();
+            frame.trail = Trail::default();
         }
         self.loops.push(frame);
         self.index = 0;

@@ -1,6 +1,6 @@
 //! Beginning a leg.
 
-use super::{Cursor, Doing, LoopFrame, Notes, Origin, Step, Trouble, Visit};
+use super::{Cursor, Doing, LoopFrame, Notes, Origin, Step, Trail, Trouble, Visit};
 use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion, runway};
 use crate::path::PathState;
@@ -28,7 +28,7 @@ impl Cursor {
             return self.end_of_list(world, notes);
         };
         match (&leg.kind, leg.as_fork()) {
-            (LegKind::Iterative { .. }, _) => self.enter_loop(false, Arc::default()),
+            (LegKind::Iterative { .. }, _) => self.enter_loop(false, Trail::default()),
             (_, Some(fork)) => self.cross(leg, fork, world, notes),
             _ => self.begin(leg, None, world, notes),
         }
@@ -54,7 +54,7 @@ impl Cursor {
         }
     }
 
-    fn enter_loop(&mut self, mirrored: bool, trail: Arc<Vec<Visit>>) {
+    fn enter_loop(&mut self, mirrored: bool, trail: Trail) {
         self.loops.push(LoopFrame {
             index: self.index,
             iteration: 1,
@@ -62,6 +62,7 @@ impl Cursor {
             mirrored,
             back: trail.len(),
             trail,
+            patterns: rpds::HashTrieMapSync::default(),
             entered: self.path.last,
             activation: self.passage,
         });
@@ -93,12 +94,13 @@ impl Cursor {
         Approach { path, level, airspeed_mps, reversed: None, onward: None }
     }
 
-    /// A leg that can't be flown is passed without an expansion.
+    /// A leg that can't be flown is passed without an expansion; a pattern of a loop as on the pass before.
     fn fly_or_refuse(&mut self, id: &Id, expansion: Result<Expansion, ExpandError>, notes: &mut Notes) {
         let refused = |why: ExpandError| {
             notes.troubles.push(Trouble::Leg { leg: id.clone(), reason: why.to_string() });
         };
-        self.expansion = expansion.map(Arc::new).map_err(refused).ok();
+        let last = || self.loops.last().filter(|frame| !frame.reverse)?.patterns.get(&self.index).cloned();
+        self.expansion = expansion.map(Arc::new).map_err(refused).ok().or_else(last);
         self.begin_passage(Doing::Flying);
     }
 

@@ -1,10 +1,9 @@
 //! Places: telling people where a cursor is, and putting a cursor at a leg.
 
-use super::{Cursor, Doing, LoopFrame};
+use super::{Cursor, Doing, LoopFrame, Trail};
 use crate::api::{Branching, IterationPlace, PlacePointer};
 use crate::world::World;
 use flight_plan::{Id, LegPath, Program};
-use std::sync::Arc;
 
 impl Cursor {
     /// Where it is, for people; the distance is left at zero.
@@ -49,6 +48,11 @@ impl Cursor {
             .collect()
     }
 
+    /// The activations of its loops, outermost first.
+    pub fn activations(&self) -> Vec<u64> {
+        self.loops.iter().map(|frame| frame.activation).collect()
+    }
+
     /// The innermost-first identifiers of its loops, with their frames.
     pub fn loop_ids(&self, world: &World) -> Vec<Id> {
         self.chain(world).into_iter().take(self.loops.len()).map(|leg| leg.id.clone()).collect()
@@ -74,7 +78,8 @@ impl Cursor {
                 iteration: old.map_or(1, |f| f.iteration),
                 reverse: false,
                 mirrored: false,
-                trail: Arc::default(),
+                trail: Trail::default(),
+                patterns: rpds::HashTrieMapSync::default(),
                 back: 0,
                 entered: self.path.last,
                 activation: old.map_or(self.passage, |f| f.activation),

@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 /// The points of a racetrack.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Racetrack {
-    /// To the fix, and the first lap with its entry; ends at the fix.
+    /// The first lap with its entry, and before it the way to the fix where the path isn't there yet; ends at the fix.
     pub entry: Vec<Point>,
+    /// Points of the entry that lead to the fix: one, or none.
+    pub lead: u64,
     /// One lap; ends at the fix.
     pub lap: Vec<Point>,
     /// Laps flown before, of one whose place it has taken.
@@ -20,11 +22,13 @@ pub struct Racetrack {
 }
 
 impl Racetrack {
-    /// To the fix, one lap with the entry for the arrival on a course (degrees true), then laps (unless `once`).
-    pub fn new(shape: &Shape, fix: Point, arrival_deg: f64, once: bool, tolerance_m: f64) -> Self {
-        let mut entry = vec![fix];
+    /// To the fix (`None`: the path is there), one lap with the entry for the arrival on a course (degrees true), then laps (unless
+    /// `once`).
+    pub fn new(shape: &Shape, fix: Option<Point>, arrival_deg: f64, once: bool, tolerance_m: f64) -> Self {
+        let lead = u64::from(fix.is_some());
+        let mut entry = Vec::from_iter(fix);
         entry.extend(vertices(&shape.entry(arrival_deg), tolerance_m));
-        Self { entry, lap: vertices(&shape.lap(), tolerance_m), flown: 0, once }
+        Self { entry, lead, lap: vertices(&shape.lap(), tolerance_m), flown: 0, once }
     }
 
     /// The point number `index`.
@@ -41,7 +45,7 @@ impl Racetrack {
     pub fn crossing(&self, given: u64) -> Option<u64> {
         let at_fix = match given.checked_sub(self.entry.len() as u64) {
             Some(after) => after.is_multiple_of(self.points_of_a_lap() as u64),
-            None => given == 1,
+            None => given == self.lead,
         };
         at_fix.then(|| self.laps(given))
     }
@@ -70,7 +74,10 @@ mod tests {
     fn laps_are_counted_at_the_fix() {
         let shape =
             Shape { fix: FIX, inbound_course_deg: 0.0, turn: Turn::Right, leg_m: 900.0, radius_m: 150.0 };
-        let track = Racetrack::new(&shape, Point::fly(FIX), 10.0, false, 3.0);
+        let there = Racetrack::new(&shape, None, 10.0, false, 3.0);
+        assert_eq!((there.crossing(0), there.crossing(1)), (Some(0), None));
+        let track = Racetrack::new(&shape, Some(Point::fly(FIX)), 10.0, false, 3.0);
+        assert_eq!((track.point(1), track.crossing(0)), (there.point(0), None));
         let (entry, lap) = (track.entry.len() as u64, track.lap.len() as u64);
         assert_eq!(track.crossing(1), Some(0));
         assert_eq!(track.crossing(2), None);

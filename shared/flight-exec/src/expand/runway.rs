@@ -1,13 +1,15 @@
 //! Take-off and landing: the autopilot performs them, the plan says where and how high.
 
+use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
-use crate::path::{Level, PathState};
+use crate::path::{Level, PathState, distance_m};
 use crate::world::World;
 use flight_plan::{AltitudeReference, Runway, Stage};
+use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
-/// Off the runway's heading by more than this, the final approach gets a point to line up at first, degrees.
+/// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
 const ALIGNED_DEG: f64 = 30.0;
 
 /// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
@@ -30,7 +32,8 @@ pub fn take_off(stage: &Stage, world: &World) -> Result<Vec<Point>, ExpandError>
     Ok(vec![Point { position, fly_over: false, action, level: Some(level), airspeed_mps: None }])
 }
 
-/// The final approach and the touch-down point.
+/// The final approach and the touch-down point. It begins at the runway's approach entry, if it has one and the path has not passed
+/// that already: is there, or nearer to the threshold and on the runway's line.
 ///
 /// # Errors
 /// The stage names no runway of the plan.
@@ -39,8 +42,20 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
     let final_m = world.config.final_approach_m;
     let mut points = Vec::new();
     let gate = on_final(runway, final_m, world);
-    let arrival_deg = path.last.position.bearing_deg(gate.position);
-    if normalise_180(arrival_deg - runway.heading_deg).abs() > ALIGNED_DEG {
+    let is_aligned = |from: LatLon| {
+        normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
+    };
+    let mut from = path.last.position;
+    let threshold_m = |at| distance_m(at, runway.threshold);
+    let passed = |entry| {
+        let nearer = threshold_m(from) <= threshold_m(entry) && is_aligned(from);
+        nearer || distance_m(from, entry) < SAME_PLACE_M
+    };
+    if let Some(entry) = runway.approach_entry.filter(|entry| !passed(*entry)) {
+        points.push(Point { position: entry, ..on_final(runway, threshold_m(entry), world) });
+        from = entry;
+    }
+    if !is_aligned(from) {
         let radius_m = world.turn_radius_m(path.last.airspeed_mps);
         points.push(on_final(runway, final_m + 4.0 * radius_m, world));
     }

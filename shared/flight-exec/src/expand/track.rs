@@ -164,7 +164,13 @@ fn racetrack(
         radius_m,
     };
     let tolerance_m = world.config.arc_tolerance_m;
-    Ok(Expansion::Holding(holding::Racetrack::new(&shape, fix, arrival_deg, once, tolerance_m)))
+    Ok(Expansion::Holding(holding::Racetrack::new(
+        &shape,
+        (!there).then_some(fix),
+        arrival_deg,
+        once,
+        tolerance_m,
+    )))
 }
 
 /// The full turn at the end of a pass of a form-A loop.

@@ -191,8 +191,7 @@ impl<'a> Offset<'a> {
 /// But for the activation's number, which only matters to a loop with actions: that one is among the passages.
 fn frames(one: &LoopFrame, other: &LoopFrame) -> bool {
     let place = |f: &LoopFrame| (f.index, f.iteration, f.reverse, f.mirrored, f.back, f.entered);
-    place(one) == place(other)
-        && (std::sync::Arc::ptr_eq(&one.trail, &other.trail) || one.trail == other.trail)
+    place(one) == place(other) && one.trail == other.trail && one.patterns == other.patterns
 }
 
 /// How far it is to the intersection is a sum over the way.

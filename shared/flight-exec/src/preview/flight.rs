@@ -227,6 +227,7 @@ impl<'a> Flight<'a> {
             wind_east_mps: self.given.wind.east_mps,
             wind_north_mps: self.given.wind.north_mps,
             battery: self.at.aircraft.battery().share(),
+            fuel: None,
             on_ground: state.on_ground,
         };
         let waits = matches!(self.at.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
@@ -250,7 +251,7 @@ impl<'a> Flight<'a> {
     fn heed(&mut self, output: Output) {
         match output {
             Output::Feed { cancel_after, waypoints } => self.take_feed(cancel_after, waypoints),
-            Output::Hold => self.hold(),
+            Output::Hold | Output::Safe => self.hold(),
             Output::Answer { result: Err(refusal), .. } => {
                 self.result.refusals.push((self.at.time_s(), refusal));
             }

@@ -353,3 +353,19 @@ fn each_deadline_lies_ahead() {
     }
     assert!(!out.iter().any(|o| matches!(o, Output::Feed { .. })));
 }
+
+#[test]
+fn an_abort_asks_for_safe_mode_and_the_plan_holds_until_it_is_resumed() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    rig.command(Command::AbortToSafe).unwrap();
+    assert_eq!((rig.aborts, rig.holds, rig.executor.status().phase), (1, 0, Phase::Holding));
+    rig.step(Input::GatewayControls(true));
+    rig.step(Input::GatewayControls(false));
+    assert_eq!(rig.executor.status().phase, Phase::Holding, "the gateway gave control back, nobody resumed");
+    rig.command(Command::Resume).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c d");
+    rig.command(Command::AbortToSafe).unwrap();
+    assert_eq!((rig.aborts, rig.executor.status().phase), (2, Phase::Finished), "without a flight as well");
+}

@@ -1,6 +1,6 @@
 //! How plans end: where they do, what is told, and what comes when an end was none.
 
-use crate::rig::{Rig, document, document_with, fix, program};
+use crate::rig::{HOME, Rig, document, document_with, fix, program};
 use flight_exec::{AircraftState, Command, Event, Input, Phase, Time, Token};
 use flight_plan::VariableValue;
 use geometry::geodesy::normalise_180;
@@ -245,4 +245,41 @@ fn numbering_goes_on_after_what_the_gateway_has_seen() {
     rig.command(Command::Start).unwrap();
     assert_eq!(rig.buffer[0].token, Token(1001));
     assert_eq!(rig.executor.last_token(), rig.buffer.back().unwrap().token);
+}
+
+/// The approach entry, the leg before, and whether the landing goes there.
+#[test]
+fn a_landing_begins_at_the_approach_entry_unless_that_is_passed() {
+    let before = |metres: f64, aside_m: f64| HOME.destination(270.0, metres).destination(0.0, aside_m);
+    let aside = before(2500.0, 800.0);
+    for (from, entry, goes) in [
+        (fix("C4"), before(2500.0, 0.0), true),
+        (fix("C4"), aside, true),
+        (before(6000.0, 0.0), aside, true),
+        (aside, aside, false),
+        (before(1500.0, 0.0), before(2500.0, 0.0), false),
+        (before(1500.0, 1200.0), before(2500.0, 0.0), true),
+    ] {
+        let at = |p: geometry::LatLon| format!(r#"lat="{}" lon="{}""#, p.lat_deg, p.lon_deg);
+        let legs = format!(r#"<TF id="a" fix="B3"/><TF id="z" {}/>"#, at(from));
+        let runway = format!(r#"priority="1" approachEntry="{} {}""#, entry.lat_deg, entry.lon_deg);
+        let mut rig = Rig::flying(&document(&legs).replace(r#"priority="1""#, &runway));
+        rig.fly_to_the_end();
+        let landing: Vec<_> = rig.flown.iter().filter(|w| w.leg.as_str() == "land").collect();
+        let first = landing[0];
+        assert_eq!(first.position.distance_m(entry) < 1.0, goes, "{from:?} {entry:?}: {landing:#?}");
+        let gate = landing[landing.len() - 2];
+        assert!((gate.position.distance_m(HOME) - 700.0).abs() < 1.0, "then comes the final: {landing:#?}");
+    }
+}
+
+#[test]
+fn fuel_is_the_tank_s_and_without_one_the_battery_s() {
+    let legs = r#"<iterative id="l" form="forward" count="9" until="fuel &lt; 0.5"><TF id="a" fix="B1"/><TF id="b" fix="B2"/></iterative>"#;
+    for (battery, fuel, passes) in [(1.0, Some(0.4), 1), (0.4, None, 1), (0.4, Some(0.6), 9)] {
+        let mut rig = Rig::started(legs);
+        (rig.battery, rig.fuel) = (battery, fuel);
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs().matches('a').count(), passes, "{battery} {fuel:?}");
+    }
 }

@@ -6,6 +6,8 @@ use flight_plan::VariableValue;
 
 const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="3000"/>"#;
 
+const ORBIT: &str = r#"<orbit id="k" radius="200" turns="3" turn="left"><centre fix="C4"/></orbit>"#;
+
 fn fork(when: &str) -> String {
     format!(
         r#"<TF id="a" fix="B2"/><intersection id="i"><branch id="x" label="x" next="u"/><branch id="y" label="y" next="v" {when}/></intersection>
@@ -110,6 +112,21 @@ fn a_pattern_that_shrinks_to_nothing_is_not_begun_again() {
         rig.fly_to_the_end();
         assert_eq!((rig.legs().as_str(), rig.acts.len()), ("a p z", 1), "after {flown} waypoints");
     }
+}
+
+#[test]
+fn a_loop_flies_its_pattern_as_before_while_the_values_make_none() {
+    let legs = r#"<TF id="a" fix="B1"/><iterative id="l" form="forward" count="3"><orbit id="o" radius="= r - 300.0" turns="1" turn="left"><centre fix="C4"/></orbit></iterative><TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
+    rig.fly_to("o");
+    rig.fly_one();
+    rig.set("r", 100.0).unwrap();
+    rig.now += Time::from_secs(2);
+    rig.report();
+    let refused = |e: &&Event| matches!(e, Event::PatternRefused { leg, .. } if leg.as_str() == "o");
+    assert_eq!(rig.events.iter().filter(refused).count(), 1);
+    rig.fly_to_the_end();
+    assert_eq!((rig.legs().as_str(), arrivals(&rig)), ("a o o o z", vec![1, 2, 3]));
 }
 
 #[test]
@@ -241,10 +258,9 @@ fn who_goes_again_to_the_leg_at_whose_end_it_circles_circles_anew() {
 
 #[test]
 fn a_leg_that_becomes_another_kind_of_leg_is_flown_as_that_one() {
-    let orbit = r#"<orbit id="k" radius="200" turns="3" turn="left"><centre fix="C4"/></orbit>"#;
     let track = r#"<TF id="k" fix="D2"><action on="end"><wait seconds="20"/></action></TF>"#;
     let with = |leg: &str| document(&format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="z" fix="A3"/>"#));
-    let mut rig = Rig::flying(&with(orbit));
+    let mut rig = Rig::flying(&with(ORBIT));
     rig.fly_to("k");
     for _ in 0..5 {
         rig.fly_one();
@@ -261,6 +277,36 @@ fn a_leg_that_becomes_another_kind_of_leg_is_flown_as_that_one() {
     let waited =
         |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
     assert_eq!((rig.legs().as_str(), rig.events.iter().filter(waited).count()), ("a k z", 1));
+}
+
+#[test]
+fn the_place_told_is_that_in_the_new_plan_though_what_is_near_stays() {
+    let with = |legs: &str| document(&format!(r#"<TF id="a" fix="B1"/>{legs}<TF id="z" fix="A3"/>"#));
+    let looped = format!(r#"<iterative id="l" form="forward" count="2">{ORBIT}</iterative>"#);
+    let mut rig = Rig::flying(&with(&looped));
+    rig.fly_to("k");
+    rig.fly_one();
+    rig.update(&program(&with(ORBIT))).unwrap();
+    let place = rig.executor.status().place.unwrap();
+    assert_eq!((place.leg.as_str(), place.iterations.len()), ("k", 0));
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a k z");
+}
+
+#[test]
+fn a_leg_that_goes_on_as_another_kind_of_leg_can_be_skipped() {
+    let with = |leg: &str| document(&format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="z" fix="A3"/>"#));
+    let mut rig = Rig::flying(&with(ORBIT));
+    rig.fly_to("k");
+    rig.fly_one();
+    rig.update(&program(&with(r#"<TF id="k" fix="D2"/>"#))).unwrap();
+    let new = rig.buffer.iter().find(|w| w.position.distance_m(fix("D2")) < 1.0).unwrap().token;
+    rig.buffer.retain(|w| w.token < new);
+    rig.step(flight_exec::Input::Rejected { first: new, reason: "too steep".into() });
+    rig.command(Command::SkipLeg).unwrap();
+    rig.command(Command::Resume).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a k z");
 }
 
 #[test]

@@ -173,3 +173,18 @@ fn control_legs_have_no_points() {
         assert_eq!(expand(leg, &approach, &world).unwrap().count(), Some(points));
     }
 }
+
+#[test]
+fn a_holding_at_the_fix_where_the_path_is_does_not_fly_there_once_more() {
+    for kind in [r#"HF"#, r#"HM"#] {
+        let laps = if kind == "HM" { r#"maxLaps="1""# } else { "" };
+        let rig = check(
+            &format!(
+                r#"<TF id="a" fix="B2"/><{kind} id="h" fix="B2" course="0" turn="right" length="800" {laps}/><TF id="z" fix="A3"/>"#
+            ),
+            "a h z",
+        );
+        let apart = rig.flown.windows(2).map(|w| w[0].position.distance_m(w[1].position));
+        assert!(apart.fold(f64::INFINITY, f64::min) > 1.0, "{kind}: {:#?}", rig.flown);
+    }
+}

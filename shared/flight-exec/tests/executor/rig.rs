@@ -34,8 +34,10 @@ pub struct Rig {
     /// Actions, with leg and passage.
     pub acts: Vec<(String, u64, ResolvedAct)>,
     pub holds: usize,
+    pub aborts: usize,
     pub feeds: usize,
     pub battery: f64,
+    pub fuel: Option<f64>,
     pub wind_east_mps: f64,
     /// Reported instead of the waypoint's altitude.
     pub altitude_amsl_m: Option<f64>,
@@ -54,8 +56,10 @@ impl Rig {
             events: Vec::new(),
             acts: Vec::new(),
             holds: 0,
+            aborts: 0,
             feeds: 0,
             battery: 1.0,
+            fuel: None,
             wind_east_mps: 0.0,
             altitude_amsl_m: None,
             position: HOME,
@@ -121,6 +125,7 @@ impl Rig {
             match output {
                 Output::Feed { cancel_after, waypoints } => self.take(cancel_after, waypoints),
                 Output::Hold => self.holds += 1,
+                Output::Safe => self.aborts += 1,
                 Output::Answer { request, result } => answers.push((request, result)),
                 Output::Act { leg, passage, act } => self.acts.push((leg.to_string(), passage, act)),
                 Output::Event(event) => self.events.push(event),
@@ -160,6 +165,7 @@ impl Rig {
             wind_east_mps: self.wind_east_mps,
             wind_north_mps: 0.0,
             battery: self.battery,
+            fuel: self.fuel,
             on_ground: self.flown.is_empty(),
         }
     }

@@ -30,6 +30,11 @@ pub const POLICIES: &[Policy] = &[
         "A hold is accepted while flying and not holding, and never else; the gateway is told.",
         hold,
     ),
+    policy(
+        "an-abort-asks-for-safe-mode",
+        "An abort is never refused: the gateway is asked for Safe mode, which nothing else does, and a plan being flown holds.",
+        abort,
+    ),
     policy("resume-a-hold", "A resume is accepted while holding, and never else.", resume),
     policy(
         "writes-are-told",
@@ -143,6 +148,22 @@ fn hold(trace: &Trace, found: &mut Findings) {
         let right =
             if may { told && holds && step.accepted().is_some() } else { !told && step.refused().is_some() };
         found.expect(step, right, || format!("{:?}", step.moment.outputs));
+    }
+}
+
+fn abort(trace: &Trace, found: &mut Findings) {
+    for step in trace.steps() {
+        let asks = step.moment.outputs.iter().filter(|o| **o == Output::Safe).count();
+        if step.command() != Some(&Command::AbortToSafe) {
+            if asks > 0 {
+                found.expect(step, false, || "asks for Safe mode".into());
+            }
+            continue;
+        }
+        let (before, after) = (step.before, step.after.status.phase);
+        let phase = if before.is_flying() { Phase::Holding } else { before.status.phase };
+        let right = asks == 1 && step.accepted().is_some() && after == phase;
+        found.expect(step, right, || format!("{after:?}, {:?}", step.moment.outputs));
     }
 }
 

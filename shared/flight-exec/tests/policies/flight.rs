@@ -19,7 +19,7 @@ use std::sync::Arc;
 use terrain::Flat;
 
 /// Over the ground: no wind.
-const SPEED_MPS: f64 = 25.0;
+pub const SPEED_MPS: f64 = 25.0;
 /// Waypoints after which a flight left alone must have ended: four nested passes of the largest plan are half of it.
 const MOST_WAYPOINTS: usize = 20_000;
 /// Inputs for which an executor that was not killed is asked as well.
@@ -164,6 +164,7 @@ impl Flight {
             18 | 19 => self.emergency(),
             20 => Command::ReturnToMain { leg: id },
             21 => Command::Start,
+            22 if self.random.percent(50) => Command::AbortToSafe,
             22 => Command::Commit { hash: "abc".into(), entry: None },
             _ => Command::GoTo { leg: id },
         }
@@ -477,6 +478,7 @@ impl Flight {
             wind_east_mps: 0.0,
             wind_north_mps: 0.0,
             battery: 0.8,
+            fuel: None,
             on_ground: self.position == HOME,
         }
     }
@@ -510,7 +512,11 @@ impl Flight {
         self.executor.step(self.now, input.clone(), &mut outputs);
         let twin = self.ask_twin(input.clone());
         let rejection = self.obey(&outputs);
+        let brings_home = outputs.contains(&Output::Safe) && !self.buffer.is_empty();
         self.note(Deed::Input(input), outputs, twin);
+        if brings_home {
+            self.lose_control();
+        }
         if let Some(first) = rejection {
             self.input(Input::Rejected { first, reason: "too steep".into() });
         }

@@ -15,6 +15,7 @@ mod feeding;
 mod flight;
 #[path = "../common/grid.rs"]
 mod grid;
+mod heights;
 mod holdings;
 mod horizon;
 mod loops;

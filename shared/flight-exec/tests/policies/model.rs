@@ -426,11 +426,10 @@ impl<'a> Model<'a, '_> {
         Ok(chosen.next.clone().filter(known))
     }
 
-    /// A passage must be entered now. An IF, a CF or an FA flies something only where the path is not there yet; a leg told to be impossible may be
+    /// A passage must be entered now. Some legs fly something only where the path is not there yet; a leg told to be impossible may be
     /// left out.
     fn enter(&mut self, id: &Id) -> Flown {
-        let start =
-            self.program.and_then(|p| p.leg(id)).is_some_and(|l| matches!(l.kind_name(), "IF" | "CF" | "FA"));
+        let start = self.program.and_then(|p| p.leg(id)).is_some_and(may_fly_nothing);
         let next = self.peek()?;
         let optional = start || self.cannot_be_flown.contains(id);
         match next {
@@ -456,6 +455,11 @@ impl<'a> Model<'a, '_> {
         let own = self.stack.iter().map(|f| (f.id.as_ref(), f.iteration, f.reverse));
         place.leg == *id && place.reverse == self.stack.last().is_some_and(|f| f.reverse) && told.eq(own)
     }
+}
+
+/// Where the path is at its fix already, and what it is flown until is true.
+pub fn may_fly_nothing(leg: &Leg) -> bool {
+    matches!(leg.kind_name(), "IF" | "CF" | "FA" | "HA" | "HM")
 }
 
 fn first() -> LegPath {

@@ -215,8 +215,9 @@ fn go_to_goes_there(trace: &Trace, found: &mut Findings) {
         let (Some(program), Some(place)) = (&step.after.program, step.after.place()) else { continue };
         let same_plan = step.before.place().is_none_or(|p| p.plan == place.plan);
         let inside = place.iterations.iter().any(|i| i.leg == *leg) || place.stage == *leg;
-        let flies_nothing =
-            program.leg(leg).is_some_and(|l| matches!(l.kind_name(), "IF" | "CF" | "FA" | "intersection"));
+        let flies_nothing = program
+            .leg(leg)
+            .is_some_and(|l| crate::model::may_fly_nothing(l) || l.kind_name() == "intersection");
         let told = trace.events().take_while(|(s, _)| s.at <= step.at);
         let refused = |e: &Event| matches!(e, Event::PatternRefused { leg: of, .. } if of == leg);
         let impossible = told.into_iter().any(|(_, e)| refused(e));

@@ -57,7 +57,17 @@ pub struct Leg {
     pub id: String,
     pub kind: Kind,
     pub emergency: Emergency,
+    pub own: Own,
     pub actions: Vec<Action>,
+}
+
+/// Speed and altitude of a leg's own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Own {
+    None,
+    Constant,
+    /// By the variable `n`.
+    Variable,
 }
 
 /// An emergency plan of a leg's own.
@@ -128,7 +138,12 @@ impl Draft {
             _ => Emergency::None,
         };
         let actions = if random.percent(30) { actions(kind.is_flown(), random) } else { Vec::new() };
-        Leg { id, kind, emergency, actions }
+        let own = match random.below(100) {
+            0..20 if kind.is_flown() => Own::Constant,
+            20..35 if kind.is_flown() => Own::Variable,
+            _ => Own::None,
+        };
+        Leg { id, kind, emergency, own, actions }
     }
 
     fn kind(&mut self, depth: usize, random: &mut Random) -> Kind {
@@ -233,7 +248,7 @@ fn edit(list: &mut Vec<Leg>, new_id: &str, random: &mut Random) {
         2 => list[spot].actions = actions(list[spot].kind.is_flown(), random),
         _ => {
             let (emergency, actions) = (Emergency::None, Vec::new());
-            list.insert(spot, Leg { id: new_id.into(), kind, emergency, actions });
+            list.insert(spot, Leg { id: new_id.into(), kind, emergency, own: Own::None, actions });
         }
     }
 }

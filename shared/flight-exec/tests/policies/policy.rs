@@ -32,8 +32,8 @@ impl Findings {
 /// Every policy, by subject.
 pub fn all() -> impl Iterator<Item = &'static Policy> {
     use crate::{
-        actions, answers, decisions, emergencies, feeding, holdings, horizon, loops, model, place, restart,
-        updates,
+        actions, answers, decisions, emergencies, feeding, heights, holdings, horizon, loops, model, place,
+        restart, updates,
     };
     [
         feeding::POLICIES,
@@ -45,6 +45,7 @@ pub fn all() -> impl Iterator<Item = &'static Policy> {
         updates::POLICIES,
         actions::POLICIES,
         holdings::POLICIES,
+        heights::POLICIES,
         restart::POLICIES,
         answers::POLICIES,
         model::POLICIES,

@@ -182,6 +182,13 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     ("never-past-its-laps", |t, at| nothing_but_the_fix(t, at, 0)),
     ("released-at-its-fix", |t, at| nothing_but_the_fix(t, at, at)),
     ("left-for-a-reason", without_a_reason),
+    // height and speed
+    ("own-height-and-speed", |t, at| front(t, at).map(|w| w.airspeed_mps += 3.0)),
+    ("own-height-and-speed", |t, at| front(t, at).map(|w| w.altitude_amsl_m += 100.0)),
+    ("height-and-speed-of-now", |t, at| after(t, at).ahead.iter_mut().map(|w| w.airspeed_mps += 3.0).last()),
+    ("height-and-speed-of-now", |t, at| {
+        after(t, at).ahead.iter_mut().map(|w| w.altitude_amsl_m += 100.0).last()
+    }),
     // restart
     ("same-after-restart", |t, at| say(t, at, Output::Hold)),
     ("status-survives-restart", |t, at| Some(after(t, at).status.revision += 1)),
@@ -201,6 +208,7 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     ("phases-are-told", |t, at| unsay(t, at, |o| matches!(o, Output::Event(Event::PhaseChanged { .. })))),
     ("start-on-the-ground", |t, at| accept(t, at).or_else(|| refuse(t, at, "no"))),
     ("hold-once", |t, at| unsay(t, at, |o| *o == Output::Hold).or_else(|| say(t, at, Output::Hold))),
+    ("an-abort-asks-for-safe-mode", |t, at| unsay(t, at, |o| *o == Output::Safe)),
     ("resume-a-hold", |t, at| accept(t, at).or_else(|| refuse(t, at, "no"))),
     ("writes-are-told", |t, at| unsay(t, at, |o| matches!(o, Output::Event(Event::VariableChanged { .. })))),
     ("bad-values-are-refused", |t, at| accept(t, at).or_else(|| refuse(t, at, "no"))),

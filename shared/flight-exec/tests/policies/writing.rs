@@ -1,7 +1,7 @@
 //! How a draft is written down.
 
 use crate::grid::HOME;
-use crate::plans::{Emergency, Kind, Leg};
+use crate::plans::{Emergency, Kind, Leg, Own};
 use geometry::LatLon;
 
 /// Every pattern: element, attributes, what is inside.
@@ -98,7 +98,22 @@ fn element(tag: &str, leg: &Leg, attributes: &str, inside: &str) -> String {
     };
     let actions = leg.actions.iter().map(|(when, what)| format!("<action {when}>{what}</action>"));
     let actions: String = actions.collect();
-    format!(r#"<{tag} id="{}" {attributes} {attribute}>{by_cause}{actions}{inside}</{tag}>"#, leg.id)
+    let own = own(leg);
+    format!(r#"<{tag} id="{}" {attributes} {own} {attribute}>{by_cause}{actions}{inside}</{tag}>"#, leg.id)
+}
+
+/// Of each leg others; a climb's altitude is its end.
+fn own(leg: &Leg) -> String {
+    let climbs = matches!(leg.kind, Kind::Climb | Kind::ClimbOnTrack);
+    let altitude = |metres: String| {
+        if climbs { String::new() } else { format!(r#"altitude="{metres}" altitudeReference="amsl""#) }
+    };
+    let (slow, low) = (hash(&leg.id) % 10, hash(&leg.id) / 10 % 5);
+    match leg.own {
+        Own::None => String::new(),
+        Own::Constant => format!(r#"speed="{}" {}"#, 18 + slow, altitude((480 + 20 * low).to_string())),
+        Own::Variable => format!(r#"speed="= 18.0 + 2.0 * n" {}"#, altitude("= 480.0 + 20.0 * n".into())),
+    }
 }
 
 fn one(leg: &Leg) -> String {

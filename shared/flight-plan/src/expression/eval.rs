@@ -18,7 +18,7 @@ pub struct FlightState {
     pub airspeed_mps: f64,
     /// `battery`: share left, 0..1.
     pub battery: f64,
-    /// `fuel`: share left, 0..1.
+    /// `fuel`: share left, 0..1; of an aircraft without a tank that of its battery.
     pub fuel: f64,
     /// `wind`: its speed, m/s.
     pub wind_mps: f64,
