@@ -1,5 +1,6 @@
 //! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
 
+use super::enter::has_own_waypoints;
 use super::{Cursor, Doing, LoopFrame, Mark, Notes, Trail, Visit};
 use crate::choice::{By, Choice};
 use crate::expand::Expansion;
@@ -23,7 +24,7 @@ impl Cursor {
         // what was regenerated begins anew: it may have flown all there is
         let nothing_flown = self.given == 0 && self.path.distance_m <= self.leg_start.distance_m;
         if flown.is_some() && nothing_flown {
-            self.mark(leg, notes);
+            self.passes_where_it_is(leg, world, notes);
         }
         let pattern = matches!(leg.kind, LegKind::Scan(_) | LegKind::Orbit { .. } | LegKind::Pattern(_));
         let flown = flown.filter(|_| pattern);
@@ -32,6 +33,16 @@ impl Cursor {
             frame.patterns.insert_mut(self.index, whole);
         }
         self.go_on_from(leg, flown, None, world);
+    }
+
+    /// The leg's place is where the path is, which passes it as high and as fast as the leg says. A wait there has told of it.
+    fn passes_where_it_is(&mut self, leg: &Leg, world: &World, notes: &mut Notes) {
+        if has_own_waypoints(leg) {
+            (self.path.last.level, self.path.last.airspeed_mps) = (self.level, self.airspeed_mps);
+        }
+        if world.waited != Some(self.passage) {
+            self.mark(leg, notes);
+        }
     }
 
     /// The leg it is at is behind: back along the trail, or on to the leg's successor.

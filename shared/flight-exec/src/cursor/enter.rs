@@ -147,7 +147,7 @@ impl Cursor {
 }
 
 /// It is more than the way to one waypoint: a pattern, a holding, a track on from its fix.
-fn has_own_waypoints(leg: &Leg) -> bool {
+pub(super) fn has_own_waypoints(leg: &Leg) -> bool {
     use LegKind::{Fa, Ha, Hf, Hm, Orbit, Pattern, Scan};
     matches!(leg.kind, Scan(_) | Orbit { .. } | Pattern(_) | Hf(_) | Ha(_) | Hm { .. } | Fa { .. })
 }

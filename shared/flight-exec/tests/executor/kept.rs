@@ -325,3 +325,25 @@ fn a_leg_that_becomes_an_intersection_does_its_actions_once() {
     rig.fly_to_the_end();
     assert_eq!((rig.legs().as_str(), rig.acts.len()), ("a k z", 1));
 }
+
+#[test]
+fn a_holding_with_nothing_to_fly_is_passed_at_its_own_height_and_its_actions_are_done_once() {
+    let actions = r#"<action on="end"><photo/></action><action on="end"><wait seconds="20"/></action>"#;
+    let climb = format!(
+        r#"<HA id="h" fix="B1" course="90" turn="right" length="600" altitude="510" altitudeReference="amsl" speed="30">{actions}</HA>"#
+    );
+    let body = format!(
+        r#"<TF id="a" fix="B1"/>{climb}<TF id="b" fix="B2" altitude="560" altitudeReference="amsl"/>"#
+    );
+    let mut rig = Rig::started(&format!(r#"<iterative id="l" form="reverse" count="2">{body}</iterative>"#));
+    rig.fly_to("h");
+    assert_eq!(rig.buffer[0].airspeed_mps, 30.0);
+    while rig.leg() == "h" {
+        rig.fly_one();
+    }
+    assert_eq!(rig.acts.len(), 1);
+    rig.fly_to("l");
+    rig.fly_to("h");
+    let back = rig.buffer.iter().find(|w| w.leg.as_str() == "h").unwrap();
+    assert_eq!((back.altitude_amsl_m, back.airspeed_mps), (510.0, 30.0));
+}
