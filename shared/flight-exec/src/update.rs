@@ -254,7 +254,7 @@ fn remap<'a>(trail: impl Iterator<Item = &'a Visit>, old: &Leg, new: &Leg) -> Tr
         let index = *places.get(&leg.id)?;
         let inner = visit.inner.as_ref().zip(new.body().get(index));
         let inner = inner.map(|(inner, new_leg)| remap(inner.iter(), leg, new_leg));
-        Some(Visit { inner, flown: visit.flown.clone(), ..Visit::new(index, visit.start, visit.end) })
+        Some(Visit { index, highest: index, inner, ..visit.clone() })
     };
     trail.filter_map(moved).collect()
 }

@@ -82,7 +82,8 @@ impl Cursor {
         let goes_back = self.goes_back_later(world);
         let (index, start, end) = (self.index, self.leg_start.last, self.path.last);
         if let Some(frame) = self.loops.last_mut().filter(|_| goes_back) {
-            frame.trail.pass(Visit { inner, flown, ..Visit::new(index, start, end) });
+            let (level, airspeed_mps) = (self.level, self.airspeed_mps);
+            frame.trail.pass(Visit { inner, flown, level, airspeed_mps, ..Visit::new(index, start, end) });
         }
     }
 

@@ -108,8 +108,9 @@ impl Cursor {
     /// was flown with, up to the one that the way out came from.
     fn set_level_and_speed(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World) {
         if let Some(visit) = visit {
-            let of = if has_own_waypoints(leg) { &visit.end } else { &visit.start };
-            (self.level, self.airspeed_mps) = (of.level, of.airspeed_mps);
+            let (own, start) = ((visit.level, visit.airspeed_mps), &visit.start);
+            let as_flown = if has_own_waypoints(leg) { own } else { (start.level, start.airspeed_mps) };
+            (self.level, self.airspeed_mps) = as_flown;
         } else {
             let (chain, stage) = (self.chain(world), self.current_stage(world));
             self.level = world.level(&chain, stage, self.path.last.level);

@@ -1,7 +1,7 @@
 //! What a pass back flies: the legs passed on the way out.
 
 use crate::expand::Expansion;
-use crate::path::Passing;
+use crate::path::{Level, Passing};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -20,8 +20,12 @@ pub struct Visit {
     pub(crate) highest: usize,
     /// Where the path was before it.
     pub start: Passing,
-    /// Where the path was after it.
+    /// Where the path was after it; for one that was skipped, where the aircraft was.
     pub end: Passing,
+    /// The altitude it was flown at.
+    pub level: Level,
+    /// The airspeed it was flown at, m/s.
+    pub airspeed_mps: f64,
     /// The trail inside it, if it is a loop.
     pub inner: Option<Trail>,
     /// What was flown, if it is a pattern.
@@ -31,7 +35,8 @@ pub struct Visit {
 impl Visit {
     /// Of a leg that was passed from one point to another.
     pub fn new(index: usize, start: Passing, end: Passing) -> Self {
-        Self { index, highest: index, start, end, inner: None, flown: None }
+        let (level, airspeed_mps) = (end.level, end.airspeed_mps);
+        Self { index, highest: index, start, end, level, airspeed_mps, inner: None, flown: None }
     }
 }
 
@@ -79,7 +84,6 @@ impl FromIterator<Visit> for Trail {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::Level;
     use flight_plan::AltitudeReference;
     use geometry::LatLon;
 

@@ -347,3 +347,17 @@ fn a_holding_with_nothing_to_fly_is_passed_at_its_own_height_and_its_actions_are
     let back = rig.buffer.iter().find(|w| w.leg.as_str() == "h").unwrap();
     assert_eq!((back.altitude_amsl_m, back.airspeed_mps), (510.0, 30.0));
 }
+
+#[test]
+fn a_holding_that_was_skipped_is_flown_back_at_its_own_speed() {
+    let hold = r#"<HM id="h" fix="B2" course="0" turn="right" length="600" maxLaps="9" speed="30"/>"#;
+    let body = format!(r#"<TF id="a" fix="B1"/>{hold}<TF id="b" fix="B3"/>"#);
+    let mut rig = Rig::started(&format!(r#"<iterative id="l" form="reverse" count="2">{body}</iterative>"#));
+    rig.fly_to("h");
+    for _ in 0..2 {
+        rig.command(Command::SkipLeg).unwrap();
+    }
+    rig.fly_to("l");
+    rig.fly_to("h");
+    assert_eq!(rig.buffer[0].airspeed_mps, 30.0);
+}
