@@ -160,16 +160,6 @@ fn alarm_in_flight_without_a_plan_being_flown_asks_for_safe_mode() {
 }
 
 #[test]
-fn an_abort_asks_the_gateway_for_safe_mode() {
-    let mut flight = flown(10, STARTED);
-    flight.ask_once(&What::Command(Command::AbortToSafe), "abort").unwrap();
-    run(&mut flight, 3);
-    assert_eq!(flight.gateway.requests.last(), Some(&GatewayRequest::Safe));
-    assert_eq!(flight.gateway.state, GatewayState::SafeHold);
-    assert_eq!(flight.process.manager.executor().status_phase(), Phase::Holding);
-}
-
-#[test]
 fn holding_when_safe_mode_ends_it_holds_again() {
     for home in [false, true] {
         let mut flight = flown(10, STARTED);
