@@ -148,7 +148,7 @@ impl FakeGateway {
         for value in self.flying.events.drain(..) {
             self.events.emit(&Stamped { time_s, validity_s: 1.0, value });
         }
-        let power = Power { voltage_v: 24.0, current_a: 10.0, battery: self.battery };
+        let power = Power { voltage_v: 24.0, current_a: 10.0, battery: self.battery, fuel: None };
         self.power.set(time_s, 1.0, &power);
         let unix_s = self.unix_s.map(|start| start + time_s as i64);
         self.gps.set(time_s, 1.0, &Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s });

@@ -89,6 +89,7 @@ impl Flight {
             wind_east_mps: 0.0,
             wind_north_mps: 0.0,
             battery: self.battery,
+            fuel: None,
             on_ground,
         }));
     }
