@@ -121,7 +121,12 @@ fn told(report: &ProposalReport) -> Vec<String> {
     let mut lines = report.problems.clone();
     match (&report.next_leg, report.next_position) {
         _ if report.entry_needed => {
-            lines.push("its leg is gone: the update must name the leg to enter".into())
+            lines.push("its leg is gone: the update must name the leg to enter".into());
+            lines.extend(report.entries.iter().map(|entry| {
+                let (lat, lon) = (entry.position.lat_deg, entry.position.lon_deg);
+                let (leg, m, s) = (&entry.leg, entry.in_m, entry.in_s);
+                format!("entering at {leg}, it would go to {lat:.6} {lon:.6}, in {m:.0} m and {s:.0} s")
+            }));
         }
         (Some(leg), Some(position)) => {
             let (lat, lon) = (position.lat_deg, position.lon_deg);
@@ -194,6 +199,7 @@ mod tests {
         let renamed = SQUARE.replace("id=\"side2\"", "id=\"other\"");
         let lines = said(SQUARE, &renamed, Some("side2"));
         assert!(lines.iter().any(|l| l.contains("name the leg to enter")), "{lines:?}");
+        assert!(lines.iter().any(|l| l.starts_with("entering at side3, it would go to 36.")), "{lines:?}");
         let lines = said(SQUARE, &renamed, Some("side3"));
         assert!(lines.iter().any(|l| l.starts_with("the aircraft would go on leg side3")), "{lines:?}");
     }

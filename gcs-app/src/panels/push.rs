@@ -4,7 +4,7 @@ use super::Scene;
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
-use crate::units;
+use crate::units::{self, Units};
 use egui::{Color32, RichText, ScrollArea, Ui};
 use flight_plan::Id;
 
@@ -38,7 +38,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         }
     });
     ui.separator();
-    next(ui, proposal, p);
+    next(ui, proposal, scene.units(), p);
     if report.entry_needed {
         entry(ui, scene, proposal, queue);
     }
@@ -69,14 +69,30 @@ fn difference(ui: &mut Ui, sign: &str, what: &str, legs: &[Id], colour: Color32)
     });
 }
 
-fn next(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
+/// Where the aircraft would go, and when: on its way, or into the leg that was chosen.
+fn next(ui: &mut Ui, proposal: &Proposal, units: Units, p: &Palette) {
     let report = &proposal.report;
-    let leg = report.next_leg.as_ref().map_or_else(|| "–".to_owned(), Id::to_string);
-    let place = report.next_position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
+    let chosen = report.entries.iter().find(|entry| Some(&entry.leg) == proposal.entry.as_ref());
+    let (leg, position, way) = match chosen {
+        Some(entry) => (Some(&entry.leg), Some(entry.position), Some((entry.in_m, entry.in_s))),
+        None => (report.next_leg.as_ref(), report.next_position, report.next_in_m.zip(report.next_in_s)),
+    };
+    let leg = leg.map_or_else(|| "–".to_owned(), Id::to_string);
+    let place = position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
-        ui.label(RichText::new(format!("{leg}{place}")).strong().color(p.active));
+        ui.label(RichText::new(format!("{leg}{place}{}", in_so_far(way, units))).strong().color(p.active));
     });
+    if report.differs_in_m.is_some() {
+        let way = report.differs_in_m.zip(report.differs_in_s);
+        ui.label(RichText::new(format!("Its way differs{}.", in_so_far(way, units))).color(p.weak));
+    }
+}
+
+/// `, in 850 m · 34 s`.
+fn in_so_far(way: Option<(f64, f64)>, units: Units) -> String {
+    let told = |(m, s)| format!(", in {} · {}", units.length().show(m), units::duration(s));
+    way.map_or_else(String::new, told)
 }
 
 fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
@@ -87,9 +103,11 @@ fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue)
             for context in
                 scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main)
             {
-                let chosen = proposal.entry.as_ref() == Some(&context.leg.id);
-                if ui.selectable_label(chosen, context.leg.id.as_str()).clicked() {
-                    queue.fly(FlyCommand::EnterAt(context.leg.id.clone()));
+                let leg = &context.leg.id;
+                let way = proposal.report.entries.iter().find(|entry| entry.leg == *leg);
+                let text = format!("{leg}{}", in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units()));
+                if ui.selectable_label(proposal.entry.as_ref() == Some(leg), text).clicked() {
+                    queue.fly(FlyCommand::EnterAt(leg.clone()));
                 }
             }
         });
