@@ -254,6 +254,7 @@ fn reported(report: Report) -> AircraftState {
         wind_east_mps,
         wind_north_mps,
         battery,
+        fuel: Some(battery),
         on_ground: report.on_ground,
     }
 }
