@@ -344,8 +344,10 @@ impl Executor {
         let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
         // a pattern that is over is not to be flown once more
         let begun = self.at_the_leg_begun(keep, &self.world());
+        let over = begun.as_ref().is_some_and(|begun| self.leads_elsewhere(keep, begun));
         let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
         match cursor.refresh_leg(&self.world()) {
+            Ok(false) if over => self.replan_with(keep, cursor, false, out),
             Ok(true) => {
                 for handed in self.state.handed.iter_mut().take(keep) {
                     handed.pinned = true;

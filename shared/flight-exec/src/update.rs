@@ -141,7 +141,8 @@ impl Executor {
         self.is_announced(first).then(|| begun.next(world))?;
         if begun.place(world).leg != first.place.leg {
             // what it waits for is there: that choice is made, and told, by laying the path out
-            return None;
+            let moves_on = !first.is_loiter() && begun.passes_over_to(&first.place, world);
+            moves_on.then_some(())?;
         }
         begun.path = before.path;
         begun.given = 0;
@@ -151,6 +152,13 @@ impl Executor {
             begun.passage = first.passage.saturating_sub(1);
         }
         Some(begun)
+    }
+
+    /// From the bookmark of waypoint number `index` one would come to another leg by now: to one that was left out before `begun`.
+    pub(crate) fn leads_elsewhere(&self, index: usize, begun: &Cursor) -> bool {
+        let (mut there, world) = (self.bookmark(index), self.world());
+        there.next(&world);
+        there.place(&world).leg != begun.place(&world).leg
     }
 }
 

@@ -1,5 +1,6 @@
 //! Places: telling people where a cursor is, and putting a cursor at a leg.
 
+use super::enter::has_own_waypoints;
 use super::{Cursor, Doing, LoopFrame, Trail};
 use crate::api::{Branching, IterationPlace, PlacePointer};
 use crate::world::World;
@@ -46,6 +47,22 @@ impl Cursor {
                 reverse: frame.reverse,
             })
             .collect()
+    }
+
+    /// Goes over legs that were left out when a place was reached (their values made nothing to fly) and could be flown by now: they
+    /// belong to the past. False, and nothing is changed: the place is not behind such legs of the same list.
+    pub fn passes_over_to(&mut self, place: &PlacePointer, world: &World) -> bool {
+        let here = self.place(world);
+        let around = (here.plan, here.stage, here.iterations, here.reverse);
+        let wanted = (&place.plan, &place.stage, &place.iterations, false);
+        let same = (&around.0, &around.1, &around.2, around.3) == wanted && self.doing == Doing::Flying;
+        let ahead = self.list(world).iter().enumerate().skip(self.index);
+        let mut over = ahead.take_while(|(_, leg)| leg.id == place.leg || has_own_waypoints(leg));
+        let Some((index, _)) = over.find(|(_, leg)| leg.id == place.leg).filter(|_| same) else {
+            return false;
+        };
+        self.index = index;
+        true
     }
 
     /// The activations of its loops, outermost first.

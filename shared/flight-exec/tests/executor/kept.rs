@@ -130,6 +130,21 @@ fn a_loop_flies_its_pattern_as_before_while_the_values_make_none() {
 }
 
 #[test]
+fn a_leg_that_was_left_out_is_over_when_the_next_one_has_begun() {
+    let orbit = r#"<orbit id="o" radius="= r - 300.0" turns="1" turn="left"><centre fix="C4"/></orbit>"#;
+    let legs = format!(r#"<TF id="a" fix="B1"/>{orbit}<TF id="k" fix="C2"/><TF id="z" fix="A3"/>"#);
+    let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
+    for (leg, r) in [("a", 100.0), ("k", 600.0)] {
+        rig.fly_to(leg);
+        rig.set("r", r).unwrap();
+        rig.now += Time::from_secs(2);
+        rig.report();
+    }
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a k z");
+}
+
+#[test]
 fn many_changes_too_small_to_be_sent_do_not_add_up() {
     let legs = r#"<TF id="a" fix="B1"/><orbit id="o" radius="= r" turns="3" turn="left"><centre fix="C4"/></orbit><TF id="z" fix="A3"/>"#;
     let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));

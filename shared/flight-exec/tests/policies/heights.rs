@@ -1,17 +1,25 @@
-//! How high and how fast: as each leg says, whichever way it is flown.
+//! How high and how fast: as each leg says, whichever way it is flown, and with the values of now.
 
 use crate::actions::updated_since_jump;
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Step, Trace, same_passage};
+use crate::trace::{Seen, Step, Trace, same_passage};
 use aircraft::Profile;
-use flight_exec::{Action, Command, PlacePointer, Waypoint};
-use flight_plan::{Altitude, Leg, LegKind, Value};
+use flight_exec::{Action, Command, Config, Event, PlacePointer, Waypoint};
+use flight_plan::{Altitude, Id, IterativeForm, Leg, LegKind, Program, Value, VariableValue};
+use std::collections::BTreeSet;
 
-pub const POLICIES: &[Policy] = &[policy(
-    "own-height-and-speed",
-    "A pattern or a holding is flown at its own speed and altitude, backwards as well, but for the way to where it began.",
-    own,
-)];
+pub const POLICIES: &[Policy] = &[
+    policy(
+        "own-height-and-speed",
+        "A pattern or a holding is flown at its own speed and altitude, backwards as well, but for the way to where it began.",
+        own,
+    ),
+    policy(
+        "height-and-speed-of-now",
+        "Beyond the stopping distance everything ahead has the speed and altitude that the variables give it now.",
+        of_now,
+    ),
+];
 
 /// What the plans call a speed or an altitude of `n`: see `writing`.
 const SPEED_OF_N: (f64, f64) = (18.0, 2.0);
@@ -65,7 +73,11 @@ fn passages(trace: &Trace) -> Vec<Passage<'_>> {
         let (Some(place), Some(front)) = (step.after.place(), step.after.ahead.first()) else { continue };
         let current = step.after.status.current;
         match passages.last_mut().filter(|(of, _)| !broken && same_passage(of, place)) {
-            Some((_, flown)) if flown.last().is_some_and(|(_, w)| Some(w.token) == current) => {}
+            // the same one, or sent once more with another number
+            Some((_, flown))
+                if flown
+                    .last()
+                    .is_some_and(|(_, w)| Some(w.token) == current || w.position == front.position) => {}
             Some((_, flown)) => flown.push((step, front)),
             None => passages.push((place, vec![(step, front)])),
         }
@@ -99,4 +111,52 @@ fn own(trace: &Trace, found: &mut Findings) {
 fn is_constant(leg: &Leg) -> bool {
     let constant = |value: &Value<f64>| matches!(value, Value::Constant(_));
     leg.speed_mps.as_ref().is_some_and(constant) && leg.altitude.as_ref().is_none_or(|a| constant(&a.metres))
+}
+
+/// Always flown forwards, and by variables.
+fn follows_n<'p>(program: &'p Program, id: &Id) -> Option<&'p Leg> {
+    let path = program.path(id)?;
+    let back = |leg: &&Leg| leg.as_loop().is_some_and(|l| l.form == IterativeForm::Reverse);
+    let leg = program.leg(id).filter(|leg| matches!(leg.speed_mps, Some(Value::Expression(_))))?;
+    program.chain(&path).iter().all(|leg| !back(leg)).then_some(leg)
+}
+
+fn of_now(trace: &Trace, found: &mut Findings) {
+    let (mut clock_s, mut written_s) = (0.0_f64, f64::NEG_INFINITY);
+    let mut refused = BTreeSet::new();
+    for step in trace.steps() {
+        clock_s = clock_s.max(step.moment.now.as_secs_f64());
+        if step.accepted() == Some(&Command::Resume) {
+            // what was too near to be altered when the hold was given is flown yet, from wherever the aircraft is now
+            written_s = f64::INFINITY;
+        }
+        for event in step.events() {
+            match event {
+                Event::VariableChanged { .. } => written_s = clock_s,
+                Event::PatternRefused { leg, .. } => drop(refused.insert(leg)),
+                _ => {}
+            }
+        }
+        let refreshed = clock_s > written_s + Config::default().debounce_s + 0.001;
+        if refreshed && step.after.is_flying() {
+            ahead_is_of_now(step, step.after, &refused, found);
+        }
+    }
+}
+
+fn ahead_is_of_now(step: Step, seen: &Seen, refused: &BTreeSet<&Id>, found: &mut Findings) {
+    let Some(program) = seen.program.as_deref() else { return };
+    let Some(VariableValue::Number(n)) = seen.variables.get(&"n".into()) else { return };
+    let (speed_mps, profile) = (crate::flight::SPEED_MPS, Profile::default());
+    let stop_m = profile.turn_radius_m(speed_mps) + Config::default().latency_s * speed_mps + 1.0;
+    let mut way_m = 0.0;
+    for (index, pair) in seen.ahead.windows(2).enumerate() {
+        let [from, to] = pair else { continue };
+        way_m += from.position.distance_m(to.position);
+        // before the first one there may be where a hold was given
+        let free = index > 0 && way_m > stop_m && to.action == Action::Fly && !refused.contains(&to.leg);
+        if let Some(leg) = follows_n(program, &to.leg).filter(|_| free) {
+            found.expect(step, is_as_said(leg, *n, from, to), || format!("n is {n}: {from:?} to {to:?}"));
+        }
+    }
 }

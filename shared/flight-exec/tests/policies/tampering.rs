@@ -185,6 +185,10 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     // height and speed
     ("own-height-and-speed", |t, at| front(t, at).map(|w| w.airspeed_mps += 3.0)),
     ("own-height-and-speed", |t, at| front(t, at).map(|w| w.altitude_amsl_m += 100.0)),
+    ("height-and-speed-of-now", |t, at| after(t, at).ahead.iter_mut().map(|w| w.airspeed_mps += 3.0).last()),
+    ("height-and-speed-of-now", |t, at| {
+        after(t, at).ahead.iter_mut().map(|w| w.altitude_amsl_m += 100.0).last()
+    }),
     // restart
     ("same-after-restart", |t, at| say(t, at, Output::Hold)),
     ("status-survives-restart", |t, at| Some(after(t, at).status.revision += 1)),
