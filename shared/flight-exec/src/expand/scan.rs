@@ -106,7 +106,8 @@ impl Sweep {
             let start = place - place % CHUNK;
             (start, self.lines(start..(start + CHUNK).min(self.tracks), laid_out, stretches))
         })?;
-        Some(Point::fly(if end { to } else { from }))
+        let point = Point::fly(if end { to } else { from });
+        Some(Point { fly_over: stretches.is_broken_off(place, end), ..point })
     }
 
     fn laid_out(&self) -> Option<&LaidOut> {

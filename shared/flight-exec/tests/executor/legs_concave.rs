@@ -235,3 +235,15 @@ fn flown_back_the_ways_between_cells_are_the_same() {
     let corners = [(1000.0, 700.0), (3700.0, 700.0)].map(|(e, n)| frame().to_geo(Vec2::new(e, n)));
     assert!(out.iter().any(|p| corners.iter().any(|c| c.distance_m(*p) < 0.1)));
 }
+
+/// A turn ahead of time where the way leads straight back would leave a piece of the track out.
+#[test]
+fn ends_of_tracks_between_cells_are_flown_over() {
+    let field = polygon(&[(0.0, 0.0), (2000.0, 0.0), (2000.0, 1000.0), (0.0, 1000.0)], &[]);
+    for (area, cells) in [(field, 1), (bay(), 3)] {
+        let mut rig = flying(&scan("scan", r#"spacing="200" heading="90""#, &area));
+        rig.fly_to("z");
+        let over = rig.flown.iter().filter(|w| w.leg.as_str() == "p" && w.fly_over).count();
+        assert_eq!(over, 2 * (cells - 1));
+    }
+}

@@ -137,6 +137,14 @@ impl Stretches {
         stretch.is_none_or(|s| s.along_first == (place - s.place).is_multiple_of(2))
     }
 
+    /// A stretch ends at the end of this track, or another one than the first begins at its beginning: the way on may lead straight
+    /// back, and a turn ahead of time would leave a piece of the track out.
+    pub fn is_broken_off(&self, place: u64, end: bool) -> bool {
+        let first = if end { place.saturating_add(1) } else { place };
+        let stretch = self.with_place(first).and_then(|i| self.all.get(i));
+        first > 0 && first < self.tracks && stretch.is_some_and(|s| s.place == first)
+    }
+
     /// The places of the stretch that has a place.
     pub fn around(&self, place: u64) -> Range<u64> {
         let number = self.with_place(place);
