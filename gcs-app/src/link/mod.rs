@@ -48,7 +48,6 @@ pub enum Call {
 
 /// What the link has to tell.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "most news are of the large kind")]
 pub enum News {
     /// The session changed.
     Link(LinkState),
@@ -86,7 +85,7 @@ pub enum Heard {
     Power(Stamped<Power>),
     Navigation(Stamped<Navigation>),
     Gateway(Stamped<GatewayStatus>),
-    Status(Stamped<Status>),
+    Status(Box<Stamped<Status>>),
     Ahead(Stamped<Ahead>),
     Variables(Stamped<PlanVariables>),
     PlanEvent(Stamped<PlanEvent>),

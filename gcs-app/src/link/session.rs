@@ -94,7 +94,7 @@ async fn connect(endpoint: &str, vehicle: &str, outlet: &Outlet) -> Result<Open,
     open.follow(gateway::POWER, Heard::Power, outlet)?;
     open.follow(gateway::NAVIGATION, Heard::Navigation, outlet)?;
     open.follow(gateway::STATE, Heard::Gateway, outlet)?;
-    open.follow(fp_manager::STATUS, Heard::Status, outlet)?;
+    open.follow(fp_manager::STATUS, |status| Heard::Status(Box::new(status)), outlet)?;
     open.follow(fp_manager::AHEAD, Heard::Ahead, outlet)?;
     open.follow(fp_manager::VARIABLES, Heard::Variables, outlet)?;
     open.listen(outlet)?;

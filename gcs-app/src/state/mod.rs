@@ -120,7 +120,7 @@ impl Vehicle {
             Heard::Power(v) => remember!(self.power, v, now_s),
             Heard::Navigation(v) => remember!(self.navigation, v, now_s),
             Heard::Gateway(v) => remember!(self.gateway, v, now_s),
-            Heard::Status(v) => remember!(self.status, v, now_s),
+            Heard::Status(v) => remember!(self.status, *v, now_s),
             Heard::Ahead(v) => remember!(self.ahead, v, now_s),
             Heard::Variables(v) => remember!(self.variables, v, now_s),
             Heard::PlanEvent(event) => self.plan_event(event, now_s),

@@ -270,7 +270,7 @@ fn a_flood_of_news_never_stops_the_drawing() {
     for _ in 0..4000 {
         let value = status(Phase::Flying);
         let stamped = usal::contract::Stamped { time_s: 1.0, validity_s: 2.0, value };
-        let _ = window.far.news.try_send(News::Heard(gcs_app::link::Heard::Status(stamped)));
+        let _ = window.far.news.try_send(News::Heard(gcs_app::link::Heard::Status(Box::new(stamped))));
     }
     window.steps(2);
     assert!(window.far.news.capacity() > 4000, "all of it was taken in at once");

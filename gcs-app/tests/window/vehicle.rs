@@ -60,7 +60,7 @@ impl Window {
     }
 
     pub fn hear_status(&mut self, value: Status) {
-        self.hear(Heard::Status(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.hear(Heard::Status(Box::new(Stamped { time_s: 1.0, validity_s: 2.0, value })));
     }
 
     /// Connected to a vehicle that stands on the runway.
