@@ -292,3 +292,16 @@ fn an_edit_is_flown_and_little_else() {
         assert!(kept.head + kept.tail > all * 3 / 4, "{edit:?}: {kept:?} of {all}");
     }
 }
+
+/// As long as a plan has no question, nobody looks ahead for one.
+#[test]
+fn the_first_question_of_a_plan_is_asked_when_a_new_flight_asks_it() {
+    let leg = |kind| Leg { id: 0, kind, turn_deg: 0.0, length_m: 250.0, extra: 0 };
+    let (options, mut plan) = (options(), Plan::new([0, 0, 7, 4].map(leg).to_vec(), false));
+    let mut rehearsal = rehearsal(&options);
+    rehearsal.fly(&plan.program().unwrap(), Start::Runway, &mut |_| true).unwrap();
+    plan.apply(&Edit::Insert(7681455107611975223, leg(3)));
+    let program = plan.program().unwrap();
+    rehearsal.fly(&program, Start::Runway, &mut |_| true).unwrap();
+    same(rehearsal.preview().unwrap(), &fresh(&program, &options).unwrap()).unwrap();
+}

@@ -1,7 +1,7 @@
 //! Which stages and legs of a plan a flight would read otherwise than those of another plan.
 
 use crate::cursor::Cursor;
-use flight_plan::{Fix, Id, Leg, LegKind, Place, Program, Stage, Value};
+use flight_plan::{DecideBefore, Fix, Id, Leg, LegKind, Place, Program, Stage, Value};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -76,7 +76,8 @@ impl Changes {
     /// Of the main plan; `None`: something on which everything depends.
     pub fn between(old: &Program, new: &Program) -> Option<Self> {
         let (was, is) = (old.flown(), new.flown());
-        let kept = was.runways == is.runways && was.variables == is.variables;
+        let kept =
+            was.runways == is.runways && was.variables == is.variables && questions(old) == questions(new);
         let alike = |(a, b): (&Stage, &Stage)| (&a.id, a.kind) == (&b.id, b.kind);
         let stages = was.stages.len() == is.stages.len() && was.stages.iter().zip(&is.stages).all(alike);
         if !kept || !stages {
@@ -97,6 +98,24 @@ impl Changes {
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
+}
+
+/// How early each stage asks: the longest distance (metres) and time (seconds) before an intersection. As far as that one looks ahead
+/// all the time.
+fn questions(program: &Program) -> Vec<[f64; 2]> {
+    let stages = program.flown().stages.iter().filter(|_| program.has_forks());
+    stages.map(|stage| earliest(&stage.legs)).collect()
+}
+
+fn earliest(legs: &[Arc<Leg>]) -> [f64; 2] {
+    let of = |leg: &Arc<Leg>| match leg.as_fork().map(|fork| fork.decide_before) {
+        Some(DecideBefore::Distance(metres)) => [metres, 0.0],
+        Some(DecideBefore::Time(seconds)) => [0.0, seconds],
+        None => earliest(leg.body()),
+    };
+    legs.iter()
+        .map(of)
+        .fold([0.0; 2], |[m, s], [metres, seconds]| [f64::max(m, metres), f64::max(s, seconds)])
 }
 
 /// Some condition or number of the main plan depends on the flight itself.
