@@ -4,7 +4,7 @@ use crate::polygon::tests::any_area;
 use crate::testing::HERE;
 use proptest::prelude::*;
 
-fn parameters(spacing_m: f64) -> ScanParameters {
+pub(super) fn parameters(spacing_m: f64) -> ScanParameters {
     ScanParameters {
         spacing_m,
         grid: None,
@@ -15,7 +15,7 @@ fn parameters(spacing_m: f64) -> ScanParameters {
     }
 }
 
-fn polygon(corners: &[(f64, f64)]) -> Polygon {
+pub(super) fn polygon(corners: &[(f64, f64)]) -> Polygon {
     Polygon::new(corners.iter().map(|&(e, n)| Vec2::new(e, n)).collect(), vec![]).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn rectangle() -> Polygon {
 }
 
 /// A bay open to the north between two arms.
-fn u_shape() -> Polygon {
+pub(super) fn u_shape() -> Polygon {
     polygon(&[
         (0.0, 0.0),
         (900.0, 0.0),

@@ -1,36 +1,13 @@
 #![allow(clippy::unwrap_used)]
+use super::super::tests::{parameters as scan_parameters, polygon, u_shape};
 use super::super::{Corner, Entry};
 use super::*;
 use crate::polygon::tests::any_area;
 use proptest::prelude::*;
 
+/// Along lines to the east.
 fn parameters(spacing_m: f64) -> ScanParameters {
-    ScanParameters {
-        spacing_m,
-        grid: None,
-        heading_deg: Some(90.0),
-        overshoot_m: 0.0,
-        entry: Entry::Corner(Corner::StartLeft),
-        turn_radius_m: 0.0,
-    }
-}
-
-fn polygon(corners: &[(f64, f64)]) -> Polygon {
-    Polygon::new(corners.iter().map(|&(e, n)| Vec2::new(e, n)).collect(), vec![]).unwrap()
-}
-
-/// A bay open to the north between two arms.
-fn u_shape() -> Polygon {
-    polygon(&[
-        (0.0, 0.0),
-        (900.0, 0.0),
-        (900.0, 600.0),
-        (600.0, 600.0),
-        (600.0, 200.0),
-        (300.0, 200.0),
-        (300.0, 600.0),
-        (0.0, 600.0),
-    ])
+    ScanParameters { heading_deg: Some(90.0), ..scan_parameters(spacing_m) }
 }
 
 /// Tracks as they are flown.
