@@ -249,6 +249,16 @@ async fn alarm_without_an_emergency_plan_asks_the_gateway_for_safe_mode() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn abort_asks_the_gateway_for_safe_mode_whatever_the_plan_says() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.len() >= 2).await;
+    flight.command(Command::AbortToSafe).await.unwrap();
+    flight.step_until(|g| g.requests.contains(&GatewayRequest::Safe)).await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn emergency_plan_refused_by_the_gateway_leaves_the_flight_to_safe_mode() {
     let mut flight = Flight::new(None).await;
     flight.load(SQUARE).await;
