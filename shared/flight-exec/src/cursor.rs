@@ -182,10 +182,11 @@ impl Cursor {
     pub fn next(&mut self, world: &World) -> Step {
         let mut notes = Notes::default();
         for _ in 0..MOST_SILENT_STEPS {
-            if let Some(point) = self.peek_point(world, &mut notes) {
+            if let Some((point, amsl_m)) = self.point_over_known_ground(world, &mut notes) {
                 let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
-                let emission = self.emit(point, world);
-                return Step::Waypoint(Box::new(Emission { notes, sealed, ..emission }));
+                let mut emission = Box::new(self.emit(point, amsl_m, world));
+                (emission.notes, emission.sealed) = (notes, sealed);
+                return Step::Waypoint(emission);
             }
             match self.doing {
                 Doing::Ended => return Step::Ended { notes },
@@ -199,6 +200,18 @@ impl Cursor {
             }
         }
         Step::Stalled
+    }
+
+    /// The next point and its altitude, metres AMSL; where the ground is not known from which that counts, the leg is left instead:
+    /// the altitude is not guessed.
+    fn point_over_known_ground(&mut self, world: &World, notes: &mut Notes) -> Option<(Point, f64)> {
+        let point = self.peek_point(world, notes)?;
+        let amsl_m = world.amsl_m(point.level.unwrap_or(self.level), point.position);
+        if amsl_m.is_none() {
+            notes.troubles.push(Trouble::unknown_ground(self.place(world).leg, point.position));
+            self.expansion = None;
+        }
+        Some((point, amsl_m?))
     }
 
     /// The expansion's next point, if there is one; an open-ended one is left here when its choice says so.

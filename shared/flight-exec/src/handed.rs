@@ -134,7 +134,9 @@ impl Stretch {
         let path = &self.tail.path;
         let emission = Emission {
             position: path.last.position,
-            altitude_amsl_m: world.amsl_m(path.last.level, path.last.position),
+            altitude_amsl_m: world
+                .amsl_m(path.last.level, path.last.position)
+                .unwrap_or(path.commanded_amsl_m),
             airspeed_mps: path.last.airspeed_mps,
             action: Action::Fly,
             fly_over: true,

@@ -78,7 +78,9 @@ impl Executor {
         self.state.told.truncate(MOST_TOLD - 1);
         self.state.told.insert(0, trouble.clone());
         out.push(Output::Event(match trouble {
-            Trouble::Leg { leg, reason } => Event::PatternRefused { leg, reason },
+            Trouble::Leg { leg, reason } | Trouble::Ground { leg, reason } => {
+                Event::PatternRefused { leg, reason }
+            }
             Trouble::Expression { leg, reason } => Event::ExpressionFailed { leg, reason },
         }));
     }

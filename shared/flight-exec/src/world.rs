@@ -143,15 +143,14 @@ impl World<'_> {
         self.profile.turn_radius_m(airspeed_mps + wind_mps)
     }
 
-    /// Metres AMSL of a level above a position. Where no terrain is known, `agl` is above the home runway.
-    pub fn amsl_m(&self, level: Level, position: LatLon) -> f64 {
-        let home_m = || self.program.plan.home().map_or(0.0, |r| r.elevation_amsl_m);
-        level.metres
-            + match level.reference {
-                AltitudeReference::Amsl => 0.0,
-                AltitudeReference::Home => home_m(),
-                AltitudeReference::Agl => self.terrain.elevation_m(position).unwrap_or_else(home_m),
-            }
+    /// Metres AMSL of a level above a position; `None`: it counts from the ground, and nothing is known of the ground there.
+    pub fn amsl_m(&self, level: Level, position: LatLon) -> Option<f64> {
+        let datum_m = match level.reference {
+            AltitudeReference::Amsl => 0.0,
+            AltitudeReference::Home => self.program.plan.home().map_or(0.0, |r| r.elevation_amsl_m),
+            AltitudeReference::Agl => self.terrain.elevation_m(position)?,
+        };
+        Some(datum_m + level.metres)
     }
 
     /// Altitude of a leg: its own, the innermost loop's that has one, the stage's, else `before`.

@@ -193,6 +193,24 @@ fn what_is_written_without_a_look() {
     assert_eq!(review_ahead(&idle, Conditions::default()), []);
 }
 
+/// Nobody can look at what the plan's own actions write when they do: the review before the flight has flown them.
+#[test]
+fn place_written_by_an_action_of_the_plan_is_looked_at_before_the_flight() {
+    let p = fix("D3");
+    let into = |lat: f64| {
+        let action = format!(
+            r#"<action afterDistance="800"><set variable="c" to="= lat_lon({lat}, {})"/></action><area"#,
+            p.lon_deg
+        );
+        let legs = SCAN.replace("<area", &action);
+        let program = compiled(&document(&legs, "")).unwrap_or_else(|why| panic!("{why}"));
+        let flat: Arc<dyn Terrain> = Arc::new(terrain::Flat(GROUND_M));
+        first(errors(&flight_exec::review(&program, &Profile::default(), &flat, Conditions::default())))
+    };
+    assert_eq!(into(p.lat_deg), on("keep-out", "s"));
+    assert_eq!(into(fix("D1").lat_deg), NONE);
+}
+
 #[test]
 fn energy_that_is_left_counts_and_not_that_of_a_full_battery() {
     let hour = r#"<iterative id="laps" form="forward" count="9"><TF id="l1" fix="E1"/><TF id="l2" fix="F1"/><TF id="l3" fix="F3"/><TF id="l4" fix="C1"/></iterative>"#;

@@ -227,7 +227,9 @@ impl Cursor {
 
     /// Ahead of the aircraft the predicted altitude decides; when the aircraft is there, its own.
     fn altitude_is_reached(&self, world: &World) -> bool {
-        let target_m = world.amsl_m(self.level, self.path.last.position);
+        // over unknown ground there is no altitude to be reached: the leg is left
+        let target_m =
+            world.amsl_m(self.level, self.path.last.position).unwrap_or(self.path.predicted_amsl_m);
         let climbing = target_m >= self.leg_start.predicted_amsl_m;
         let ahead = distance_m(world.flight.position, self.path.last.position);
         let near_m = 2.0 * world.turn_radius_m(self.airspeed_mps) + 10.0;

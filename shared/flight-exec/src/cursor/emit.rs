@@ -34,7 +34,10 @@ impl Cursor {
         let leaves = notes.choices.iter().any(|c| matches!(c, Choice::Hold { .. }));
         let doing = if leaves { Doing::Leaving } else { self.doing };
         let sealed = (!notes.is_empty()).then(|| Box::new(Cursor { doing, ..self.clone() }));
-        let emission = self.emit(self.circle_here(world), world);
+        let circle = self.circle_here(world);
+        // the end of a leg that was left may be over unknown ground: there the altitude stays
+        let amsl_m = circle.level.and_then(|level| world.amsl_m(level, circle.position));
+        let emission = self.emit(circle, amsl_m.unwrap_or(self.path.commanded_amsl_m), world);
         Step::Waypoint(Box::new(Emission { wait_s: Some(seconds), notes, sealed, ..emission }))
     }
 
@@ -52,10 +55,10 @@ impl Cursor {
         }
     }
 
-    pub(super) fn emit(&mut self, point: Point, world: &World) -> Emission {
+    /// The waypoint at a point, `altitude_amsl_m` high, and the path up to it.
+    pub(super) fn emit(&mut self, point: Point, altitude_amsl_m: f64, world: &World) -> Emission {
         let level = point.level.unwrap_or(self.level);
         let airspeed_mps = point.airspeed_mps.unwrap_or(self.airspeed_mps);
-        let altitude_amsl_m = world.amsl_m(level, point.position);
         let from = self.path.last.position;
         let (length_m, course_deg) = distance_and_course(from, point.position);
         let time_s = length_m / airspeed_mps.max(1.0);

@@ -2,6 +2,7 @@
 
 use crate::choice::Choice;
 use flight_plan::{EvalError, Id};
+use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 
 /// Choices, legs passed, and what went wrong, each in order.
@@ -34,6 +35,13 @@ pub enum Trouble {
         /// Why.
         reason: String,
     },
+    /// Its altitude counts from the ground, and nothing is known of the ground ahead: it is left there.
+    Ground {
+        /// The leg.
+        leg: Id,
+        /// Where, and what to do about it.
+        reason: String,
+    },
     /// One of its conditions or numbers has no value: a condition counts as false, a number as not given.
     Expression {
         /// The leg.
@@ -41,6 +49,16 @@ pub enum Trouble {
         /// Why.
         reason: String,
     },
+}
+
+impl Trouble {
+    /// Nothing is known of the ground at a position from which a leg's altitude counts.
+    pub(super) fn unknown_ground(leg: Id, LatLon { lat_deg, lon_deg }: LatLon) -> Self {
+        let reason = format!(
+            "write this leg's altitude `amsl`, or load the elevation tile of {lat_deg:.2}, {lon_deg:.2}: nothing is known of the ground above which it counts"
+        );
+        Self::Ground { leg, reason }
+    }
 }
 
 impl Notes {

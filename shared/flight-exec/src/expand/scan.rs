@@ -26,7 +26,7 @@ use stretches::{Order, Spot, Stretches};
 /// So near to a flown one a track has not moved, metres.
 const UNMOVED_M: f64 = 2.0;
 /// Tracks computed at a time.
-const CHUNK: u64 = 256;
+const CHUNK: u64 = 512;
 
 /// Parallel tracks being flown.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]

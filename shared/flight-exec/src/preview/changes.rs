@@ -2,7 +2,7 @@
 
 use crate::cursor::Cursor;
 use flight_plan::{DecideBefore, Fix, Id, Leg, LegKind, Place, Program, Stage, Value};
-use std::collections::{HashMap, HashSet};
+use foldhash::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 

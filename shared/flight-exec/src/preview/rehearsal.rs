@@ -19,7 +19,7 @@ use super::{Options, Preview, PreviewError, Scenario, Start};
 use crate::snapshot::bookmarks_mut;
 use aircraft::{Profile, Wind};
 use flight_plan::{Id, Program};
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 use std::sync::Arc;
 use terrain::Terrain;
 

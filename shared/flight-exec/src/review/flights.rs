@@ -47,6 +47,8 @@ pub(super) struct Flights {
     pub taken: HashSet<(Id, Id)>,
     /// Legs that can't be flown, and why.
     pub refused: Vec<(Id, String)>,
+    /// Legs that are left because nothing is known of the ground below, and what to do about it.
+    pub without_ground: Vec<(Id, String)>,
     /// Every flight of the main plan came to its end.
     pub complete: bool,
     /// They begin in the middle of a flight.
@@ -113,7 +115,6 @@ impl Circumstances<'_> {
             waypoint: h.waypoint.clone(),
             wanted_amsl_m: h.waypoint.altitude_amsl_m,
             passage: h.passage,
-            over_unknown_ground: false,
         };
         let kept = self.executor.state.handed.iter().take(near).map(laid_out).collect();
         Outset { kept, cursor: self.executor.bookmark(near) }
@@ -169,6 +170,7 @@ impl Flights {
             landings: BTreeMap::new(),
             taken: HashSet::new(),
             refused: Vec::new(),
+            without_ground: Vec::new(),
             complete: true,
             under_way: given.under_way,
         };
@@ -203,6 +205,7 @@ impl Flights {
             flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
             self.taken.extend(layout.taken.iter().cloned());
             self.refused.extend(layout.refused.iter().cloned());
+            self.without_ground.extend(layout.without_ground.iter().cloned());
             self.main.push(fly(beginning.aircraft(&given.tireless), layout, given.wind, None, 0.0));
         }
     }
@@ -260,6 +263,7 @@ impl Flights {
             );
             let layout = lay_out(&given.executor, outset, &counts, &decisions);
             self.refused.extend(layout.refused.iter().cloned());
+            self.without_ground.extend(layout.without_ground.iter().cloned());
             let aircraft = beginning.aircraft(&given.tireless);
             let flown = fly(aircraft, layout, given.wind, Some(index), worst.time_s);
             self.emergencies.insert(index, flown);

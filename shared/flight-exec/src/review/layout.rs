@@ -2,11 +2,11 @@
 
 use crate::api::{Action, Token, Waypoint};
 use crate::choice::{By, Choice};
-use crate::cursor::{Cursor, Doing, Step};
+use crate::cursor::{Cursor, Doing, Step, Trouble};
 use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::world::{LoopCount, World};
-use flight_plan::{AltitudeReference, Id, LegKind, Program};
+use flight_plan::{Id, LegKind, Program};
 use std::collections::{HashMap, HashSet};
 
 /// Passes of each loop: the first is entered from outside, the second from the loop's own end.
@@ -24,8 +24,6 @@ pub(super) struct LaidOut {
     pub wanted_amsl_m: f64,
     /// The passage of a leg that it belongs to.
     pub passage: u64,
-    /// Its altitude counts from the ground, and nothing is known of the ground there.
-    pub over_unknown_ground: bool,
 }
 
 /// A way through the plan.
@@ -36,6 +34,8 @@ pub(super) struct Layout {
     pub taken: HashSet<(Id, Id)>,
     /// Legs that can't be flown, and why.
     pub refused: Vec<(Id, String)>,
+    /// Legs that are left because nothing is known of the ground from which their altitude counts, and what to do about it.
+    pub without_ground: Vec<(Id, String)>,
     /// It came to the plan's end.
     pub complete: bool,
     /// Index of the first waypoint that a real flight may come to later than this one: a loop was left early, a holding or a wait.
@@ -205,13 +205,12 @@ impl Layout {
         };
         let wanted_amsl_m = match emission.action {
             Action::TakeOff { .. } | Action::Land { .. } => emission.altitude_amsl_m,
-            Action::Fly | Action::Loiter { .. } => world.amsl_m(last.level, last.position),
+            Action::Fly | Action::Loiter { .. } => {
+                world.amsl_m(last.level, last.position).unwrap_or(emission.altitude_amsl_m)
+            }
         };
-        let over_unknown_ground = matches!(emission.action, Action::Fly | Action::Loiter { .. })
-            && last.level.reference == AltitudeReference::Agl
-            && world.terrain.elevation_m(last.position).is_none();
         let passage = cursor.passage;
-        self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage, over_unknown_ground });
+        self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage });
         self.note(emission.notes);
     }
 
@@ -222,8 +221,11 @@ impl Layout {
             }
         }
         for trouble in notes.troubles {
-            let crate::cursor::Trouble::Leg { leg, reason } = trouble else { continue };
-            self.refused.push((leg, reason));
+            match trouble {
+                Trouble::Leg { leg, reason } => self.refused.push((leg, reason)),
+                Trouble::Ground { leg, reason } => self.without_ground.push((leg, reason)),
+                Trouble::Expression { .. } => {}
+            }
         }
     }
 }

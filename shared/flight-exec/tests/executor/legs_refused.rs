@@ -1,9 +1,12 @@
 //! Patterns whose values change in flight: what is new is flown, what makes no pattern is refused with advice, what is the same stays.
 
-use crate::rig::{Rig, document_with, fix};
-use flight_exec::{Command, Event};
+use crate::rig::{GROUND_M, Rig, document, document_with, fix, program};
+use aircraft::Profile;
+use flight_exec::{Command, Config, Event, Executor};
 use flight_plan::VariableValue;
 use geometry::{LatLon, LocalFrame, Vec2};
+use std::sync::Arc;
+use terrain::Terrain;
 
 const VARIABLES: &str = r#"<variable name="v" type="number" initial="3" min="-5000" max="5000"/>
     <variable name="p" type="position" initial="36.57190 -84.15533"/>"#;
@@ -244,4 +247,47 @@ fn turned_by_a_hair_a_square_goes_on_at_the_first_side_that_moved() {
     let again: Vec<LatLon> = flown(&rig).into_iter().skip(before).collect();
     // sides of 300, 300, 600, 600 m lead to corners at most 424 m off; the fifth one ends 671 m off
     assert_eq!(again, flown(&fresh)[4..]);
+}
+
+/// Nothing is known of the ground north of the grid's fourth row.
+struct Edge;
+
+impl Terrain for Edge {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        (p.lat_deg < fix("A4").lat_deg).then_some(GROUND_M)
+    }
+}
+
+fn near_the_edge(legs: &str) -> Rig {
+    let mut rig = Rig::new();
+    rig.executor = Executor::new(Config::default(), Arc::new(Edge), Profile::default());
+    rig.update(&program(&document(legs))).unwrap();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to_the_end();
+    rig
+}
+
+#[test]
+fn an_altitude_above_unknown_ground_is_not_guessed_the_leg_is_left_there() {
+    let amsl = r#"altitude="500" altitudeReference="amsl""#;
+    let scan =
+        r#"<scan id="s" spacing="300" heading="90" overshoot="0"><area fix="B4" radius="900"/></scan>"#;
+    let hold = r#"<HA id="h" fix="B5" course="90" turn="right" length="600" altitude="300" altitudeReference="agl"/>"#;
+    for (leg, entered) in [
+        (r#"<TF id="u" fix="B5"/>"#.to_owned(), "a z"),
+        (format!(r#"<TF id="k" fix="B5" {amsl}/>"#), "a k z"),
+        (hold.to_owned(), "a z"),
+        (scan.to_owned(), "a s z"),
+    ] {
+        let rig = near_the_edge(&format!(r#"<TF id="a" fix="A1"/>{leg}<TF id="z" fix="A2"/>"#));
+        assert_eq!(rig.legs(), entered, "{leg}");
+        let refused = reasons(&rig);
+        assert_eq!(refused.len(), usize::from(entered != "a k z"), "{refused:?}");
+        assert!(refused.iter().all(|why| why.contains("elevation tile of 36.")), "{refused:?}");
+        let unknown = rig.flown.iter().filter(|w| Edge.elevation_m(w.position).is_none());
+        assert_eq!(
+            unknown.map(|w| w.leg.as_str()).collect::<Vec<_>>(),
+            vec!["k"; usize::from(entered == "a k z")]
+        );
+    }
 }

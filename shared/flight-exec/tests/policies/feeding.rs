@@ -1,7 +1,7 @@
 //! What is handed to the gateway: numbers, transactions, contents.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Seen, Step, Trace, knows};
+use crate::trace::{Seen, Step, Trace, apart_m, knows};
 use aircraft::Profile;
 use flight_exec::{Action, Command, Config, Event, Input, Phase, Token, Waypoint};
 use std::collections::{BTreeMap, BTreeSet};
@@ -189,7 +189,7 @@ fn climbs(trace: &Trace, found: &mut Findings) {
     let profile = Profile::default();
     for (step, _, waypoints) in trace.feeds() {
         for pair in waypoints.windows(2).filter(|p| p[0].leg == p[1].leg) {
-            let seconds = pair[0].position.distance_m(pair[1].position) / pair[1].airspeed_mps;
+            let seconds = apart_m(pair[0].position, pair[1].position) / pair[1].airspeed_mps;
             let change_m = pair[1].altitude_amsl_m - pair[0].altitude_amsl_m;
             let allowed = -profile.max_descent_mps * seconds - 10.0..=profile.max_climb_mps * seconds + 10.0;
             let flown = pair.iter().all(|w| w.action == Action::Fly);
@@ -279,10 +279,10 @@ fn nothing_near(trace: &Trace, found: &mut Findings) {
         };
         let speed_mps = aircraft.ground_speed_mps.max(profile.min_airspeed_mps);
         let stop_m = profile.turn_radius_m(speed_mps) + Config::default().latency_s * speed_mps;
-        let mut way_m = aircraft.position.distance_m(front.position);
+        let mut way_m = apart_m(aircraft.position, front.position);
         let mut before = front;
         for near in step.before.ahead.iter().take_while(|w| !matches!(w.action, Action::Loiter { .. })) {
-            way_m += before.position.distance_m(near.position);
+            way_m += apart_m(before.position, near.position);
             // distances in a local frame differ from geodesics by millimetres
             if way_m > stop_m - 0.1 {
                 break;

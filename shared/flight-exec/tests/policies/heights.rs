@@ -2,7 +2,7 @@
 
 use crate::actions::updated_since_jump;
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Seen, Step, Trace, same_passage};
+use crate::trace::{Seen, Step, Trace, apart_m, same_passage};
 use aircraft::Profile;
 use flight_exec::{Action, Command, Config, Event, PlacePointer, Waypoint};
 use flight_plan::{Altitude, Id, IterativeForm, Leg, LegKind, Program, Value, VariableValue};
@@ -50,7 +50,7 @@ fn altitude_m(leg: &Leg, n: f64) -> Option<f64> {
 /// What is on the way from one waypoint to another is as the leg says; the altitude as far as it can be climbed.
 fn is_as_said(leg: &Leg, n: f64, from: &Waypoint, to: &Waypoint) -> bool {
     let profile = Profile::default();
-    let time_s = from.position.distance_m(to.position) / to.airspeed_mps.max(1.0);
+    let time_s = apart_m(from.position, to.position) / to.airspeed_mps.max(1.0);
     let up_m = profile.max_climb_mps * time_s + LEAD_M;
     let down_m = profile.max_descent_mps * time_s + LEAD_M;
     let reached_m = |m: f64| m.max(from.altitude_amsl_m - down_m).min(from.altitude_amsl_m + up_m);
@@ -152,7 +152,7 @@ fn ahead_is_of_now(step: Step, seen: &Seen, refused: &BTreeSet<&Id>, found: &mut
     let mut way_m = 0.0;
     for (index, pair) in seen.ahead.windows(2).enumerate() {
         let [from, to] = pair else { continue };
-        way_m += from.position.distance_m(to.position);
+        way_m += apart_m(from.position, to.position);
         // before the first one there may be where a hold was given
         let free = index > 0 && way_m > stop_m && to.action == Action::Fly && !refused.contains(&to.leg);
         if let Some(leg) = follows_n(program, &to.leg).filter(|_| free) {

@@ -1,11 +1,13 @@
 //! What happened, moment by moment: all that a policy may look at.
 
+use crate::grid::HOME;
 use flight_exec::{
     Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, Refusal, Status, Time,
     Token, Waypoint,
 };
 use flight_plan::{Id, LegKind, Program, Variables};
-use std::sync::Arc;
+use geometry::{LatLon, LocalFrame};
+use std::sync::{Arc, LazyLock};
 
 /// What was done to the executor.
 #[derive(Debug, Clone)]
@@ -16,6 +18,12 @@ pub enum Deed {
         same_snapshot: bool,
         foreign_refused: bool,
     },
+}
+
+/// Distance between two places of the grid, metres: in a frame around home, as millions of flights would wait for geodesics.
+pub fn apart_m(a: LatLon, b: LatLon) -> f64 {
+    static FRAME: LazyLock<LocalFrame> = LazyLock::new(|| LocalFrame::new(HOME));
+    (FRAME.to_local(a) - FRAME.to_local(b)).length()
 }
 
 /// What could be seen of executor and gateway between two inputs.

@@ -1,5 +1,5 @@
-//! `no-emergency-plan`: a leg for which no emergency plan is named, whatever the cause; `duplicate-cause`: two plans are
-//! named for one cause at one place.
+//! `no-emergency-plan`: legs of a stage for which no emergency plan is named, whatever the cause; `duplicate-cause`: two
+//! plans are named for one cause at one place.
 
 use super::Inspection;
 use super::step::Step;
@@ -11,22 +11,57 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
         duplicates(&stage.emergency, Some(&stage.id), problems);
     }
+    problems.extend(bare_stages(view).iter().map(|stage| stage.problem(view)));
 }
 
 /// That of a leg itself.
-pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
-    let (leg, around) = (&step.leg, &step.around);
-    duplicates(&leg.emergency, Some(&leg.id), problems);
-    let covers = |choice: &EmergencyChoice| choice.by_cause.iter().any(|(cause, _)| cause.is_none());
-    if !around.main || !leg.body().is_empty() || covers(&view.plan.emergency) {
-        return;
+pub(super) fn leg(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+    duplicates(&step.leg.emergency, Some(&step.leg.id), problems);
+}
+
+/// A stage and those of its legs for which no emergency plan is named.
+struct BareStage<'a> {
+    stage: &'a Id,
+    legs: Vec<&'a Id>,
+}
+
+fn bare_stages<'a>(view: &'a Inspection) -> Vec<BareStage<'a>> {
+    let mut stages: Vec<BareStage> = Vec::new();
+    if covers(&view.plan.emergency) {
+        return stages;
     }
+    for step in view.steps().iter().filter(|step| is_bare(step)) {
+        let stage = &step.around.stage.id;
+        match stages.last_mut().filter(|last| last.stage == stage) {
+            Some(last) => last.legs.push(&step.leg.id),
+            None => stages.push(BareStage { stage, legs: vec![&step.leg.id] }),
+        }
+    }
+    stages
+}
+
+fn is_bare(step: &Step) -> bool {
+    let (leg, around) = (&step.leg, &step.around);
     let mut choices =
         around.loops.iter().map(|l| &l.emergency).chain([&leg.emergency, &around.stage.emergency]);
-    if !choices.any(covers) {
-        let message = "name an emergency plan here, on the stage or on the main plan: without one the gateway decides alone";
-        let problem = Problem::warning("no-emergency-plan", message).of(&leg.id);
-        problems.push(problem.perhaps_fixed_by(only_plan(view)));
+    around.main && leg.body().is_empty() && !choices.any(covers)
+}
+
+fn covers(choice: &EmergencyChoice) -> bool {
+    choice.by_cause.iter().any(|(cause, _)| cause.is_none())
+}
+
+impl BareStage<'_> {
+    /// One problem for all of its legs: one emergency plan mends them all.
+    fn problem(&self, view: &Inspection) -> Problem {
+        let (place, legs, subject) = match self.legs.as_slice() {
+            [only] => ("here, on the stage", String::new(), *only),
+            legs => ("on this stage", format!(" on {} of its legs", legs.len()), self.stage),
+        };
+        let message = format!(
+            "name an emergency plan {place} or on the main plan: without one the gateway decides alone{legs}"
+        );
+        Problem::warning("no-emergency-plan", message).of(subject).perhaps_fixed_by(only_plan(view))
     }
 }
 
@@ -61,7 +96,7 @@ mod tests {
             |a: &str, b: &str| plan_with(&format!(r#"<IF id="a" fix="A" {a}/><TF id="b" fix="B" {b}/>"#));
         let uncovered = |plan: String| plan.replace(r#"<mainPlan emergency="home">"#, "<mainPlan>");
         let home = r#"emergency="home""#;
-        assert_eq!(codes(&uncovered(legs("", ""))), ["no-emergency-plan", "no-emergency-plan"]);
+        assert_eq!(codes(&uncovered(legs("", ""))), ["no-emergency-plan"]);
         assert_eq!(codes(&uncovered(legs(home, ""))), ["no-emergency-plan"]);
         assert_eq!(codes(&uncovered(legs(home, home))), [""; 0]);
         fixed(&uncovered(legs("", "")), "no-emergency-plan");

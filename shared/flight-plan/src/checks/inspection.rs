@@ -10,8 +10,8 @@ use crate::{
     Value, VariableValue, Variables,
 };
 use aircraft::Profile;
+use foldhash::{HashMap, HashSet};
 use geometry::LatLon;
-use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -39,7 +39,8 @@ pub(super) struct Inspection<'a> {
     /// Lists of legs in which one names its successor.
     pub lists: Vec<&'a [Arc<Leg>]>,
     variables: Variables,
-    names: Names<'a>,
+    /// For expressions that are compiled now.
+    names: Option<Names<'a>>,
     expressions: Arc<Expressions>,
     home: Option<&'a Runway>,
 }
@@ -63,7 +64,7 @@ impl<'a> Inspection<'a> {
             steps: Vec::new(),
             lists: Vec::new(),
             variables: Variables::initial(plan),
-            names: Names::of(plan),
+            names: None,
             expressions: recall.expressions.clone(),
             home: plan.home(),
         };
@@ -116,7 +117,8 @@ impl<'a> Inspection<'a> {
 
     fn compile(&mut self, source: &Arc<str>) {
         if !self.is_full() && !self.expressions.contains_key(source) {
-            let compiled = expression::compile_with(source, &self.names);
+            let names = self.names.get_or_insert_with(|| Names::of(self.plan));
+            let compiled = expression::compile_with(source, names);
             Arc::make_mut(&mut self.expressions).insert(source.clone(), compiled);
         }
     }

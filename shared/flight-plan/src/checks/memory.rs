@@ -42,8 +42,8 @@ pub(super) struct Last {
 
 impl Last {
     /// Keeps a check for the next one.
-    pub fn of(inspection: Inspection) -> Self {
-        let setting = Setting::of(inspection.plan);
+    pub fn of(inspection: Inspection, recall: Recall) -> Self {
+        let setting = Setting::of(inspection.plan, recall.setting);
         let (steps, expressions, ids) = inspection.into_parts();
         Self { setting, steps, expressions, ids }
     }
@@ -61,6 +61,7 @@ pub(super) struct Recall {
     left: usize,
     /// Of each new step: the old one of the same leg, and what followed that.
     from: Vec<Option<Origin>>,
+    setting: Option<Setting>,
     moved: Moved,
     pub expressions: Arc<Expressions>,
     pub ids: Arc<Ids>,
@@ -82,7 +83,8 @@ impl Recall {
     /// What may be remembered for a plan.
     pub fn of(last: Option<Last>, plan: &FlightPlan) -> Self {
         let known = last.and_then(|last| Some((last.setting.moved(plan, &last.expressions)?, last)));
-        let Some((moved, Last { steps, mut expressions, ids, .. })) = known else { return Self::default() };
+        let Some((moved, last)) = known else { return Self::default() };
+        let Last { setting, steps, mut expressions, ids } = last;
         moved.forget(&mut expressions);
         let total = steps.len();
         Self {
@@ -91,6 +93,7 @@ impl Recall {
             ahead: AHEAD,
             left: 4 * total,
             from: Vec::with_capacity(total),
+            setting: Some(setting),
             moved,
             expressions,
             ids,

@@ -169,7 +169,7 @@ fn look_at(
         written_only(&inspection, &mut problems);
     }
     let (expressions, ids) = (inspection.expressions().clone(), inspection.ids.clone());
-    let last = again.then(|| Last::of(inspection));
+    let last = again.then(|| Last::of(inspection, recall));
     let flown = match flown {
         Cow::Owned(flown) => Some(flown),
         Cow::Borrowed(_) => None,

@@ -4,7 +4,7 @@ use super::inspection::Expressions;
 use super::step::Around;
 use crate::uses::Part;
 use crate::{EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Runway, StageKind, Value, Variable};
-use std::collections::HashSet;
+use foldhash::HashSet;
 use std::mem::discriminant;
 use std::sync::Arc;
 
@@ -29,10 +29,12 @@ pub(super) struct Moved {
 }
 
 impl Setting {
-    pub fn of(plan: &FlightPlan) -> Self {
+    /// That of a plan. What stayed in it since `last` is not copied again.
+    pub fn of(plan: &FlightPlan, last: Option<Self>) -> Self {
+        let (fixes, variables) = last.map_or_else(Default::default, |last| (last.fixes, last.variables));
         Self {
-            fixes: plan.fixes.clone(),
-            variables: plan.variables.clone(),
+            fixes: follow(fixes, &plan.fixes),
+            variables: follow(variables, &plan.variables),
             runways: plan.runways.clone(),
             emergency: plan.emergency.clone(),
             emergency_plans: plan.emergency_plans.iter().map(|e| e.id.clone()).collect(),
@@ -66,6 +68,16 @@ impl Setting {
             )
         })
     }
+}
+
+/// A copy of `new`, made of an older one.
+fn follow<T: Clone + PartialEq>(mut old: Vec<T>, new: &[T]) -> Vec<T> {
+    old.truncate(new.len());
+    for (old, new) in old.iter_mut().zip(new).filter(|(old, new)| old != new) {
+        old.clone_from(new);
+    }
+    old.extend_from_slice(new.get(old.len()..).unwrap_or_default());
+    old
 }
 
 fn take_off(plan: &FlightPlan) -> Option<Option<&Id>> {

@@ -4,8 +4,8 @@ use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, T
 use crate::{FlightPlan, Id, Variable, VariableValue};
 use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
 use cel::parser::Parser;
+use foldhash::HashMap;
 use geometry::LatLon;
-use std::collections::HashMap;
 
 /// Longest expression, bytes.
 pub const MAX_LENGTH: usize = 1000;
