@@ -328,6 +328,13 @@ impl Executor {
         }
     }
 
+    /// The last leg entered is over, and no other one entered yet: it circles at that leg's end, or did before it was sent on.
+    fn is_between_legs(&self) -> bool {
+        let entered = self.state.announced.as_ref().map(|(passage, _)| *passage);
+        let sent_on = self.state.handed.front().is_some_and(|front| Some(front.passage) != entered);
+        self.state.wait.is_some() || sent_on
+    }
+
     /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
     ///
     /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no such leg
@@ -335,8 +342,8 @@ impl Executor {
     pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
-        // the leg at whose end it circles is over: its new values are for the next time
-        if self.state.wait.is_some() {
+        // a leg that is over has its new values for the next time
+        if self.is_between_legs() {
             return self.replan(out);
         }
         let near = self.alterable_from();
@@ -368,6 +375,7 @@ impl Cursor {
     /// about to go on with in another form.
     pub(crate) fn abandon_leg(&mut self, passage: u64) {
         self.expansion = None;
+        self.given = 0;
         let goes_on = self.doing == Doing::Arriving && self.passage < passage;
         if goes_on || self.doing == Doing::Waiting {
             self.doing = Doing::Flying;

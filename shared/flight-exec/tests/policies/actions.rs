@@ -3,7 +3,7 @@
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, same_passage};
 use flight_exec::{Command, Event, Input, Output, Phase, PlacePointer, ResolvedAct};
-use flight_plan::{Act, Id, Leg, LegKind, Trigger};
+use flight_plan::{Act, Id, Leg, LegKind, Program, Trigger};
 use std::collections::BTreeMap;
 use std::mem::{Discriminant, discriminant};
 
@@ -170,8 +170,10 @@ pub fn updated_since_jump(step: Step) -> bool {
     back.any(|s| s.update().is_some())
 }
 
+/// To skip a holding only releases it: what was ahead stays.
 fn is_leap(step: &Step) -> bool {
-    step.is_jump() && step.update().is_none()
+    let front = |seen: &Seen| seen.ahead.first().map(|w| w.token);
+    step.is_jump() && step.update().is_none() && front(step.before) != front(step.after)
 }
 
 /// Two legs entered one after the other, nobody having interfered: the first one, and the steps from one to the other.
@@ -201,11 +203,22 @@ fn done_by_its_end(trace: &Trace, found: &mut Findings) {
         if !flies(leg) {
             continue;
         }
-        for act in actions_at(leg, &Trigger::End) {
+        let changed = was_another_kind(last, leg);
+        for act in actions_at(leg, &Trigger::End).filter(|act| !changed || !matches!(act, Act::Wait { .. })) {
             let told: usize = steps.clone().map(|at| told_of(trace.step(at), &leg.id, act)).sum();
             found.expect(last, told > 0, || format!("{} was left without {act:?}", leg.id));
         }
     }
+}
+
+/// Since the last leap the leg was of another kind while waypoints of it were ahead: where those are near, they are kept, and it is
+/// at its end without any of its own.
+fn was_another_kind(step: Step, leg: &Leg) -> bool {
+    let back = (0..=step.at).rev().map(|at| step.trace.step(at)).take_while(|s| !is_leap(s));
+    let mut updates = back.filter_map(|s| Some((s, s.update()?.0)));
+    let kind = |program: &Program| program.leg(&leg.id).map(|l| l.kind_name());
+    updates
+        .any(|(s, old)| kind(old) != Some(leg.kind_name()) && s.before.ahead.iter().any(|w| w.leg == leg.id))
 }
 
 /// By what is flown: the aircraft reports where it is, and is where it steers to when that is passed.

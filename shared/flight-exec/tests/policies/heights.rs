@@ -4,7 +4,7 @@ use crate::actions::updated_since_jump;
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, apart_m, same_passage};
 use aircraft::Profile;
-use flight_exec::{Action, Command, Config, Event, PlacePointer, Waypoint};
+use flight_exec::{Action, Command, Config, Event, Input, PlacePointer, Waypoint};
 use flight_plan::{Altitude, Id, IterativeForm, Leg, LegKind, Program, Value, VariableValue};
 use std::collections::BTreeSet;
 
@@ -67,10 +67,17 @@ type Passage<'a> = (&'a PlacePointer, Vec<(Step<'a>, &'a Waypoint)>);
 
 fn passages(trace: &Trace) -> Vec<Passage<'_>> {
     let mut passages: Vec<Passage> = Vec::new();
-    let mut broken = true;
+    let (mut broken, mut resumed_at) = (true, None);
     for step in trace.steps() {
-        broken |= step.is_jump() || step.accepted() == Some(&Command::Resume);
+        broken |= step.is_jump();
         let (Some(place), Some(front)) = (step.after.place(), step.after.ahead.first()) else { continue };
+        if step.accepted() == Some(&Command::Resume) {
+            (broken, resumed_at) = (true, Some(front.token));
+        }
+        // that may be where the hold was given, as high as the one behind it
+        if resumed_at == Some(front.token) {
+            continue;
+        }
         let current = step.after.status.current;
         match passages.last_mut().filter(|(of, _)| !broken && same_passage(of, place)) {
             // the same one, or sent once more with another number
@@ -98,13 +105,19 @@ fn own(trace: &Trace, found: &mut Findings) {
         let own = flies.len().saturating_sub(usize::from(pattern && place.reverse));
         for pair in flies[..own].windows(2).filter(|_| pattern || holding) {
             let [(_, from), (step, to)] = pair else { continue };
-            if !updated_since_jump(*step) {
+            if follows(*step, from, to) && !updated_since_jump(*step) {
                 found.expect(*step, is_as_said(leg, 0.0, from, to), || {
                     format!("{} {}: {from:?} to {to:?}", leg.id, if place.reverse { "back" } else { "" })
                 });
             }
         }
     }
+}
+
+/// The way led from one to the other, nothing between them.
+fn follows(step: Step, from: &Waypoint, to: &Waypoint) -> bool {
+    let tokens: Vec<_> = step.before.ahead.iter().take(2).map(|w| w.token).collect();
+    tokens == [from.token, to.token]
 }
 
 /// It has a speed of its own, and neither speed nor altitude by an expression.
@@ -124,11 +137,14 @@ fn follows_n<'p>(program: &'p Program, id: &Id) -> Option<&'p Leg> {
 fn of_now(trace: &Trace, found: &mut Findings) {
     let (mut clock_s, mut written_s) = (0.0_f64, f64::NEG_INFINITY);
     let mut refused = BTreeSet::new();
+    let mut sent_again = BTreeSet::new();
     for step in trace.steps() {
         clock_s = clock_s.max(step.moment.now.as_secs_f64());
-        if step.accepted() == Some(&Command::Resume) {
+        let resent = matches!(step.input(), Some(Input::GatewayControls(_)))
+            && step.before.ahead.iter().any(|w| sent_again.contains(&w.token));
+        if resent || step.accepted() == Some(&Command::Resume) {
             // what was too near to be altered when the hold was given is flown yet, from wherever the aircraft is now
-            written_s = f64::INFINITY;
+            sent_again = step.after.ahead.iter().map(|w| w.token).collect();
         }
         for event in step.events() {
             match event {
@@ -139,12 +155,17 @@ fn of_now(trace: &Trace, found: &mut Findings) {
         }
         let refreshed = clock_s > written_s + Config::default().debounce_s + 0.001;
         if refreshed && step.after.is_flying() {
-            ahead_is_of_now(step, step.after, &refused, found);
+            ahead_is_of_now(
+                step,
+                step.after,
+                |w| refused.contains(&w.leg) || sent_again.contains(&w.token),
+                found,
+            );
         }
     }
 }
 
-fn ahead_is_of_now(step: Step, seen: &Seen, refused: &BTreeSet<&Id>, found: &mut Findings) {
+fn ahead_is_of_now(step: Step, seen: &Seen, is_excused: impl Fn(&Waypoint) -> bool, found: &mut Findings) {
     let Some(program) = seen.program.as_deref() else { return };
     let Some(VariableValue::Number(n)) = seen.variables.get(&"n".into()) else { return };
     let (speed_mps, profile) = (crate::flight::SPEED_MPS, Profile::default());
@@ -154,7 +175,7 @@ fn ahead_is_of_now(step: Step, seen: &Seen, refused: &BTreeSet<&Id>, found: &mut
         let [from, to] = pair else { continue };
         way_m += apart_m(from.position, to.position);
         // before the first one there may be where a hold was given
-        let free = index > 0 && way_m > stop_m && to.action == Action::Fly && !refused.contains(&to.leg);
+        let free = index > 0 && way_m > stop_m && to.action == Action::Fly && !is_excused(to);
         if let Some(leg) = follows_n(program, &to.leg).filter(|_| free) {
             found.expect(step, is_as_said(leg, *n, from, to), || format!("n is {n}: {from:?} to {to:?}"));
         }

@@ -63,6 +63,8 @@ struct Model<'a, 'f> {
     here: Option<Id>,
     counts: BTreeMap<Id, u64>,
     taken: BTreeMap<Id, Id>,
+    /// Likewise, after a leg was skipped before it was entered: what led to that one was decided already.
+    taken_since: BTreeMap<Id, Id>,
     cannot_be_flown: BTreeSet<Id>,
     /// Legs that were skipped before they were entered.
     may_miss: usize,
@@ -79,6 +81,7 @@ fn recite(trace: &Trace, found: &mut Findings) {
         here: None,
         counts: BTreeMap::new(),
         taken: BTreeMap::new(),
+        taken_since: BTreeMap::new(),
         cannot_be_flown: BTreeSet::new(),
         may_miss: 0,
     };
@@ -124,7 +127,10 @@ impl<'a> Model<'a, '_> {
     /// Things that are not part of the way.
     fn note(&mut self, sight: &Sight<'a>) {
         match *sight {
-            Sight::Taken(leg, branch) => drop(self.taken.insert(leg.clone(), branch.clone())),
+            Sight::Taken(leg, branch) => {
+                let taken = if self.may_miss > 0 { &mut self.taken_since } else { &mut self.taken };
+                taken.insert(leg.clone(), branch.clone());
+            }
             Sight::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
             Sight::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
             Sight::Skipped { announced } => self.may_miss += usize::from(!announced),
@@ -150,6 +156,7 @@ impl<'a> Model<'a, '_> {
         self.found.expect(step, true, String::new);
         self.at += 1;
         self.may_miss = 0;
+        self.taken.append(&mut self.taken_since);
     }
 
     // ---- jumps -------------------------------------------------------------------------------------------------
@@ -157,6 +164,7 @@ impl<'a> Model<'a, '_> {
     fn jump(&mut self, jump: Jump<'a>) -> Flown {
         let mut after = None;
         self.may_miss = 0;
+        self.taken.append(&mut self.taken_since);
         let target = match jump {
             Jump::Start(program) => {
                 self.program = Some(program);
@@ -417,7 +425,8 @@ impl<'a> Model<'a, '_> {
             self.enter(&leg.id)?;
             self.peek()?;
         }
-        let Some(branch) = self.taken.remove(&leg.id) else {
+        let taken = self.taken.remove(&leg.id).or_else(|| self.taken_since.remove(&leg.id));
+        let Some(branch) = taken else {
             return Err(Stop::Wrong(format!("{} was crossed without a decision", leg.id)));
         };
         let chosen = branches.iter().find(|b| b.id == branch);
