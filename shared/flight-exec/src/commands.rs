@@ -328,11 +328,10 @@ impl Executor {
         }
     }
 
-    /// The last leg entered is over, and no other one entered yet: it circles at that leg's end, or did before it was sent on.
-    fn is_between_legs(&self) -> bool {
-        let entered = self.state.announced.as_ref().map(|(passage, _)| *passage);
-        let sent_on = self.state.handed.front().is_some_and(|front| Some(front.passage) != entered);
-        self.state.wait.is_some() || sent_on
+    /// The leg that a cursor is in is over, though no other one was entered yet: it circled at that leg's end when it was sent on.
+    fn is_sent_on_from(&self, cursor: &Cursor) -> bool {
+        let entered = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
+        entered && self.state.handed.front().is_some_and(|front| front.passage != cursor.passage)
     }
 
     /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
@@ -342,8 +341,8 @@ impl Executor {
     pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
         self.state.refresh_due_s = None;
         self.state.last_refresh_s = Some(self.state.clock_s);
-        // a leg that is over has its new values for the next time
-        if self.is_between_legs() {
+        // the leg at whose end it circles is over: its new values are for the next time
+        if self.state.wait.is_some() {
             return self.replan(out);
         }
         let near = self.alterable_from();
@@ -353,6 +352,9 @@ impl Executor {
         let begun = self.at_the_leg_begun(keep, &self.world());
         let over = begun.as_ref().is_some_and(|begun| self.leads_elsewhere(keep, begun));
         let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
+        if keep == 0 && self.is_sent_on_from(&cursor) {
+            return self.replan(out);
+        }
         match cursor.refresh_leg(&self.world()) {
             Ok(false) if over => self.replan_with(keep, cursor, false, out),
             Ok(true) => {

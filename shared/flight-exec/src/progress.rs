@@ -144,7 +144,11 @@ impl Executor {
         let leg = index.and_then(|i| self.state.handed.get(i)).map(|h| h.place.leg.clone());
         out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
         let Some(index) = index else { return };
-        let cursor = self.bookmark(index);
+        let mut cursor = self.bookmark(index);
+        if self.state.handed.get(index).is_some_and(|first| first.passage == cursor.passage) {
+            // the bookmark may be older than the values of now; those that make no such leg were told when they were written
+            cursor.refresh_leg(&self.world()).ok();
+        }
         self.state.handed.truncate(index);
         self.state.tail = Some(cursor);
         self.state.onward = Onward::Open;
