@@ -177,3 +177,19 @@ fn a_wind_that_has_freshened_leaves_the_leg_being_flown_as_it_is() {
         assert_eq!(of_leg(&rig.buffer), of_leg(&before), "{name}");
     }
 }
+
+/// On its track it turns where it is; the fix behind it is not flown to once more.
+#[test]
+fn a_climb_along_a_track_goes_on_from_where_its_course_was_changed() {
+    let climb = r#"<FA id="p" fix="C4" course="= c" altitude="1200" altitudeReference="agl"/>"#;
+    let mut rig = Rig::flying(&document(climb));
+    rig.fly_to("p");
+    while rig.flown.iter().filter(|w| w.leg.as_str() == "p").count() < 4 {
+        rig.fly_one();
+    }
+    rig.set("c", 90.0).unwrap();
+    let rest: Vec<_> = rest(&mut rig).iter().map(|w| w.position).collect();
+    let last = rest.last().unwrap();
+    assert!(last.lon_deg > fix("C4").lon_deg + 0.005, "{rest:?}");
+    assert!(rest.iter().all(|p| p.distance_m(fix("C4")) > 1000.0), "{rest:?}");
+}

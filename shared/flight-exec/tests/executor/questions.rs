@@ -83,3 +83,19 @@ fn a_question_that_comes_late_is_open_until_the_way_cannot_be_changed() {
     rig.report();
     assert!(is_taken(&rig));
 }
+
+/// What is behind a loop that goes round without flying anything is not come to.
+#[test]
+fn behind_a_loop_that_flies_nothing_nobody_is_asked() {
+    let round = r#"<iterative id="round" form="forward" count="1000000"><IF id="i" fix="A3"/></iterative>"#;
+    let mut rig = Rig::started(&fork(round, "60s"));
+    rig.fly_to("a");
+    let way = rig.state().position.distance_m(fix("A3"));
+    while rig.position.distance_m(fix("A3")) > 100.0 && rig.now.as_secs_f64() < way {
+        rig.now += flight_exec::Time::from_secs(1);
+        rig.position = rig.position.destination(rig.position.bearing_deg(fix("A3")), 25.0);
+        rig.report();
+    }
+    assert!(asked(&rig).is_none(), "{:?}", rig.legs());
+    assert!(rig.events.iter().any(|e| matches!(e, Event::PatternRefused { .. })), "{:?}", rig.events);
+}
