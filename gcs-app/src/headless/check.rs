@@ -73,11 +73,16 @@ pub fn print(file: &Path, problems: &[Problem]) {
     let errors = problems.iter().filter(|p| p.is_error()).count();
     match (errors, problems.len() - errors) {
         (0, 0) => say!("{}: good, no problems", file.display()),
-        (0, warnings) => say!("{}: may be flown; {warnings} warnings", file.display()),
+        (0, warnings) => say!("{}: may be flown; {}", file.display(), counted(warnings, "warning")),
         (errors, warnings) => {
-            say!("{}: must not be flown; {errors} errors, {warnings} warnings", file.display())
+            let (errors, warnings) = (counted(errors, "error"), counted(warnings, "warning"));
+            say!("{}: must not be flown; {errors}, {warnings}", file.display())
         }
     }
+}
+
+fn counted(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A problem as one line.

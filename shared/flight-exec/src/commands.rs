@@ -327,49 +327,6 @@ impl Executor {
             }
         }
     }
-
-    /// The leg that a cursor is in is over, though no other one was entered yet: it circled at that leg's end when it was sent on.
-    fn is_sent_on_from(&self, cursor: &Cursor) -> bool {
-        let entered = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
-        entered && self.state.handed.front().is_some_and(|front| front.passage != cursor.passage)
-    }
-
-    /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
-    ///
-    /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no such leg
-    /// are refused by an event while the old one goes on.
-    pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
-        self.state.refresh_due_s = None;
-        self.state.last_refresh_s = Some(self.state.clock_s);
-        // the leg at whose end it circles is over: its new values are for the next time
-        if self.state.wait.is_some() {
-            return self.replan(out);
-        }
-        let near = self.alterable_from();
-        let after_current = near.max(1).min(self.state.handed.len());
-        let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
-        // a pattern that is over is not to be flown once more
-        let begun = self.at_the_leg_begun(keep, &self.world());
-        let over = begun.as_ref().is_some_and(|begun| self.leads_elsewhere(keep, begun));
-        let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
-        if keep == 0 && self.is_sent_on_from(&cursor) {
-            return self.replan(out);
-        }
-        match cursor.refresh_leg(&self.world()) {
-            Ok(false) if over => self.replan_with(keep, cursor, false, out),
-            Ok(true) => {
-                for handed in self.state.handed.iter_mut().take(keep) {
-                    handed.pinned = true;
-                }
-                self.replan_with(keep, cursor, false, out);
-            }
-            Ok(false) => self.replan(out),
-            Err(trouble) => {
-                self.tell_trouble(trouble, out);
-                self.replan(out);
-            }
-        }
-    }
 }
 
 impl Cursor {

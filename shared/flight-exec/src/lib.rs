@@ -24,6 +24,7 @@ pub mod path;
 pub mod preview;
 mod progress;
 mod proposal;
+mod refresh;
 mod replan;
 pub mod review;
 mod snapshot;

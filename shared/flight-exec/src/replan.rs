@@ -198,6 +198,7 @@ impl Executor {
         // a count belongs to an activation: that of a loop which is left is forgotten
         let around = cursor.loop_ids(&self.world());
         self.state.counts.retain(|c| around.contains(&c.leg));
+        self.begin_anew_what_was_left(&mut cursor, &around);
         if cursor.section.is_none() {
             self.state.emergency = None;
         }
@@ -210,6 +211,21 @@ impl Executor {
         self.abandon_passages();
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);
+    }
+
+    /// A loop with actions that was left by a skip, and no other leg entered since: what comes is another activation of it.
+    fn begin_anew_what_was_left(&mut self, cursor: &mut Cursor, around: &[Id]) {
+        for (frame, id) in cursor.loops.iter_mut().zip(around) {
+            let acts = self.program.leg(id).is_some_and(|leg| !leg.actions.is_empty());
+            let is_followed =
+                self.state.passages.iter().any(|p| (&p.leg, p.number) == (id, frame.activation));
+            if acts && !is_followed {
+                let counts = self.state.counts.iter_mut();
+                let own = counts.filter(|c| c.leg == *id && c.activation == Some(frame.activation));
+                own.for_each(|c| c.activation = Some(cursor.passage));
+                frame.activation = cursor.passage;
+            }
+        }
     }
 
     /// Sends everything ahead once more, with new numbers: the gateway may have lost it.

@@ -225,16 +225,27 @@ fn whole(count: f64) -> Result<u64, PatternError> {
     Err(PatternError::TooMany { most: MOST_VERTICES })
 }
 
-/// The waypoints of tracks, one after the other, with where each begins.
+/// The waypoints of tracks, one after the other, with the corners of the way to each before it.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Stored {
     points: Vec<Vec2>,
-    starts: Vec<usize>,
+    /// Where the way to each track begins, and where the track does.
+    starts: Vec<(usize, usize)>,
 }
 
 impl Stored {
     fn push(&mut self, track: impl IntoIterator<Item = Vec2>) -> Result<(), PatternError> {
-        self.starts.push(self.points.len());
+        self.push_after([], track)
+    }
+
+    fn push_after(
+        &mut self,
+        way: impl IntoIterator<Item = Vec2>,
+        track: impl IntoIterator<Item = Vec2>,
+    ) -> Result<(), PatternError> {
+        let start = self.points.len();
+        self.points.extend(way);
+        self.starts.push((start, self.points.len()));
         self.points.extend(track);
         if self.points.len() > MOST_STORED {
             return Err(PatternError::TooMany { most: MOST_STORED as u64 });
@@ -249,8 +260,8 @@ impl Stored {
     fn vertex(&self, index: u64) -> Option<Vertex> {
         let index = usize::try_from(index).ok()?;
         let at = *self.points.get(index)?;
-        let track = self.starts.partition_point(|&start| start <= index).checked_sub(1)?;
-        let begins = self.starts.get(track) == Some(&index);
-        Some(Vertex { at, track: track as u64, on_track: !begins })
+        let track = self.starts.partition_point(|&(way, _)| way <= index).checked_sub(1)?;
+        let on_track = self.starts.get(track).is_some_and(|&(_, begin)| index > begin);
+        Some(Vertex { at, track: track as u64, on_track })
     }
 }

@@ -5,6 +5,7 @@ mod shapes;
 mod tests;
 
 use super::{PatternError, Stored, Vertex, counted, finite, not_negative, positive};
+use crate::polygon::{Interior, Looks};
 use crate::turn::Turn;
 use crate::{Polygon, Vec2};
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,8 @@ const MOST_LEVELS: u64 = 10_000;
 /// Most that (drawn-in corners² + corners) · levels may be: the library's time grows with that, for whatever lies
 /// beside drawn-in corners crosses itself. This takes a second or two.
 const MOST_WORK: f64 = 5e5;
+/// Edges that are looked at to find the ways between loops: a quarter of a second.
+const MOST_LOOKS: u64 = 40_000_000;
 /// Share of a strip along loops that their sharp corners may leave unseen.
 const MOST_UNSEEN: f64 = 0.0015;
 /// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing …
@@ -53,7 +56,7 @@ pub struct ContourParameters {
     pub tolerance_m: f64,
 }
 
-/// Closed loops; each is a track, ending where it begins.
+/// Closed loops; each is a track, ending where it begins. Inward, the ways between them stay in the area, as they do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contours {
     stored: Stored,
@@ -141,13 +144,13 @@ impl ContourParameters {
 fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Contours, PatternError> {
     p.check()?;
     p.check_work(area)?;
-    let (mut stored, mut begins) = (Stored::default(), Vec::new());
-    let (mut at, mut offset_m) = (p.entry, p.first_m);
+    let mut begins = Vec::new();
+    let mut path = Path::new(area, p);
+    let mut offset_m = p.first_m;
     let mut level = p.level(area, offset_m)?;
     if covering && p.side == Side::Inward {
         // arms too narrow for any loop
-        let outside = unseen(&[rings_of(area)], &level, p, area.area_m2())?;
-        at = fly(&mut stored, outside, p.turn, at)?;
+        path.fly(unseen(&[rings_of(area)], &level, p, area.area_m2())?)?;
     }
     for number in 1..=p.levels {
         let half_m = p.spacing_m / 2.0;
@@ -165,20 +168,20 @@ fn lay_out(area: &Polygon, p: &ContourParameters, covering: bool) -> Result<Cont
         } else {
             Vec::new()
         };
-        begins.push(if number == 1 { 0 } else { stored.count() });
+        begins.push(if number == 1 { 0 } else { path.stored.count() });
         for areas in [level, between] {
-            at = fly(&mut stored, areas, p.turn, at)?;
+            path.fly(areas)?;
         }
         if next.is_empty() {
             break;
         }
         (level, offset_m) = (next, next_m);
     }
-    if stored.count() == 0 {
+    if path.stored.count() == 0 {
         let width_m = area.width_m(area.narrowest_heading_deg());
         return Err(PatternError::TooNarrow { width_m, spacing_m: 2.0 * p.first_m });
     }
-    Ok(Contours { stored, begins })
+    Ok(Contours { stored: path.stored, begins })
 }
 
 /// How far beyond the strip that one loop sees the next loop's strip may begin, up to half the spacing, metres.
@@ -226,20 +229,50 @@ fn without_loops_inside(mut areas: Vec<Shape>, others: &[Shape]) -> Vec<Shape> {
     areas
 }
 
-/// Adds the loops of areas, always the one nearest to where the last ended; gives where that is.
-fn fly(stored: &mut Stored, areas: Vec<Shape>, turn: Turn, mut at: Vec2) -> Result<Vec2, PatternError> {
-    let mut loops: Vec<Vec<Vec2>> = areas.into_iter().flatten().collect();
-    while let Some((ring, corner)) = nearest(&loops, at) {
-        let mut flown = loops.swap_remove(ring);
-        flown.rotate_left(corner);
-        at = flown.first().copied().unwrap_or(at);
-        flown.push(at);
-        if turn == Turn::Right {
-            flown.reverse();
-        }
-        stored.push(flown)?;
+/// What is laid out so far.
+struct Path {
+    stored: Stored,
+    turn: Turn,
+    /// Where it ends.
+    at: Vec2,
+    /// The area, if ways between loops have to be kept inside it.
+    interior: Option<Interior>,
+    looks: Looks,
+}
+
+impl Path {
+    fn new(area: &Polygon, p: &ContourParameters) -> Self {
+        let interior = (p.side == Side::Inward && !area.is_convex()).then(|| Interior::of(area.clone()));
+        Self { stored: Stored::default(), turn: p.turn, at: p.entry, interior, looks: Looks::new(MOST_LOOKS) }
     }
-    Ok(at)
+
+    /// Adds the loops of areas, always the one nearest to where the last ended.
+    fn fly(&mut self, areas: Vec<Shape>) -> Result<(), PatternError> {
+        let mut loops: Vec<Vec<Vec2>> = areas.into_iter().flatten().collect();
+        while let Some((ring, corner)) = nearest(&loops, self.at) {
+            let mut flown = loops.swap_remove(ring);
+            flown.rotate_left(corner);
+            let begin = flown.first().copied().unwrap_or(self.at);
+            flown.push(begin);
+            if self.turn == Turn::Right {
+                flown.reverse();
+            }
+            let way = self.way_to(begin)?;
+            self.stored.push_after(way, flown)?;
+            self.at = begin;
+        }
+        Ok(())
+    }
+
+    /// The corners of the way from one loop to the next one; the first one is come to from wherever.
+    fn way_to(&mut self, begin: Vec2) -> Result<Vec<Vec2>, PatternError> {
+        let Some(interior) = self.interior.as_ref().filter(|_| self.stored.count() > 0) else {
+            return Ok(Vec::new());
+        };
+        let corners = interior.area().edges().count();
+        let too_intricate = PatternError::TooIntricate { corners, levels: self.stored.starts.len() as u64 };
+        interior.way(self.at, begin, &mut self.looks).ok_or(too_intricate)
+    }
 }
 
 /// The ring, and its corner, that is nearest to a point.

@@ -1,0 +1,81 @@
+//! Variables have changed: the leg being flown, and everything beyond it, with the values of now.
+
+use crate::api::Output;
+use crate::cursor::{Cursor, Step, Trouble};
+use crate::executor::Executor;
+use crate::world::World;
+use flight_plan::Id;
+
+impl Executor {
+    /// The leg that a cursor is in is over, though no other one was entered yet: it circled at that leg's end when it was sent on.
+    fn is_over(&self, cursor: &Cursor) -> bool {
+        let entered = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
+        let points = cursor.expansion.as_ref().and_then(|e| e.count());
+        let beyond = match self.state.handed.front() {
+            Some(front) => front.passage != cursor.passage,
+            None => points.is_some_and(|all| cursor.given >= all),
+        };
+        entered && beyond
+    }
+
+    /// Waypoint number `index` is the first one of the leg being flown, and the values of now make no such leg: why, and the number
+    /// of the first waypoint behind it.
+    fn would_leave_out_the_leg_begun(&self, index: usize) -> Option<(Trouble, usize)> {
+        let first = self.state.handed.get(index).filter(|first| self.is_announced(first))?;
+        let before = Some(self.bookmark(index)).filter(|before| before.passage != first.passage)?;
+        let trouble = before.trouble_with(&first.place.leg, &self.world())?;
+        let of_leg = self.state.handed.iter().skip(index).take_while(|h| h.passage == first.passage);
+        Some((trouble, index + of_leg.count()))
+    }
+
+    /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
+    ///
+    /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no such leg
+    /// are refused by an event while the old one goes on.
+    pub(crate) fn refresh(&mut self, out: &mut Vec<Output>) {
+        self.state.refresh_due_s = None;
+        self.state.last_refresh_s = Some(self.state.clock_s);
+        // the leg at whose end it circles is over: its new values are for the next time
+        if self.state.wait.is_some() {
+            return self.replan(out);
+        }
+        let near = self.alterable_from();
+        let after_current = near.max(1).min(self.state.handed.len());
+        let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
+        // a pattern that is over is not to be flown once more
+        let begun = self.at_the_leg_begun(keep, &self.world());
+        if let Some((trouble, behind)) = self.would_leave_out_the_leg_begun(keep) {
+            self.tell_trouble(trouble, out);
+            return self.replan_from(behind, false, out);
+        }
+        let over = begun.as_ref().is_some_and(|begun| self.leads_elsewhere(keep, begun));
+        let mut cursor = begun.unwrap_or_else(|| self.bookmark(keep));
+        if keep == 0 && self.is_over(&cursor) {
+            return self.replan(out);
+        }
+        match cursor.refresh_leg(&self.world()) {
+            Ok(false) if over => self.replan_with(keep, cursor, false, out),
+            Ok(true) => {
+                for handed in self.state.handed.iter_mut().take(keep) {
+                    handed.pinned = true;
+                }
+                self.replan_with(keep, cursor, false, out);
+            }
+            Ok(false) => self.replan(out),
+            Err(trouble) => {
+                self.tell_trouble(trouble, out);
+                self.replan(out);
+            }
+        }
+    }
+}
+
+impl Cursor {
+    /// Why a leg is passed over on the way to the next waypoint, if it is.
+    fn trouble_with(mut self, leg: &Id, world: &World) -> Option<Trouble> {
+        let Step::Waypoint(emission) = self.next(world) else { return None };
+        let passed = self.leg(world).is_none_or(|now| now.id != *leg);
+        let of_leg = |trouble: &Trouble| matches!(trouble, Trouble::Leg { leg: of, .. } if of == leg);
+        emission.notes.troubles.into_iter().find(of_leg).filter(|_| passed)
+    }
+}
