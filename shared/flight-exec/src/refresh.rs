@@ -64,7 +64,7 @@ impl Executor {
             Ok(false) => self.replan(out),
             Err(trouble) => {
                 self.tell_trouble(trouble, out);
-                self.replan(out);
+                self.replan_from(keep, false, out);
             }
         }
     }

@@ -81,6 +81,25 @@ fn loops_round_an_area_lie_inside_or_outside_as_many_as_asked() {
     }
 }
 
+/// On the way to the first waypoint of a leg nothing of it is behind: laid out anew, nothing of it would be left.
+#[test]
+fn on_the_way_to_a_leg_values_that_make_none_leave_it_as_it_is() {
+    for leg in [
+        r#"<scan id="p" spacing="= 100.0 * v" heading="0"><area fix="C4" radius="570"/></scan>"#,
+        r#"<HM id="p" fix="C4" course="0" turn="right" length="= 1800.0 / v" maxLaps="2"/>"#,
+        r#"<TF id="p" at="= offset(p, 90.0, 1.0 / v)"/>"#,
+    ] {
+        let mut rig = flying(leg);
+        let before = ahead(&rig);
+        assert!(!before.is_empty());
+        rig.set("v", 0.0).unwrap();
+        assert_eq!(ahead(&rig), before, "{leg}");
+        assert_eq!(reasons(&rig).len(), 1, "{leg}");
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), "a p z", "{leg}");
+    }
+}
+
 #[test]
 fn a_route_that_becomes_too_long_for_one_pattern_is_refused() {
     let mut rig = flying(
