@@ -151,8 +151,11 @@ pub enum Step {
     },
     /// Nothing: it circles, for a decision or a time.
     Waiting,
-    /// Nothing: a loop flies no waypoint at all.
-    Stalled,
+    /// Nothing: a loop flies no waypoint at all, or a thousand legs one after the other.
+    Stalled {
+        /// What happened since the last waypoint.
+        notes: Notes,
+    },
 }
 
 impl Cursor {
@@ -199,7 +202,7 @@ impl Cursor {
                 Doing::Turning => self.doing = Doing::Arriving,
             }
         }
-        Step::Stalled
+        Step::Stalled { notes }
     }
 
     /// The next point and its altitude, metres AMSL; where the ground is not known from which that counts, the leg is left instead:

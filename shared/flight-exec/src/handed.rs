@@ -114,7 +114,7 @@ impl Stretch {
                 self.end(marked, world);
             }
             Step::Waiting => self.onward = Onward::Waiting,
-            Step::Stalled => {
+            Step::Stalled { .. } => {
                 self.tail = before;
                 self.onward = Onward::Stalled;
             }

@@ -178,7 +178,7 @@ fn choices_changed(handed: &Handed, world: &World) -> bool {
     let now = match cursor.next(world) {
         Step::Waypoint(emission) => emission.notes.choices,
         Step::Ended { notes } => notes.choices,
-        Step::Waiting | Step::Stalled => return true,
+        Step::Waiting | Step::Stalled { .. } => return true,
     };
     let alike = |(a, b): (&Choice, &Choice)| a.leads_as(b);
     now.len() != handed.choices.len() || !now.iter().zip(&handed.choices).all(alike)

@@ -453,15 +453,21 @@ impl Terrain for Edge {
 #[test]
 fn ground_of_which_nothing_is_known() {
     let edge: Arc<dyn Terrain> = Arc::new(Edge);
-    let found = |altitude: &str| {
-        let leg = format!(r#"<TF id="far" fix="B" {altitude}/>"#);
-        let program = compile_document(&rectangle("", &leg), &Profile::default(), edge.as_ref()).unwrap();
+    let found = |legs: &str| {
+        let program = compile_document(&rectangle("", legs), &Profile::default(), edge.as_ref()).unwrap();
         let mut found = review(&Arc::new(program), &Profile::default(), &edge, Conditions::default());
         found.retain(|p| p.code == "unknown-terrain");
         found.iter().map(|p| p.subject.clone().unwrap().to_string()).collect::<Vec<_>>()
     };
-    assert_eq!(found(""), [""; 0]);
-    assert_eq!(found(r#"altitude="200" altitudeReference="agl""#), ["far"]);
+    assert_eq!(found(r#"<TF id="far" fix="B"/>"#), [""; 0]);
+    let far = r#"<TF id="far" fix="B" altitude="200" altitudeReference="agl"/>"#;
+    assert_eq!(found(far), ["far"]);
+    // told once, however often it would be flown
+    let round = |body: &str| format!(r#"<iterative id="laps" form="forward" count="2">{body}</iterative>"#);
+    assert_eq!(found(&round(&format!(r#"<TF id="near" fix="A"/>{far}"#))), ["far"]);
+    // so many that the path is given up
+    let many: String = (0..1500).map(|n| far.replace("far", &format!("far{n}"))).collect();
+    assert!(found(&many).len() > 500);
 }
 
 /// A zone above ground that nobody knows is taken as high as the sky.

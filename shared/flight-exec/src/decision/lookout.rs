@@ -98,7 +98,7 @@ impl Executor {
             let (notes, emission) = match cursor.next(&world) {
                 Step::Waypoint(emission) => (emission.notes.clone(), Some(emission)),
                 Step::Ended { notes } => (notes, None),
-                Step::Waiting | Step::Stalled => return None,
+                Step::Waiting | Step::Stalled { .. } => return None,
             };
             let fork = notes.choices.iter().find_map(|choice| match choice {
                 Choice::Branch { leg, crossing, .. } => Some((leg.clone(), *crossing)),

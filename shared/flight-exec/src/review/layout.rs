@@ -160,7 +160,11 @@ pub(super) fn lay_out(
                 layout.complete = true;
                 break;
             }
-            Step::Waiting | Step::Stalled => break,
+            Step::Stalled { notes } => {
+                layout.note(notes);
+                break;
+            }
+            Step::Waiting => break,
         }
     }
     layout

@@ -376,3 +376,20 @@ fn a_holding_that_was_skipped_is_flown_back_at_its_own_speed() {
     rig.fly_to("h");
     assert_eq!(rig.buffer[0].airspeed_mps, 30.0);
 }
+
+/// On the way back what was flown in an inner loop is not there any more.
+#[test]
+fn backwards_an_inner_loop_whose_legs_have_gone_is_passed() {
+    let plan = |inner: &str| {
+        document(&format!(
+            r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="2"><TF id="a" fix="B1"/>
+            <iterative id="in" form="forward" count="1"><TF id="{inner}" fix="C1"/></iterative><TF id="b" fix="B2"/></iterative>
+            <TF id="z" fix="A3"/>"#
+        ))
+    };
+    let mut rig = Rig::flying(&plan("c"));
+    rig.fly_to("b");
+    rig.update(&program(&plan("d"))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "s a c b <l <b <a l a d b z");
+}

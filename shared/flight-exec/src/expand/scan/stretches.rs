@@ -222,3 +222,43 @@ impl Order<'_> {
         places
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use geometry::scan::{CellScan, Entry, ScanParameters};
+    use geometry::{LocalFrame, Polygon};
+
+    /// Two arms and a bay between them, and lines across both.
+    fn laid_out() -> LaidOut {
+        let corners =
+            [(0, 0), (900, 0), (900, 600), (600, 600), (600, 200), (300, 200), (300, 600), (0, 600)];
+        let corners = corners.map(|(e, n)| Vec2::new(e.into(), n.into())).to_vec();
+        let parameters = ScanParameters {
+            spacing_m: 100.0,
+            grid: None,
+            heading_deg: Some(90.0),
+            overshoot_m: 0.0,
+            entry: Entry::Nearest(Vec2::default()),
+            turn_radius_m: 0.0,
+        };
+        let pattern = CellScan::new(&Polygon::new(corners, vec![]).unwrap(), &parameters).unwrap();
+        LaidOut::new(pattern, LocalFrame::new(LatLon::new(36.5, -84.2)))
+    }
+
+    #[test]
+    fn ways_that_take_too_long_to_be_found_are_refused() {
+        let laid_out = laid_out();
+        let all = laid_out.pattern.tracks();
+        let order = Order { all, first: 0, along_first: true, left_out: &[], from: None };
+        let beyond = Some(laid_out.ends_of(0).unwrap().0);
+        let begun = |looks: u64| {
+            let mut stretches = Stretches { all: Vec::new(), tracks: all };
+            stretches.begin((1, all - 1), &order, beyond, &laid_out, &mut Looks::new(looks))
+        };
+        assert!(begun(10_000).is_ok());
+        assert!(begun(0).unwrap_err().to_string().contains("8 corners is too intricate"));
+        assert!(Stretches::of(&order, &laid_out).unwrap().count() > 2 * all);
+    }
+}
