@@ -466,7 +466,11 @@ fn ground_of_which_nothing_is_known() {
     let round = |body: &str| format!(r#"<iterative id="laps" form="forward" count="2">{body}</iterative>"#);
     assert_eq!(found(&round(&format!(r#"<TF id="near" fix="A"/>{far}"#))), ["far"]);
     // so many that the path is given up
-    let many: String = (0..1500).map(|n| far.replace("far", &format!("far{n}"))).collect();
+    let one = |n: usize| {
+        let lat = ["36.31", "36.33"][n % 2];
+        format!(r#"<TF id="far{n}" lat="{lat}" lon="-84.15" altitude="200" altitudeReference="agl"/>"#)
+    };
+    let many: String = (0..1500).map(one).collect();
     assert!(found(&many).len() > 500);
 }
 
