@@ -7,15 +7,15 @@ use crate::world::World;
 use flight_plan::Id;
 
 impl Executor {
-    /// The leg that a cursor is in is over, though no other one was entered yet: it circled at that leg's end when it was sent on.
+    /// The leg that a cursor is in is over, though no other one was entered yet: it circled at that leg's end when it was sent on, or
+    /// nothing is left ahead of what was beyond it.
     fn is_over(&self, cursor: &Cursor) -> bool {
-        let entered = self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
-        let points = cursor.expansion.as_ref().and_then(|e| e.count());
-        let beyond = match self.state.handed.front() {
-            Some(front) => front.passage != cursor.passage,
-            None => points.is_some_and(|all| cursor.given >= all),
-        };
-        entered && beyond
+        let entered = || self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
+        let points = || cursor.expansion.as_ref().and_then(|e| e.count());
+        match self.state.handed.front() {
+            Some(front) => front.passage != cursor.passage && entered(),
+            None => points().is_some_and(|all| cursor.given >= all),
+        }
     }
 
     /// Waypoint number `index` is the first one of the leg being flown, and the values of now make no such leg: why, and the number

@@ -228,7 +228,9 @@ fn back_to_the_leg(trace: &Trace, found: &mut Findings) {
             continue;
         };
         let inside = place.iterations.iter().any(|i| i.leg == *leg) || place.stage == *leg;
-        let flies_nothing = program.leg(leg).is_some_and(|l| matches!(l.kind_name(), "IF" | "intersection"));
+        let flies_nothing = program
+            .leg(leg)
+            .is_some_and(|l| crate::model::may_fly_nothing(l) || l.kind_name() == "intersection");
         let refused = step.events().any(|e| matches!(e, Event::PatternRefused { .. }));
         let passed = flies_nothing || refused;
         let there = emergency_flown(step.after).is_none() && (place.leg == *leg || inside || passed);

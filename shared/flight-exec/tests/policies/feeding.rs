@@ -194,7 +194,7 @@ fn climbs(trace: &Trace, found: &mut Findings) {
             let allowed = -profile.max_descent_mps * seconds - 10.0..=profile.max_climb_mps * seconds + 10.0;
             let flown = pair.iter().all(|w| w.action == Action::Fly);
             found.expect(step, !flown || allowed.contains(&change_m), || {
-                format!("{change_m:.0} m in {seconds:.0} s to {:?}", pair[1].token)
+                format!("{change_m:.0} m in {seconds:.0} s from {:?} to {:?}", pair[0], pair[1])
             });
         }
     }
