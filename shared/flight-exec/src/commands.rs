@@ -2,7 +2,7 @@
 
 use crate::api::{Action, Command, Event, Output, Phase, Refusal};
 use crate::cursor::control::is_call;
-use crate::cursor::{Cursor, Doing};
+use crate::cursor::{CLIMB_LEAD_M, Cursor, Doing};
 use crate::executor::{Executor, refusal};
 use crate::handed::{Handed, Onward};
 use crate::world::LoopCount;
@@ -100,6 +100,7 @@ impl Executor {
         if let Some(rejoin) = self.rejoin() {
             self.state.handed.push_front(rejoin);
         }
+        self.bring_first_within_reach();
         self.state.held_at = None;
         if self.state.handed.is_empty() {
             // what flew nothing may do so by now
@@ -132,6 +133,25 @@ impl Executor {
         rejoin.end_s = front.end_s - left_m / front.waypoint.airspeed_mps.max(1.0);
         rejoin.pinned = true;
         Some(rejoin)
+    }
+
+    /// What was near when the plan was changed has stayed as it was: it may be higher or lower than the aircraft could climb or descend
+    /// from on the way to the next waypoint of its leg, and the gateway would refuse that.
+    fn bring_first_within_reach(&mut self) {
+        let mut ahead = self.state.handed.iter().take(2).filter(|h| h.waypoint.action == Action::Fly);
+        let (Some(first), Some(next)) = (ahead.next(), ahead.next()) else { return };
+        if first.passage != next.passage {
+            return;
+        }
+        let (from, to) = (&first.waypoint, &next.waypoint);
+        let seconds = crate::path::distance_m(from.position, to.position) / to.airspeed_mps.max(1.0);
+        let climb_m = self.profile.max_climb_mps * seconds + CLIMB_LEAD_M;
+        let descent_m = self.profile.max_descent_mps * seconds + CLIMB_LEAD_M;
+        let reach_m = (to.altitude_amsl_m - climb_m, to.altitude_amsl_m + descent_m);
+        let altitude_m = from.altitude_amsl_m.max(reach_m.0).min(reach_m.1);
+        if let Some(first) = self.state.handed.front_mut() {
+            first.waypoint.altitude_amsl_m = altitude_m;
+        }
     }
 
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {

@@ -11,6 +11,7 @@ mod place;
 mod refresh;
 mod trail;
 
+pub(crate) use emit::CLIMB_LEAD_M;
 pub use notes::{Mark, Notes, Trouble};
 pub use trail::{Trail, Visit};
 

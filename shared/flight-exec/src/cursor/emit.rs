@@ -10,7 +10,7 @@ use flight_plan::{Act, Trigger};
 
 /// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
 /// target, however wide it turns. The gateway grants ten.
-const CLIMB_LEAD_M: f64 = 8.0;
+pub(crate) const CLIMB_LEAD_M: f64 = 8.0;
 
 impl Cursor {
     /// Seconds to be circled at the end of the leg before it is left.

@@ -1,7 +1,8 @@
 //! Commands: each is done or refused with a reason, and answered once.
 
 use crate::rig::{Rig, document, fix, program};
-use flight_exec::{AircraftState, Command, Event, Executor, Input, Output, Phase, Snapshot, Token};
+use aircraft::Profile;
+use flight_exec::{AircraftState, Command, Event, Executor, Input, Output, Phase, Snapshot, Time, Token};
 use flight_plan::Cause;
 
 const LEGS: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
@@ -368,4 +369,29 @@ fn an_abort_asks_for_safe_mode_and_the_plan_holds_until_it_is_resumed() {
     assert_eq!(rig.legs(), "a b c d");
     rig.command(Command::AbortToSafe).unwrap();
     assert_eq!((rig.aborts, rig.executor.status().phase), (2, Phase::Finished), "without a flight as well");
+}
+
+/// The place where a hold was given is as high as the waypoint behind it was then; by now that one may be another one.
+#[test]
+fn where_a_hold_was_given_is_no_higher_than_can_be_descended_from() {
+    let plan = |metres: u32| {
+        document(&format!(
+            r#"<TF id="a" fix="B1"/><TF id="p" fix="B2" altitude="{metres}" altitudeReference="amsl"/><TF id="z" fix="A3"/>"#
+        ))
+    };
+    let mut rig = Rig::flying(&plan(600));
+    rig.fly_to("p");
+    rig.position = fix("B2").destination(180.0, 300.0);
+    rig.now += Time::from_secs(68);
+    rig.report();
+    for _ in 0..2 {
+        rig.command(Command::Hold).unwrap();
+        rig.command(Command::Resume).unwrap();
+    }
+    rig.command(Command::Hold).unwrap();
+    rig.update(&program(&plan(400))).unwrap();
+    rig.command(Command::Resume).unwrap();
+    let heights: Vec<f64> = rig.buffer.iter().take(2).map(|w| w.altitude_amsl_m).collect();
+    let descent_m = Profile::default().max_descent_mps * 300.0 / rig.buffer[1].airspeed_mps + 10.0;
+    assert!(heights[1] < 500.0 && heights[0] - heights[1] <= descent_m, "{heights:?}, {descent_m}");
 }
