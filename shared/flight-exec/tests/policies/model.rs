@@ -364,6 +364,8 @@ impl<'a> Model<'a, '_> {
             }
             if *form == IterativeForm::Reverse {
                 self.stack[depth].reverse ^= true;
+                // until it is turned, the leg being flown is one of the other direction
+                self.here = None;
                 self.enter(&leg.id)?;
             }
             if !self.stack[depth].reverse {
