@@ -187,7 +187,8 @@ fn same(kept: &Preview, fresh: &Preview) -> Result<(), TestCaseError> {
     prop_assert!(near(kept.distance_m, fresh.distance_m, 1e6) && near(kept.energy_j, fresh.energy_j, 3e7));
     prop_assert_eq!(kept.legs.len(), fresh.legs.len());
     for (a, b) in kept.legs.iter().zip(&fresh.legs) {
-        prop_assert!(near(a.distance_m, b.distance_m, 1e6) && near(a.energy_j, b.energy_j, 3e7));
+        let alike = near(a.distance_m, b.distance_m, 1e6) && near(a.energy_j, b.energy_j, 3e7);
+        prop_assert!(alike, "{a:?} instead of {b:?}");
         let b =
             flight_exec::preview::LegPassage { distance_m: a.distance_m, energy_j: a.energy_j, ..b.clone() };
         prop_assert_eq!(a, &b);

@@ -97,11 +97,12 @@ impl<'a> Flight<'a> {
     /// Flies until a waypoint is reached at which a leg begins; false: it is over before.
     pub(super) fn on_to_the_next_leg(&mut self, progress: Progress) -> Result<bool, PreviewError> {
         let step_us = microseconds(self.given.options.step_s.clamp(0.02, 0.2));
-        self.at.entered = false;
         while !self.is_over() {
             let next = self.at.buffer.get(1).map(Target::from);
             let guided = self.at.guidance.step(self.at.aircraft.state(), next.as_ref());
             if guided.reached && !self.at.buffer.is_empty() {
+                // one that was begun between waypoints is no place to go on from: it began earlier
+                self.at.entered = false;
                 self.reached(&guided, step_us)?;
                 if self.at.entered {
                     return Ok(true);

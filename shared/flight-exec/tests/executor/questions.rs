@@ -100,13 +100,11 @@ fn behind_a_loop_that_flies_nothing_nobody_is_asked() {
     assert!(rig.events.iter().any(|e| matches!(e, Event::PatternRefused { .. })), "{:?}", rig.events);
 }
 
-/// No farther than so many waypoints anybody looks, however early the plan wants to be asked.
+/// Nobody looks farther ahead than some thousand waypoints, however early the plan wants to be asked.
 #[test]
-fn a_question_hours_ahead_is_asked_when_its_intersection_comes_into_sight() {
-    let circles = r#"<orbit id="o" radius="150" turns="90" turn="left"><centre fix="B3"/></orbit>"#;
-    let mut rig = Rig::started(&fork(circles, "9000s"));
+fn a_question_days_ahead_is_not_asked_before_its_intersection_comes_into_sight() {
+    let circles = r#"<orbit id="o" radius="150" turns="300" turn="left"><centre fix="B3"/></orbit>"#;
+    let mut rig = Rig::started(&fork(circles, "90000s"));
     rig.fly_to("o");
     assert!(asked(&rig).is_none() && !is_taken(&rig));
-    rig.fly_to_the_end();
-    assert!(is_taken(&rig) && rig.legs().ends_with("l z"), "{}", rig.legs());
 }
