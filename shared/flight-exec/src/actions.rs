@@ -33,9 +33,11 @@ pub(crate) struct Passage {
 }
 
 /// What became of an action on this passage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Done {
     times: u64,
+    /// Of one that is repeated: up to this way made on the passage it has been done, metres.
+    up_to_m: f64,
     /// Of one that is due abeam of a position: it lay beyond the end of the last piece of the path.
     ahead: bool,
 }
@@ -50,19 +52,35 @@ pub(crate) struct Wait {
 
 impl Executor {
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
-    pub(crate) fn change_passage(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
+    pub(crate) fn change_passage(&mut self, handed: &Handed, mut marks: Vec<Mark>, out: &mut Vec<Output>) {
+        // of a passage that has begun it may turn out, laid out anew, that nothing of it is left
+        let is_followed = |m: &Mark| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
+        marks.retain(|mark| !is_followed(mark));
         self.end_passages(|p| !p.is_around(handed), out);
         for passage in &mut self.state.passages {
             passage.iteration = iteration_of(&self.program, &passage.leg, handed);
         }
         self.pass_silently(marks, handed, out);
         out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
-        let loops: Vec<_> = loops_of(handed).map(|(leg, number)| (leg.clone(), number)).collect();
-        for (leg, number) in loops {
+        for (leg, number) in self.flown_at(handed) {
             self.begin_passage(&leg, number, handed, out);
         }
-        if !self.is_control_leg(&handed.place.leg) {
-            self.begin_passage(&handed.place.leg, handed.passage, handed, out);
+    }
+
+    /// What is flown on the way to a waypoint, with the numbers of its passages: the loops around it, outermost first, and its leg.
+    fn flown_at(&self, handed: &Handed) -> Vec<(Id, u64)> {
+        let own = Some((&handed.place.leg, handed.passage)).filter(|(leg, _)| !self.is_control_leg(leg));
+        loops_of(handed).chain(own).map(|(leg, number)| (leg.clone(), number)).collect()
+    }
+
+    /// In a new plan, what is being flown may have actions for the first time: what lies behind is not repeated.
+    pub(crate) fn follow_what_acts_now(&mut self) {
+        let front = self.state.handed.front().filter(|front| self.is_announced(front));
+        let Some(front) = front.cloned() else { return };
+        let behind_m = (self.way_made_m() - front.leg_start_m).max(0.0);
+        for (leg, number) in self.flown_at(&front) {
+            let passage = self.passage(&leg, number, &front, behind_m);
+            self.state.passages.extend(passage);
         }
     }
 
@@ -70,7 +88,7 @@ impl Executor {
     pub(crate) fn pass_silently(&mut self, marks: Vec<Mark>, handed: &Handed, out: &mut Vec<Output>) {
         for mark in marks {
             self.begin_passage(&mark.leg, mark.passage, handed, out);
-            self.end_passages(|p| (&p.leg, p.number) == (&mark.leg, mark.passage), out);
+            self.end_passages(|p| p.is(&mark.leg, mark.passage), out);
         }
     }
 
@@ -80,21 +98,24 @@ impl Executor {
     }
 
     fn begin_passage(&mut self, leg: &Id, number: u64, handed: &Handed, out: &mut Vec<Output>) {
-        let actions = self.program.leg(leg).map_or(0, |l| l.actions.len());
-        if actions == 0 || self.state.passages.iter().any(|p| (&p.leg, p.number) == (leg, number)) {
-            return;
-        }
+        let Some(mut passage) = self.passage(leg, number, handed, 0.0) else { return };
         self.state.acted_s = self.state.clock_s;
-        let mut passage = Passage {
+        self.act_on(&mut passage, &Moment::begun(handed), out);
+        self.state.passages.push(passage);
+    }
+
+    /// A passage to be followed, if it has actions and is not followed yet; nothing is repeated of the way up to `up_to_m`, metres.
+    fn passage(&self, leg: &Id, number: u64, handed: &Handed, up_to_m: f64) -> Option<Passage> {
+        let actions = self.program.leg(leg).map_or(0, |l| l.actions.len());
+        let is_new = actions > 0 && !self.state.passages.iter().any(|p| p.is(leg, number));
+        is_new.then(|| Passage {
             leg: leg.clone(),
             number,
             iteration: iteration_of(&self.program, leg, handed),
             began_m: handed.leg_start_m,
             flown_s: 0.0,
-            done: vec![Done::default(); actions],
-        };
-        self.act_on(&mut passage, &Moment::begun(handed), out);
-        self.state.passages.push(passage);
+            done: vec![Done { up_to_m, ..Done::default() }; actions],
+        })
     }
 
     /// Ends passages as they should, the innermost first.
@@ -168,13 +189,21 @@ impl Executor {
     /// The actions of legs in another plan: what was done stays done, found again by the action itself. A leg that flies is no longer
     /// what it was as a loop or an intersection, and the other way round.
     pub(crate) fn carry_passages_over(&mut self, old: &Program) {
+        let way_m = self.way_made_m();
         for passage in &mut self.state.passages {
             let (before, after) = (old.leg(&passage.leg), self.program.leg(&passage.leg));
             let kind = |leg: &Leg| is_control(leg).then(|| leg.kind_name());
             let after = after.filter(|leg| before.map(kind) == Some(kind(leg)));
-            passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg));
+            let new = Done { up_to_m: (way_m - passage.began_m).max(0.0), ..Done::default() };
+            passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg, new));
         }
         self.state.passages.retain(|p| !p.done.is_empty());
+    }
+
+    /// Path length where the aircraft is, metres.
+    fn way_made_m(&self) -> f64 {
+        let front = self.state.handed.front().map(|h| h.end_m - self.to_current_m());
+        front.or(self.state.tail.as_ref().map(|t| t.path.distance_m)).unwrap_or(0.0)
     }
 
     /// Begins to circle for a time, when the aircraft steers to such a waypoint. The leg's other actions at its end are done
@@ -182,7 +211,7 @@ impl Executor {
     pub(crate) fn begin_wait(&mut self, handed: &Handed, out: &mut Vec<Output>) {
         let Some(seconds) = handed.wait_s.filter(|_| !self.is_waiting_at(handed.passage)) else { return };
         self.for_passages(|executor, passage| {
-            if (&passage.leg, passage.number) == (&handed.place.leg, handed.passage) {
+            if passage.is(&handed.place.leg, handed.passage) {
                 executor.act_at_the_end(passage, out);
             }
         });
@@ -204,6 +233,10 @@ impl Executor {
 }
 
 impl Passage {
+    pub fn is(&self, leg: &Id, number: u64) -> bool {
+        (&self.leg, self.number) == (leg, number)
+    }
+
     /// It is that of a loop around a waypoint.
     fn is_around(&self, handed: &Handed) -> bool {
         loops_of(handed).any(|l| l == (&self.leg, self.number))
@@ -224,12 +257,13 @@ fn loops_of(handed: &Handed) -> impl Iterator<Item = (&Id, u64)> {
     loops.zip(handed.activations.iter().copied())
 }
 
-fn remapped(done: &[Done], old: Option<&Leg>, new: &Leg) -> Vec<Done> {
+/// What became of each of a leg's actions; `unknown` of one that it hadn't in the old plan.
+fn remapped(done: &[Done], old: Option<&Leg>, new: &Leg, unknown: Done) -> Vec<Done> {
     let before = old.map_or(&[][..], |l| &l.actions);
     let of = |(index, action)| {
         let same = before.get(index).filter(|a| *a == action).map(|_| index);
         let index = same.or_else(|| before.iter().position(|a| a == action));
-        index.and_then(|i| done.get(i)).copied().unwrap_or_default()
+        index.and_then(|i| done.get(i)).copied().unwrap_or(unknown)
     };
     new.actions.iter().enumerate().map(of).collect()
 }

@@ -97,10 +97,13 @@ impl Executor {
             return Err(refusal("not-holding", "it doesn't hold: there is nothing to resume"));
         }
         self.enter_phase(Phase::Flying, out);
-        if let Some(rejoin) = self.rejoin() {
-            self.state.handed.push_front(rejoin);
-        }
+        let rejoin = self.rejoin();
+        let rejoins = rejoin.is_some();
+        rejoin.into_iter().for_each(|rejoin| self.state.handed.push_front(rejoin));
         self.bring_first_within_reach();
+        if rejoins {
+            self.lead_the_path_there();
+        }
         self.state.held_at = None;
         if self.state.handed.is_empty() {
             // what flew nothing may do so by now
@@ -133,6 +136,21 @@ impl Executor {
         rejoin.end_s = front.end_s - left_m / front.waypoint.airspeed_mps.max(1.0);
         rejoin.pinned = true;
         Some(rejoin)
+    }
+
+    /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft.
+    fn lead_the_path_there(&mut self) {
+        let mut ahead = self.state.handed.iter_mut();
+        let (Some(rejoin), Some(next)) = (ahead.next(), ahead.next()) else { return };
+        if next.before.passage != next.passage {
+            return;
+        }
+        let path = &mut next.before.path;
+        let (position, altitude_amsl_m) = (rejoin.waypoint.position, rejoin.waypoint.altitude_amsl_m);
+        path.last.position = position;
+        path.course_deg = crate::path::distance_and_course(position, next.waypoint.position).1;
+        (path.commanded_amsl_m, path.predicted_amsl_m) = (altitude_amsl_m, altitude_amsl_m);
+        (path.distance_m, path.time_s) = (rejoin.end_m, rejoin.end_s);
     }
 
     /// What was near when the plan was changed has stayed as it was: it may be higher or lower than the aircraft could climb or descend
@@ -271,8 +289,7 @@ impl Executor {
         // waypoints too near to be laid out anew tell it as well
         for near in 0..self.alterable_from() {
             if self.activation_at(near, &leg) == Some(activation) {
-                let place = self.state.handed.get_mut(near).map(|h| &mut h.place.iterations);
-                place.into_iter().flatten().filter(|i| i.leg == leg).for_each(|i| i.of = Some(count));
+                self.state.handed.iter_mut().skip(near).take(1).for_each(|h| h.tell_count(&leg, count));
             }
         }
         self.state.counts.push(LoopCount { leg, activation: Some(activation), count });

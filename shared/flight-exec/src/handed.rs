@@ -5,6 +5,7 @@ use crate::choice::Choice;
 use crate::cursor::{Cursor, Doing, Emission, Mark, Notes, Step, Trouble};
 use crate::path::distance_m;
 use crate::world::World;
+use flight_plan::Id;
 use serde::{Deserialize, Serialize};
 
 /// Two waypoints this close are the same for the autopilot, metres.
@@ -227,6 +228,19 @@ impl Handed {
         self.before = Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting };
         let open = self.choices.split_off(self.choices.len().saturating_sub(1));
         (std::mem::replace(&mut self.choices, open), std::mem::take(&mut self.marks))
+    }
+
+    /// A loop that it is in will be flown so often, as its place says and the choice that led to it.
+    pub fn tell_count(&mut self, of_leg: &Id, count: u64) {
+        let around = self.place.iterations.iter_mut().filter(|i| i.leg == *of_leg);
+        around.for_each(|i| i.of = Some(count));
+        for choice in &mut self.choices {
+            if let Choice::Loop { leg, of, again: true, .. } = choice
+                && leg == of_leg
+            {
+                *of = Some(count);
+            }
+        }
     }
 
     /// The aircraft circles here until something else is fed.

@@ -18,12 +18,16 @@ impl Executor {
         }
     }
 
-    /// Waypoint number `index` is the first one of the leg being flown, and the values of now make no such leg: why, and the number
-    /// of the first waypoint behind it.
-    fn would_leave_out_the_leg_begun(&self, index: usize) -> Option<(Trouble, usize)> {
+    /// Waypoint number `index` is the first one of the leg being flown, and from the bookmark `before` it the values of now make no
+    /// such leg: why, and the number of the first waypoint behind it.
+    pub(crate) fn would_leave_out_the_leg_begun(
+        &self,
+        index: usize,
+        before: &Cursor,
+    ) -> Option<(Trouble, usize)> {
         let first = self.state.handed.get(index).filter(|first| self.is_announced(first))?;
-        let before = Some(self.bookmark(index)).filter(|before| before.passage != first.passage)?;
-        let trouble = before.trouble_with(&first.place.leg, &self.world())?;
+        let before = Some(before).filter(|before| before.passage != first.passage)?;
+        let trouble = before.clone().trouble_with(&first.place.leg, &self.world())?;
         let of_leg = self.state.handed.iter().skip(index).take_while(|h| h.passage == first.passage);
         Some((trouble, index + of_leg.count()))
     }
@@ -44,7 +48,7 @@ impl Executor {
         let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
         // a pattern that is over is not to be flown once more
         let begun = self.at_the_leg_begun(keep, &self.world());
-        if let Some((trouble, behind)) = self.would_leave_out_the_leg_begun(keep) {
+        if let Some((trouble, behind)) = self.would_leave_out_the_leg_begun(keep, &self.bookmark(keep)) {
             self.tell_trouble(trouble, out);
             return self.replan_from(behind, false, out);
         }

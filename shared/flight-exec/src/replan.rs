@@ -205,6 +205,8 @@ impl Executor {
         self.state.handed.clear();
         self.state.ahead = None;
         self.state.held_at = None;
+        // somebody has asked for the way ahead: what is wrong with it is told, told before or not
+        self.state.told.clear();
         let more = self.horizon(0, cursor.path.time_s);
         let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
@@ -217,8 +219,7 @@ impl Executor {
     fn begin_anew_what_was_left(&mut self, cursor: &mut Cursor, around: &[Id]) {
         for (frame, id) in cursor.loops.iter_mut().zip(around) {
             let acts = self.program.leg(id).is_some_and(|leg| !leg.actions.is_empty());
-            let is_followed =
-                self.state.passages.iter().any(|p| (&p.leg, p.number) == (id, frame.activation));
+            let is_followed = self.state.passages.iter().any(|p| p.is(id, frame.activation));
             if acts && !is_followed {
                 let counts = self.state.counts.iter_mut();
                 let own = counts.filter(|c| c.leg == *id && c.activation == Some(frame.activation));

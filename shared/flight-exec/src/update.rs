@@ -33,7 +33,7 @@ impl Executor {
                 self.activate(proposed, out);
                 self.jump(*cursor, out);
             }
-            Carried::On { kept, onward } => self.go_on_in(proposed, &kept, *onward, out),
+            Carried::On { bookmarks, keep } => self.go_on_in(proposed, &bookmarks, keep, out),
         }
         Ok(())
     }
@@ -51,18 +51,19 @@ impl Executor {
     }
 
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
-    fn go_on_in(
-        &mut self,
-        program: Arc<Program>,
-        kept: &[Cursor],
-        mut onward: Cursor,
-        out: &mut Vec<Output>,
-    ) {
+    fn go_on_in(&mut self, program: Arc<Program>, bookmarks: &[Cursor], keep: usize, out: &mut Vec<Output>) {
         let same = self.program == program;
         self.activate(program, out);
+        // as it was laid out goes on what can't be laid out any more
+        let left_out = bookmarks.get(keep).and_then(|at| self.would_leave_out_the_leg_begun(keep, at));
+        let keep = left_out.as_ref().map_or(keep, |(_, behind)| *behind);
+        if let Some((trouble, _)) = left_out {
+            self.tell_trouble(trouble, out);
+        }
+        let (kept, onward) = bookmarks.split_at(keep.min(bookmarks.len()));
         let world = self.world();
-        let behind = kept.iter().skip(1).chain([&onward]);
-        let places: Vec<_> = behind.map(|at| (at.place(&world), at.activations())).collect();
+        let places: Vec<_> =
+            bookmarks.iter().skip(1).map(|at| (at.place(&world), at.activations())).collect();
         for ((handed, bookmark), (place, activations)) in self.state.handed.iter_mut().zip(kept).zip(places) {
             handed.before = bookmark.clone();
             handed.pinned = true;
@@ -70,7 +71,9 @@ impl Executor {
                 (handed.place, handed.activations) = (place, activations);
             }
         }
+        self.follow_what_acts_now();
         self.forget_counts_of_loops_left();
+        let Some(mut onward) = onward.first().cloned() else { return };
         let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
@@ -91,15 +94,16 @@ impl Executor {
         let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
         if let Some(current) = current.filter(|path| self.is_of_the_plan_flown(path, new)) {
             let keep = self.alterable_from();
+            let entered = self.bookmark(0).passage;
             let translate = |i: usize| {
                 let begun = self.at_the_leg_begun(i, &world);
                 let kept = i.checked_sub(1).filter(|_| begun.is_none());
                 let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
                 let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
-                translated(&bookmark, leg, &current, new, &world)
+                translated(&bookmark, leg, &current, entered, new, &world)
             };
-            let (kept, onward) = ((0..keep).map(translate).collect(), Box::new(translate(keep)));
-            return Ok(Carried::On { kept, onward });
+            let bookmarks = (0..=self.state.handed.len()).map(translate).collect();
+            return Ok(Carried::On { bookmarks, keep });
         }
         let Some(entry) = entry else {
             let reason =
@@ -168,24 +172,30 @@ enum Carried {
     Enter(Box<Cursor>),
     /// Goes on where it is.
     On {
-        /// Bookmarks before each waypoint that stays.
-        kept: Vec<Cursor>,
-        /// And behind the last of them.
-        onward: Box<Cursor>,
+        /// Bookmarks before each waypoint ahead, and behind the last of them.
+        bookmarks: Vec<Cursor>,
+        /// So many of the waypoints stay.
+        keep: usize,
     },
 }
 
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
 /// identifiers. In the middle of a leg that has become another kind of leg, it is the beginning of that one, on the same passage. If
 /// its leg is gone, or in another of the document's plans, it is the beginning of `current` (nothing kept before it) or the end of it.
+/// Loops that the new plan puts around it were `entered` after that passage, whichever bookmark it is.
 fn translated(
     cursor: &Cursor,
     kept_leg: Option<&Id>,
     current: &LegPath,
+    entered: u64,
     new: &Program,
     world: &World,
 ) -> Cursor {
     let known = cursor.loop_ids(world);
+    let placed_at = |target: &LegPath| {
+        let entering = Cursor { passage: entered, ..cursor.clone() };
+        Cursor { passage: cursor.passage, ..entering.placed_at(target, &known, new) }
+    };
     let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
         let unfinished = cursor.doing == Doing::Flying && !cursor.at_the_end_of_its_leg();
@@ -193,16 +203,16 @@ fn translated(
         let other_form = other_form.filter(|leg| new.leg(&leg.id).is_some_and(|leg| !is_control(leg)));
         if let Some(target) = other_form.and_then(|leg| new.path(&leg.id)).filter(same_plan) {
             let passage = cursor.passage.saturating_sub(1);
-            return Cursor { passage, ..cursor.placed_at(&target, &known, new) };
+            return Cursor { passage, ..placed_at(&target) };
         }
         let fallback = kept_leg.and_then(|id| new.path(id)).filter(same_plan);
-        let mut placed = cursor.placed_at(fallback.as_ref().unwrap_or(current), &known, new);
+        let mut placed = placed_at(fallback.as_ref().unwrap_or(current));
         if kept_leg.is_some() {
             placed.doing = Doing::Flying;
         }
         return placed;
     };
-    let mut moved = cursor.placed_at(&target, &known, new);
+    let mut moved = placed_at(&target);
     restore_trails(&mut moved, cursor, &known, world, new, &target);
     Cursor {
         doing: cursor.doing,

@@ -14,7 +14,7 @@ const NEAR_M: f64 = 1.0;
 /// Repeated actions nearer to each other than this are refused, metres.
 const LEAST_EVERY_M: f64 = 1.0;
 /// Most repetitions caught up with at once; those still missing follow in the next steps.
-const MOST_AT_ONCE: u64 = 64;
+const MOST_AT_ONCE: usize = 64;
 
 /// How far the flight is.
 #[derive(Debug, Clone, Copy)]
@@ -56,18 +56,20 @@ impl Executor {
         let program = self.program.clone();
         let actions = program.leg(&passage.leg).map_or(&[][..], |leg| &leg.actions);
         let mut due = Vec::new();
+        let mut up_to_m = Vec::new();
         for (number, (action, done)) in actions.iter().zip(&passage.done).enumerate() {
-            match self.due(passage, *done, action, moment) {
-                Ok(ways_m) => due.extend(ways_m.into_iter().map(|way_m| (way_m, number, &action.act))),
-                Err(reason) => {
-                    let leg = passage.leg.clone();
-                    self.tell_trouble(Trouble::Expression { leg, reason }, out);
-                }
-            }
+            let ways_m = self.due(passage, *done, action, moment).unwrap_or_else(|reason| {
+                let leg = passage.leg.clone();
+                self.tell_trouble(Trouble::Expression { leg, reason }, out);
+                Vec::new()
+            });
+            let caught_up_m = ways_m.get(MOST_AT_ONCE - 1).copied().unwrap_or(moment.way_m - passage.began_m);
+            up_to_m.push(caught_up_m.max(done.up_to_m));
+            due.extend(ways_m.into_iter().map(|way_m| (way_m, number, &action.act)));
         }
         let beyond = self.beyond(passage, actions, moment);
-        for (done, ahead) in passage.done.iter_mut().zip(beyond) {
-            done.ahead = ahead.unwrap_or(done.ahead);
+        for ((done, ahead), up_to_m) in passage.done.iter_mut().zip(beyond).zip(up_to_m) {
+            (done.ahead, done.up_to_m) = (ahead.unwrap_or(done.ahead), up_to_m);
         }
         due.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, number, act) in due {
@@ -106,7 +108,7 @@ impl Executor {
         let way_m = moment.way_m - passage.began_m;
         if let Trigger::Every(every) = &action.trigger {
             let every_m = world.number(every).map_err(|why| why.to_string())?;
-            return multiples(every_m, way_m, done.times);
+            return multiples(every_m, done.up_to_m, way_m);
         }
         if done.times > 0 {
             return Ok(Vec::new());
@@ -154,13 +156,13 @@ impl Piece {
     }
 }
 
-/// Multiples of a distance on the way that have not been done.
-fn multiples(every_m: f64, way_m: f64, times: u64) -> Result<Vec<f64>, String> {
+/// Multiples of a distance on the way made since `up_to_m`, metres.
+fn multiples(every_m: f64, up_to_m: f64, way_m: f64) -> Result<Vec<f64>, String> {
     if every_m < LEAST_EVERY_M {
         return Err(format!("an action every {every_m} m can't be done: give it {LEAST_EVERY_M} m or more"));
     }
     // a cast of a negative number gives 0
-    let passed = (way_m / every_m).floor() as u64;
-    let until = passed.min(times.saturating_add(MOST_AT_ONCE));
-    Ok((times + 1..=until).map(|n| n as f64 * every_m).collect())
+    let passed = |way_m: f64| (way_m / every_m).floor() as u64;
+    let since = passed(up_to_m) + 1..=passed(way_m);
+    Ok(since.take(MOST_AT_ONCE).map(|n| n as f64 * every_m).collect())
 }

@@ -213,6 +213,46 @@ fn an_update_keeps_what_was_done_of_the_leg_being_flown() {
     assert_eq!(done(&rig).len(), 3);
 }
 
+/// What lies behind when it comes into the plan has not been asked for there.
+#[test]
+fn what_an_update_lets_be_repeated_is_not_caught_up_with() {
+    let mut rig = flying(&two_legs(""));
+    rig.fly_to("p");
+    at(&mut rig, 1000.0);
+    rig.update(&crate::rig::program(&document_with(&two_legs(&action(r#"every="300""#)), VARIABLES, "")))
+        .unwrap();
+    for (metres, times) in [(1000.0, 0), (1190.0, 0), (1210.0, 1), (1510.0, 2)] {
+        at(&mut rig, metres);
+        assert_eq!(done(&rig).len(), times, "{metres}");
+    }
+}
+
+/// The aircraft circles at the end of the leg when a new plan has no wait there any more: nothing of the leg is left to be flown.
+#[test]
+fn what_is_done_at_the_end_of_a_leg_is_done_once_where_an_update_ends_it() {
+    let wait = r#"<action on="end"><wait seconds="20"/></action>"#;
+    let photo = r#"<action on="end"><photo/></action>"#;
+    let climb = |actions: &str, more: &str| {
+        format!(
+            r#"<TF id="a" fix="B1"/><FA id="p" fix="C1" course="80" altitude="600" altitudeReference="amsl">{actions}</FA>{more}<TF id="z" fix="A3"/>"#
+        )
+    };
+    let mut rig = flying(&climb(wait, ""));
+    rig.fly_to("p");
+    rig.altitude_amsl_m = Some(600.0);
+    while rig.fly_one() {}
+    rig.command(Command::GoTo { leg: "p".into() }).unwrap();
+    rig.steer();
+    rig.update(&crate::rig::program(&document_with(
+        &climb(photo, r#"<TF id="y" fix="B3"/>"#),
+        VARIABLES,
+        "",
+    )))
+    .unwrap();
+    rig.fly_to("z");
+    assert_eq!(done(&rig), ["p:photo"]);
+}
+
 fn refusals(rig: &Rig) -> Vec<&str> {
     let refused = rig.events.iter().filter_map(|e| match e {
         Event::ActionRefused { reason, .. } => Some(reason.as_str()),

@@ -30,6 +30,37 @@ fn a_course_to_fix_is_joined_and_ends_on_its_course() {
     }
 }
 
+/// Another speed has other turns, but they are behind.
+#[test]
+fn after_a_hold_on_its_course_nothing_of_a_course_to_fix_is_flown_twice() {
+    for holds in [1, 2] {
+        let from = fix("C4").destination(90.0 + 180.0 + 30.0, 6000.0);
+        let legs = format!(
+            r#"<TF id="a" lat="{}" lon="{}"/><CF id="c" fix="C4" course="90" speed="= v"/><TF id="z" fix="A3"/>"#,
+            from.lat_deg, from.lon_deg
+        );
+        let speed = r#"<variable name="v" type="number" initial="20" min="18" max="30"/>"#;
+        let mut rig = Rig::flying(&document_with(&legs, speed, ""));
+        rig.fly_to("c");
+        while rig.buffer[0].position.distance_m(fix("C4")) > 1.0 {
+            rig.fly_one();
+        }
+        for _ in 0..holds {
+            rig.position = fix("C4").destination(270.0, 1000.0);
+            rig.report();
+            rig.command(Command::Hold).unwrap();
+            rig.command(Command::Resume).unwrap();
+        }
+        rig.set("v", 28.0).unwrap();
+        let ahead: Vec<_> = rig.buffer.iter().filter(|w| w.leg.as_str() == "c").collect();
+        assert!(
+            ahead.len() >= 2 && ahead.iter().all(|w| w.position.distance_m(fix("C4")) < 1001.0),
+            "{ahead:?}"
+        );
+        assert_eq!(ahead[ahead.len() - 1].airspeed_mps, 28.0);
+    }
+}
+
 #[test]
 fn backwards_a_course_to_fix_is_a_track_to_where_it_came_from() {
     let legs = r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="2">

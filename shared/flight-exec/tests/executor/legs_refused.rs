@@ -95,8 +95,12 @@ fn on_the_way_to_a_leg_values_that_make_none_leave_it_as_it_is() {
         rig.set("v", 0.0).unwrap();
         assert_eq!(ahead(&rig), before, "{leg}");
         assert_eq!(reasons(&rig).len(), 1, "{leg}");
+        // nor does another plan change that, where it has the same leg
+        let more = format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="y" fix="B3"/><TF id="z" fix="A3"/>"#);
+        rig.update(&program(&document_with(&more, VARIABLES, ""))).unwrap();
+        assert_eq!(ahead(&rig), before, "{leg}");
         rig.fly_to_the_end();
-        assert_eq!(rig.legs(), "a p z", "{leg}");
+        assert_eq!(rig.legs(), "a p y z", "{leg}");
     }
 }
 

@@ -21,7 +21,7 @@ use terrain::Flat;
 /// Over the ground: no wind.
 pub const SPEED_MPS: f64 = 25.0;
 /// Waypoints after which a flight left alone must have ended: four nested passes of the largest plan are half of it.
-const MOST_WAYPOINTS: usize = 20_000;
+const MOST_WAYPOINTS: usize = 60_000;
 /// Inputs for which an executor that was not killed is asked as well.
 const TWIN_INPUTS: usize = 12;
 

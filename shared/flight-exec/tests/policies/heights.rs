@@ -74,6 +74,12 @@ fn passages(trace: &Trace) -> Vec<Passage<'_>> {
         if step.accepted() == Some(&Command::Resume) {
             (broken, resumed_at) = (true, Some(front.token));
         }
+        if matches!(step.input(), Some(Input::GatewayControls(_)))
+            && step.before.ahead.first().is_some_and(|w| resumed_at == Some(w.token))
+        {
+            // sent once more, with another number
+            resumed_at = Some(front.token);
+        }
         // that may be where the hold was given, as high as the one behind it
         if resumed_at == Some(front.token) {
             continue;
@@ -106,12 +112,20 @@ fn own(trace: &Trace, found: &mut Findings) {
         for pair in flies[..own].windows(2).filter(|_| pattern || holding) {
             let [(_, from), (step, to)] = pair else { continue };
             if follows(*step, from, to) && !updated_since_jump(*step) {
-                found.expect(*step, is_as_said(leg, 0.0, from, to), || {
+                // back it goes as it went out, whatever a plan since then makes of the leg
+                let is_right = is_as_said(leg, 0.0, from, to) || place.reverse && was_another(*step, &leg.id);
+                found.expect(*step, is_right, || {
                     format!("{} {}: {from:?} to {to:?}", leg.id, if place.reverse { "back" } else { "" })
                 });
             }
         }
     }
+}
+
+/// An update before this step made another leg of this one.
+fn was_another(step: Step, leg: &Id) -> bool {
+    let earlier = (0..step.at).map(|at| step.trace.step(at));
+    earlier.filter_map(|s| s.update()).any(|(old, new)| old.leg(leg) != new.leg(leg))
 }
 
 /// The way led from one to the other, nothing between them.

@@ -63,11 +63,14 @@ struct Model<'a, 'f> {
     here: Option<Id>,
     counts: BTreeMap<Id, u64>,
     taken: BTreeMap<Id, Id>,
-    /// Likewise, after a leg was skipped before it was entered: what led to that one was decided already.
-    taken_since: BTreeMap<Id, Id>,
+    /// Likewise, after so many legs were skipped before they were entered: what led to the one behind them was decided already.
+    taken_since: Vec<(usize, Id, Id)>,
     cannot_be_flown: BTreeSet<Id>,
-    /// Legs that were skipped before they were entered.
+    /// Legs that were skipped before they were entered, and have not been missed yet.
     may_miss: usize,
+    /// And those that have, since a leg was entered.
+    missed: usize,
+    perhaps_missed: usize,
 }
 
 fn recite(trace: &Trace, found: &mut Findings) {
@@ -81,9 +84,11 @@ fn recite(trace: &Trace, found: &mut Findings) {
         here: None,
         counts: BTreeMap::new(),
         taken: BTreeMap::new(),
-        taken_since: BTreeMap::new(),
+        taken_since: Vec::new(),
         cannot_be_flown: BTreeSet::new(),
         may_miss: 0,
+        missed: 0,
+        perhaps_missed: 0,
     };
     while let Some(jump) = model.next_jump() {
         if let Err(Stop::Wrong(what)) = model.jump(jump) {
@@ -127,10 +132,10 @@ impl<'a> Model<'a, '_> {
     /// Things that are not part of the way.
     fn note(&mut self, sight: &Sight<'a>) {
         match *sight {
-            Sight::Taken(leg, branch) => {
-                let taken = if self.may_miss > 0 { &mut self.taken_since } else { &mut self.taken };
-                taken.insert(leg.clone(), branch.clone());
-            }
+            Sight::Taken(leg, branch) => match self.may_miss + self.missed {
+                0 => drop(self.taken.insert(leg.clone(), branch.clone())),
+                skipped => self.taken_since.push((skipped, leg.clone(), branch.clone())),
+            },
             Sight::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
             Sight::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
             Sight::Skipped { announced } => self.may_miss += usize::from(!announced),
@@ -155,16 +160,19 @@ impl<'a> Model<'a, '_> {
         let step = self.tape[self.at].0;
         self.found.expect(step, true, String::new);
         self.at += 1;
-        self.may_miss = 0;
-        self.taken.append(&mut self.taken_since);
+        self.forget_what_was_skipped();
+    }
+
+    fn forget_what_was_skipped(&mut self) {
+        (self.may_miss, self.missed, self.perhaps_missed) = (0, 0, 0);
+        self.taken.extend(self.taken_since.drain(..).map(|(_, leg, branch)| (leg, branch)));
     }
 
     // ---- jumps -------------------------------------------------------------------------------------------------
 
     fn jump(&mut self, jump: Jump<'a>) -> Flown {
         let mut after = None;
-        self.may_miss = 0;
-        self.taken.append(&mut self.taken_since);
+        self.forget_what_was_skipped();
         let target = match jump {
             Jump::Start(program) => {
                 self.program = Some(program);
@@ -190,8 +198,8 @@ impl<'a> Model<'a, '_> {
                 entry.clone()
             }
             Jump::GoOn { program, leg, simply } => {
-                self.forget_other_forms(program);
                 self.leave_loops_not_around(leg, program);
+                self.forget_other_forms(program);
                 self.program = Some(program);
                 let here = self.here.clone().filter(|_| simply && !self.stack.iter().any(|f| f.reverse));
                 after = here.clone();
@@ -427,14 +435,23 @@ impl<'a> Model<'a, '_> {
             self.enter(&leg.id)?;
             self.peek()?;
         }
-        let taken = self.taken.remove(&leg.id).or_else(|| self.taken_since.remove(&leg.id));
-        let Some(branch) = taken else {
+        let Some(branch) = self.decided(&leg.id) else {
             return Err(Stop::Wrong(format!("{} was crossed without a decision", leg.id)));
         };
         let chosen = branches.iter().find(|b| b.id == branch);
         let chosen = chosen.ok_or_else(|| Stop::Wrong(format!("{} has no branch {branch}", leg.id)))?;
         let known = |id: &Id| list.iter().any(|l| l.id == *id);
         Ok(chosen.next.clone().filter(known))
+    }
+
+    /// What was decided last before the leg behind the intersection was laid out; else whatever was.
+    fn decided(&mut self, leg: &Id) -> Option<Id> {
+        let before = self.taken.remove(leg);
+        let of = |(_, id, _): &(usize, Id, Id)| id == leg;
+        let in_time = self.taken_since.iter().rposition(|t| of(t) && t.0 < self.missed + self.perhaps_missed);
+        let any = || self.taken_since.iter().rposition(of).filter(|_| before.is_none());
+        let since = in_time.or_else(any).map(|i| self.taken_since.remove(i).2);
+        since.or(before)
     }
 
     /// A passage must be entered now. Some legs fly something only where the path is not there yet; a leg told to be impossible may be
@@ -449,9 +466,14 @@ impl<'a> Model<'a, '_> {
                 self.agree();
                 Ok(())
             }
-            _ if optional => Ok(()),
+            _ if optional => {
+                // or one of those that were skipped
+                self.perhaps_missed += usize::from(self.may_miss > 0);
+                Ok(())
+            }
             _ if self.may_miss > 0 => {
                 self.may_miss -= 1;
+                self.missed += 1;
                 Ok(())
             }
             other => {

@@ -1,4 +1,4 @@
-//! A trace for people: short enough to be read.
+//! A trace for people: short enough to be read, without the lines of its documents that begin with a bar.
 
 use crate::trace::{Deed, Moment};
 use flight_exec::{Action, Command, Event, Input, Output, PlacePointer, Waypoint};
@@ -38,10 +38,12 @@ fn short(hash: &str) -> &str {
     hash.get(..6).unwrap_or(hash)
 }
 
-/// A plan's hash and the legs of its main plan; bodies in brackets.
+/// A plan's hash and the legs of its main plan, bodies in brackets; then its document.
 fn outline(program: &Program) -> String {
     let legs: Vec<_> = program.flown().stages.iter().map(|s| list(&s.legs)).collect();
-    format!("{}: {}", short(program.hash()), legs.concat())
+    let document: String =
+        flight_plan::write(&program.plan).lines().map(|l| format!("\n    | {l}")).collect();
+    format!("{}: {}{document}", short(program.hash()), legs.concat())
 }
 
 fn list(legs: &[Arc<Leg>]) -> String {

@@ -5,7 +5,7 @@ use crate::horizon::waits;
 use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Step, Trace, kind, knows};
-use flight_exec::{Answer, Command, Event, Input, Phase, PlacePointer, ProposalReport};
+use flight_exec::{Answer, Command, Config, Event, Input, Phase, PlacePointer, ProposalReport};
 use flight_plan::{Id, IterativeForm, LegKind, Program, Variable};
 use std::collections::BTreeSet;
 
@@ -274,8 +274,13 @@ fn same_plan(trace: &Trace, found: &mut Findings) {
         let quiet = |c: &Command| matches!(c, Command::Commit { .. });
         let undisturbed =
             trace.accepted().filter(|(s, _)| (entered..step.at).contains(&s.at)).all(|(_, c)| quiet(c));
-        let written = (entered..step.at)
-            .any(|at| trace.step(at).events().any(|e| matches!(e, Event::VariableChanged { .. })));
+        // what was written is taken into account a little later
+        let since_s = step.moment.now.as_secs_f64() - Config::default().debounce_s - 0.001;
+        let is_recent = |s: &Step| s.at >= entered || s.moment.now.as_secs_f64() >= since_s;
+        let written = (0..step.at)
+            .map(|at| trace.step(at))
+            .filter(is_recent)
+            .any(|s| s.events().any(|e| matches!(e, Event::VariableChanged { .. })));
         if old.hash() == new.hash() && step.before.is_fed() && undisturbed && !written {
             let same = step.feeds().next().is_none() && step.before.tokens() == step.after.tokens();
             found.expect(step, same, || format!("{:?}", step.moment.outputs));
