@@ -3,6 +3,7 @@
 use crate::api::Output;
 use crate::cursor::{Cursor, Step, Trouble};
 use crate::executor::Executor;
+use crate::handed::Handed;
 use crate::world::World;
 use flight_plan::Id;
 
@@ -28,7 +29,9 @@ impl Executor {
         let first = self.state.handed.get(index).filter(|first| self.is_announced(first))?;
         let before = Some(before).filter(|before| before.passage != first.passage)?;
         let trouble = before.clone().trouble_with(&first.place.leg, &self.world())?;
-        let of_leg = self.state.handed.iter().skip(index).take_while(|h| h.passage == first.passage);
+        // whether it is circled at its end is the present plan's business
+        let is_of_it = |h: &&Handed| h.passage == first.passage && !h.is_loiter();
+        let of_leg = self.state.handed.iter().skip(index).take_while(is_of_it);
         Some((trouble, index + of_leg.count()))
     }
 

@@ -37,7 +37,9 @@ pub struct Conductor {
     publisher: Publisher<'static>,
     shared: Arc<Shared>,
     tick: ClockTick,
-    deadline: Instant,
+    /// How long the present tick has been waited for, and when that was last looked at.
+    waited: Duration,
+    looked: Instant,
     patience: Duration,
     _acks: Subscriber<()>,
     _tokens: Subscriber<()>,
@@ -117,7 +119,8 @@ impl Conductor {
             publisher: reliable(session, GATEWAY, TICK)?,
             shared,
             tick: ClockTick { count: first_count(), time_s: 0.0 },
-            deadline: Instant::now(),
+            waited: Duration::ZERO,
+            looked: Instant::now(),
             patience: PATIENCE,
             _acks: acks,
             _tokens: tokens,
@@ -134,7 +137,7 @@ impl Conductor {
     /// Tells everybody the new simulated time, seconds.
     pub fn start(&mut self, time_s: f64) {
         self.tick = ClockTick { count: self.tick.count + 1, time_s };
-        self.deadline = Instant::now() + self.patience;
+        (self.waited, self.looked) = (Duration::ZERO, Instant::now());
         for state in self.shared.lock().values_mut() {
             state.awaited = !state.late;
         }
@@ -146,11 +149,13 @@ impl Conductor {
     /// again, so that requests can be served meanwhile.
     pub async fn settle(&mut self) -> Vec<String> {
         while !self.shared.settled(self.tick.count) {
-            let now = Instant::now();
-            if now >= self.deadline {
+            // a machine that stood still has waited for nobody meanwhile
+            self.waited += self.looked.elapsed().min(REPEAT);
+            self.looked = Instant::now();
+            if self.waited >= self.patience {
                 return self.drop_late();
             }
-            let pause = REPEAT.min(self.deadline - now);
+            let pause = REPEAT.min(self.patience.saturating_sub(self.waited));
             if tokio::time::timeout(pause, self.shared.changed.notified()).await.is_err() {
                 self.publish();
             }

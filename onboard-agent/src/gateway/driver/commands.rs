@@ -10,8 +10,10 @@ use std::time::Duration;
 
 /// Times that a command is sent.
 const TRIES: u32 = 16;
-/// An acknowledged command has to show its effect within this.
+/// An acknowledged command has to show its effect within this, as soon as the autopilot shows anything.
 const EFFECT: Duration = Duration::from_secs(3);
+/// On a link that loses so much that nothing is shown, it is waited for so long.
+const UNSEEN: Duration = Duration::from_secs(15);
 /// Commands that wait; more than the core ever gives.
 const LONGEST_QUEUE: usize = 32;
 /// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
@@ -84,7 +86,7 @@ impl Commands {
         match &self.flight {
             None => (!self.queue.is_empty()).then_some(Time::ZERO),
             Some(given) => match given.acked {
-                Some(at) => Some(at + EFFECT),
+                Some(at) => Some(at + UNSEEN),
                 None => self.rto.deadline(),
             },
         }
@@ -106,8 +108,11 @@ impl Commands {
     fn check(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
         let given = self.flight.as_mut()?;
         match given.acked {
-            Some(at) if now >= at + EFFECT => {
-                let why = format!("the autopilot accepted {:?} and did not do it", given.wish);
+            Some(at) if now >= at + UNSEEN => {
+                let why = format!(
+                    "the autopilot accepted {:?} and has not shown since whether it did it",
+                    given.wish
+                );
                 self.end(Err(why))
             }
             Some(_) => None,
@@ -160,15 +165,19 @@ impl Commands {
     }
 
     /// The autopilot shows something that may be a command's effect.
-    pub fn shown(&mut self, shown: Shown) -> Option<Ended> {
-        let given = self.flight.as_ref().filter(|g| g.acked.is_some())?;
+    pub fn shown(&mut self, now: Time, shown: Shown) -> Option<Ended> {
+        let (given, at) = self.flight.as_ref().and_then(|g| Some((g, g.acked?)))?;
         let obeyed = match (given.wish, shown) {
             (Wish::Current(wanted), Shown::Current(seq)) => wanted == seq,
             (Wish::Mode(wanted), Shown::Mode(mode, _)) => wanted == mode,
             (Wish::Arm, Shown::Mode(_, armed)) => armed,
-            _ => false,
+            _ => return None,
         };
-        if obeyed { self.end(Ok(())) } else { None }
+        if obeyed {
+            return self.end(Ok(()));
+        }
+        let why = format!("the autopilot accepted {:?} and did not do it", given.wish);
+        if now >= at + EFFECT { self.end(Err(why)) } else { None }
     }
 }
 

@@ -229,15 +229,15 @@ impl Driver {
             self.ignored += 1;
             return;
         };
-        self.streams.seen(now, mavlink::Message::message_id(message));
+        self.streams.seen(mavlink::Message::message_id(message));
         match message {
-            MavMessage::HEARTBEAT(beat) => self.heard(beat),
+            MavMessage::HEARTBEAT(beat) => self.heard(now, beat),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
                 self.ended(ended);
             }
-            MavMessage::MISSION_CURRENT(current) => self.current(current.seq),
+            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq),
             _ => self.receive_mission(now, peer, message),
         }
         self.tick(now);
@@ -298,21 +298,21 @@ impl Driver {
         self.reports.push(Report::Capability(capability(beat)));
     }
 
-    fn heard(&mut self, beat: &HEARTBEAT_DATA) {
+    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA) {
         let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
         let mode = commands::mode_of(beat.custom_mode);
         self.reports.push(Report::Heard { mode, armed });
-        let ended = self.commands.shown(Shown::Mode(mode, armed));
+        let ended = self.commands.shown(now, Shown::Mode(mode, armed));
         self.ended(ended);
     }
 
-    fn current(&mut self, seq: u16) {
+    fn current(&mut self, now: Time, seq: u16) {
         // 65535: no current entry
         if seq == u16::MAX {
             return;
         }
         self.reports.push(Report::Current(seq));
-        let ended = self.commands.shown(Shown::Current(seq));
+        let ended = self.commands.shown(now, Shown::Current(seq));
         self.ended(ended);
     }
 

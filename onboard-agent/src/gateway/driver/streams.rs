@@ -1,4 +1,5 @@
-//! Which messages the autopilot is to send, and how often. Asked for again when they don't come.
+//! Which messages the autopilot is to send, and how often. Asked for again when they don't come, or come too seldom: the order may
+//! have been lost.
 
 use super::Peer;
 use crate::gateway::order::Time;
@@ -6,8 +7,10 @@ use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
-/// What has not come for so long is asked for (again).
-const MISSING: Duration = Duration::from_secs(3);
+/// So long is looked how often a message comes before it is asked for again.
+const LOOK: Duration = Duration::from_secs(3);
+/// And each time twice as long, up to so many times: an autopilot may have its reasons.
+const MOST_DOUBLINGS: u32 = 5;
 
 /// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
 const WANTED: [(u32, u32); 13] = [
@@ -26,31 +29,55 @@ const WANTED: [(u32, u32); 13] = [
     (HOME_POSITION_DATA::ID, 0),
 ];
 
-/// When each was last seen or asked for.
+/// What came of each.
 #[derive(Debug, Clone, Default)]
 pub struct Streams {
-    touched: [Option<Time>; WANTED.len()],
+    streams: [Stream; WANTED.len()],
     got_home: bool,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Stream {
+    /// Counted since then; `None`: never asked for.
+    since: Option<Time>,
+    count: u32,
+    /// Asked for in vain, one time after the other.
+    in_vain: u32,
+}
+
+impl Stream {
+    /// It has to be asked for: the first time, or as less than half of what was asked for has come.
+    fn is_due(&mut self, now: Time, interval_ms: u32) -> bool {
+        let Some(since) = self.since else {
+            self.since = Some(now);
+            return true;
+        };
+        let looked = now.saturating_sub(since);
+        if looked < LOOK * (1 << self.in_vain.min(MOST_DOUBLINGS)) {
+            return false;
+        }
+        let wanted = looked.as_millis() / u128::from(interval_ms.max(1));
+        let missing = self.count == 0 || u128::from(self.count) * 2 < wanted;
+        *self = Self { since: Some(now), count: 0, in_vain: if missing { self.in_vain + 1 } else { 0 } };
+        missing
+    }
 }
 
 impl Streams {
     /// A message came.
-    pub fn seen(&mut self, now: Time, id: u32) {
-        if let Some(i) = WANTED.iter().position(|(wanted, _)| *wanted == id)
-            && let Some(touched) = self.touched.get_mut(i)
-        {
-            *touched = Some(now);
+    pub fn seen(&mut self, id: u32) {
+        let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, _), _)| *wanted == id);
+        if let Some((_, stream)) = known {
+            stream.count += 1;
             self.got_home |= id == HOME_POSITION_DATA::ID;
         }
     }
 
     /// Asks for what is missing.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
-        for ((id, interval_ms), touched) in WANTED.iter().zip(&mut self.touched) {
-            let missing = touched.is_none_or(|at| now.saturating_sub(at) >= MISSING);
+        for ((id, interval_ms), stream) in WANTED.iter().zip(&mut self.streams) {
             let wanted = *interval_ms > 0 || !self.got_home;
-            if missing && wanted {
-                *touched = Some(now);
+            if wanted && stream.is_due(now, *interval_ms) {
                 out.push(ask(*id, *interval_ms, peer));
             }
         }

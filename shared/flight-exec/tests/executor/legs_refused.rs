@@ -2,7 +2,7 @@
 
 use crate::rig::{GROUND_M, Rig, document, document_with, fix, program};
 use aircraft::Profile;
-use flight_exec::{Command, Config, Event, Executor};
+use flight_exec::{Action, Command, Config, Event, Executor};
 use flight_plan::VariableValue;
 use geometry::{LatLon, LocalFrame, Vec2};
 use std::sync::Arc;
@@ -102,6 +102,27 @@ fn on_the_way_to_a_leg_values_that_make_none_leave_it_as_it_is() {
         rig.fly_to_the_end();
         assert_eq!(rig.legs(), "a p y z", "{leg}");
     }
+}
+
+/// It keeps what leads to it, but not what the present plan doesn't say of its end.
+#[test]
+fn a_leg_that_can_not_be_laid_out_any_more_is_not_circled_at_for_the_plan_before() {
+    let scan = r#"<scan id="p" spacing="= 100.0 * v" heading="0"><area fix="C4" radius="570"/></scan>"#;
+    let track = r#"<TF id="p" fix="C4"><action on="end"><wait seconds="20"/></action></TF>"#;
+    let mut rig = flying(scan);
+    rig.fly_one();
+    // too near to be altered
+    rig.position = rig.buffer[0].position.destination(0.0, 50.0);
+    rig.report();
+    rig.set("v", 0.0).unwrap();
+    for leg in [track, scan] {
+        let legs = format!(r#"<TF id="a" fix="B1"/>{leg}<TF id="z" fix="A3"/>"#);
+        rig.update(&program(&document_with(&legs, VARIABLES, ""))).unwrap();
+        let circles = rig.buffer.iter().any(|w| matches!(w.action, Action::Loiter { .. }));
+        assert_eq!(circles, leg == track, "{leg}");
+    }
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a p z");
 }
 
 #[test]
