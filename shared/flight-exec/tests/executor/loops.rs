@@ -162,3 +162,22 @@ fn a_plan_that_ends_with_a_loop_finishes() {
     assert_eq!(finished(&rig).len(), 2);
     assert_eq!(rig.executor.status().phase, Phase::Finished);
 }
+
+/// Where the next pass begins is too near to be laid out anew, and told with the count of now all the same.
+#[test]
+fn a_count_set_at_the_beginning_of_a_pass_is_told_with_the_pass_before() {
+    let legs = r#"<iterative id="l" form="forward" count="3"><TF id="a" fix="B1"/><TF id="b" fix="C2"/></iterative>
+        <TF id="z" fix="A3"/>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_to("b");
+    rig.position = fix("B1").destination(0.0, 50.0);
+    rig.report();
+    rig.command(Command::SkipLeg).unwrap();
+    rig.command(Command::SetCount { leg: "l".into(), count: 2 }).unwrap();
+    rig.fly_to_the_end();
+    let finished = rig.events.iter().filter_map(|e| match e {
+        Event::IterationFinished { finished, of, .. } => Some((*finished, *of)),
+        _ => None,
+    });
+    assert_eq!(finished.collect::<Vec<_>>(), [(1, Some(2)), (2, Some(2))]);
+}
