@@ -163,6 +163,6 @@ fn multiples(every_m: f64, up_to_m: f64, way_m: f64) -> Result<Vec<f64>, String>
     }
     // a cast of a negative number gives 0
     let passed = |way_m: f64| (way_m / every_m).floor() as u64;
-    let since = passed(up_to_m) + 1..=passed(way_m);
+    let since = passed(up_to_m).saturating_add(1)..=passed(way_m);
     Ok(since.take(MOST_AT_ONCE).map(|n| n as f64 * every_m).collect())
 }
