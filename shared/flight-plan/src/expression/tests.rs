@@ -174,6 +174,16 @@ fn expressions_that_are_too_large() {
     assert!(compile(&("1+".repeat(400) + "1"), &plan).is_err_and(|e| e.code == "expression-too-large"));
 }
 
+/// A thread of a test has 2 MiB, and so have those that read plans; a stack that is too small would end the process.
+#[test]
+fn the_deepest_expressions_fit_into_the_stack_of_a_thread() {
+    let nest = |open: &str, close: &str| format!("{}true{}", open.repeat(MAX_DEPTH), close.repeat(MAX_DEPTH));
+    for source in [nest("(", ")"), nest("!", ""), nest("true ? true : ", "")] {
+        assert!(compile(&source, &plan()).is_ok(), "{source}");
+    }
+    assert_eq!(compile(&nest("[", "]"), &plan()).unwrap_err().code, "expression-syntax");
+}
+
 #[test]
 fn it_knows_the_variables_it_reads() {
     let expression = compile("x + x + (flag ? time : 1.0)", &plan()).unwrap();
