@@ -201,7 +201,8 @@ fn codes_given_and_tested() -> (BTreeSet<String>, BTreeSet<String>) {
 
 /// The codes that the seeded faulty plans are named by.
 fn seeded() -> BTreeSet<String> {
-    let plans = [files("plans/bad", "xml"), files("plans/bad/path", "xml")].concat();
+    let plans =
+        ["plans/bad", "plans/bad/path", "plans/bad/path/wind"].map(|folder| files(folder, "xml")).concat();
     let names = plans.iter().map(|path| path.file_name().unwrap().to_str().unwrap());
     let codes = names.filter_map(|name| name.strip_prefix("xsd-").unwrap_or(name).split('.').next());
     codes.map(str::to_owned).collect()

@@ -2,7 +2,7 @@
 
 use super::attributes::{Attributes, Memory};
 use crate::{Location, Problem};
-use memchr::{memchr_iter, memrchr};
+use memchr::{memchr, memchr_iter, memrchr};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -257,7 +257,8 @@ impl Place<'_> {
         let between = self.text.as_bytes().get(self.offset..offset).unwrap_or(b"");
         let last_line = match memrchr(b'\n', between) {
             Some(end) => {
-                self.line += memchr_iter(b'\n', between).count();
+                let one = memchr(b'\n', between) == Some(end);
+                self.line += if one { 1 } else { memchr_iter(b'\n', between).count() };
                 self.column = 1;
                 between.get(end + 1..).unwrap_or(b"")
             }

@@ -366,9 +366,8 @@ impl<'a> Document<'a> {
 
     /// The `emergency` attribute: the fallback for every cause.
     pub fn emergency_attribute(&mut self, element: &Element<'a>) -> EmergencyChoice {
-        EmergencyChoice {
-            by_cause: self.reference(element, "emergency").map(|plan| (None, plan)).into_iter().collect(),
-        }
+        let by_cause = self.reference(element, "emergency").map_or_else(Vec::new, |plan| vec![(None, plan)]);
+        EmergencyChoice { by_cause }
     }
 
     /// `<emergency cause="…" plan="…"/>`.

@@ -32,9 +32,13 @@ impl<'a> Document<'a> {
 
     pub fn require(&mut self, element: &Element<'a>, name: &str) {
         if !element.attributes.has(name) {
-            let message = format!("give <{}> the attribute `{name}`", element.name);
-            self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
+            self.report_missing(element, name);
         }
+    }
+
+    fn report_missing(&mut self, element: &Element<'a>, name: &str) {
+        let message = format!("give <{}> the attribute `{name}`", element.name);
+        self.cursor.report(Problem::error("missing-attribute", message).at(element.location));
     }
 
     /// An attribute through a parser; what it refuses is a problem.
@@ -45,7 +49,17 @@ impl<'a> Document<'a> {
         wanted: &str,
         parse: fn(&str) -> Option<T>,
     ) -> Option<T> {
-        let text = element.attributes.take(name)?;
+        self.parsed_text(element, (name, element.attributes.take(name)?), wanted, parse)
+    }
+
+    /// As [`Document::parsed`], of an attribute that was taken: its name and text.
+    fn parsed_text<T>(
+        &mut self,
+        element: &Element<'a>,
+        (name, text): (&str, &str),
+        wanted: &str,
+        parse: fn(&str) -> Option<T>,
+    ) -> Option<T> {
         let parsed = parse(text.trim());
         if parsed.is_none() {
             let message = format!("`{name}` must be {wanted}, not \"{}\"", shown(text));
@@ -87,12 +101,10 @@ impl<'a> Document<'a> {
 
     /// A number or `= expression`; what can't be read is NaN.
     pub fn value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<f64>> {
-        element.attributes.take(name)?;
         let wanted = "a finite number, or = and an expression";
-        Some(
-            self.parsed(element, name, wanted, |text| value(text, number))
-                .unwrap_or(Value::Constant(f64::NAN)),
-        )
+        let given = (name, element.attributes.take(name)?.as_ref());
+        let value = self.parsed_text(element, given, wanted, |text| value(text, number));
+        Some(value.unwrap_or(Value::Constant(f64::NAN)))
     }
 
     pub fn required_value(&mut self, element: &Element<'a>, name: &str) -> Value<f64> {
@@ -138,12 +150,18 @@ impl<'a> Document<'a> {
 
     /// A position in two attributes, both required.
     pub fn lat_lon(&mut self, element: &Element<'a>, lat: &str, lon: &str) -> Option<LatLon> {
-        self.require(element, lat);
-        self.require(element, lon);
-        let latitude = self.parsed(element, lat, "a latitude in degrees, −90 to 90", |text| {
+        let [lat, lon] = [lat, lon].map(|name| {
+            let text = element.attributes.take(name);
+            if text.is_none() {
+                self.report_missing(element, name);
+            }
+            text.map(|text| (name, text.as_ref()))
+        });
+        let mut degrees = |given: Option<_>, wanted, parse| self.parsed_text(element, given?, wanted, parse);
+        let latitude = degrees(lat, "a latitude in degrees, −90 to 90", |text| {
             number(text).filter(|x| x.abs() <= 90.0)
         });
-        let longitude = self.parsed(element, lon, "a longitude in degrees, −180 to 180", |text| {
+        let longitude = degrees(lon, "a longitude in degrees, −180 to 180", |text| {
             number(text).filter(|x| x.abs() <= 180.0)
         });
         Some(LatLon::new(latitude?, longitude?))
