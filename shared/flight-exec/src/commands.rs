@@ -2,7 +2,7 @@
 
 use crate::api::{Action, Command, Event, Output, Phase, Refusal};
 use crate::cursor::control::is_call;
-use crate::cursor::{CLIMB_LEAD_M, Cursor, Doing};
+use crate::cursor::{Cursor, Doing};
 use crate::executor::{Executor, refusal};
 use crate::handed::{Handed, Onward};
 use crate::world::LoopCount;
@@ -97,11 +97,8 @@ impl Executor {
             return Err(refusal("not-holding", "it doesn't hold: there is nothing to resume"));
         }
         self.enter_phase(Phase::Flying, out);
-        let rejoin = self.rejoin();
-        let rejoins = rejoin.is_some();
-        rejoin.into_iter().for_each(|rejoin| self.state.handed.push_front(rejoin));
-        self.bring_first_within_reach();
-        if rejoins {
+        if let Some(rejoin) = self.rejoin() {
+            self.state.handed.push_front(rejoin);
             self.lead_the_path_there();
         }
         self.state.held_at = None;
@@ -138,37 +135,21 @@ impl Executor {
         Some(rejoin)
     }
 
-    /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft.
+    /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft, and one
+    /// that had not begun there, from wherever it is joined, is climbed to from there.
     fn lead_the_path_there(&mut self) {
         let mut ahead = self.state.handed.iter_mut();
         let (Some(rejoin), Some(next)) = (ahead.next(), ahead.next()) else { return };
-        if next.before.passage != next.passage {
-            return;
-        }
-        let path = &mut next.before.path;
         let (position, altitude_amsl_m) = (rejoin.waypoint.position, rejoin.waypoint.altitude_amsl_m);
+        let mut path = next.before.path;
         path.last.position = position;
         path.course_deg = crate::path::distance_and_course(position, next.waypoint.position).1;
         (path.commanded_amsl_m, path.predicted_amsl_m) = (altitude_amsl_m, altitude_amsl_m);
         (path.distance_m, path.time_s) = (rejoin.end_m, rejoin.end_s);
-    }
-
-    /// What was near when the plan was changed has stayed as it was: it may be higher or lower than the aircraft could climb or descend
-    /// from on the way to the next waypoint of its leg, and the gateway would refuse that.
-    fn bring_first_within_reach(&mut self) {
-        let mut ahead = self.state.handed.iter().take(2).filter(|h| h.waypoint.action == Action::Fly);
-        let (Some(first), Some(next)) = (ahead.next(), ahead.next()) else { return };
-        if first.passage != next.passage {
-            return;
-        }
-        let (from, to) = (&first.waypoint, &next.waypoint);
-        let seconds = crate::path::distance_m(from.position, to.position) / to.airspeed_mps.max(1.0);
-        let climb_m = self.profile.max_climb_mps * seconds + CLIMB_LEAD_M;
-        let descent_m = self.profile.max_descent_mps * seconds + CLIMB_LEAD_M;
-        let reach_m = (to.altitude_amsl_m - climb_m, to.altitude_amsl_m + descent_m);
-        let altitude_m = from.altitude_amsl_m.max(reach_m.0).min(reach_m.1);
-        if let Some(first) = self.state.handed.front_mut() {
-            first.waypoint.altitude_amsl_m = altitude_m;
+        if next.before.passage == next.passage {
+            next.before.path = path;
+        } else {
+            next.before.rejoined = Some(Box::new(path));
         }
     }
 

@@ -11,7 +11,6 @@ mod place;
 mod refresh;
 mod trail;
 
-pub(crate) use emit::CLIMB_LEAD_M;
 pub use notes::{Mark, Notes, Trouble};
 pub use trail::{Trail, Visit};
 
@@ -59,6 +58,10 @@ pub struct Cursor {
     /// What the points of this passage were laid out from.
     #[serde(default)]
     pub origin: Option<Origin>,
+    /// The path where the hold was given on the way to the next point, if that is gone on with: the way and the climb to that point
+    /// begin there, though its leg is laid out from where the path comes from.
+    #[serde(default)]
+    pub rejoined: Option<Box<PathState>>,
     /// The points of this passage (kept aside in a snapshot).
     #[serde(skip)]
     pub expansion: Option<Arc<Expansion>>,
@@ -176,6 +179,7 @@ impl Cursor {
             given: 0,
             left_or_not: None,
             origin: None,
+            rejoined: None,
             expansion: None,
             crossings: Vec::new(),
             uncounted: 0,
@@ -279,6 +283,7 @@ impl Cursor {
     /// Moves the end of the path to where the aircraft is: what follows is flown from there.
     pub fn move_path_to(&mut self, here: PathState) {
         self.path = PathState { distance_m: self.path.distance_m, time_s: self.path.time_s, ..here };
+        self.rejoined = None;
     }
 
     /// How often an intersection has been passed.

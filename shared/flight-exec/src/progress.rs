@@ -145,7 +145,9 @@ impl Executor {
         out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
         let Some(index) = index else { return };
         let mut cursor = self.bookmark(index);
-        if self.state.handed.get(index).is_some_and(|first| first.passage == cursor.passage) {
+        let of_leg = self.state.handed.get(index).is_some_and(|first| first.passage == cursor.passage);
+        // the leg at whose end it circles is over, as in a refresh
+        if of_leg && self.state.wait.is_none() {
             // the bookmark may be older than the values of now; those that make no such leg were told when they were written
             cursor.refresh_leg(&self.world()).ok();
         }

@@ -211,21 +211,26 @@ impl Executor {
         let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
         self.abandon_passages();
+        // until another leg is entered, a loop that has just been left may be gone back to: by a count, or a condition
+        if let Some(mut front) = self.state.handed.pop_front() {
+            self.begin_anew_what_was_left(&mut front.before, &around);
+            self.state.handed.push_front(front);
+        }
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);
     }
 
-    /// A loop with actions that was left by a skip, and no other leg entered since: what comes is another activation of it.
+    /// A loop with actions that was left by a skip, and no other leg entered since: what comes is another activation of it. A count that
+    /// was set before, or on the way to the loop, is that of the loop as it is entered now.
     fn begin_anew_what_was_left(&mut self, cursor: &mut Cursor, around: &[Id]) {
         for (frame, id) in cursor.loops.iter_mut().zip(around) {
             let acts = self.program.leg(id).is_some_and(|leg| !leg.actions.is_empty());
             let is_followed = self.state.passages.iter().any(|p| p.is(id, frame.activation));
             if acts && !is_followed {
-                let counts = self.state.counts.iter_mut();
-                let own = counts.filter(|c| c.leg == *id && c.activation == Some(frame.activation));
-                own.for_each(|c| c.activation = Some(cursor.passage));
                 frame.activation = cursor.passage;
             }
+            let counts = self.state.counts.iter_mut().filter(|c| c.leg == *id);
+            counts.filter_map(|c| c.activation.as_mut()).for_each(|of| *of = frame.activation);
         }
     }
 

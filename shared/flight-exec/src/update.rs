@@ -72,7 +72,7 @@ impl Executor {
             }
         }
         self.follow_what_acts_now();
-        self.forget_counts_of_loops_left();
+        self.forget_counts_of_loops_left(bookmarks.first());
         let Some(mut onward) = onward.first().cloned() else { return };
         let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
         if let Err(trouble) = refreshed {
@@ -81,11 +81,17 @@ impl Executor {
         self.replan_with(kept.len(), onward, false, out);
     }
 
-    /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left.
-    fn forget_counts_of_loops_left(&mut self) {
-        let path = self.state.handed.front().and_then(|front| self.program.path(&front.place.leg));
-        let around: Vec<&Leg> = path.iter().flat_map(|path| self.program.chain(path)).collect();
-        self.state.counts.retain(|c| around.iter().any(|leg| leg.id == c.leg));
+    /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left. On the way to a leg the
+    /// loops around the one before it are still there.
+    fn forget_counts_of_loops_left(&mut self, before: Option<&Cursor>) {
+        let Some(front) = self.state.handed.front() else { return };
+        let path = self.program.path(&front.place.leg);
+        let chain = path.iter().flat_map(|path| self.program.chain(path));
+        let around = chain.filter(|leg| leg.as_loop().is_some()).map(|leg| leg.id.clone());
+        let before = before.filter(|_| !self.is_announced(front));
+        let still_there = before.map_or(Vec::new(), |cursor| cursor.loop_ids(&self.world()));
+        let loops: Vec<Id> = around.chain(still_there).collect();
+        self.state.counts.retain(|c| loops.contains(&c.leg));
     }
 
     fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
@@ -145,10 +151,11 @@ impl Executor {
         self.is_announced(first).then(|| begun.next(world))?;
         if begun.place(world).leg != first.place.leg {
             // what it waits for is there: that choice is made, and told, by laying the path out
-            let moves_on = !first.is_loiter() && begun.passes_over_to(&first.place, world);
+            let to = &first.place.leg;
+            let moves_on = !first.is_loiter() && begun.passes_over_to(to, before.path, world);
             moves_on.then_some(())?;
         }
-        begun.path = before.path;
+        (begun.path, begun.rejoined) = (before.path, before.rejoined.clone());
         begun.given = 0;
         if begun.doing != Doing::Turning {
             begun.doing = Doing::Arriving;

@@ -144,6 +144,20 @@ fn each_bad_path_has_the_problem_in_its_name() {
     assert_eq!(failures, [""; 0]);
 }
 
+/// As `legwork check --wind 270,14` flies them.
+#[test]
+fn each_path_that_only_the_wind_makes_bad_has_the_problem_in_its_name() {
+    let wind = Conditions { wind: Wind::from_direction(270.0, 14.0), ..Conditions::default() };
+    for path in plans("bad/path/wind") {
+        let code = path.file_stem().unwrap().to_str().unwrap();
+        let document = std::fs::read(&path).unwrap();
+        let calm = verdict(&document).unwrap_or_else(|p| panic!("{code}: {:?}", shown(&p)));
+        let problems = review(&calm, &Profile::default(), &ground(), wind);
+        let errors = problems.iter().filter(|p| p.is_error()).map(|p| p.code);
+        assert_eq!(errors.collect::<Vec<_>>(), [code], "{:?}", shown(&problems));
+    }
+}
+
 #[test]
 fn every_edit_that_is_offered_removes_its_problem() {
     let mut fixed = HashSet::new();

@@ -10,7 +10,7 @@ use flight_plan::{Act, Trigger};
 
 /// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
 /// target, however wide it turns. The gateway grants ten.
-pub(crate) const CLIMB_LEAD_M: f64 = 8.0;
+const CLIMB_LEAD_M: f64 = 8.0;
 
 impl Cursor {
     /// Seconds to be circled at the end of the leg before it is left.
@@ -59,8 +59,8 @@ impl Cursor {
     pub(super) fn emit(&mut self, point: Point, altitude_amsl_m: f64, world: &World) -> Emission {
         let level = point.level.unwrap_or(self.level);
         let airspeed_mps = point.airspeed_mps.unwrap_or(self.airspeed_mps);
-        let from = self.path.last.position;
-        let (length_m, course_deg) = distance_and_course(from, point.position);
+        let from = self.rejoined.take().map_or(self.path, |path| *path);
+        let (length_m, course_deg) = distance_and_course(from.last.position, point.position);
         let time_s = length_m / airspeed_mps.max(1.0);
         // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
         // such a gradient
@@ -71,19 +71,19 @@ impl Cursor {
         };
         let (commanded_amsl_m, predicted_amsl_m) = match point.action {
             Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),
-            Action::Land { .. } => (altitude_amsl_m, towards(self.path.predicted_amsl_m, 0.0)),
+            Action::Land { .. } => (altitude_amsl_m, towards(from.predicted_amsl_m, 0.0)),
             Action::Fly | Action::Loiter { .. } => {
-                let commanded_m = towards(self.path.commanded_amsl_m, CLIMB_LEAD_M);
-                (commanded_m, towards(self.path.predicted_amsl_m, 0.0))
+                let commanded_m = towards(from.commanded_amsl_m, CLIMB_LEAD_M);
+                (commanded_m, towards(from.predicted_amsl_m, 0.0))
             }
         };
         self.path = PathState {
             last: Passing { position: point.position, level, airspeed_mps, fly_over: point.fly_over },
-            course_deg: if length_m > 0.5 { course_deg } else { self.path.course_deg },
+            course_deg: if length_m > 0.5 { course_deg } else { from.course_deg },
             predicted_amsl_m,
             commanded_amsl_m,
-            distance_m: self.path.distance_m + length_m,
-            time_s: self.path.time_s + time_s,
+            distance_m: from.distance_m + length_m,
+            time_s: from.time_s + time_s,
         };
         self.given += 1;
         if matches!(point.action, Action::Loiter { .. }) {

@@ -3,8 +3,12 @@
 use super::enter::has_own_waypoints;
 use super::{Cursor, Doing, LoopFrame, Trail};
 use crate::api::{Branching, IterationPlace, PlacePointer};
+use crate::path::PathState;
 use crate::world::World;
 use flight_plan::{Id, LegPath, Program};
+
+/// Most legs in a row that were left out and are passed over when one behind them is gone on with.
+const MOST_LEFT_OUT: usize = 100;
 
 impl Cursor {
     /// Where it is, for people; the distance is left at zero.
@@ -49,19 +53,20 @@ impl Cursor {
             .collect()
     }
 
-    /// Goes over legs that were left out when a place was reached (their values made nothing to fly) and could be flown by now: they
-    /// belong to the past. False, and nothing is changed: the place is not behind such legs of the same list.
-    pub fn passes_over_to(&mut self, place: &PlacePointer, world: &World) -> bool {
-        let here = self.place(world);
-        let around = (here.plan, here.stage, here.iterations, here.reverse);
-        let wanted = (&place.plan, &place.stage, &place.iterations, false);
-        let same = (&around.0, &around.1, &around.2, around.3) == wanted && self.doing == Doing::Flying;
-        let ahead = self.list(world).iter().enumerate().skip(self.index);
-        let mut over = ahead.take_while(|(_, leg)| leg.id == place.leg || has_own_waypoints(leg));
-        let Some((index, _)) = over.find(|(_, leg)| leg.id == place.leg).filter(|_| same) else {
-            return false;
-        };
-        self.index = index;
+    /// Goes over legs that were left out when a leg was reached (their values made nothing to fly) and could be flown by now, though the
+    /// path ended at `path`: they belong to the past. False: the leg is not behind such legs.
+    pub fn passes_over_to(&mut self, leg: &Id, path: PathState, world: &World) -> bool {
+        let mut passed = 0;
+        while self.place(world).leg != *leg {
+            let left_out = self.doing == Doing::Flying && self.leg(world).is_some_and(has_own_waypoints);
+            if !left_out || passed == MOST_LEFT_OUT {
+                return false;
+            }
+            (self.path, self.leg_start) = (path, path);
+            self.abandon_leg(self.passage);
+            self.next(world);
+            passed += 1;
+        }
         true
     }
 

@@ -129,19 +129,36 @@ fn a_loop_flies_its_pattern_as_before_while_the_values_make_none() {
     assert_eq!((rig.legs().as_str(), arrivals(&rig)), ("a o o o z", vec![1, 2, 3]));
 }
 
+/// Also where a loop begins or ends between the two.
 #[test]
 fn a_leg_that_was_left_out_is_over_when_the_next_one_has_begun() {
-    let orbit = r#"<orbit id="o" radius="= r - 300.0" turns="1" turn="left"><centre fix="C4"/></orbit>"#;
-    let legs = format!(r#"<TF id="a" fix="B1"/>{orbit}<TF id="k" fix="C2"/><TF id="z" fix="A3"/>"#);
-    let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
-    for (leg, r) in [("a", 100.0), ("k", 600.0)] {
-        rig.fly_to(leg);
-        rig.set("r", r).unwrap();
-        rig.now += Time::from_secs(2);
-        rig.report();
+    let orbit = |id: &str| {
+        format!(r#"<orbit id="{id}" radius="= r - 300.0" turns="1" turn="left"><centre fix="C4"/></orbit>"#)
+    };
+    let looped = |body: &str| {
+        format!(r#"<iterative id="l" form="forward" count="2">{body}<IF id="i" fix="B1"/></iterative>"#)
+    };
+    let (o, p, k, b) = (orbit("o"), orbit("p"), r#"<TF id="k" fix="C2"/>"#, r#"<TF id="b" fix="B3"/>"#);
+    let cases = [
+        (format!("{o}{k}"), "a k z"),
+        (format!("{o}{p}{k}"), "a k z"),
+        (format!("{o}{}", looped(k)), "a k i k i z"),
+        (format!("{o}{}", looped(&format!("{p}{k}"))), "a k i p k i z"),
+        (format!("{}{k}", looped(&format!("{b}{o}"))), "a b i b i k z"),
+    ];
+    for (legs, flown) in cases {
+        let legs = format!(r#"<TF id="a" fix="B1"/>{legs}<TF id="z" fix="A3"/>"#);
+        let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
+        for (leg, r) in [("a", 100.0), ("k", 600.0)] {
+            rig.fly_to(leg);
+            rig.set("r", r).unwrap();
+            rig.now += Time::from_secs(2);
+            rig.report();
+        }
+        rig.fly_to_the_end();
+        let passes = if legs.contains("iterative") { &[1, 2][..] } else { &[] };
+        assert_eq!((rig.legs().as_str(), arrivals(&rig).as_slice()), (flown, passes), "{legs}");
     }
-    rig.fly_to_the_end();
-    assert_eq!(rig.legs(), "a k z");
 }
 
 #[test]
@@ -202,22 +219,43 @@ fn a_call_in_no_loop_is_iteration_zero() {
     assert_eq!(of_call.map(|w| w.altitude_amsl_m), Some(500.0));
 }
 
-#[test]
-fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_now() {
+/// Circles at the end of a square on `s` that `r` makes larger.
+fn waiting_at_the_end_of_a_pattern() -> Rig {
     let legs = r#"<TF id="a" fix="B1"/>
         <expandingSquare id="s" spacing="300" heading="30" radius="= r" turn="right"><centre fix="C4"/>
           <action on="end"><wait seconds="20"/></action></expandingSquare>
         <TF id="z" fix="A3"/>"#;
     let mut rig = Rig::flying(&document_with(legs, VARIABLES, ""));
     rig.fly_to("s");
-    let waits = |rig: &Rig| {
-        let wait =
-            |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
-        rig.events.iter().filter(wait).count()
-    };
     while waits(&rig) == 0 {
         rig.fly_one();
     }
+    rig
+}
+
+fn waits(rig: &Rig) -> usize {
+    let wait = |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
+    rig.events.iter().filter(wait).count()
+}
+
+#[test]
+fn a_wait_whose_circle_is_refused_lasts_though_the_pattern_would_be_another_one_now() {
+    let mut rig = waiting_at_the_end_of_a_pattern();
+    rig.set("r", 900.0).unwrap();
+    let circle = rig.buffer.pop_front().unwrap();
+    rig.step(flight_exec::Input::Rejected { first: circle.token, reason: "too steep".into() });
+    rig.command(Command::Resume).unwrap();
+    assert_eq!(rig.buffer[0].action, circle.action);
+    while rig.leg() == "s" {
+        rig.fly_one();
+    }
+    rig.fly_to_the_end();
+    assert_eq!((rig.legs().as_str(), waits(&rig)), ("a s z", 1));
+}
+
+#[test]
+fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_now() {
+    let mut rig = waiting_at_the_end_of_a_pattern();
     let circle = rig.buffer[0].clone();
     rig.now += Time::from_secs(5);
     rig.set("r", 900.0).unwrap();
@@ -228,6 +266,60 @@ fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_
     rig.report();
     rig.fly_to_the_end();
     assert_eq!((rig.legs().as_str(), waits(&rig)), ("a s z", 1));
+}
+
+/// What is done after some seconds in a loop is done once each time that the loop is flown.
+#[test]
+fn a_loop_gone_back_to_on_the_way_out_of_it_is_another_activation() {
+    let photo = r#"<action afterTime="5"><photo/></action>"#;
+    let looped = format!(
+        r#"<iterative id="l" form="forward" count="= n">{photo}<TF id="b" fix="B2"/><TF id="c" fix="B3"/></iterative>"#
+    );
+    let variables = r#"<variable name="n" type="number" initial="1" min="1" max="9"/>"#;
+    let mut rig = Rig::flying(&document_with(&format!("{looped}<TF id=\"z\" fix=\"A3\"/>"), variables, ""));
+    rig.fly_to("c");
+    rig.command(Command::SkipLeg).unwrap();
+    rig.set("n", 2.0).unwrap();
+    rig.fly_to_the_end();
+    let passages: Vec<u64> = rig.acts.iter().map(|(_, passage, _)| *passage).collect();
+    assert_eq!((rig.legs().as_str(), rig.acts.len()), ("b c b c z", 2));
+    assert_ne!(passages[0], passages[1], "left by the skip");
+}
+
+/// Nobody has entered the loop: gone to in another way, not past a leg that is left out, it is the same one for who has set its count.
+#[test]
+fn a_count_set_on_the_way_to_a_loop_is_kept_by_a_go_to_into_it() {
+    let orbit = r#"<orbit id="o" radius="= r - 300.0" turns="1" turn="left"><centre fix="C4"/></orbit>"#;
+    let looped = r#"<iterative id="l" form="forward" count="2"><TF id="b" fix="B2"/><TF id="c" fix="B3"/></iterative>"#;
+    let legs = format!(r#"<TF id="a" fix="B1"/>{orbit}{looped}<TF id="z" fix="A3"/>"#);
+    let mut rig = Rig::flying(&document_with(&legs, VARIABLES, ""));
+    rig.fly_to("a");
+    rig.set("r", 100.0).unwrap();
+    rig.now += Time::from_secs(2);
+    rig.report();
+    rig.command(Command::SkipLeg).unwrap();
+    rig.command(Command::SetCount { leg: "l".into(), count: 4 }).unwrap();
+    rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a c b c b c b c z");
+}
+
+/// Skipped to, the leg behind a loop is not entered yet: whoever goes back is in the same loop, whatever the plan has lost before it.
+#[test]
+fn a_count_lasts_through_an_update_on_the_way_out_of_its_loop() {
+    let looped = r#"<iterative id="l" form="forward" count="2" until="iteration &gt; 1"><TF id="b" fix="B2"/><TF id="c" fix="B3"/></iterative>"#;
+    let with = |first: &str| document(&format!(r#"{first}{looped}<TF id="z" fix="A3"/>"#));
+    let mut rig = Rig::flying(&with(r#"<TF id="a" fix="B1"/><TF id="k" fix="C1"/>"#));
+    rig.fly_to("c");
+    rig.fly_to("b");
+    rig.fly_to("c");
+    rig.command(Command::SetCount { leg: "l".into(), count: 4 }).unwrap();
+    rig.command(Command::SkipLeg).unwrap();
+    rig.update(&program(&with(r#"<TF id="k" fix="C1"/>"#))).unwrap();
+    rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    rig.steer();
+    let iteration = rig.executor.status().place.unwrap().iterations[0].clone();
+    assert_eq!((iteration.iteration, iteration.of), (2, Some(4)));
 }
 
 #[test]
@@ -256,11 +348,6 @@ fn who_goes_again_to_the_leg_at_whose_end_it_circles_circles_anew() {
     let mut rig = Rig::started(&format!(r#"<TF id="a" fix="B1"/>{climb}<TF id="z" fix="A3"/>"#));
     rig.fly_to("k");
     rig.fly_one();
-    let waits = |rig: &Rig| {
-        let wait =
-            |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
-        rig.events.iter().filter(wait).count()
-    };
     assert_eq!((waits(&rig), rig.executor.status().wait_left_s.is_some()), (1, true));
     rig.command(Command::GoTo { leg: "k".into() }).unwrap();
     assert_eq!(rig.executor.status().wait_left_s, None, "it has not begun");
@@ -289,9 +376,7 @@ fn a_leg_that_becomes_another_kind_of_leg_is_flown_as_that_one() {
     let to_its_fix =
         |w: &flight_exec::Waypoint| w.leg.as_str() == "k" && w.position.distance_m(fix("D2")) < 1.0;
     assert!(rig.flown[flown..].iter().any(to_its_fix));
-    let waited =
-        |e: &&Event| matches!(e, Event::ActionDone { act: flight_exec::ResolvedAct::Wait { .. }, .. });
-    assert_eq!((rig.legs().as_str(), rig.events.iter().filter(waited).count()), ("a k z", 1));
+    assert_eq!((rig.legs().as_str(), waits(&rig)), ("a k z", 1));
 }
 
 #[test]
@@ -392,4 +477,24 @@ fn backwards_an_inner_loop_whose_legs_have_gone_is_passed() {
     rig.update(&program(&plan("d"))).unwrap();
     rig.fly_to_the_end();
     assert_eq!(rig.legs(), "s a c b <l <b <a l a d b z");
+}
+
+/// What was a loop and has been a leg is another loop when it is one again.
+#[test]
+fn a_count_ends_with_the_loop_that_an_update_makes_a_leg() {
+    let with = |k: &str| program(&document(&format!(r#"<TF id="a" fix="B1"/>{k}<TF id="z" fix="A3"/>"#)));
+    let looped = with(
+        r#"<iterative id="k" form="reverse" count="3"><TF id="b" fix="B2"/><TF id="c" fix="B3"/></iterative>"#,
+    );
+    let held = with(r#"<HM id="k" fix="B2" course="0" turn="right" length="600" maxLaps="2"/>"#);
+    let mut rig = Rig::new();
+    rig.update(&looped).unwrap();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to("b");
+    rig.command(Command::SetCount { leg: "k".into(), count: 4 }).unwrap();
+    rig.fly_to("k");
+    rig.update(&held).unwrap();
+    rig.update(&looped).unwrap();
+    rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    assert_eq!(rig.executor.status().place.unwrap().iterations[0].of, Some(3));
 }

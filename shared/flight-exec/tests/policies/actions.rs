@@ -325,7 +325,8 @@ fn wait_left(trace: &Trace, found: &mut Findings) {
     let mut steered = None;
     for step in trace.steps().filter(|s| s.after.is_flying() && !s.after.ahead.is_empty()) {
         if let Some(Input::Progress { current }) = step.input() {
-            steered = *current;
+            // a number of nobody may come to be somebody's
+            steered = current.filter(|token| step.before.tokens().contains(token));
         }
         let begun = step.is_begun_now() && steered == step.after.status.current;
         let left_s = step.after.status.wait_left_s;

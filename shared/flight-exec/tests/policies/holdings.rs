@@ -46,11 +46,13 @@ fn holding(program: &Program, place: &PlacePointer) -> Option<(bool, Option<f64>
 struct Held<'a> {
     place: &'a PlacePointer,
     program: &'a Program,
+    entered: Step<'a>,
     steps: Vec<Step<'a>>,
 }
 
 fn passages(trace: &Trace) -> Vec<Held<'_>> {
-    let held = |(step, place): (Step<'_>, &'_ PlacePointer)| {
+    let held = |(entered, place): (Step<'_>, &'_ PlacePointer)| {
+        let step = trace.step(entered.at);
         let program = trace.moments[step.at].after.program.as_deref()?;
         let place = trace.moments[step.at].after.place().filter(|p| same_passage(p, place))?;
         holding(program, place)?;
@@ -60,31 +62,33 @@ fn passages(trace: &Trace) -> Vec<Held<'_>> {
         // what is skipped is left, but for a holding that is released
         let leaps = |s: &Step| s.is_jump() && s.accepted() != Some(&Command::SkipLeg);
         let steps = later.take_while(|s| !std::mem::replace(&mut over, gone(s) || leaps(s)));
-        Some(Held { place, program, steps: steps.collect() })
+        Some(Held { place, program, entered: step, steps: steps.collect() })
     };
     trace.entered().filter_map(held).collect()
 }
 
 impl<'a> Held<'a> {
+    /// How many of the waypoints at its fix the aircraft was told to be past in a step: several, if progress was lost.
+    fn fixes_passed(&self, step: &Step) -> usize {
+        let Some(Input::Progress { current: Some(_) }) = step.input() else { return 0 };
+        let fix = self.program.leg(&self.place.leg).and_then(|l| l.place());
+        let fix = fix.and_then(|p| match p {
+            flight_plan::Place::Position(Value::Constant(p)) => Some(*p),
+            _ => None,
+        });
+        let at_fix = |w: &&flight_exec::Waypoint| {
+            w.leg == self.place.leg
+                && w.action == Action::Fly
+                && fix.is_some_and(|f| f.distance_m(w.position) < 1.0)
+        };
+        let current = step.after.status.current;
+        let passed = step.before.ahead.iter().take_while(|w| Some(w.token) != current);
+        if step.before.status.current == current { 0 } else { passed.filter(at_fix).count() }
+    }
+
     /// Steps in which the aircraft was told to be past the fix.
     fn crossings(&self) -> impl Iterator<Item = Step<'a>> {
-        let (fix, program) = (self.place, self.program);
-        let crosses = move |s: &Step| {
-            let Some(Input::Progress { current: Some(_) }) = s.input() else { return false };
-            let passed = s.before.ahead.iter().take_while(|w| Some(w.token) != s.after.status.current);
-            let fix = program.leg(&fix.leg).and_then(|l| l.place());
-            let fix = fix.and_then(|p| match p {
-                flight_plan::Place::Position(Value::Constant(p)) => Some(*p),
-                _ => None,
-            });
-            let at_fix = |w: &flight_exec::Waypoint| {
-                w.leg == self.place.leg
-                    && w.action == Action::Fly
-                    && fix.is_some_and(|f| f.distance_m(w.position) < 1.0)
-            };
-            s.before.status.current != s.after.status.current && passed.into_iter().any(at_fix)
-        };
-        self.steps.clone().into_iter().filter(move |s| crosses(s)).collect::<Vec<_>>().into_iter()
+        self.steps.iter().copied().filter(|s| self.fixes_passed(s) > 0)
     }
 
     /// Perhaps before it was entered.
@@ -131,7 +135,9 @@ fn left_for_a_reason(trace: &Trace, found: &mut Findings) {
         // a leg that was of another kind ends as that did
         let updated = updated_since_jump(*last);
         let stopped = until && held.steps.iter().any(|s| stop(s.before) || stop(s.after));
-        let flown = laps.is_some_and(|n| held.crossings().count() as f64 >= n);
+        let steps = held.steps.iter().chain([&held.entered]);
+        let passed: usize = steps.map(|step| held.fixes_passed(step)).sum();
+        let flown = laps.is_some_and(|n| passed as f64 >= n);
         if !updated {
             found.expect(*last, held.was_released() || stopped || flown, || {
                 format!("{} was left", held.place.leg)

@@ -4,7 +4,7 @@ use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, kind};
 use flight_exec::{Command, Event, PlacePointer};
 use flight_plan::{Id, IterativeForm, LegKind, Value};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub const POLICIES: &[Policy] = &[
     policy("iterations-without-gap", "Every loop iteration is announced once and none skipped.", without_gap),
@@ -190,16 +190,21 @@ fn set_count_counts(trace: &Trace, found: &mut Findings) {
 }
 
 /// Entered anew (first iteration, after being outside of it), a loop has the plan's count.
+/// One that was set on the way to a loop, before a leg of it was entered, is that of the loop as it is entered then.
 fn set_count_dies(trace: &Trace, found: &mut Findings) {
     let mut set: BTreeMap<&Id, u64> = BTreeMap::new();
     let mut left: BTreeMap<&Id, u64> = BTreeMap::new();
+    let mut on_the_way: BTreeSet<&Id> = BTreeSet::new();
+    let mut last: Option<&PlacePointer> = None;
+    let is_around = |place: &PlacePointer, id: &Id| place.iterations.iter().any(|i| i.leg == *id);
     for step in trace.steps() {
         if step.update().is_some() || step.accepted() == Some(&Command::Start) {
             (set, left) = Default::default();
         }
         for place in step.entered() {
-            let inside = |id: &Id| place.iterations.iter().any(|i| i.leg == *id);
-            let gone: Vec<_> = set.keys().copied().filter(|id| !inside(id)).collect();
+            on_the_way.retain(|id| !is_around(place, id));
+            let is_left = |id: &&Id| !is_around(place, id) && !on_the_way.contains(*id);
+            let gone: Vec<_> = set.keys().copied().filter(is_left).collect();
             left.extend(gone.into_iter().filter_map(|id| set.remove_entry(id)));
             for around in &place.iterations {
                 let Some((_, n)) = left.remove_entry(&around.leg) else { continue };
@@ -210,10 +215,14 @@ fn set_count_dies(trace: &Trace, found: &mut Findings) {
                     });
                 }
             }
+            last = Some(place);
         }
         if let Some(Command::SetCount { leg, count }) = step.accepted() {
             left.remove(leg);
             set.insert(leg, *count);
+            if !last.is_some_and(|place| is_around(place, leg)) {
+                on_the_way.insert(leg);
+            }
         }
     }
 }

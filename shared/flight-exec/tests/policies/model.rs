@@ -66,6 +66,8 @@ struct Model<'a, 'f> {
     /// Likewise, after so many legs were skipped before they were entered: what led to the one behind them was decided already.
     taken_since: Vec<(usize, Id, Id)>,
     cannot_be_flown: BTreeSet<Id>,
+    /// Since a leg was entered.
+    skipped: Vec<Id>,
     /// Legs that were skipped before they were entered, and have not been missed yet.
     may_miss: usize,
     /// And those that have, since a leg was entered.
@@ -86,6 +88,7 @@ fn recite(trace: &Trace, found: &mut Findings) {
         taken: BTreeMap::new(),
         taken_since: Vec::new(),
         cannot_be_flown: BTreeSet::new(),
+        skipped: Vec::new(),
         may_miss: 0,
         missed: 0,
         perhaps_missed: 0,
@@ -109,9 +112,8 @@ impl<'a> Model<'a, '_> {
             match sight {
                 Sight::Jump(jump) => return Some(jump),
                 Sight::Entered(place) => self.listen(place),
-                // a loop that is left, lost or not, has no count of its own any more
-                Sight::Arrived { leg, finished, of: Some(of), .. } if finished >= of => {
-                    self.counts.remove(leg);
+                Sight::Arrived { leg, finished, of, stop, .. } => {
+                    self.listen_to_the_pass(leg, finished, of, &stop)
                 }
                 other => self.note(&other),
             }
@@ -129,6 +131,23 @@ impl<'a> Model<'a, '_> {
         self.here = Some(place.leg.clone()).filter(|_| self.stack.is_empty());
     }
 
+    /// Lost, too, it is heard that a pass is over: the next one has begun, or the loop is left, and its own count with it.
+    fn listen_to_the_pass(&mut self, leg: &Id, finished: u64, of: Option<u64>, stop: &[bool]) {
+        let until = match self.program.and_then(|p| p.leg(leg)).map(|l| &l.kind) {
+            Some(LegKind::Iterative { until, .. }) => until.as_deref(),
+            _ => None,
+        };
+        let left = of.is_some_and(|of| finished >= of) || !self.goes_on(until, leg, finished, stop);
+        if left {
+            self.counts.remove(leg);
+        }
+        let Some(depth) = self.stack.iter().position(|f| f.id.as_ref() == Some(leg)) else { return };
+        self.stack.truncate(depth + usize::from(!left));
+        if let Some(frame) = self.stack.get_mut(depth) {
+            frame.iteration = finished + 1;
+        }
+    }
+
     /// Things that are not part of the way.
     fn note(&mut self, sight: &Sight<'a>) {
         match *sight {
@@ -138,7 +157,10 @@ impl<'a> Model<'a, '_> {
             },
             Sight::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
             Sight::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
-            Sight::Skipped { announced } => self.may_miss += usize::from(!announced),
+            Sight::Skipped { leg, announced } => {
+                self.may_miss += usize::from(!announced);
+                self.skipped.extend(leg.cloned());
+            }
             _ => {}
         }
     }
@@ -164,6 +186,7 @@ impl<'a> Model<'a, '_> {
     }
 
     fn forget_what_was_skipped(&mut self) {
+        self.skipped.clear();
         (self.may_miss, self.missed, self.perhaps_missed) = (0, 0, 0);
         self.taken.extend(self.taken_since.drain(..).map(|(_, leg, branch)| (leg, branch)));
     }
@@ -197,8 +220,8 @@ impl<'a> Model<'a, '_> {
                 self.program = Some(program);
                 entry.clone()
             }
-            Jump::GoOn { program, leg, simply } => {
-                self.leave_loops_not_around(leg, program);
+            Jump::GoOn { program, leg, entered, simply } => {
+                self.leave_loops_not_around(leg, entered, program);
                 self.forget_other_forms(program);
                 self.program = Some(program);
                 let here = self.here.clone().filter(|_| simply && !self.stack.iter().any(|f| f.reverse));
@@ -232,11 +255,13 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// Loops that a new plan hasn't around the leg being flown are left, and their counts forgotten.
-    fn leave_loops_not_around(&mut self, leg: &Id, new: &Program) {
-        let path = new.path(leg);
-        let chain: Vec<&Leg> = path.iter().flat_map(|path| new.chain(path)).collect();
-        let around = |id: &Id| chain.iter().any(|l| l.id == *id && l.as_loop().is_some());
+    /// Loops that a new plan hasn't around the leg being flown are left, and their counts forgotten; on the way to a leg (skipped to)
+    /// those around the one that was entered last are still there.
+    fn leave_loops_not_around(&mut self, leg: &Id, entered: bool, new: &Program) {
+        let last = self.here.clone().or(self.stack.last().and_then(|f| f.id.clone())).filter(|_| !entered);
+        let chain = |leg: &Id| new.path(leg).map_or(Vec::new(), |path| new.chain(&path));
+        let legs: Vec<&Leg> = [Some(leg.clone()), last].iter().flatten().flat_map(chain).collect();
+        let around = |id: &Id| legs.iter().any(|l| l.id == *id && l.as_loop().is_some());
         self.stack.retain(|f| f.id.as_ref().is_some_and(around));
         self.counts.retain(|id, _| around(id));
     }
@@ -433,9 +458,13 @@ impl<'a> Model<'a, '_> {
         let sight = self.peek()?;
         if matches!(sight, Sight::Entered(place) if self.is_here(&leg.id, place)) {
             self.enter(&leg.id)?;
-            self.peek()?;
         }
-        let Some(branch) = self.decided(&leg.id) else {
+        let entered = match self.peek()? {
+            Sight::Entered(place) => Some(&place.leg),
+            _ => None,
+        };
+        let leads_to = |branch: &Id| branches.iter().find(|b| b.id == *branch)?.next.as_ref();
+        let Some(branch) = self.decided(&leg.id, leads_to, entered) else {
             return Err(Stop::Wrong(format!("{} was crossed without a decision", leg.id)));
         };
         let chosen = branches.iter().find(|b| b.id == branch);
@@ -444,13 +473,24 @@ impl<'a> Model<'a, '_> {
         Ok(chosen.next.clone().filter(known))
     }
 
-    /// What was decided last before the leg behind the intersection was laid out; else whatever was.
-    fn decided(&mut self, leg: &Id) -> Option<Id> {
+    /// What was decided last before the leg behind the intersection was laid out; else whatever was. That a later word was in time, on
+    /// the way to that leg, shows in what is `entered`, unless that leg was skipped.
+    fn decided<'p>(
+        &mut self,
+        leg: &Id,
+        leads_to: impl Fn(&Id) -> Option<&'p Id>,
+        entered: Option<&Id>,
+    ) -> Option<Id> {
         let before = self.taken.remove(leg);
+        let is_behind = before.as_ref().and_then(&leads_to).is_some_and(|next| self.skipped.contains(next));
         let of = |(_, id, _): &(usize, Id, Id)| id == leg;
         let in_time = self.taken_since.iter().rposition(|t| of(t) && t.0 < self.missed + self.perhaps_missed);
-        let any = || self.taken_since.iter().rposition(of).filter(|_| before.is_none());
-        let since = in_time.or_else(any).map(|i| self.taken_since.remove(i).2);
+        let late = || {
+            let last = self.taken_since.iter().rposition(of)?;
+            let shows = !is_behind && leads_to(&self.taken_since[last].2) == entered;
+            Some(last).filter(|_| before.is_none() || shows)
+        };
+        let since = in_time.or_else(late).map(|i| self.taken_since.remove(i).2);
         since.or(before)
     }
 

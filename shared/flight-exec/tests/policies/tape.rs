@@ -21,6 +21,7 @@ pub enum Sight<'a> {
     CannotBeFlown(&'a Id),
     /// Skipped, maybe before it was entered.
     Skipped {
+        leg: Option<&'a Id>,
         announced: bool,
     },
     Jump(Jump<'a>),
@@ -35,10 +36,11 @@ pub enum Jump<'a> {
     Return(&'a Id),
     /// Another plan, entered at a leg.
     Enter(&'a Program, &'a Id),
-    /// Another plan, gone on with where the aircraft is, on a leg; `simply`: nothing but the leg being flown was kept.
+    /// Another plan, gone on with where the aircraft is, on a leg or on the way to it; `simply`: nothing but the leg being flown was kept.
     GoOn {
         program: &'a Program,
         leg: &'a Id,
+        entered: bool,
         simply: bool,
     },
 }
@@ -128,7 +130,9 @@ fn order<'a>(
         Command::Start => Sight::Jump(Jump::Start(program)),
         Command::GoTo { leg } => Sight::Jump(Jump::GoTo(leg)),
         Command::ReturnToMain { leg } => Sight::Jump(Jump::Return(leg)),
-        Command::SkipLeg => Sight::Skipped { announced: announced() },
+        Command::SkipLeg => {
+            Sight::Skipped { leg: step.before.place().map(|p| &p.leg), announced: announced() }
+        }
         Command::SetCount { leg, count } => Sight::Counted(leg, *count),
         Command::Emergency { .. } => {
             let plan = flown_alternate(step, None)?;
@@ -138,7 +142,10 @@ fn order<'a>(
             let current = step.before.place().map(|p| &p.leg);
             Sight::Jump(match (entry, current) {
                 (Some(entry), current) if Some(entry) != current => Jump::Enter(program, entry),
-                (_, leg) => Jump::GoOn { program, leg: leg?, simply: announced() && keeps_one_leg(step) },
+                (_, leg) => {
+                    let entered = announced();
+                    Jump::GoOn { program, leg: leg?, entered, simply: entered && keeps_one_leg(step) }
+                }
             })
         }
         _ => return None,

@@ -6,7 +6,7 @@ use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Step, Trace, kind, knows};
 use flight_exec::{Answer, Command, Config, Event, Input, Phase, PlacePointer, ProposalReport};
-use flight_plan::{Id, IterativeForm, LegKind, Program, Variable};
+use flight_plan::{Id, IterativeForm, LegKind, Program, Value, Variable};
 use std::collections::BTreeSet;
 
 pub const POLICIES: &[Policy] = &[
@@ -195,7 +195,9 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         let (Some(before), Some(after)) = (step.before.place(), step.after.place()) else { continue };
         let kind = |p: &Program| p.leg(&before.leg).map(|l| l.kind_name());
         // where an orbit is left depends on what follows: it may turn out to be flown already
-        let ends_early = kind(new) == Some("orbit");
+        let laps = |p: &Program| most_laps(p, &before.leg).unwrap_or(f64::INFINITY);
+        // and of a holding more laps may have been flown than it has by now
+        let ends_early = kind(new) == Some("orbit") || laps(new) < laps(old);
         // nobody has to decide any more: the new plan does
         let is_decided = decides(step, &before.leg);
         let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early && !is_decided;
@@ -213,6 +215,13 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         let counted = was.iter().all(same_count);
         let same = before.leg == after.leg && before.plan == after.plan && counted;
         found.expect(step, same, || format!("{before:?} became {after:?}"));
+    }
+}
+
+fn most_laps(program: &Program, leg: &Id) -> Option<f64> {
+    match &program.leg(leg)?.kind {
+        LegKind::Hm { max_laps: Some(Value::Constant(laps)), .. } => Some(*laps),
+        _ => None,
     }
 }
 
