@@ -2,7 +2,6 @@
 
 use super::source::Loaded;
 use super::{Source, foreign};
-use aircraft::Wind;
 use flight_exec::Conditions;
 use flight_plan::Problem;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,9 +15,9 @@ const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values o
 /// What a path is looked at for.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Circumstances {
-    /// Where the wind comes from (degrees true) and its speed (m/s).
-    #[arg(long, value_name = "DIRECTION,SPEED", value_parser = super::wind::parse, default_value = "0,0")]
-    pub wind: Wind,
+    /// The air that it is flown in.
+    #[command(flatten)]
+    pub air: super::wind::Air,
     /// When the flight starts (UTC, as 2026-06-01T06:00:00Z); without it every zone counts as active.
     #[arg(long, value_name = "TIME")]
     pub start: Option<jiff::Timestamp>,
@@ -30,7 +29,7 @@ pub struct Circumstances {
 impl Circumstances {
     fn conditions(&self) -> Conditions {
         let start_unix_s = self.start.map(jiff::Timestamp::as_second);
-        Conditions { wind: self.wind, start_unix_s, ..Conditions::default() }
+        Conditions { wind: self.air.wind, start_unix_s, ..Conditions::default() }
     }
 }
 

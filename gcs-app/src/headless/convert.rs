@@ -14,7 +14,7 @@ use std::process::ExitCode;
 #[derive(Debug, Clone, clap::Args)]
 pub struct Target {
     /// The file to be written, or `-` for standard output.
-    #[arg(id = "written", value_name = "OUTPUT")]
+    #[arg(id = "written", value_name = "OUTPUT", help_heading = None::<&str>)]
     pub file: PathBuf,
     /// Its format, instead of the one that its extension names.
     #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]

@@ -18,7 +18,6 @@ pub mod wind;
 
 pub use source::{Loaded, Source};
 
-use aircraft::Wind;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -39,7 +38,7 @@ pub enum Command {
         #[command(flatten, next_help_heading = "Looking at the path")]
         circumstances: check::Circumstances,
         /// One JSON document instead of lines.
-        #[arg(long, help_heading = "Options")]
+        #[arg(long, help_heading = None::<&str>)]
         json: bool,
     },
     /// Draw what would be flown: map, profile and leg table.
@@ -52,11 +51,11 @@ pub enum Command {
         #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
         /// Where the report goes.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "What is written")]
         target: preview::Target,
-        /// Where the wind comes from (degrees true) and its speed (m/s).
-        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
-        wind: Wind,
+        /// The air that it is flown in.
+        #[command(flatten, next_help_heading = "Which way is flown")]
+        air: wind::Air,
     },
     /// List the waypoints that would be sent.
     ///
@@ -70,11 +69,11 @@ pub enum Command {
         #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
         /// Where and how they are written.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "What is written")]
         written: expand::Written,
-        /// Where the wind comes from (degrees true) and its speed (m/s).
-        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
-        wind: Wind,
+        /// The air that it is flown in.
+        #[command(flatten, next_help_heading = "Which way is flown")]
+        air: wind::Air,
     },
     /// Convert a plan from and to other programs' formats.
     ///
@@ -86,14 +85,14 @@ pub enum Command {
         #[command(flatten)]
         source: Box<Source>,
         /// What is written where.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "What is written")]
         target: convert::Target,
         /// Which way is flown.
         #[command(flatten, next_help_heading = "Which way is flown")]
         selection: select::Selection,
-        /// Where the wind comes from (degrees true) and its speed (m/s).
-        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
-        wind: Wind,
+        /// The air that it is flown in.
+        #[command(flatten, next_help_heading = "Which way is flown")]
+        air: wind::Air,
     },
     /// Say what differs between two plans, and where an aircraft would go.
     #[command(after_help = help::DIFF)]
@@ -102,16 +101,16 @@ pub enum Command {
         #[command(flatten)]
         old: Box<Source>,
         /// The new plan.
-        #[arg(value_name = "NEW")]
+        #[arg(value_name = "NEW", help_heading = None::<&str>)]
         new: PathBuf,
         /// Where the aircraft is.
-        #[command(flatten)]
+        #[command(flatten, next_help_heading = "Where the aircraft is")]
         moment: diff::Moment,
-        /// Where the wind comes from (degrees true) and its speed (m/s).
-        #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "0,0")]
-        wind: Wind,
+        /// The air that it is flown in.
+        #[command(flatten, next_help_heading = "Where the aircraft is")]
+        air: wind::Air,
         /// One JSON document instead of lines.
-        #[arg(long)]
+        #[arg(long, help_heading = None::<&str>)]
         json: bool,
     },
 }
@@ -123,15 +122,15 @@ pub enum Command {
 pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Check { source, circumstances, json } => check::run(source, circumstances, *json),
-        Command::Preview { source, selection, target, wind } => {
-            preview::run(source, *wind, selection, target)
+        Command::Preview { source, selection, target, air } => {
+            preview::run(source, air.wind, selection, target)
         }
-        Command::Expand { source, selection, written, wind } => {
-            expand::run(source, *wind, selection, written)
+        Command::Expand { source, selection, written, air } => {
+            expand::run(source, air.wind, selection, written)
         }
-        Command::Convert { source, target, selection, wind } => {
-            convert::run(source, *wind, selection, target)
+        Command::Convert { source, target, selection, air } => {
+            convert::run(source, air.wind, selection, target)
         }
-        Command::Diff { old, new, moment, wind, json } => diff::run(old, new, moment, *wind, *json),
+        Command::Diff { old, new, moment, air, json } => diff::run(old, new, moment, air.wind, *json),
     }
 }

@@ -5,6 +5,14 @@ use aircraft::Wind;
 /// Strongest wind that makes sense, m/s.
 const MOST_MPS: f64 = 50.0;
 
+/// The wind of a command that flies a plan ahead of time.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub struct Air {
+    /// Where the wind comes from (degrees true) and its speed (m/s).
+    #[arg(long, value_name = "DIRECTION,SPEED", value_parser = parse, default_value = "0,0")]
+    pub wind: Wind,
+}
+
 /// `DIRECTION,SPEED`: where it comes from in degrees true, and m/s.
 ///
 /// # Errors
