@@ -8,9 +8,9 @@ use crate::{
     Parameter, Problem, Procedure, Runway, Stage, StageKind, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
+use simdutf8::compat::Utf8Error;
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::str::Utf8Error;
 
 /// What came out of a document.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -83,7 +83,7 @@ pub fn read(document: impl AsRef<[u8]>) -> Reading {
         return Reading { problems: vec![Problem::error("too-large", message)], ..Reading::default() };
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let (text, encoding) = match std::str::from_utf8(bytes) {
+    let (text, encoding) = match simdutf8::compat::from_utf8(bytes) {
         Ok(text) => (Cow::Borrowed(text), character_problem(text)),
         Err(error) => (String::from_utf8_lossy(bytes), encoding_problem(bytes, error)),
     };
