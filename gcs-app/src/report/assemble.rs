@@ -173,6 +173,10 @@ fn sentence(event: &Event) -> (String, bool) {
             let leg = leg.as_ref().map_or(String::new(), |l| format!(" of {l}"));
             (format!("waypoints{leg} refused: {reason}"), true)
         }
+        Event::ProblemAhead { leg, reason, .. } => {
+            let leg = leg.as_ref().map_or(String::new(), |l| format!(" on {l}"));
+            (format!("problem ahead{leg}: {reason}"), true)
+        }
         Event::NotGranted { request, reason } => {
             (format!("`{request}` not granted by the gateway: {reason}"), true)
         }

@@ -121,6 +121,10 @@ pub fn plan_event(event: &PlanEvent) -> (Level, String) {
             let leg = leg.as_ref().map(|l| format!(" of {l}")).unwrap_or_default();
             (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
         }
+        PlanEvent::ProblemAhead { leg, code, reason } => {
+            let leg = leg.as_ref().map(|l| format!(" on {l}")).unwrap_or_default();
+            (Level::Warning, format!("The way ahead has a problem{leg}: {reason} [{code}]"))
+        }
         PlanEvent::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
         }

@@ -2,6 +2,7 @@
 //! `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a crash, and the shell
 //! that owns session, clock and disk.
 
+mod afterwards;
 mod aircraft;
 mod alarms;
 mod feeder;

@@ -1,6 +1,7 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
 use super::Config;
+use super::afterwards::{Afterwards, Turn};
 use super::journal::Keeper;
 use super::looks::{Asked, Looks, Verdict};
 use super::manager::{Effect, Manager, OPERATOR};
@@ -150,6 +151,7 @@ pub(super) struct Shell {
     pending: Pending,
     desk: Desk,
     looks: Looks,
+    afterwards: Afterwards,
 }
 
 /// Runs the FP Manager until `shutdown`.
@@ -178,16 +180,18 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let session = session.clone();
     let pending = Pending::default();
     let manager = past.manager;
-    let (desk, looks) = (Desk::default(), Looks::default());
-    let mut shell = Shell { config, session, clock, manager, journal, publishers, pending, desk, looks };
+    let (desk, looks, afterwards) = (Desk::default(), Looks::default(), Afterwards::default());
+    let mut shell =
+        Shell { config, session, clock, manager, journal, publishers, pending, desk, looks, afterwards };
     let troubles = past.troubles.into_iter();
     let told = troubles.map(|reason| Effect::Event(PlanEvent::NotJournalled { reason })).collect();
     shell.perform(told).await;
     shell.load_plan().await?;
     loop {
+        let held_until = shell.held_until();
         tokio::select! {
             () = shutdown.requested() => break,
-            beat = next_beat(&mut shell.clock, held_until(&shell.desk, &shell.looks)) => {
+            beat = next_beat(&mut shell.clock, held_until) => {
                 anyhow::ensure!(beat.is_some(), "the network session was closed");
                 shell.beat(&mut ears).await;
             }
@@ -197,6 +201,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             }
             (incoming, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, looked).await,
             problems = shell.looks.next() => shell.looked_ahead(problems).await,
+            events = shell.afterwards.next() => shell.perform(events.into_iter().map(Effect::Event).collect()).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -205,11 +210,6 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
         journal.done().await;
     }
     Ok(())
-}
-
-/// In lockstep, time stands until then, while something is looked at.
-fn held_until(desk: &Desk, looks: &Looks) -> Option<Instant> {
-    [desk.holds_time_until(), looks.holds_time_until()].into_iter().flatten().min()
 }
 
 /// The next beat; in lockstep, what was asked before is looked at first.
@@ -235,6 +235,13 @@ impl Shell {
         let report = self.propose(program, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))?;
         let commit = Command::Commit { hash: report.hash, entry: None };
         self.command(commit, OPERATOR, None).await.map_err(|r| anyhow::anyhow!("the plan: {r}"))
+    }
+
+    /// In lockstep, time stands until then, while something is looked at.
+    fn held_until(&self) -> Option<Instant> {
+        let held =
+            [self.desk.holds_time_until(), self.looks.holds_time_until(), self.afterwards.holds_time_until()];
+        held.into_iter().flatten().min()
     }
 
     /// Everything due at a beat of the clock.
@@ -406,8 +413,14 @@ impl Shell {
     }
 
     async fn command(&mut self, command: Command, by: &str, id: Option<&str>) -> Result<(), Refusal> {
+        let executor = self.manager.executor();
+        let before = executor.takes_its_own_way(&command).then(|| executor.clone());
         let mut effects = Vec::new();
         let answer = self.manager.command(self.clock.now(), command, by, id, &mut effects);
+        if let (Ok(()), Some(before)) = (&answer, before) {
+            let conditions = self.manager.conditions(self.clock.now());
+            self.afterwards.look(Turn { before, after: self.manager.executor().clone(), conditions });
+        }
         self.perform(effects).await;
         answer
     }

@@ -166,3 +166,33 @@ async fn plan_good_for_its_time_of_day_is_accepted_on_the_ground_and_in_flight()
     let again = plan.replace(r#"id="ko""#, r#"id="ko2""#);
     assert!(refused(flight.propose(&again).await).reason.contains("[keep-out]"));
 }
+
+/// A holding west of the zone, then round its south to the east of it: the straight way is for the one to know who goes it.
+#[tokio::test(flavor = "multi_thread")]
+async fn straight_way_to_a_leg_through_a_zone_is_taken_at_once_and_told() {
+    let round = r#"<HM id="west" lat="36.3350" lon="-84.2200" course="0" turn="left" length="300"/>
+        <TF id="south" lat="36.3200" lon="-84.1950"/><TF id="east" lat="36.3350" lon="-84.1750"/>"#;
+    let end = r#"altitude="110" altitudeReference="home"/>"#;
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
+    flight.load(&searching().replace(end, &format!("{end}{round}"))).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "west")).await;
+    flight.command(Command::GoTo { leg: "east".into() }).await.unwrap();
+    let (leg, code, reason) = within(async {
+        loop {
+            flight.gateway.step().await;
+            while let Some(occurrence) = events.try_recv() {
+                let Occurrence::Event { event, .. } = occurrence else { continue };
+                if let PlanEvent::ProblemAhead { leg, code, reason } = event.value {
+                    return (leg, code, reason);
+                }
+            }
+        }
+    })
+    .await;
+    assert_eq!((leg, code.as_str()), (Some("east".into()), "keep-out"));
+    assert!(reason.contains("zone `ko`"), "{reason}");
+    flight.step_until(|g| g.finished()).await;
+    assert!(!legs(&flight.gateway).contains(&"south".to_owned()));
+}

@@ -39,6 +39,6 @@ pub use executor::Executor;
 pub use preview::{Preview, PreviewError, preview};
 pub use review::{
     Conditions, Margins, compile_and_review, compile_and_review_ahead, review, review_ahead, review_command,
-    review_extremes,
+    review_extremes, review_turn,
 };
 pub use snapshot::{RestoreError, Snapshot};

@@ -7,9 +7,9 @@ mod grid;
 use aircraft::Profile;
 use flight_exec::{
     AircraftState, Command, Conditions, Config, Executor, Input, RequestId, Time, compile_and_review_ahead,
-    review_ahead, review_command,
+    review_ahead, review_command, review_turn,
 };
-use flight_plan::{Problem, VariableValue};
+use flight_plan::{Cause, Problem, VariableValue};
 use geometry::LatLon;
 use grid::{GROUND_M, HOME, compiled, document_with, fix};
 use std::sync::Arc;
@@ -109,6 +109,14 @@ impl Flight {
         errors(&review_command(&self.executor, "operator", &command, Conditions::default()))
     }
 
+    /// Errors that a command brings about which takes effect at once.
+    fn errors_after(&mut self, command: Command) -> Vec<(&'static str, String)> {
+        let before = self.executor.clone();
+        assert!(before.takes_its_own_way(&command) && !before.changes_what_is_flown(&command), "{command:?}");
+        self.command(command);
+        errors(&review_turn(&before, &self.executor, Conditions::default()))
+    }
+
     /// Errors of a plan that would take over here.
     fn errors_of_plan(&self, document: &str, conditions: Conditions) -> Vec<(&'static str, String)> {
         match compile_and_review_ahead(document.as_bytes(), &self.executor, conditions) {
@@ -175,6 +183,31 @@ fn value_that_makes_no_path() {
     assert_eq!(flight.errors_of_writing("shift", VariableValue::Number(-300.0)), on("leg-not-flyable", "s"));
     let flight = Flight::on("b", &document(&legs, ""));
     assert_eq!(flight.errors_of_writing("shift", VariableValue::Number(-300.0)), on("leg-not-flyable", "s"));
+}
+
+/// Round the zone about D3.
+const AROUND: &str = r#"<TF id="a" fix="B1"/><TF id="b" fix="C3"/><TF id="c" fix="C1"/><TF id="d" fix="E1"/>
+    <TF id="e" fix="E3"/><TF id="f" fix="E1"/>"#;
+
+#[test]
+fn straight_way_to_a_leg_through_a_zone_is_told_when_it_is_taken() {
+    let go_to = |leg: &str| Command::GoTo { leg: leg.into() };
+    let from_c3 = || Flight::on("c", &document(AROUND, ""));
+    assert_eq!(errors(&review_ahead(&from_c3().executor, Conditions::default())), NONE);
+    assert_eq!(from_c3().errors_after(go_to("e")), on("keep-out", "e"));
+    assert_eq!(from_c3().errors_after(go_to("a")), NONE);
+    assert_eq!(from_c3().errors_after(Command::SkipLeg), NONE);
+    let mut flight = from_c3();
+    flight.command(Command::Emergency { cause: Cause::Payload, plan: None });
+    assert_eq!(flight.errors_after(Command::ReturnToMain { leg: "e".into() }), on("keep-out", "e"));
+    // it was ahead before
+    assert_eq!(flight.errors_after(go_to("e")), NONE);
+}
+
+#[test]
+fn a_leg_skipped_leads_straight_through_a_zone() {
+    let mut flight = Flight::on("c", &document(&AROUND.replace(r#"<TF id="d" fix="E1"/>"#, ""), ""));
+    assert_eq!(flight.errors_after(Command::SkipLeg), on("keep-out", "e"));
 }
 
 #[test]

@@ -109,6 +109,16 @@ pub enum Event {
         /// Why.
         reason: String,
     },
+    /// A command took effect that leads along a way of its own (a go-to, a leg skipped, a return to the main plan), and what is ahead has
+    /// this problem now, which it did not have before. It is flown nevertheless unless another command comes. Told by the FP Manager.
+    ProblemAhead {
+        /// The leg, if it is one's.
+        leg: Option<Id>,
+        /// What is wrong: short, stable, for programs.
+        code: String,
+        /// For people.
+        reason: String,
+    },
     /// The gateway does not grant what the flight needs; it is asked again, for the take-off until
     /// it is granted. Told once for each reason, by the FP Manager.
     NotGranted {

@@ -39,6 +39,12 @@ pub fn review_command(
     }
 }
 
+/// What is wrong with the way of a flight after a command that it took at once (see [`Executor::takes_its_own_way`]), and was not
+/// before: errors only.
+pub fn review_turn(before: &Executor, after: &Executor, conditions: Conditions) -> Vec<Problem> {
+    brought_about(before, after, conditions).into_iter().filter(Problem::is_error).collect()
+}
+
 /// As [`super::compile_and_review`], for a plan that would take over a flight under way where that is. A plan in which the leg to enter has
 /// still to be named is checked, and looked at with that leg by [`review_command`] when it is committed.
 ///
@@ -81,6 +87,14 @@ impl Executor {
                 Command::SetVariable { name, .. } => laid_out_from(&self.program).contains(name),
                 _ => false,
             }
+    }
+
+    /// In flight, a command that leads along the plan as it is, but by a way that the plan does not have: straight to a leg. It is for people
+    /// to give at once, and for [`review_turn`] afterwards.
+    pub fn takes_its_own_way(&self, command: &Command) -> bool {
+        let straight =
+            matches!(command, Command::GoTo { .. } | Command::SkipLeg | Command::ReturnToMain { .. });
+        self.is_under_way() && straight
     }
 }
 

@@ -31,7 +31,7 @@ mod waypoints;
 mod ways;
 mod zones;
 
-pub use ahead::{compile_and_review_ahead, review_ahead, review_command};
+pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_turn};
 use aircraft::{Profile, Wind};
 use alternates::Origin;
 pub(crate) use alternates::ground_speed_mps;
