@@ -2,7 +2,6 @@
 //! way is flown ahead afterwards, on a thread of its own, and what is wrong with it told.
 
 use super::proposals::{LOCKSTEP_PATIENCE, broken};
-use flight_exec::{Conditions, Executor, review_turn};
 use flight_plan::Problem;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
@@ -11,22 +10,15 @@ use usal::contract::PlanEvent;
 /// Most problems that are told of one command.
 const MOST_TOLD: usize = 20;
 
-/// A flight before and after such a command.
-pub struct Turn {
-    /// Before.
-    pub before: Executor,
-    /// After.
-    pub after: Executor,
-    /// Wind and time of day.
-    pub conditions: Conditions,
-}
+/// Finds out what is wrong with a way.
+type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
 
 /// What is looked at afterwards: one way at a time, then the latest.
 #[derive(Default)]
 pub struct Afterwards {
     look: Option<Look>,
     /// Taken since; the way being looked at is not flown any more.
-    next: Option<Turn>,
+    next: Option<Review>,
 }
 
 struct Look {
@@ -36,10 +28,10 @@ struct Look {
 
 impl Afterwards {
     /// Has a way looked at.
-    pub fn look(&mut self, turn: Turn) {
+    pub fn look(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static) {
         match self.look {
-            Some(_) => self.next = Some(turn),
-            None => self.look = Some(Look::at(turn)),
+            Some(_) => self.next = Some(Box::new(review)),
+            None => self.look = Some(Look::by(Box::new(review))),
         }
     }
 
@@ -47,7 +39,7 @@ impl Afterwards {
     pub async fn next(&mut self) -> Vec<PlanEvent> {
         let Some(look) = &mut self.look else { return std::future::pending().await };
         let problems = (&mut look.work).await.unwrap_or_else(|error| vec![broken(&error)]);
-        self.look = self.next.take().map(Look::at);
+        self.look = self.next.take().map(Look::by);
         match self.look {
             Some(_) => Vec::new(),
             None => problems.into_iter().take(MOST_TOLD).map(told).collect(),
@@ -61,13 +53,48 @@ impl Afterwards {
 }
 
 impl Look {
-    fn at(turn: Turn) -> Self {
-        let Turn { before, after, conditions } = turn;
-        let work = tokio::task::spawn_blocking(move || review_turn(&before, &after, conditions));
-        Self { work, since: Instant::now() }
+    fn by(review: Review) -> Self {
+        Self { work: tokio::task::spawn_blocking(review), since: Instant::now() }
     }
 }
 
 fn told(problem: Problem) -> PlanEvent {
     PlanEvent::ProblemAhead { leg: problem.subject, code: problem.code.into(), reason: problem.message }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problems(count: usize) -> Vec<Problem> {
+        (0..count).map(|i| Problem::error("keep-out", format!("{i} of {count}"))).collect()
+    }
+
+    async fn reasons(afterwards: &mut Afterwards) -> Vec<String> {
+        let events = afterwards.next().await.into_iter();
+        events.map(|event| format!("{event:?}")).collect()
+    }
+
+    #[tokio::test]
+    async fn only_the_way_taken_last_is_told_of() {
+        let mut afterwards = Afterwards::default();
+        for count in 1..=3 {
+            afterwards.look(move || problems(count));
+        }
+        assert!(afterwards.holds_time_until().is_some());
+        assert!(reasons(&mut afterwards).await.is_empty(), "of the first, which is not flown any more");
+        let told = reasons(&mut afterwards).await;
+        assert!(told.len() == 3 && told.iter().all(|told| told.contains("of 3")), "{told:?}");
+        assert!(afterwards.holds_time_until().is_none());
+    }
+
+    #[tokio::test]
+    async fn very_many_problems_and_a_review_that_fails() {
+        let mut afterwards = Afterwards::default();
+        afterwards.look(|| problems(1000));
+        assert_eq!(reasons(&mut afterwards).await.len(), MOST_TOLD);
+        afterwards.look(|| panic!("for the test"));
+        let told = reasons(&mut afterwards).await;
+        assert!(told.len() == 1 && told.iter().all(|told| told.contains("not-reviewed")), "{told:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
 use super::Config;
-use super::afterwards::{Afterwards, Turn};
+use super::afterwards::Afterwards;
 use super::journal::Keeper;
 use super::looks::{Asked, Looks, Verdict};
 use super::manager::{Effect, Manager, OPERATOR};
@@ -418,8 +418,9 @@ impl Shell {
         let mut effects = Vec::new();
         let answer = self.manager.command(self.clock.now(), command, by, id, &mut effects);
         if let (Ok(()), Some(before)) = (&answer, before) {
+            let after = self.manager.executor().clone();
             let conditions = self.manager.conditions(self.clock.now());
-            self.afterwards.look(Turn { before, after: self.manager.executor().clone(), conditions });
+            self.afterwards.look(move || flight_exec::review_turn(&before, &after, conditions));
         }
         self.perform(effects).await;
         answer
