@@ -482,9 +482,15 @@ impl<'a> Model<'a, '_> {
         entered: Option<&Id>,
     ) -> Option<Id> {
         let before = self.taken.remove(leg);
-        let is_behind = before.as_ref().and_then(&leads_to).is_some_and(|next| self.skipped.contains(next));
         let of = |(_, id, _): &(usize, Id, Id)| id == leg;
-        let in_time = self.taken_since.iter().rposition(|t| of(t) && t.0 < self.missed + self.perhaps_missed);
+        // where the leg behind was skipped as well, that was the skip after those that led to the intersection
+        let passed = self.missed + self.perhaps_missed;
+        let leads_to_skipped = |branch: &Id| leads_to(branch).is_some_and(|next| self.skipped.contains(next));
+        let in_time = self
+            .taken_since
+            .iter()
+            .rposition(|t| of(t) && (t.0 < passed || t.0 == passed && leads_to_skipped(&t.2)));
+        let is_behind = before.as_ref().is_some_and(leads_to_skipped);
         let late = || {
             let last = self.taken_since.iter().rposition(of)?;
             let shows = !is_behind && leads_to(&self.taken_since[last].2) == entered;
