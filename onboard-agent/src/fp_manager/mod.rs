@@ -14,6 +14,7 @@ mod kills;
 mod liaison;
 mod looks;
 mod manager;
+mod pending;
 mod proposals;
 mod publish;
 mod recording;

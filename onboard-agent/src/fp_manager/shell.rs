@@ -5,6 +5,7 @@ use super::afterwards::Afterwards;
 use super::journal::Keeper;
 use super::looks::{Asked, Looks, Verdict};
 use super::manager::{Effect, Manager, OPERATOR};
+use super::pending::{Answered, Pending};
 use super::proposals::{Desk, Sight, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
@@ -18,8 +19,8 @@ use tokio::time::Instant;
 use usal::contract::*;
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
 use usal::{
-    Announcement, CallError, Description, EventSubscriber, Incoming, Occurrence, Participant, PendingCall,
-    Presence, Server, Session, Start, VariableSubscriber,
+    Announcement, CallError, Description, EventSubscriber, Incoming, Occurrence, Participant, Presence,
+    Server, Session, Start, VariableSubscriber,
 };
 
 /// The gateway answers at once or not at all, wall-clock.
@@ -97,50 +98,6 @@ impl Ears {
     }
 }
 
-/// What we asked the gateway.
-#[derive(Default)]
-struct Pending {
-    feed: Option<PendingCall<FeedAnswer>>,
-    join: Option<PendingCall<JoinAnswer>>,
-    request: Option<(GatewayRequest, PendingCall<Empty>)>,
-}
-
-enum Answered {
-    Feed(Result<FeedAnswer, CallError>),
-    Join(Result<JoinAnswer, CallError>),
-    Request(GatewayRequest, Result<Empty, CallError>),
-}
-
-impl Pending {
-    fn is_empty(&self) -> bool {
-        self.feed.is_none() && self.join.is_none() && self.request.is_none()
-    }
-
-    /// The next answer; never, if nothing was asked. May be cancelled.
-    async fn next(&mut self) -> Answered {
-        async fn answer<A>(call: Option<&mut PendingCall<A>>) -> Result<A, CallError> {
-            match call {
-                Some(call) => call.await,
-                None => std::future::pending().await,
-            }
-        }
-        let answered = tokio::select! {
-            a = answer(self.join.as_mut()) => Answered::Join(a),
-            a = answer(self.feed.as_mut()) => Answered::Feed(a),
-            a = answer(self.request.as_mut().map(|(_, call)| call)) => {
-                let request = self.request.as_ref().map_or(GatewayRequest::Hold, |(r, _)| r.clone());
-                Answered::Request(request, a)
-            }
-        };
-        match &answered {
-            Answered::Feed(_) => self.feed = None,
-            Answered::Join(_) => self.join = None,
-            Answered::Request(..) => self.request = None,
-        }
-        answered
-    }
-}
-
 pub(super) struct Shell {
     config: Config,
     session: Session,
@@ -184,8 +141,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let mut shell =
         Shell { config, session, clock, manager, journal, publishers, pending, desk, looks, afterwards };
     let troubles = past.troubles.into_iter();
-    let told = troubles.map(|reason| Effect::Event(PlanEvent::NotJournalled { reason })).collect();
-    shell.perform(told).await;
+    shell.tell(troubles.map(|reason| PlanEvent::NotJournalled { reason }).collect()).await;
     shell.load_plan().await?;
     loop {
         let held_until = shell.held_until();
@@ -201,7 +157,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             }
             (incoming, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, looked).await,
             problems = shell.looks.next() => shell.looked_ahead(problems).await,
-            events = shell.afterwards.next() => shell.perform(events.into_iter().map(Effect::Event).collect()).await,
+            events = shell.afterwards.next() => shell.tell(events).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -430,6 +386,10 @@ impl Shell {
         let executor = self.manager.executor();
         let xml = executor.program().map(|p| flight_plan::write(&p.plan)).unwrap_or_default();
         PlanDocument { info: publish::plan_info(executor), xml }
+    }
+
+    async fn tell(&mut self, events: Vec<PlanEvent>) {
+        self.perform(events.into_iter().map(Effect::Event).collect()).await;
     }
 
     async fn perform(&mut self, effects: Vec<Effect>) {
