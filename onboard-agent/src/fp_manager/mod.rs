@@ -9,8 +9,6 @@ mod feeder;
 mod hearing;
 mod joining;
 pub mod journal;
-#[cfg(test)]
-mod kills;
 mod liaison;
 mod looks;
 mod manager;
@@ -21,6 +19,8 @@ mod recording;
 mod restart;
 mod runways;
 mod shell;
+#[cfg(test)]
+mod tests;
 mod timeline;
 
 pub use aircraft::Aircraft;

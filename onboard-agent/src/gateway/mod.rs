@@ -8,16 +8,14 @@
 mod config;
 pub mod core;
 pub mod driver;
-#[cfg(test)]
-mod flights;
 mod link;
 pub mod order;
 mod publish;
 mod shell;
-#[cfg(test)]
-mod shell_tests;
 mod station;
 mod store;
+#[cfg(test)]
+mod tests;
 pub mod window;
 
 pub use config::Config;

@@ -1,7 +1,7 @@
 //! A gateway as the contract has it, around an autopilot that flies a waypoint a step. It
 //! conducts the clock, so the test drives time.
 
-#[path = "../../src/fp_manager/kills/gateway.rs"]
+#[path = "../../src/fp_manager/tests/kills/gateway.rs"]
 mod flying;
 
 use flying::Gateway;

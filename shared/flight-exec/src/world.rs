@@ -17,6 +17,16 @@ use terrain::Terrain;
 /// Steps in which a wind above the design wind widens turns, m/s.
 const WIND_STEP_MPS: f64 = 2.0;
 
+/// Radius for turns that have to stay where they are laid out (holdings, turn-rounds, between tracks) at an
+/// airspeed: planning bank, at the greatest ground speed. That is with the wind behind: the measured one, in steps so
+/// that paths don't change with every gust, and never less than the design wind.
+pub fn turn_radius_m(profile: &Profile, airspeed_mps: f64, measured_mps: f64, design_mps: f64) -> f64 {
+    let measured_mps = (measured_mps / WIND_STEP_MPS).ceil() * WIND_STEP_MPS;
+    // in a wind faster than itself an aircraft stays nowhere
+    let wind_mps = measured_mps.max(design_mps).min(airspeed_mps.max(design_mps));
+    profile.turn_radius_m(airspeed_mps + wind_mps)
+}
+
 /// A loop's count that is not the plan's.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LoopCount {
@@ -132,15 +142,9 @@ impl World<'_> {
         self.program.expression(source)?.value(&self.env())
     }
 
-    /// Radius for turns that have to stay where they are laid out (holdings, turn-rounds, between tracks) at an
-    /// airspeed: planning bank, at the greatest ground speed. That is with the wind behind: the measured one, in steps so
-    /// that paths don't change with every gust, and never less than the design wind.
+    /// Radius for turns that have to stay where they are laid out, at an airspeed, in the wind that is measured.
     pub fn turn_radius_m(&self, airspeed_mps: f64) -> f64 {
-        let measured_mps = (self.flight.wind_mps / WIND_STEP_MPS).ceil() * WIND_STEP_MPS;
-        let design_mps = self.config.design_wind_mps;
-        // in a wind faster than itself an aircraft stays nowhere
-        let wind_mps = measured_mps.max(design_mps).min(airspeed_mps.max(design_mps));
-        self.profile.turn_radius_m(airspeed_mps + wind_mps)
+        turn_radius_m(self.profile, airspeed_mps, self.flight.wind_mps, self.config.design_wind_mps)
     }
 
     /// Metres AMSL of a level above a position; `None`: it counts from the ground, and nothing is known of the ground there.

@@ -265,6 +265,46 @@ fn a_turn_that_the_wind_makes_too_wide() {
 }
 
 #[test]
+fn tracks_that_are_too_few_to_be_interleaved() {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let reviewed = |plan: FlightPlan, max_bank_deg: f64| {
+        let profile = Profile { max_bank_deg, ..Profile::default() };
+        let program = Arc::new(compile(plan, &profile, flat.as_ref()).unwrap());
+        let problems = review(&program, &profile, &flat, Conditions::default());
+        problems.into_iter().filter(|p| p.code == "tracks-too-close").collect::<Vec<_>>()
+    };
+    // the reason, and what its edit leaves over
+    let found = |leg: &str, max_bank_deg: f64| {
+        let plan = flight_plan::read(rectangle("", leg)).plan;
+        let left =
+            |p: &Problem| p.fix.as_ref().map(|fix| reviewed(fix.apply(&plan).unwrap(), max_bank_deg).len());
+        reviewed(plan.clone(), max_bank_deg).iter().map(|p| (p.message.clone(), left(p))).collect::<Vec<_>>()
+    };
+    // a degree of longitude is 89.7 km here
+    let scan = |width_m: f64, more: &str| {
+        let corners = [(36.325, 0.0), (36.335, 0.0), (36.335, width_m), (36.325, width_m)]
+            .map(|(lat, east)| format!(r#"<corner lat="{lat}" lon="{:.7}"/>"#, -84.19 + east / 89_700.0));
+        let area = corners.concat();
+        format!(r#"<scan id="few" spacing="20" heading="0" {more}><area>{area}</area></scan>"#)
+    };
+    let corridor = |width: u32| {
+        format!(
+            r#"<corridor id="few" width="{width}" spacing="20"><route><point lat="36.325" lon="-84.19"/><point lat="36.335" lon="-84.19"/></route></corridor>"#
+        )
+    };
+    println!(
+        "{:#?}",
+        [45.0, 35.0, 30.0, 26.0].map(|bank| (
+            bank,
+            found(&scan(58.0, ""), bank),
+            found(&scan(900.0, ""), bank),
+            found(&corridor(58), bank),
+            found(&corridor(900), bank)
+        ))
+    );
+}
+
+#[test]
 fn a_turn_that_the_wind_carries_into_a_zone() {
     // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind
     let over = r#"<TF id="over" fix="A" flyOver="true"/><TF id="f" fix="B"/>"#;

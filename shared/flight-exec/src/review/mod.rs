@@ -24,6 +24,7 @@ mod powered;
 mod prepared;
 mod refused;
 mod terrain_clearance;
+mod tracks;
 mod turns;
 mod unknown_terrain;
 mod unseen;
@@ -37,9 +38,11 @@ use alternates::Origin;
 pub(crate) use alternates::ground_speed_mps;
 pub use extremes::{MOST_TRIALS, review_extremes};
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, Id, LegKind, Problem, Program, StageKind, Value, Variables,
+    Altitude, AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value,
+    Variables,
 };
 use flights::Flights;
+use geometry::LatLon;
 use in_force::InForce;
 use prepared::Zones;
 use std::collections::HashSet;
@@ -94,7 +97,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 14] = [
+const RULES: [Rule; 15] = [
     refused::check,
     unseen::check,
     zones::check,
@@ -103,6 +106,7 @@ const RULES: [Rule; 14] = [
     ceiling::check,
     altitudes::check,
     turns::check,
+    tracks::check,
     waypoints::check,
     endurance::check,
     landings::check,
@@ -156,6 +160,12 @@ impl View<'_> {
     fn is_steered(&self, leg: &Id) -> bool {
         let performed = [StageKind::TakeOff, StageKind::Land];
         self.stage_kind(leg).is_some_and(|kind| !performed.contains(&kind))
+    }
+
+    /// A number of the plan where the flights begin, if it has a value there.
+    fn number(&self, value: &Value<f64>) -> Option<f64> {
+        let flight = FlightState::on_ground(LatLon::new(0.0, 0.0));
+        self.program.eval_number(value, &Env { variables: &self.variables, flight }).ok()
     }
 
     /// A leg that loops: what is flown in its name is a turn.

@@ -56,9 +56,10 @@ fn farthest_outside_m(path: &[Vec2], area: &Polygon) -> f64 {
 }
 
 /// Turns begin up to a radius beyond the ends of tracks, which are up to the overshoot beyond the edge; and from one track
-/// to the next they lead beside the area: at most a turn's width and a spacing away.
+/// to the next they lead beside the area: at most 2k + 1 spacings, where k of them are a turn's width or up to one more.
 fn allowed_m(spacing_m: f64, overshoot_m: f64) -> f64 {
-    let aside_m = (2.0 * radius_m() + spacing_m).max(spacing_m);
+    let widest = 2.0 * (2.0 * radius_m() / spacing_m).ceil() + 1.0;
+    let aside_m = widest * spacing_m;
     // and what a position that is written down is rounded by
     aside_m.hypot((radius_m() - overshoot_m).max(0.0)) + overshoot_m + 0.1
 }

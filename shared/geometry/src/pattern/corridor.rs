@@ -138,7 +138,7 @@ mod tests {
     fn tight_turns_are_interleaved() {
         let p = CorridorParameters { turn_radius_m: 100.0, ..parameters() };
         let tracks: Vec<i64> = ends(&p).chunks(2).map(|t| t[0].0).collect();
-        assert_eq!(tracks, [-150, 50, 150, -50]);
+        assert_eq!(tracks, [-150, 50, -50, 150]);
     }
 
     #[test]

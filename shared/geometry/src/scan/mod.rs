@@ -48,7 +48,8 @@ pub struct ScanParameters {
     /// Where the pattern begins.
     pub entry: Entry,
     /// Radius of the turns between tracks, metres. Where neighbouring lines are nearer than twice
-    /// of it, every k-th line is flown, k · spacing ≥ 2 · radius, in k passes. 0: neighbours in turn.
+    /// of it, each turn leads over k lines or more, k · spacing ≥ 2 · radius, and those between are flown on the way back. 0: neighbours
+    /// in turn.
     pub turn_radius_m: f64,
 }
 
@@ -293,7 +294,7 @@ impl Scan {
         self.lines.count
     }
 
-    /// How many lines on the next track is (1: neighbours in turn).
+    /// How many lines on the next track is at least, if there are more than twice so many (1: neighbours in turn).
     pub fn interleave(&self) -> u64 {
         self.order.step()
     }

@@ -2,21 +2,71 @@
 
 use super::Corner;
 
-/// A numbering of lines in flight order: passes of every `step`-th line, there and back.
+/// A numbering of lines in flight order. Lines that are too near for a turn from one to the next are interleaved block by block: to
+/// and fro between the halves of a block, and from its middle on to the next one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Order {
     lines: u64,
+    /// How many lines a turn leads over at least, where there are enough of them.
     step: u64,
+    blocks: Blocks,
     corner: Corner,
 }
 
-impl Order {
-    /// Every `step`-th line of `lines`, beginning at a corner.
-    pub fn new(lines: u64, step: u64, corner: Corner) -> Self {
-        Self { lines, step: step.clamp(1, lines.max(1)), corner }
+/// Lines in blocks one after the other, the greater ones first. All have an odd number of lines but perhaps the last one, which has
+/// what is left.
+#[derive(Debug, Clone, Copy)]
+struct Blocks {
+    count: u64,
+    /// So many have two lines more than the others.
+    greater: u64,
+    /// Lines of the others.
+    size: u64,
+}
+
+impl Blocks {
+    /// Of 2k + 1 lines or more: each turn leads over k lines or k + 1, and so does the one to the next block. A last block of an
+    /// even number ends at its edge, which doesn't matter to anybody, and its turns lead over one less than half of it.
+    fn of(lines: u64, step: u64) -> Self {
+        let least = 2 * step + 1;
+        let count = (lines / least).max(1);
+        let pairs = lines.saturating_sub(count * least) / 2;
+        if count == 1 {
+            return Self { count, greater: 0, size: lines };
+        }
+        Self { count, greater: pairs % count, size: least + 2 * (pairs / count) }
     }
 
-    /// Every k-th line, k · spacing ≥ 2 · turn radius: turns between tracks need no loops. Both in metres.
+    /// Where a block begins.
+    fn start(&self, block: u64) -> u64 {
+        block * self.size + 2 * block.min(self.greater)
+    }
+
+    /// The block of the line or track, with where it begins and how many of `lines` it has.
+    fn around(&self, number: u64, lines: u64) -> (u64, u64) {
+        let size = self.size.max(1);
+        let in_greater = self.greater * (size + 2);
+        let block = if number < in_greater {
+            number / (size + 2)
+        } else {
+            self.greater + (number - in_greater) / size
+        };
+        let block = block.min(self.count - 1);
+        let start = self.start(block);
+        let end = if block + 1 == self.count { lines } else { self.start(block + 1) };
+        (start, end.saturating_sub(start))
+    }
+}
+
+impl Order {
+    /// Lines beginning at a corner, each turn over `step` lines at least if there are so many.
+    fn new(lines: u64, step: u64, corner: Corner) -> Self {
+        let step = step.clamp(1, lines.max(1));
+        Self { lines, step, blocks: Blocks::of(lines, step), corner }
+    }
+
+    /// Turns between tracks need no loops: k lines at least from one to the next, k · spacing ≥ 2 · turn radius (both in metres), if there
+    /// are more than 2k lines. Of fewer the middle one is too near to all others; then turns are as wide as they can be made.
     pub fn interleaved(lines: u64, turn_radius_m: f64, spacing_m: f64, corner: Corner) -> Self {
         let step = (2.0 * turn_radius_m / spacing_m - 1e-9).ceil().max(1.0);
         Self::new(lines, step as u64, corner)
@@ -42,26 +92,21 @@ impl Order {
             // the usual case, without the divisions
             return self.mirrored(track);
         }
-        let (short, longer) = (self.lines / self.step, self.lines % self.step);
-        // the first `longer` passes have one line more than the others
-        let in_longer = longer * (short + 1);
-        let (pass, place, length) = if track < in_longer {
-            (track / (short + 1), track % (short + 1), short + 1)
-        } else {
-            let rest = track - in_longer;
-            (longer + rest / short.max(1), rest % short.max(1), short)
-        };
-        self.mirrored(pass + self.step * turned(place, length, pass))
+        let (start, size) = self.blocks.around(track, self.lines);
+        let place = track.saturating_sub(start);
+        let half = if place.is_multiple_of(2) { 0 } else { size.div_ceil(2) };
+        self.mirrored(start + half + place / 2)
     }
 
     /// The track of a line; the inverse of [`Order::line`].
     pub fn track(&self, line: u64) -> u64 {
         let line = self.mirrored(line);
-        let (short, longer) = (self.lines / self.step, self.lines % self.step);
-        let (pass, place) = (line % self.step, line / self.step);
-        let length = short + u64::from(pass < longer);
-        let before = pass * short + pass.min(longer);
-        before + turned(place, length, pass)
+        if self.step == 1 {
+            return line;
+        }
+        let (start, size) = self.blocks.around(line, self.lines);
+        let (place, half) = (line.saturating_sub(start), size.div_ceil(2));
+        start + if place < half { 2 * place } else { 2 * (place - half) + 1 }
     }
 
     fn mirrored(&self, line: u64) -> u64 {
@@ -69,7 +114,70 @@ impl Order {
     }
 }
 
-/// Every other pass comes back.
-fn turned(place: u64, length: u64, pass: u64) -> u64 {
-    if pass.is_multiple_of(2) { place } else { length.saturating_sub(1).saturating_sub(place) }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lines in the order of the tracks.
+    fn flown(lines: u64, step: u64) -> Vec<u64> {
+        let order = Order::new(lines, step, Corner::StartLeft);
+        (0..lines).map(|track| order.line(track)).collect()
+    }
+
+    fn turns(flown: &[u64]) -> impl Iterator<Item = u64> {
+        flown.windows(2).map(|two| two[0].abs_diff(two[1]))
+    }
+
+    #[test]
+    fn every_line_is_flown_once_and_its_track_is_known() {
+        for (lines, step) in (0..70).flat_map(|lines| (1..20).map(move |step| (lines, step))) {
+            for corner in Corner::ALL {
+                let order = Order::new(lines, step, corner);
+                let mut flown: Vec<u64> = (0..lines).map(|track| order.line(track)).collect();
+                assert!(flown.iter().enumerate().all(|(track, line)| order.track(*line) == track as u64));
+                flown.sort_unstable();
+                assert!(flown.into_iter().eq(0..lines), "{lines} lines, {step}, {corner:?}");
+            }
+        }
+    }
+
+    /// Nor is any much wider than it has to be.
+    #[test]
+    fn no_turn_is_too_tight_where_there_are_enough_lines() {
+        for step in 2..20 {
+            for lines in 2 * step + 1..12 * step {
+                let flown = flown(lines, step);
+                assert!(turns(&flown).all(|turn| turn >= step), "{lines} lines, {step}: {flown:?}");
+                assert!(turns(&flown).all(|turn| turn <= 2 * step + 1), "{lines} lines, {step}: {flown:?}");
+            }
+        }
+    }
+
+    /// The middle one of an odd number has no other so far from it as half of them and more.
+    #[test]
+    fn few_lines_have_turns_as_wide_as_they_can_be() {
+        for lines in 2..40 {
+            let flown = flown(lines, 40);
+            assert_eq!(turns(&flown).min(), Some(((lines - 1) / 2).max(1)), "{flown:?}");
+            assert_eq!(flown[0], 0, "it begins at the corner");
+        }
+    }
+
+    #[test]
+    fn blocks_are_finished_one_after_the_other() {
+        assert_eq!(flown(12, 2), [0, 4, 1, 5, 2, 6, 3, 7, 10, 8, 11, 9]);
+        assert_eq!(flown(5, 2), [0, 3, 1, 4, 2]);
+        assert_eq!(flown(6, 2), [0, 3, 1, 4, 2, 5]);
+    }
+
+    #[test]
+    fn the_most_lines_that_there_can_be() {
+        let lines = crate::scan::MAX_LINES as u64;
+        for step in [1 << 20, lines] {
+            let order = Order::new(lines, step, Corner::EndRight);
+            for track in [0, 1, lines / 2 + 1, lines - 1] {
+                assert_eq!(order.track(order.line(track)), track);
+            }
+        }
+    }
 }

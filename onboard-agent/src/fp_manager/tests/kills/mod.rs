@@ -6,10 +6,10 @@ mod asks;
 mod gateway;
 mod gateway_faults;
 
-use super::journal::faulty::{Death, Faulty, Random};
-use super::journal::{Clerk, Job, Limits, Log, Saved, Storage, encode};
-use super::{Config, Effect, Manager, compile, restart};
 use crate::clock::Time;
+use crate::fp_manager::journal::faulty::{Death, Faulty, Random};
+use crate::fp_manager::journal::{Clerk, Job, Limits, Log, Saved, Storage, encode};
+use crate::fp_manager::{Config, Effect, Manager, compile, restart};
 use asks::{Ask, What, asks};
 use gateway::Gateway;
 use std::collections::{BTreeMap, VecDeque};

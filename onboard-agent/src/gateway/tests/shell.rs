@@ -1,7 +1,7 @@
 //! The whole gateway over sockets: simulator, link, session.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::{Address, Config, run};
+use crate::gateway::{Address, Config, run};
 use std::net::TcpListener;
 use std::time::{Duration, Instant};
 use usal::Session;

@@ -1,10 +1,10 @@
 //! Whole flights: core, window and driver against the simulator's pure core, without sockets.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::Station;
-use super::core::{Answer, Input, Settings, Snapshot};
-use super::driver::{Decoder, encode};
-use super::order::Time;
+use crate::gateway::Station;
+use crate::gateway::core::{Answer, Input, Settings, Snapshot};
+use crate::gateway::driver::{Decoder, encode};
+use crate::gateway::order::Time;
 use geometry::LatLon;
 use sim::core::{Peer, Simulator};
 use std::time::Duration;

@@ -1,0 +1,3 @@
+//! The FP Manager as a whole.
+
+mod kills;

@@ -1,0 +1,4 @@
+//! The gateway as a whole.
+
+mod flights;
+mod shell;
