@@ -145,7 +145,14 @@ pub fn has_commands(scene: &Scene<'_>) -> bool {
 
 fn can_launch(scene: &Scene<'_>) -> bool {
     let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
-    on_ground && scene.vehicle.phase() == Phase::Idle && scene.vehicle.active_hash().is_some()
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    // nothing may have come of an earlier start: the arming was refused, or somebody held it
+    let may_start = match scene.vehicle.phase() {
+        Phase::Idle => true,
+        Phase::Flying | Phase::AwaitingDecision | Phase::Holding => state == Some(GatewayState::Stop),
+        Phase::Finished => false,
+    };
+    on_ground && may_start && scene.vehicle.active_hash().is_some()
 }
 
 /// Which emergency plan, then hold: named by its effect.

@@ -65,8 +65,16 @@ impl Feeder {
             Some(FeedAnswer::Accepted) => Fate::Taken,
             Some(FeedAnswer::Refused { faults }) => {
                 let first = sent.waypoints.first().map_or(Token(0), |w| w.token);
-                self.waiting = None;
-                Fate::Refused(first, sentence(&faults))
+                let newer = self.waiting.take().filter(|w| w.cancel_after.is_some_and(|last| last < first));
+                match newer {
+                    // what was refused is not wanted any more, but what it was to cancel still is not
+                    Some(Feed { cancel_after, waypoints }) => {
+                        let cancel_after = cancel_after.min(sent.cancel_after.or(cancel_after));
+                        self.waiting = Some(Feed { cancel_after, waypoints });
+                        Fate::Later(sentence(&faults))
+                    }
+                    None => Fate::Refused(first, sentence(&faults)),
+                }
             }
             Some(FeedAnswer::Full) => self.later(now, sent, "the gateway's buffer is full"),
             Some(FeedAnswer::NotNow(why)) => self.later(now, sent, &why),
@@ -256,6 +264,19 @@ mod tests {
         let fate = feeder.answered(NOW, Some(FeedAnswer::Refused { faults }));
         assert_eq!(fate, Fate::Refused(Token(4), "waypoint 5: too far (range)".into()));
         assert!(feeder.is_idle());
+    }
+
+    #[test]
+    fn refused_batch_that_was_cancelled_meanwhile_takes_nothing_along() {
+        for (refused_cancels, cancels) in [(None, 0), (Some(2), 0), (Some(0), 2)] {
+            let mut feeder = Feeder::default();
+            feeder.push(feed(refused_cancels, 4..=5));
+            feeder.send(NOW);
+            feeder.push(feed(Some(cancels), 6..=7));
+            let faults = vec![(Token(5), "range".into(), "too far".into())];
+            assert!(matches!(feeder.answered(NOW, Some(FeedAnswer::Refused { faults })), Fate::Later(_)));
+            assert_eq!(feeder.send(NOW).unwrap(), feed(Some(0), 6..=7));
+        }
     }
 
     #[test]

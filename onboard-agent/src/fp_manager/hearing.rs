@@ -41,8 +41,10 @@ impl Manager {
     pub fn gateway_event(&mut self, now: Time, event: GatewayEvent, out: &mut Vec<Effect>) {
         match event {
             GatewayEvent::Progress { current: Some(current) } => self.progress(now, current, out),
-            // while waypoints are on their way it is not the end
-            GatewayEvent::Progress { current: None } if self.feeder.is_idle() => {
+            // while waypoints are on their way it is not the end, nor what Safe mode or the pilot flies
+            GatewayEvent::Progress { current: None }
+                if self.feeder.is_idle() && !self.liaison.is_controlled() =>
+            {
                 self.step(now, Input::Progress { current: None }, out);
             }
             GatewayEvent::AlarmRaised(alarm) => {

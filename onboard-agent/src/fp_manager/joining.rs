@@ -13,7 +13,14 @@ const FP_MANAGER: &str = "fp-manager";
 impl Manager {
     /// The answer to [`Effect::Join`]; `None`: none came.
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
-        let Some(answer) = self.liaison.joined(now, answer) else { return };
+        let answer = match self.liaison.joined(now, answer) {
+            Ok(answer) => answer,
+            Err(None) => return,
+            Err(Some(reason)) => {
+                tracing::warn!("the gateway does not let us join: {reason}");
+                return out.push(Effect::Event(PlanEvent::NotGranted { request: "join".into(), reason }));
+            }
+        };
         self.want_runways();
         self.alarms.look_again();
         self.feeder.settle(answer.highest);
@@ -25,26 +32,35 @@ impl Manager {
         if let Some(current) = answer.current {
             self.progress(now, current, out);
         }
+        let controlled = self.liaison.take_controlled();
         let flying =
             matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
         if flying && lost {
             self.hold_for_want_of_a_place(now, out);
+            if controlled {
+                self.step(now, Input::GatewayControls(false), out);
+            }
         } else if flying {
-            self.agree(now, &answer, out);
+            self.agree(now, &answer, controlled, out);
         } else {
             self.step(now, Input::GatewayControls(false), out);
         }
         self.send(now, out);
     }
 
-    /// After a join in flight: the gateway must have what we believe it has. Waypoints that it
-    /// took and has no more, while the aircraft stands, have been flown: nothing is flown twice.
-    fn agree(&mut self, now: Time, answer: &JoinAnswer, out: &mut Vec<Effect>) {
-        let taken = self.executor.ahead().next().is_some_and(|w| w.token <= answer.highest);
+    /// After a join in flight: the gateway must have what we believe it has. Waypoints that it took and has no more, while the
+    /// aircraft stands, have been flown, if that was by its landing; or else somebody has brought it down: nothing is flown twice.
+    fn agree(&mut self, now: Time, answer: &JoinAnswer, controlled: bool, out: &mut Vec<Effect>) {
+        let taken = self.executor.ahead().next().is_some_and(|w| {
+            // before the take-off it is the gateway that has lost them
+            w.token <= answer.highest && (answer.finished || !matches!(w.action, Action::TakeOff { .. }))
+        });
         if self.liaison.is_on_ground() && answer.last.is_none() && taken {
             self.liaison.unwant(GatewayRequest::Launch);
-            self.step(now, Input::Progress { current: None }, out);
-        } else if self.liaison.take_controlled() || self.has_gap(answer.last) {
+            let flown = answer.finished;
+            self.step(now, if flown { Input::Progress { current: None } } else { Input::Landed }, out);
+            self.step(now, Input::GatewayControls(false), out);
+        } else if controlled || self.has_gap(answer.last) {
             self.feeder.clear();
             // having given control back, the executor sends everything ahead anew
             self.step(now, Input::GatewayControls(true), out);
@@ -75,9 +91,6 @@ impl Manager {
         if held.is_err() {
             // it held before
             self.liaison.want(GatewayRequest::Hold);
-        }
-        if self.liaison.take_controlled() {
-            self.step(now, Input::GatewayControls(false), out);
         }
     }
 

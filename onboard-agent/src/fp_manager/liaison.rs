@@ -120,23 +120,24 @@ impl Liaison {
         due
     }
 
-    /// How the join went; the answer, if it was accepted.
-    pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>) -> Option<JoinAnswer> {
+    /// How the join went: the answer, if it was accepted.
+    ///
+    /// # Errors
+    /// It was not; a reason that people have not been told yet.
+    pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>) -> Result<JoinAnswer, Option<String>> {
         self.joining = false;
         self.not_before = Some(now + RETRY);
-        let answer = answer?;
+        let answer = answer.ok_or(None)?;
         if !answer.accepted {
-            if self.last_reason != answer.reason {
-                tracing::warn!("the gateway does not let us join: {}", answer.reason);
-                self.last_reason = answer.reason;
-            }
-            return None;
+            let new = self.last_reason != answer.reason;
+            self.last_reason.clone_from(&answer.reason);
+            return Err(new.then_some(answer.reason));
         }
         tracing::info!(highest = answer.highest.0, "joined the gateway");
         self.last_reason.clear();
         self.joined = true;
         self.joined_at = Some(now);
-        Some(answer)
+        Ok(answer)
     }
 
     /// What is wanted of the gateway and not granted yet.
@@ -144,8 +145,11 @@ impl Liaison {
         self.wanted.as_ref().map(|wish| &wish.request)
     }
 
-    /// Wants something; what was wanted before is no longer.
+    /// Wants something; what was wanted before is no longer. Who waits for Safe mode doesn't make do with a hold.
     pub fn want(&mut self, request: GatewayRequest) {
+        if request == GatewayRequest::Hold && self.wanted() == Some(&GatewayRequest::Safe) {
+            return;
+        }
         self.wanted = Some(Wish::new(request));
     }
 
@@ -217,4 +221,19 @@ fn is_down(state: GatewayState) -> bool {
 fn takes_control(state: GatewayState) -> bool {
     use GatewayState::*;
     matches!(state, SafeHold | SafeReturn | SafeApproach | SafeLand | Manual | Terminate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_waits_for_safe_mode_does_not_make_do_with_a_hold() {
+        let mut liaison = Liaison::restored(Some(GatewayRequest::Safe), false);
+        liaison.want(GatewayRequest::Hold);
+        assert_eq!(liaison.wanted(), Some(&GatewayRequest::Safe));
+        liaison.state(Duration::ZERO, GatewayState::Stop);
+        liaison.want(GatewayRequest::Hold);
+        assert_eq!(liaison.wanted(), Some(&GatewayRequest::Hold), "on the ground nobody waits for it");
+    }
 }

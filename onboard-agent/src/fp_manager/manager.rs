@@ -183,14 +183,14 @@ impl Manager {
         let starts = command == Command::Start;
         // what is written is looked at one after the other
         self.turns += u64::from(!matches!(command, Command::SetVariable { .. }));
-        let leaves_emergency = matches!(command, Command::ReturnToMain { .. });
+        let in_emergency = self.is_in_emergency();
         let request = self.next_request();
         let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.liaison.want(GatewayRequest::Launch);
             self.alarms.new_flight();
-        } else if leaves_emergency {
+        } else if in_emergency && !self.is_in_emergency() {
             self.alarms.look_again();
         }
         self.send(now, out);

@@ -64,6 +64,9 @@ pub enum Input {
         /// The waypoint steered to.
         current: Option<Token>,
     },
+    /// The aircraft has landed, but not as the plan does: the pilot or the gateway's Safe mode brought it down. What is ahead is not
+    /// flown any more.
+    Landed,
     /// The gateway refused a batch that began with this token, whole; its buffer is as it was.
     Rejected {
         /// First token of the batch.

@@ -38,7 +38,8 @@ impl Executor {
     }
 
     fn start(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
-        if self.is_flying() {
+        // it may be that nothing came of an earlier start: the arming was refused, or somebody held it
+        if self.is_flying() && self.check_taken_off().is_ok() {
             return Err(refusal(
                 "already-flying",
                 "a plan is being flown: hold, go to a leg, or commit another plan",
@@ -202,7 +203,7 @@ impl Executor {
     }
 
     /// On the ground there is nothing to be flown but the take-off.
-    fn check_taken_off(&self) -> Result<(), Refusal> {
+    pub(crate) fn check_taken_off(&self) -> Result<(), Refusal> {
         let takes_off = |h: &Handed| matches!(h.waypoint.action, Action::TakeOff { .. });
         let on_ground = self.state.aircraft.as_ref().is_none_or(|a| a.on_ground);
         if on_ground && self.state.handed.front().is_some_and(takes_off) {

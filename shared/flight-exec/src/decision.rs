@@ -134,6 +134,16 @@ impl Executor {
         self.state.late.retain(|(l, n)| l != leg || *n > crossing);
     }
 
+    /// What was taken for want of a decision is not decided when the way leads to the intersection anew: it is asked again.
+    pub(crate) fn forget_defaults(&mut self) {
+        self.state.decisions.retain(|d| matches!(d.by, By::Somebody(_)));
+        let decided = |(leg, crossing): &(Id, u64)| {
+            self.state.decisions.iter().any(|d| d.leg == *leg && d.crossing == *crossing)
+        };
+        self.state.requested.retain(decided);
+        self.state.late.retain(decided);
+    }
+
     /// Keeps a decision and tells about it.
     pub(crate) fn record(&mut self, decision: Decision, out: &mut Vec<Output>) {
         let Decision { leg, branch, by, crossing } = decision.clone();

@@ -14,6 +14,7 @@ impl Executor {
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
         self.flying_program()?;
+        self.check_taken_off()?;
         self.check_escalation(cause)?;
         let from_leg = match &self.state.emergency {
             Some(running) => running.from_leg.clone(),

@@ -64,6 +64,7 @@ impl Executor {
                 self.answer(request, result, out);
             }
             Input::Progress { current } => self.progress(current, out),
+            Input::Landed => self.landed(out),
             Input::Rejected { first, reason } => self.rejected(first, reason, out),
             Input::GatewayControls(controls) => self.gateway_controls(controls, out),
         }

@@ -105,9 +105,28 @@ impl Executor {
         self.fly_past(count, out);
         if let Some(last) = last {
             self.announce_end(&last, out);
-            self.state.emergency = None;
-            self.enter_phase(Phase::Finished, out);
+            self.finish(out);
         }
+    }
+
+    /// The aircraft was brought down by somebody else: what is ahead is not flown, and nothing of it happens.
+    pub(crate) fn landed(&mut self, out: &mut Vec<Output>) {
+        if self.is_flying() {
+            self.state.handed.clear();
+            self.state.tail = None;
+            self.state.ahead = None;
+            self.state.held_at = None;
+            self.state.wait = None;
+            self.state.passages.clear();
+            self.finish(out);
+        }
+    }
+
+    /// The flight is over, and with it what was put forward for it: only what was ahead then has been looked at.
+    fn finish(&mut self, out: &mut Vec<Output>) {
+        self.state.emergency = None;
+        self.proposed = None;
+        self.enter_phase(Phase::Finished, out);
     }
 
     /// Loops that ended together with the plan, decisions that led to its end, and actions there.

@@ -205,6 +205,7 @@ impl Executor {
         self.state.handed.clear();
         self.state.ahead = None;
         self.state.held_at = None;
+        self.forget_defaults();
         // somebody has asked for the way ahead: what is wrong with it is told, told before or not
         self.state.told.clear();
         let more = self.horizon(0, cursor.path.time_s);

@@ -56,6 +56,9 @@ pub(crate) struct State {
     pub gateway_controls: bool,
     pub aircraft: Option<AircraftState>,
     pub revision: u64,
+    /// The active plan came in flight: only what was ahead then has been looked at.
+    #[serde(default)]
+    pub seen_ahead_only: bool,
     /// Seconds of the executor's own clock: goes on from a snapshot.
     pub clock_s: f64,
     pub started_s: Option<f64>,
@@ -103,6 +106,7 @@ impl Default for State {
             gateway_controls: false,
             aircraft: None,
             revision: 0,
+            seen_ahead_only: false,
             clock_s: 0.0,
             started_s: None,
             refresh_due_s: None,

@@ -5,7 +5,7 @@ use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing, LoopFrame, Trail, Visit};
 use crate::executor::{Executor, refusal};
 use crate::world::World;
-use flight_plan::{Id, Leg, LegPath, Program};
+use flight_plan::{Id, Leg, LegPath, Program, Variable};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -39,7 +39,8 @@ impl Executor {
     }
 
     fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
-        self.state.variables = self.state.variables.carried_over(&program.plan);
+        self.carry_variables_over(&program, out);
+        self.state.seen_ahead_only = self.is_under_way();
         self.state.revision += 1;
         let event = Event::PlanActivated { hash: program.hash().clone(), revision: self.state.revision };
         let before = std::mem::replace(&mut self.program, program);
@@ -48,6 +49,21 @@ impl Executor {
         self.state.told.clear();
         self.carry_passages_over(&before);
         out.push(Output::Event(event));
+    }
+
+    /// Values that the new plan doesn't allow become its initial ones, and that is told.
+    fn carry_variables_over(&mut self, program: &Program, out: &mut Vec<Output>) {
+        let carried = self.state.variables.carried_over(&program.plan);
+        for Variable { name, .. } in &program.plan.variables {
+            let (Some(before), Some(value)) = (self.state.variables.get(name), carried.get(name)) else {
+                continue;
+            };
+            if before != value {
+                let (name, value, by) = (name.clone(), value.clone(), "plan".into());
+                out.push(Output::Event(Event::VariableChanged { name, value, by }));
+            }
+        }
+        self.state.variables = carried;
     }
 
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
@@ -119,6 +135,7 @@ impl Executor {
         let target = new.path(entry).ok_or_else(|| {
             refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
         })?;
+        self.check_taken_off()?;
         self.check_not_a_take_off(new, &target)?;
         let now = self.place_reached();
         if target.emergency_plan.is_some() && !self.is_of_the_plan_flown(&target, new) {

@@ -126,6 +126,26 @@ impl Flight {
     }
 }
 
+/// What lies behind the aircraft when a plan comes in flight, nobody has looked at: it is, before that is started on the ground.
+#[test]
+fn plan_that_came_in_flight_is_looked_at_whole_before_it_is_started() {
+    let legs =
+        |first: &str| format!(r#"<TF id="a" fix="{first}"/><TF id="b" fix="B1"/><TF id="c" fix="C1"/>"#);
+    let mut flight = Flight::on("b", &document(&legs("A1"), ""));
+    assert!(!flight.executor.changes_what_is_flown(&Command::Start));
+    let other = document(&legs("D3"), "");
+    assert_eq!(flight.errors_of_plan(&other, Conditions::default()), [], "it is behind");
+    let program = compiled(&other).unwrap();
+    let hash = program.hash().clone();
+    let (request, based_on, objections) = (RequestId(3), None, Vec::new());
+    flight.step(Input::Propose { request, program, based_on, objections });
+    flight.command(Command::Commit { hash, entry: None });
+    flight.step(Input::Landed);
+    assert!(flight.executor.changes_what_is_flown(&Command::Start));
+    let found = review_command(&flight.executor, "operator", &Command::Start, Conditions::default());
+    assert_eq!(first(errors(&found)), on("keep-out", "a"));
+}
+
 fn errors(problems: &[Problem]) -> Vec<(&'static str, String)> {
     let errors = problems.iter().filter(|p| p.is_error());
     errors.map(|p| (p.code, p.subject.as_ref().map(ToString::to_string).unwrap_or_default())).collect()

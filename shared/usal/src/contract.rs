@@ -307,6 +307,9 @@ pub struct JoinAnswer {
     pub last: Option<Token>,
     /// Highest token ever accepted in this flight.
     pub highest: Token,
+    /// The landing that it was given was flown to its end; otherwise waypoints that it has no more were not flown.
+    #[serde(default)]
+    pub finished: bool,
 }
 
 /// Gateway invocation `request`.

@@ -64,6 +64,7 @@ impl Gateway {
             current: self.window.current().and_then(|w| own(w.token)),
             last: self.window.chain().last().and_then(|w| own(w.token)),
             highest: self.highest,
+            finished: self.finished,
         }
     }
 
@@ -140,6 +141,7 @@ impl Gateway {
         self.highest = self.highest.max(last.unwrap_or(Token(0)));
         self.window.feed(feed.cancel_after, feed.waypoints);
         self.ended = false;
+        self.finished = false;
         self.low_told = false;
         let awaited = self.fp_manager.awaited_since.is_some() || self.state == GatewayState::SafeHold;
         if last.is_some() && awaited {

@@ -27,7 +27,7 @@ use geometry::LatLon;
 use states::{Trigger, is_flying, is_safe};
 use std::time::Duration;
 use supervise::FpManager;
-use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRunway, Token};
+use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRunway, Token, Waypoint};
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
@@ -52,6 +52,8 @@ pub struct Gateway {
     highest: Token,
     /// The last waypoint that ends the plan was flown.
     ended: bool,
+    /// The last flight ended with a landing of the FP Manager's.
+    finished: bool,
     /// What was last told as progress.
     told: Option<Option<Token>>,
     low_told: bool,
@@ -81,6 +83,7 @@ impl Gateway {
             runways: known.map_or_else(Vec::new, |k| k.runways),
             highest: Token(0),
             ended: false,
+            finished: false,
             told: None,
             low_told: false,
             not_stored: false,
@@ -274,8 +277,10 @@ impl Gateway {
     }
 
     fn land(&mut self, out: &mut Vec<Output>) {
-        let landing = matches!(self.window.current(), Some(w) if matches!(w.action, Action::Land { .. }));
-        if landing && self.told.is_some() {
+        // the way home of Safe mode has tokens 0: with it nothing of the plan was flown
+        let theirs = |w: &Waypoint| matches!(w.action, Action::Land { .. }) && w.token > Token(0);
+        self.finished = self.window.current().is_some_and(theirs) && self.told.is_some();
+        if self.finished {
             self.told = Some(None);
             out.push(Output::Event(GatewayEvent::Progress { current: None }));
         }

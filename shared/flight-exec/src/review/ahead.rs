@@ -32,6 +32,9 @@ pub fn review_command(
     command: &Command,
     conditions: Conditions,
 ) -> Vec<Problem> {
+    if *command == Command::Start {
+        return super::review(&flight.program, &flight.profile, &flight.terrain, conditions);
+    }
     let mut changed = flight.clone();
     match changed.command(command.clone(), by, &mut Vec::new()) {
         Ok(()) => brought_about(flight, &changed, conditions),
@@ -78,15 +81,17 @@ fn brought_about(present: &Executor, changed: &Executor, conditions: Conditions)
 }
 
 impl Executor {
-    /// In flight, a command that leads to where nobody has looked: another plan, or a value that legs are laid out from. It is for
-    /// [`review_command`] before it is given.
+    /// A command that leads to where nobody has looked: in flight another plan, or a value that legs are laid out from; on the ground the
+    /// start of a plan that came in flight. It is for [`review_command`] before it is given.
     pub fn changes_what_is_flown(&self, command: &Command) -> bool {
-        self.is_under_way()
+        let anew = *command == Command::Start && self.state.seen_ahead_only && !self.is_flying();
+        let otherwise = self.is_under_way()
             && match command {
                 Command::Commit { .. } => true,
                 Command::SetVariable { name, .. } => laid_out_from(&self.program).contains(name),
                 _ => false,
-            }
+            };
+        anew || otherwise
     }
 
     /// In flight, a command that leads along the plan as it is, but by a way that the plan does not have: straight to a leg. It is for people

@@ -2,7 +2,7 @@
 
 use crate::rig::{HOME, Rig, document, document_with, fix, program};
 use flight_exec::{AircraftState, Command, Event, Input, Phase, Time, Token};
-use flight_plan::VariableValue;
+use flight_plan::{Cause, VariableValue};
 use geometry::geodesy::normalise_180;
 
 const GO: &str =
@@ -282,4 +282,51 @@ fn fuel_is_the_tank_s_and_without_one_the_battery_s() {
         rig.fly_to_the_end();
         assert_eq!(rig.legs().matches('a').count(), passes, "{battery} {fuel:?}");
     }
+}
+
+/// By the pilot, or by Safe mode.
+#[test]
+fn brought_down_by_somebody_else_nothing_ahead_happens_and_it_may_start_again() {
+    let legs = r#"<TF id="a" fix="A3"/><TF id="b" fix="B3"><action on="start"><invoke service="s" operation="o"/></action></TF>
+        <TF id="c" fix="C3"/>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_to("a");
+    let (told, acts) = (rig.legs(), rig.acts.len());
+    rig.propose(&program(&document(legs)));
+    rig.step(Input::GatewayControls(true));
+    rig.step(Input::Landed);
+    rig.step(Input::GatewayControls(false));
+    assert_eq!((rig.legs(), rig.acts.len()), (told, acts));
+    assert_eq!(rig.executor.status().phase, Phase::Finished);
+    rig.buffer.clear();
+    rig.flown.clear();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to_the_end();
+}
+
+/// It was looked at from where the aircraft was.
+#[test]
+fn proposal_of_the_flight_is_forgotten_when_that_is_over() {
+    let mut rig = Rig::started(r#"<TF id="a" fix="A3"/>"#);
+    rig.fly_to("a");
+    let other = program(&document(r#"<TF id="b" fix="B3"/>"#));
+    rig.propose(&other);
+    rig.fly_to_the_end();
+    let commit = Command::Commit { hash: other.hash().clone(), entry: None };
+    assert_eq!(rig.command(commit).unwrap_err().code, "not-proposed");
+}
+
+#[test]
+fn before_the_take_off_there_is_no_emergency_and_no_other_leg_is_entered() {
+    let mut rig = Rig::started(r#"<TF id="a" fix="A3"/>"#);
+    let emergency = Command::Emergency { cause: Cause::Operator, plan: None };
+    assert_eq!(rig.command(emergency).unwrap_err().code, "on-ground");
+    let other = program(&document(r#"<TF id="b" fix="B3"/>"#));
+    rig.propose(&other);
+    let enter = Command::Commit { hash: other.hash().clone(), entry: Some("b".into()) };
+    assert_eq!(rig.command(enter).unwrap_err().code, "on-ground");
+    // held there, or the arming refused: it is started again
+    rig.command(Command::Hold).unwrap();
+    rig.command(Command::Start).unwrap();
+    rig.fly_to_the_end();
 }

@@ -128,6 +128,7 @@ fn a_scan_covers_its_area_and_turns_outside() {
 fn the_phase_is_told() {
     let mut rig = Rig::started(r#"<TF id="a" fix="B1"/>"#);
     assert_eq!(rig.executor.status().phase, Phase::Flying);
+    rig.fly_one();
     assert_eq!(rig.command(Command::Start).unwrap_err().code, "already-flying");
     rig.fly_to_the_end();
     assert!(rig.events.contains(&Event::PhaseChanged { phase: Phase::Finished }));

@@ -56,10 +56,9 @@ fn farthest_outside_m(path: &[Vec2], area: &Polygon) -> f64 {
 }
 
 /// Turns begin up to a radius beyond the ends of tracks, which are up to the overshoot beyond the edge; and from one track
-/// to the next they lead beside the area: at most 2k + 1 spacings, where k of them are a turn's width or up to one more.
+/// to the next they lead beside the area: at most 2k + 1 spacings, where k of them are a turn's width and up to one more.
 fn allowed_m(spacing_m: f64, overshoot_m: f64) -> f64 {
-    let widest = 2.0 * (2.0 * radius_m() / spacing_m).ceil() + 1.0;
-    let aside_m = widest * spacing_m;
+    let aside_m = 4.0 * radius_m() + 3.0 * spacing_m;
     // and what a position that is written down is rounded by
     aside_m.hypot((radius_m() - overshoot_m).max(0.0)) + overshoot_m + 0.1
 }

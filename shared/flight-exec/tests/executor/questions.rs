@@ -108,3 +108,18 @@ fn a_question_days_ahead_is_not_asked_before_its_intersection_comes_into_sight()
     rig.fly_to("o");
     assert!(asked(&rig).is_none() && !is_taken(&rig));
 }
+
+/// What was taken for want of a decision is no decision for the next time.
+#[test]
+fn back_before_the_intersection_it_is_asked_again() {
+    let mut rig = Rig::started(&fork(r#"<TF id="b" fix="B3"/>"#, "1000m"));
+    for _ in 0..2 {
+        rig.fly_to("b");
+        rig.position = fix("B3").destination(270.0, 900.0);
+        rig.report();
+        assert!(is_taken(&rig) && rig.leg() == "b", "it is due, and still ahead");
+        assert!(asked(&rig).is_some(), "decided, and nobody was asked");
+        rig.events.clear();
+        rig.command(Command::GoTo { leg: "a".into() }).unwrap();
+    }
+}

@@ -22,7 +22,7 @@ pub const POLICIES: &[Policy] = &[
     policy("phases-are-told", "Every change of phase is told, and none that isn't.", phases_are_told),
     policy(
         "start-on-the-ground",
-        "A start is accepted with a plan and without a flight, and never else.",
+        "A start is accepted with a plan and without a flight, or again before its take-off, and never else.",
         start,
     ),
     policy(
@@ -135,7 +135,8 @@ fn phases_are_told(trace: &Trace, found: &mut Findings) {
 
 fn start(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.command() == Some(&Command::Start)) {
-        let may = !step.before.is_flying() && step.before.program.is_some();
+        let waits = step.before.waits_for_take_off();
+        let may = (!step.before.is_flying() || waits) && step.before.program.is_some();
         found.expect(step, may == step.accepted().is_some(), || format!("{:?}", step.before.status.phase));
     }
 }

@@ -202,6 +202,12 @@ impl<'a> Step<'a> {
 }
 
 impl Seen {
+    /// On the ground with the take-off ahead.
+    pub fn waits_for_take_off(&self) -> bool {
+        let first = self.ahead.first().is_some_and(|w| matches!(w.action, Action::TakeOff { .. }));
+        first && self.is_flying() && self.aircraft.as_ref().is_none_or(|a| a.on_ground)
+    }
+
     pub fn is_flying(&self) -> bool {
         matches!(self.status.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
     }

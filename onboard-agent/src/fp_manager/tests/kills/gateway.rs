@@ -53,7 +53,7 @@ impl Gateway {
     }
 
     pub fn feed(&mut self, feed: Feed) -> FeedAnswer {
-        if is_safe(self.state) {
+        if is_safe(self.state) || matches!(self.state, GatewayState::Manual | GatewayState::SafeLand) {
             return FeedAnswer::NotNow("join first".into());
         }
         let refused = self.refuse_leg.as_ref().and_then(|leg| feed.waypoints.iter().find(|w| w.leg == *leg));
@@ -78,7 +78,8 @@ impl Gateway {
     /// In Safe mode, whoever knows the flight gets the aircraft back: flying on, or to send waypoints first.
     pub fn join(&mut self, join: Join) -> JoinAnswer {
         let knows = join.last_token >= self.highest && !self.commanded;
-        let accepted = !is_safe(self.state) || knows;
+        let taken = matches!(self.state, GatewayState::Manual | GatewayState::SafeLand);
+        let accepted = !taken && (!is_safe(self.state) || knows);
         self.joins.push(join);
         if accepted && is_safe(self.state) {
             self.awaits_waypoints = self.buffer.is_empty();
@@ -90,6 +91,7 @@ impl Gateway {
             current: self.buffer.front().map(|w| w.token),
             last: self.buffer.back().map(|w| w.token),
             highest: self.highest,
+            finished: self.finished(),
         }
     }
 
@@ -103,6 +105,7 @@ impl Gateway {
                 assert!(!self.buffer.is_empty(), "{request:?} before the waypoints");
                 self.state = GatewayState::Nav;
             }
+            GatewayRequest::Hold if self.state == GatewayState::Stop => return Err("on the ground".into()),
             GatewayRequest::Hold => {
                 self.awaits_waypoints = false;
                 self.state = GatewayState::Hold;
@@ -133,6 +136,12 @@ impl Gateway {
     /// The same after T2: on its way home, and the waypoints are gone.
     pub fn safe_return(&mut self) {
         self.state = GatewayState::SafeReturn;
+        self.buffer.clear();
+    }
+
+    /// The pilot, or Safe mode, has brought it down.
+    pub fn land(&mut self) {
+        self.state = GatewayState::Stop;
         self.buffer.clear();
     }
 

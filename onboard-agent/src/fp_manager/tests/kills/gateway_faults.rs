@@ -179,3 +179,64 @@ fn holding_when_safe_mode_ends_it_holds_again() {
         assert!(flight.gateway.flown.len() > held);
     }
 }
+
+/// What is told of legs and actions, and what is asked of services.
+fn told_of_the_plan(flight: &Flight) -> usize {
+    use PlanEvent::*;
+    let of_plan = |e: &&PlanEvent| {
+        matches!(e, LegEntered { .. } | IterationFinished { .. } | DecisionTaken { .. } | ActionDone { .. })
+    };
+    flight.heard.iter().filter(of_plan).count()
+}
+
+#[test]
+fn brought_down_by_the_pilot_or_safe_mode_nothing_ahead_counts_as_flown() {
+    for by in [GatewayState::Manual, GatewayState::SafeLand] {
+        let mut flight = flown(10, STARTED);
+        run(&mut flight, 2);
+        let told = told_of_the_plan(&flight);
+        flight.gateway.state = by;
+        run(&mut flight, 4);
+        flight.gateway.land();
+        run(&mut flight, 4);
+        assert_eq!(told_of_the_plan(&flight), told, "{by:?}: {:?}", flight.heard);
+        assert_eq!(flight.process.manager.executor().status_phase(), Phase::Finished);
+        let joins = flight.gateway.joins.len();
+        run(&mut flight, 20);
+        assert_eq!(flight.gateway.joins.len(), joins, "it has joined, and once is enough");
+        let command = Command::Start;
+        flight.ask_once(&What::Command(command), "again").unwrap();
+        run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+    }
+}
+
+#[test]
+fn start_of_which_nothing_came_is_given_again() {
+    let mut flight = Flight::new(1, false, false);
+    flight.asks.truncate(STARTED);
+    flight.gateway.refuse_launch = Some("no GPS fix".into());
+    run(&mut flight, 10);
+    flight.ask_once(&What::Command(Command::Hold), "hold").unwrap();
+    run(&mut flight, 20);
+    flight.gateway.refuse_launch = None;
+    run(&mut flight, 4);
+    assert_eq!(flight.gateway.state, GatewayState::Stop, "it was to hold");
+    flight.ask_once(&What::Command(Command::Start), "start").unwrap();
+    run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+    assert_eq!(flight.process.manager.executor().status_phase(), Phase::Flying);
+}
+
+#[test]
+fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
+    let mut flight = flown(10, STARTED);
+    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight.gateway.alarm("energy-low", Cause::Energy);
+    run(&mut flight, 4);
+    let changed = asks::MISSION.replace("name=\"Kills\"", "name=\"Changed\"");
+    flight.ask_once(&What::Propose(changed), "propose").unwrap();
+    let hash = flight.proposed.clone().unwrap();
+    let command = Command::Commit { hash, entry: Some(Id::new("back")) };
+    flight.ask_once(&What::Command(command), "commit").unwrap();
+    run(&mut flight, 2);
+    assert_eq!(emergencies(&flight), 2, "{:?}", flight.heard);
+}

@@ -272,7 +272,9 @@ impl Flight {
 
     /// The client repeats its request under the same name until it is answered.
     fn ask(&mut self) {
-        let due = |ask: &Ask| self.gateway.flown.len() >= ask.flown && self.since_answer >= ask.steps;
+        // a waypoint that was flown unheard is flown again
+        let flown = self.path().len();
+        let due = |ask: &Ask| flown >= ask.flown && self.since_answer >= ask.steps;
         let Some(ask) = self.asks.pop_front_if(|ask| due(ask)) else { return };
         let id = format!("request-{}", self.asks.len());
         while self.ask_once(&ask.what, &id).is_err() {

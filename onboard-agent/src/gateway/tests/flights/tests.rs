@@ -23,6 +23,7 @@ fn a_flight_of_more_waypoints_than_the_ring_holds_is_flown_from_take_off_to_land
     let states: Vec<_> = flight.changes().into_iter().map(|c| c.1).collect();
     use GatewayState::*;
     assert_eq!(states, [Stop, TakeOff, Nav, Approach, Land, Stop]);
+    assert!(flight.join_knowing("plan", last).finished, "its landing was the plan's");
 }
 
 #[test]
@@ -61,6 +62,8 @@ fn fp_manager_killed_holds_at_t1_returns_at_t2_and_lands() {
     assert_eq!(states[3..], [SafeHold, SafeReturn, SafeApproach, SafeLand, Stop]);
     let place = flight.station.gateway().telemetry().position().unwrap().1.position;
     assert!(place.distance_m(HOME) < 700.0, "{} m from the runway", place.distance_m(HOME));
+    assert!(!flight.progress().contains(&None), "the plan's waypoints were not flown");
+    assert!(!flight.join_knowing("plan", flight.next).finished);
 }
 
 #[test]
