@@ -17,11 +17,16 @@ use terrain::Terrain;
 /// Steps in which a wind above the design wind widens turns, m/s.
 const WIND_STEP_MPS: f64 = 2.0;
 
+/// A wind rounded up to steps, so that paths don't change with every gust.
+fn in_steps(wind_mps: f64) -> f64 {
+    (wind_mps / WIND_STEP_MPS).ceil() * WIND_STEP_MPS
+}
+
 /// Radius for turns that have to stay where they are laid out (holdings, turn-rounds, between tracks) at an
 /// airspeed: planning bank, at the greatest ground speed. That is with the wind behind: the measured one, in steps so
 /// that paths don't change with every gust, and never less than the design wind.
 pub fn turn_radius_m(profile: &Profile, airspeed_mps: f64, measured_mps: f64, design_mps: f64) -> f64 {
-    let measured_mps = (measured_mps / WIND_STEP_MPS).ceil() * WIND_STEP_MPS;
+    let measured_mps = in_steps(measured_mps);
     // in a wind faster than itself an aircraft stays nowhere
     let wind_mps = measured_mps.max(design_mps).min(airspeed_mps.max(design_mps));
     profile.turn_radius_m(airspeed_mps + wind_mps)
@@ -145,6 +150,12 @@ impl World<'_> {
     /// Radius for turns that have to stay where they are laid out, at an airspeed, in the wind that is measured.
     pub fn turn_radius_m(&self, airspeed_mps: f64) -> f64 {
         turn_radius_m(self.profile, airspeed_mps, self.flight.wind_mps, self.config.design_wind_mps)
+    }
+
+    /// The greatest speed over the ground at an airspeed: with the measured wind behind, whichever way the path leads. A climb that is laid
+    /// out for it is never too steep.
+    pub fn ground_speed_mps(&self, airspeed_mps: f64) -> f64 {
+        (airspeed_mps + in_steps(self.flight.wind_mps)).max(1.0)
     }
 
     /// Metres AMSL of a level above a position; `None`: it counts from the ground, and nothing is known of the ground there.

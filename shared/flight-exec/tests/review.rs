@@ -304,6 +304,20 @@ fn tracks_that_are_too_few_to_be_interleaved() {
     );
 }
 
+/// Climbs in holdings and on legs are laid out for the ground speed with that wind.
+#[test]
+fn what_the_gateway_would_refuse_is_not_laid_out_in_a_strong_wind() {
+    let (document, profile) =
+        (std::fs::read(assets().join("plans/fire-watch.xml")).unwrap(), Profile::default());
+    for from_deg in [0.0, 90.0, 180.0, 270.0] {
+        let program = Arc::new(compile_document(&document, &profile, ground().as_ref()).unwrap());
+        let conditions = Conditions { wind: Wind::from_direction(from_deg, 14.0), ..Conditions::default() };
+        let found = review(&program, &profile, &ground(), conditions);
+        let refused: Vec<_> = found.iter().filter(|p| p.code == "gateway-refuses").cloned().collect();
+        assert_eq!(shown(&refused), [""; 0], "from {from_deg}");
+    }
+}
+
 #[test]
 fn a_turn_that_the_wind_carries_into_a_zone() {
     // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind

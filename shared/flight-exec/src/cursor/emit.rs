@@ -64,8 +64,8 @@ impl Cursor {
         let time_s = length_m / airspeed_mps.max(1.0);
         // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
         // such a gradient
-        let profile = world.profile;
-        let (descent_m, climb_m) = (profile.max_descent_mps * time_s, profile.max_climb_mps * time_s);
+        let (profile, climbed_s) = (world.profile, length_m / world.ground_speed_mps(airspeed_mps));
+        let (descent_m, climb_m) = (profile.max_descent_mps * climbed_s, profile.max_climb_mps * climbed_s);
         let towards = |from_m: f64, lead_m: f64| {
             altitude_amsl_m.max(from_m - descent_m - lead_m).min(from_m + climb_m + lead_m)
         };
@@ -73,8 +73,7 @@ impl Cursor {
             Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),
             Action::Land { .. } => (altitude_amsl_m, towards(from.predicted_amsl_m, 0.0)),
             Action::Fly | Action::Loiter { .. } => {
-                let commanded_m = towards(from.commanded_amsl_m, CLIMB_LEAD_M);
-                (commanded_m, towards(from.predicted_amsl_m, 0.0))
+                (towards(from.predicted_amsl_m, CLIMB_LEAD_M), towards(from.predicted_amsl_m, 0.0))
             }
         };
         self.path = PathState {

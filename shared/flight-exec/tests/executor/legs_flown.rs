@@ -136,3 +136,25 @@ fn restart(rig: &mut Rig) {
     rig.executor = flight_exec::Executor::restore(config, terrain, profile, plan, snapshot).unwrap();
     rig.step(Input::Tick);
 }
+
+/// Spread over its waypoints, eight metres ahead of the aircraft: not eight more at each of them.
+#[test]
+fn a_climb_along_a_circle_is_no_steeper_than_the_aircraft_climbs() {
+    let profile = Profile::default();
+    let legs = r#"<TF id="a" fix="A3"/>
+        <orbit id="arc" radius="700" turns="2" turn="right" altitude="900" altitudeReference="amsl"><centre fix="B3"/></orbit>
+        <TF id="z" fix="A4"/>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_to_the_end();
+    let at = rig.flown.iter().position(|w| w.leg.as_str() == "arc").unwrap();
+    let (mut way_m, begun_m) = (0.0, rig.flown[at - 1].altitude_amsl_m);
+    let mut waypoints = 0;
+    for pair in rig.flown[at - 1..].windows(2).take_while(|pair| pair[1].leg.as_str() == "arc") {
+        way_m += pair[0].position.distance_m(pair[1].position);
+        let climbed_m = pair[1].altitude_amsl_m - begun_m;
+        let most_m = profile.max_climb_mps * way_m / pair[1].airspeed_mps + 8.0;
+        assert!(climbed_m <= most_m + 0.1, "{climbed_m} m after {way_m} m, {most_m} at most");
+        waypoints += 1;
+    }
+    assert!(waypoints > 4 && rig.flown[at - 1 + waypoints].altitude_amsl_m > 899.0);
+}
