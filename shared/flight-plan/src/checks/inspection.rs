@@ -221,11 +221,7 @@ impl<'a> Inspection<'a> {
     /// Where a take-off ends: straight on from the runway's end, at the best climb.
     pub fn climb_out(&self, stage: &Stage) -> Option<Point> {
         let runway = self.runways.get(stage.runway.as_ref()?).filter(|r| r.threshold.is_valid())?;
-        let metres = self.number(&stage.altitude.as_ref()?.metres)?;
-        let height_m = match stage.altitude.as_ref()?.reference {
-            AltitudeReference::Amsl => metres - runway.elevation_amsl_m,
-            AltitudeReference::Agl | AltitudeReference::Home => metres,
-        };
+        let height_m = self.climb_out_height_m(stage)?;
         let climb_s = height_m.max(0.0) / self.profile.max_climb_mps.max(0.1);
         let way_m = runway.length_m + climb_s * self.profile.cruise_airspeed_mps;
         if !way_m.is_finite() || !runway.heading_deg.is_finite() {
@@ -233,6 +229,16 @@ impl<'a> Inspection<'a> {
         }
         let position = runway.threshold.destination(runway.heading_deg, way_m);
         Some(Point { position, altitude_amsl_m: Some(runway.elevation_amsl_m + height_m) })
+    }
+
+    /// How high above its runway a take-off ends, metres.
+    pub fn climb_out_height_m(&self, stage: &Stage) -> Option<f64> {
+        let (runway, altitude) = (self.runways.get(stage.runway.as_ref()?)?, stage.altitude.as_ref()?);
+        let metres = self.number(&altitude.metres)?;
+        Some(match altitude.reference {
+            AltitudeReference::Amsl => metres - runway.elevation_amsl_m,
+            AltitudeReference::Agl | AltitudeReference::Home => metres,
+        })
     }
 
     pub fn end_of(&self, step: &Step) -> Option<Point> {

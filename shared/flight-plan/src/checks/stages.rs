@@ -1,4 +1,5 @@
-//! `take-off-incomplete`, `land-incomplete`: a runway or altitude is missing; `stage-order`: take-off is not first or
+//! `take-off-incomplete`, `land-incomplete`: a runway or altitude is missing, or the climb-out ends no higher than it
+//! begins; `stage-order`: take-off is not first or
 //! landing not last; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
 
 use super::Inspection;
@@ -37,6 +38,15 @@ fn complete(view: &Inspection, stage: &Stage, landing: Option<&Id>, problems: &m
             let message = "give the take-off stage a `runway` and a climb-out `altitude`";
             report("take-off-incomplete", message, completed(view, stage));
         }
+        StageKind::TakeOff => {
+            if let Some(height_m) = view.climb_out_height_m(stage).filter(|m| *m <= 0.0) {
+                let message = format!(
+                    "climb out to an `altitude` above the runway: this one is {:.1} m below it",
+                    height_m.abs()
+                );
+                report("take-off-incomplete", &message, Some(with_altitude(stage, usual())));
+            }
+        }
         StageKind::Land if stage.runway.is_none() => {
             let runway = landing.or_else(|| only_runway(view));
             report("land-incomplete", "give the land stage a `runway`", runway.map(|r| named(stage, r)));
@@ -52,9 +62,16 @@ fn complete(view: &Inspection, stage: &Stage, landing: Option<&Id>, problems: &m
 
 fn completed(view: &Inspection, stage: &Stage) -> Option<Edit> {
     let runway = stage.runway.as_ref().or_else(|| only_runway(view))?;
-    let usual = || Altitude { metres: Value::Constant(CLIMB_OUT_M), reference: AltitudeReference::Home };
-    let altitude = Some(stage.altitude.clone().unwrap_or_else(usual));
-    Some(Edit::All(vec![named(stage, runway), Edit::SetAltitude { of: stage.id.clone(), altitude }]))
+    let altitude = stage.altitude.clone().unwrap_or_else(usual);
+    Some(Edit::All(vec![named(stage, runway), with_altitude(stage, altitude)]))
+}
+
+fn usual() -> Altitude {
+    Altitude { metres: Value::Constant(CLIMB_OUT_M), reference: AltitudeReference::Home }
+}
+
+fn with_altitude(stage: &Stage, altitude: Altitude) -> Edit {
+    Edit::SetAltitude { of: stage.id.clone(), altitude: Some(altitude) }
 }
 
 fn named(stage: &Stage, runway: &Id) -> Edit {
@@ -92,6 +109,25 @@ mod tests {
             let found: Vec<_> =
                 codes(&document(stages)).into_iter().filter(|c| *c != "no-altitude").collect();
             assert_eq!(found, expected, "{stages}");
+        }
+    }
+
+    /// The runway is at 300 m.
+    #[test]
+    fn a_climb_out_ends_above_the_runway() {
+        let climb = |altitude: &str, reference: &str| {
+            document(&format!(
+                r#"<stage id="t" type="take-off" runway="R" altitude="{altitude}" altitudeReference="{reference}"/>{WAY}"#
+            ))
+        };
+        for (altitude, reference) in [("-50", "home"), ("0", "agl"), ("299", "amsl"), ("= 2.0 - 3.0", "home")]
+        {
+            let document = climb(altitude, reference);
+            assert_eq!(codes(&document), ["take-off-incomplete"], "{altitude} {reference}");
+            fixed(&document, "take-off-incomplete");
+        }
+        for (altitude, reference) in [("30", "home"), ("330", "amsl")] {
+            assert_eq!(codes(&climb(altitude, reference)), [""; 0], "{altitude} {reference}");
         }
     }
 
