@@ -1,17 +1,21 @@
 //! `bad-action`: distances, times or names with which an action can't be done; `wait-not-at-end`: a wait elsewhere than at
-//! the leg's end; `action-never`: an action that no passage of its leg comes to; `set-out-of-bounds`: a value that its
+//! the end of a leg that has one; `action-never`: an action that no passage of its leg comes to; `set-out-of-bounds`: a value that its
 //! variable does not take at the start. (`wrong-type`: a value of another type than its variable's.)
 
 use super::Inspection;
+use super::path::Path;
 use super::step::Step;
 use crate::expression::Type;
 use crate::{Act, Edit, Id, Leg, LegAction, LegKind, Problem, Trigger, Value, VariableValue};
+use geometry::LatLon;
 use std::sync::Arc;
 
 /// Shortest distance between two pictures or repetitions, metres: 35 a second at the trainer's fastest.
 const SHORTEST_M: f64 = 1.0;
 /// Longest text of an invocation's argument, bytes.
 const LONGEST_ARGUMENT: usize = 16_384;
+/// A place is beyond a track if it is abeam of none of it by so much, metres: tracks are laid out as exactly.
+const BEYOND_M: f64 = 10.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     for (index, action) in step.leg.actions.iter().enumerate() {
@@ -23,10 +27,8 @@ fn one(view: &Inspection, step: &Step, index: usize, action: &LegAction, problem
     let leg = &step.leg;
     let sizes = trigger_fault(view, &action.trigger).into_iter().chain(act_fault(view, &action.act));
     problems.extend(sizes.map(|message| Problem::error("bad-action", message).of(&leg.id)));
-    if matches!(action.act, Act::Wait { .. }) && action.trigger != Trigger::End {
-        let message = "wait at the end of the leg (`on=\"end\"`): an aircraft can't stop on its way";
-        let problem = Problem::error("wait-not-at-end", message).of(&leg.id);
-        problems.push(problem.perhaps_fixed_by(at_the_end(leg, index)));
+    if matches!(action.act, Act::Wait { .. }) {
+        problems.extend(misplaced_wait(leg, index, action));
     }
     if let Some(message) = never(view, step, &action.trigger) {
         let problem = Problem::warning("action-never", message).of(&leg.id);
@@ -35,6 +37,17 @@ fn one(view: &Inspection, step: &Step, index: usize, action: &LegAction, problem
     if let Act::Set { variable, to } = &action.act {
         problems.extend(not_taken(view, variable, to).map(|problem| problem.of(&leg.id)));
     }
+}
+
+/// A wait that is not at the end of a leg that is flown: an error on its way, and not done by a loop or a call.
+fn misplaced_wait(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem> {
+    if matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Call(_)) {
+        let message = "wait on the last leg inside this one: a loop or a call has no end of its own to circle at, its wait is not done";
+        return Some(Problem::warning("wait-not-at-end", message).of(&leg.id));
+    }
+    let message = "wait at the end of the leg (`on=\"end\"`): an aircraft can't stop on its way";
+    let problem = Problem::error("wait-not-at-end", message).of(&leg.id);
+    (action.trigger != Trigger::End).then(|| problem.perhaps_fixed_by(at_the_end(leg, index)))
 }
 
 fn trigger_fault(view: &Inspection, trigger: &Trigger) -> Option<String> {
@@ -89,7 +102,8 @@ fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
     let along_m = match trigger {
         Trigger::Distance(x) | Trigger::Every(x) => view.number(x)?,
         Trigger::Time(x) => view.number(x)? * step.speed_mps,
-        _ => return None,
+        Trigger::Abeam(place) => return never_abeam(view, step, view.place(place)?),
+        Trigger::Start | Trigger::End => return None,
     };
     let length_m = step.path?.length_m();
     (along_m > length_m).then(|| {
@@ -97,6 +111,21 @@ fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
             "let the action come earlier: the leg is {length_m:.0} m long, it would come after {along_m:.0} m"
         )
     })
+}
+
+/// Why no part of a straight track is abeam of a place. Not of the first leg inside a loop: each pass may come to it from elsewhere.
+fn never_abeam(view: &Inspection, step: &Step, place: LatLon) -> Option<String> {
+    let inside_one_list = |before: &&Step| before.around == step.around;
+    let (_, start) = view.before(step).filter(inside_one_list).zip(step.start)?;
+    let Some(Path::Line { length_m, course_start_deg, .. }) = step.directed() else { return None };
+    let way = start.position.inverse(place);
+    let along_m = way.distance_m * (way.bearing_start_deg - course_start_deg).to_radians().cos();
+    let where_m = match along_m {
+        m if m < -BEYOND_M => format!("{:.0} m before its begin", -m),
+        m if m > length_m + BEYOND_M => format!("{:.0} m beyond its end", m - length_m),
+        _ => return None,
+    };
+    Some(format!("choose a place beside this leg, or move the action to another one: the place is {where_m}"))
 }
 
 /// The leg with one of its actions changed; not for loops, whose bodies may be large.
@@ -194,6 +223,38 @@ mod tests {
         }
         fixed(&with(r#"<action on="start"><wait seconds="30"/></action>"#), "wait-not-at-end");
         fixed(&with(r#"<action afterTime="110"><photo/></action>"#), "action-never");
+    }
+
+    /// The leg leads east from 84.20° to 84.17° W.
+    #[test]
+    fn what_an_action_is_abeam_of_is_beside_its_leg() {
+        let abeam =
+            |lon: f64| with(&format!(r#"<action on="abeam" lat="36.32" lon="{lon}"><photo/></action>"#));
+        for lon in [-84.2, -84.19, -84.17] {
+            assert_eq!(codes(&abeam(lon)), [""; 0], "{lon}");
+        }
+        for lon in [-84.202, -84.168, -84.12] {
+            assert_eq!(codes(&abeam(lon)), ["action-never"], "{lon}");
+            fixed(&abeam(lon), "action-never");
+        }
+        let plan = abeam(-84.12);
+        let looped =
+            plan.replace(r#"<TF id="b""#, r#"<iterative id="l" form="forward" count="2"><TF id="b""#);
+        let looped = looped.replace("</TF>", r#"</TF><TF id="c" fix="C"/></iterative>"#);
+        assert_eq!(codes(&looped), [""; 0], "the second pass comes from elsewhere");
+    }
+
+    #[test]
+    fn loops_and_calls_have_no_end_to_wait_at() {
+        let wait = r#"<action on="end"><wait seconds="30"/></action>"#;
+        let body = r#"<TF id="c" fix="C"/><TF id="z" fix="A"/>"#;
+        let with_leg = |leg: &str| with("").replacen("</TF></stage>", &format!("</TF>{leg}</stage>"), 1);
+        let looped =
+            with_leg(&format!(r#"<iterative id="l" form="forward" count="2">{wait}{body}</iterative>"#));
+        assert_eq!(codes(&looped), ["wait-not-at-end"]);
+        let procedure = format!(r#"<procedures><procedure id="p">{body}</procedure></procedures><mainPlan"#);
+        let called = with_leg(&format!(r#"<call id="k" procedure="p">{wait}</call>"#));
+        assert_eq!(codes(&called.replace("<mainPlan", &procedure)), ["wait-not-at-end"]);
     }
 
     #[test]
