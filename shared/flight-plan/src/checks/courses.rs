@@ -1,23 +1,26 @@
 //! `bad-course`: a course, heading or bearing outside 0..360; `fa-incomplete`: an FA without the altitude at which it
-//! ends; `course-not-intercepted`: a CF whose course the aircraft can't be on before its fix.
+//! ends; `course-not-intercepted`: a CF whose course the aircraft can't be on before its fix (a warning where it can, but comes
+//! round to it).
 
 use super::Inspection;
-use super::remedy::normal_deg;
+use super::path::{Path, SHORTEST_M};
+use super::remedy::{normal_deg, with_kind};
 use super::step::Step;
 use crate::uses::SlotMut;
-use crate::{Edit, Leg, LegKind, PlanWaypoint, Problem, Value};
+use crate::{Edit, FlightPlan, Leg, LegKind, PlanWaypoint, Problem, Procedure, Thing, Value};
+use geometry::LatLon;
 use geometry::geodesy::normalise_180;
+use geometry::intercept::{Joining, course_to_fix};
+use std::sync::Arc;
 
 /// Attributes that are directions.
 const DIRECTIONS: [&str; 3] = ["course", "heading", "bearing"];
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
-    let wrong = leg.numbers().into_iter().filter_map(|(name, value)| wrong_deg(name, value?));
-    for direction_deg in wrong {
-        let message = format!("write the direction as degrees true in 0..360, not {direction_deg}");
-        let problem = Problem::error("bad-course", message).of(&leg.id);
-        problems.push(problem.fixed_by(normalised(leg)));
+    // a call that could not be flown is still one, and has been looked at as it is written
+    if !matches!(leg.kind, LegKind::Call(_)) {
+        directions(leg, problems);
     }
     match &leg.kind {
         LegKind::Fa { .. } if step.altitude().is_none() => {
@@ -27,6 +30,42 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         LegKind::Cf { to, course_deg } => problems.extend(not_intercepted(view, step, to, course_deg)),
         _ => {}
     }
+}
+
+/// Those that are not flown as they are written: the bearings of procedures and of their calls.
+pub(super) fn bearings(plan: &FlightPlan, problems: &mut Vec<Problem>) {
+    plan.all_stages().for_each(|(_, stage)| calls(&stage.legs, problems));
+    for procedure in &plan.procedures {
+        calls(&procedure.legs, problems);
+        let bearing = Value::Constant(procedure.bearing_deg);
+        if let Some(deg) = wrong_deg("bearing", &bearing) {
+            let fix = normal_deg(deg).map(|deg| turned(procedure, deg));
+            problems.push(bad_course(deg).of(&procedure.id).perhaps_fixed_by(fix));
+        }
+    }
+}
+
+fn calls(legs: &[Arc<Leg>], problems: &mut Vec<Problem>) {
+    for leg in legs {
+        if matches!(leg.kind, LegKind::Call(_)) {
+            directions(leg, problems);
+        }
+        calls(leg.body(), problems);
+    }
+}
+
+fn turned(procedure: &Procedure, bearing_deg: f64) -> Edit {
+    let with = Procedure { bearing_deg, ..procedure.clone() };
+    Edit::Replace { id: procedure.id.clone(), with: Box::new(Thing::Procedure(with)) }
+}
+
+fn directions(leg: &Leg, problems: &mut Vec<Problem>) {
+    let wrong = leg.numbers().into_iter().filter_map(|(name, value)| wrong_deg(name, value?));
+    problems.extend(wrong.map(|deg| bad_course(deg).of(&leg.id).fixed_by(normalised(leg))));
+}
+
+fn bad_course(deg: f64) -> Problem {
+    Problem::error("bad-course", format!("write the direction as degrees true in 0..360, not {deg}"))
 }
 
 /// A direction that is written wrongly. One that is computed may be any angle.
@@ -55,34 +94,76 @@ fn normalise(name: &str, value: &mut Value<f64>) {
 }
 
 /// From where the path comes, the course has to be reached before the fix: with a turn of at most 90° from far aside, with two
-/// opposite ones (S² = 4·r·offset, a little more than they need) from near by.
+/// opposite ones (S² = 4·r·offset, a little more than they need) from near by. Where it is known on which course the path comes,
+/// the way onto the course is known too.
 fn not_intercepted(
     view: &Inspection,
     step: &Step,
     to: &PlanWaypoint,
     course: &Value<f64>,
 ) -> Option<Problem> {
-    let fix = view.place(&to.place)?;
+    let (start, fix) = (step.start?.position, view.place(&to.place)?);
     let course_deg = view.number(course)?;
-    let back = fix.inverse(step.start?.position);
-    let off_rad = normalise_180(back.bearing_start_deg - (course_deg + 180.0)).to_radians();
-    let (before_m, aside_m) = (back.distance_m * off_rad.cos(), (back.distance_m * off_rad.sin()).abs());
+    let (before_m, aside_m) = seen_from(fix, course_deg, start);
     let radius_m = view.turn_radius_m(step.speed_mps);
     let needed_m = radius_m.min(2.0 * (radius_m * aside_m).sqrt());
-    let message = format!(
-        "come from farther back, change the course or use DF: the path comes from {aside_m:.0} m beside the course and {before_m:.0} m before the fix, the turn onto it needs {needed_m:.0} m"
-    );
-    let fix = Edit::ReplaceLeg {
-        leg: step.leg.id.clone(),
-        with: Box::new(Leg { kind: LegKind::Df { to: to.clone(), turn: None }, ..step.leg.as_ref().clone() }),
+    let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, radius_m));
+    let joining = way.map(|way| way.joining);
+    let from =
+        format!("the path comes from {aside_m:.0} m beside the course and {before_m:.0} m before the fix");
+    let problem = if matches!(joining, Some(Joining::Intercept { .. })) {
+        return None;
+    } else if before_m < needed_m {
+        let message = format!(
+            "come from farther back, change the course or use DF: {from}, the turn onto it needs {needed_m:.0} m"
+        );
+        Problem::error("course-not-intercepted", message)
+    } else {
+        let message = format!(
+            "come from farther back, change the course or use DF: {from}, too near for an interception at 45° or less, so that the aircraft would come round to it"
+        );
+        joining.map(|_| Problem::warning("course-not-intercepted", message))?
     };
-    let problem = Problem::error("course-not-intercepted", message).of(&step.leg.id);
-    (before_m < needed_m).then(|| problem.fixed_by(fix))
+    Some(problem.of(&step.leg.id).fixed_by(direct(&step.leg, to)))
+}
+
+/// How far before a fix and beside a course into it a position is, metres.
+fn seen_from(fix: LatLon, course_deg: f64, position: LatLon) -> (f64, f64) {
+    let back = fix.inverse(position);
+    let off_rad = normalise_180(back.bearing_start_deg - (course_deg + 180.0)).to_radians();
+    (back.distance_m * off_rad.cos(), (back.distance_m * off_rad.sin()).abs())
+}
+
+/// The course on which the path comes to a step, where the document says so, degrees true.
+fn arrival_deg(view: &Inspection, step: &Step) -> Option<f64> {
+    let before = view.before(step)?;
+    match &before.leg.kind {
+        LegKind::Cf { course_deg, .. } => view.number(course_deg),
+        LegKind::Hf(holding) => view.number(holding.inbound_course_deg.as_ref()?),
+        // straight there, if it is not known only roughly where it begins
+        LegKind::Df { turn: None, .. } => {
+            let (start, end) = view.before(before).and(before.start).zip(before.end)?;
+            let way = Path::line(start.position, end.position);
+            (way.length_m() >= SHORTEST_M).then(|| way.course_end_deg())
+        }
+        _ => Some(before.directed()?.course_end_deg()),
+    }
+}
+
+fn direct(leg: &Leg, to: &PlanWaypoint) -> Edit {
+    with_kind(leg, LegKind::Df { to: to.clone(), turn: None })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document, fixed_legs};
+    use crate::checks::testing::{check_legs, codes, document, fixed, fixed_legs, plan_with};
+    use crate::{Problem, check, read};
+    use aircraft::Profile;
+    use terrain::Flat;
+
+    fn problems(legs: &str) -> Vec<Problem> {
+        check(&read(plan_with(legs)).plan, &Profile::default(), &Flat(300.0))
+    }
 
     #[test]
     fn directions_are_degrees_true() {
@@ -111,9 +192,53 @@ mod tests {
         fixed_legs(&[(&cf(270), "course-not-intercepted")]);
     }
 
+    /// The path comes to B from the west, where a turn has a radius of 137 m; C is 3.3 km north of B.
     #[test]
-    fn a_climb_on_a_track_needs_its_altitude() {
-        let stage = r#"<stage id="s" type="departure"><FA id="f" fix="A" course="90"/></stage>"#;
-        assert!(codes(&document(stage)).contains(&"fa-incomplete"));
+    fn who_comes_too_near_for_45_degrees_comes_round() {
+        let cf = |course: u32| {
+            format!(r#"<IF id="a" fix="A"/><TF id="b" fix="B"/><CF id="c" fix="C" course="{course}"/>"#)
+        };
+        let after_hold = format!(
+            r#"<IF id="a" fix="A"/><HF id="h" fix="B" course="0" turn="left" length="500"/><CF id="c" fix="C" course="{}"/>"#,
+            60
+        );
+        let round: &[&str] = &["course-not-intercepted"];
+        check_legs(&[(&cf(350), &[]), (&cf(20), &[]), (&cf(60), round), (&after_hold, round)]);
+        fixed_legs(&[(&cf(60), "course-not-intercepted"), (&after_hold, "course-not-intercepted")]);
+        let found = problems(&cf(60));
+        assert!(!found.iter().any(Problem::is_error), "it can be flown: {found:?}");
+    }
+
+    /// The turn onto the course is half flown where the path comes from.
+    #[test]
+    fn who_comes_slanting_needs_less_room() {
+        let cf = r#"<IF id="a" lat="36.3" lon="-84.2"/><TF id="b" lat="36.31" lon="-84.19"/><CF id="c" lat="36.3105" lon="-84.1886" course="90"/>"#;
+        check_legs(&[(cf, &[])]);
+    }
+
+    #[test]
+    fn bearings_of_procedures_and_calls_are_degrees_true() {
+        let plan = |of_procedure: &str, of_call: &str| {
+            let call = format!(r#"<call id="k" procedure="p" bearing="{of_call}"/>"#);
+            let procedure = format!(
+                r#"<procedures><procedure id="p" reference="36.3 -84.17" bearing="{of_procedure}"><TF id="in" fix="C"/></procedure></procedures><mainPlan"#
+            );
+            plan_with(&format!(r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>{call}"#))
+                .replace("<mainPlan", &procedure)
+        };
+        assert_eq!(codes(&plan("0", "= 370.0")), [""; 0]);
+        for bad in [plan("0", "-20"), plan("0", "370"), plan("400", "0")] {
+            assert_eq!(codes(&bad), ["bad-course"], "{bad}");
+            fixed(&bad, "bad-course");
+        }
+    }
+
+    #[test]
+    fn a_climb_on_a_track_needs_an_altitude_from_somewhere() {
+        let stage = |attributes: &str| {
+            format!(r#"<stage id="s" type="departure" {attributes}><FA id="f" fix="A" course="90"/></stage>"#)
+        };
+        assert!(codes(&document(&stage(""))).contains(&"fa-incomplete"));
+        assert_eq!(codes(&document(&stage(r#"altitude="600" altitudeReference="amsl""#))), [""; 0]);
     }
 }

@@ -156,6 +156,7 @@ fn look_at(
 ) -> (Checked, Option<Last>) {
     let (flown, mut problems) = crate::procedure::instantiate(plan);
     procedures::check(plan, &mut problems);
+    courses::bearings(plan, &mut problems);
     let again = last.is_some();
     let mut recall = Recall::of(last.flatten(), &flown);
     let mut inspection = Inspection::new(&flown, profile, terrain, &mut recall);
