@@ -5,7 +5,7 @@
 
 use super::Inspection;
 use super::path::{Path, SHORTEST_M, course_change_deg};
-use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::remedy::{changed, or_slower, slower, speed_for_radius_mps};
 use super::spacings::spacing_m;
 use super::step::Step;
 use crate::{Area, LegKind, Pattern, Place, Problem, Spacing, Value, VariableValue};
@@ -54,8 +54,9 @@ impl Tight {
         let (what, factor, more_m) = self.wanted;
         let wide_m = (factor * needed_m + more_m).ceil();
         let speed_mps = speed_for_radius_mps(view, self.fits_m);
+        let or_slower = or_slower(view, speed_mps);
         let message = format!(
-            "make the {what} at least {wide_m:.0} m, or fly no faster than {speed_mps:.1} m/s: its turns leave room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
+            "make the {what} at least {wide_m:.0} m{or_slower}: its turns leave room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
             self.fits_m.max(0.0),
             step.speed_mps
         );
@@ -201,8 +202,9 @@ fn along(view: &Inspection, step: &Step, route: &[Place], beside_m: f64) -> Opti
     let (piece, fits_m) = pieces.iter().enumerate().filter_map(fits_m).min_by(|a, b| a.1.total_cmp(&b.1))?;
     let needed_m = view.turn_radius_m(step.speed_mps);
     let speed_mps = speed_for_radius_mps(view, fits_m);
+    let or_slower = or_slower(view, speed_mps);
     let message = format!(
-        "space the points {} and {} of the route out, or fly no faster than {speed_mps:.1} m/s: between them the turns of the tracks have room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
+        "space the points {} and {} of the route out{or_slower}: between them the turns of the tracks have room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
         piece + 1,
         piece + 2,
         fits_m.max(0.0),
@@ -224,7 +226,7 @@ fn tangent(before: &Path, after: &Path) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, fixed_legs, message_of};
 
     fn about(kind: &str, attributes: &str) -> String {
         format!(r#"<{kind} id="p" turn="left" {attributes}><centre fix="A"/></{kind}>"#)
@@ -274,6 +276,21 @@ mod tests {
         ]);
         let cases = [sector(470, 3, ""), sector(150, 6, ""), sector(100, 4, "")];
         cases.iter().for_each(|legs| fixed_legs(&[(legs, "turn-too-tight")]));
+    }
+
+    /// The slowest is 16 m/s, with a radius of 57 m.
+    #[test]
+    fn no_speed_is_advised_at_which_the_aircraft_can_not_fly() {
+        let corridor = |metres| route("corridor", r#"width="600" spacing="300""#, metres);
+        for (legs, code, possible) in [
+            (square(200), "tracks-too-close", true),
+            (square(100), "tracks-too-close", false),
+            (corridor(560.0), "segment-too-short", true),
+            (corridor(200.0), "segment-too-short", false),
+        ] {
+            let message = message_of(&legs, code);
+            assert_eq!(message.contains("fly no faster than"), possible, "{message}");
+        }
     }
 
     #[test]

@@ -18,9 +18,20 @@ pub(super) fn changed(leg: &Leg, change: impl FnOnce(&mut LegKind) -> Option<()>
 
 /// Flying a leg at a lower speed, where the aircraft can: to tenths of m/s below `speed_mps`.
 pub(super) fn slower(view: &Inspection, of: &Id, speed_mps: f64) -> Option<Edit> {
+    let slow = slow_mps(view, speed_mps)?;
+    Some(Edit::SetSpeed { of: of.clone(), speed_mps: Some(Value::Constant(slow)) })
+}
+
+/// The advice to fly at a lower speed behind another one, where the aircraft can; else nothing.
+pub(super) fn or_slower(view: &Inspection, speed_mps: f64) -> String {
+    let said = |mps| format!(", or fly no faster than {mps:.1} m/s");
+    slow_mps(view, speed_mps).map_or_else(String::new, said)
+}
+
+/// A speed rounded down to tenths of m/s; `None`: the aircraft can't fly so slowly.
+pub(super) fn slow_mps(view: &Inspection, speed_mps: f64) -> Option<f64> {
     let tenths_mps = (speed_mps * 10.0).floor() / 10.0;
-    let possible = tenths_mps >= view.profile.min_airspeed_mps;
-    possible.then(|| Edit::SetSpeed { of: of.clone(), speed_mps: Some(Value::Constant(tenths_mps)) })
+    (tenths_mps >= view.profile.min_airspeed_mps).then_some(tenths_mps)
 }
 
 /// The greatest speed at which the aircraft turns within a radius, m/s.

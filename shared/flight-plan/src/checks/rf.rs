@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::path::{Path, course_change_deg};
-use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::remedy::{changed, or_slower, slower, speed_for_radius_mps};
 use super::step::Step;
 use crate::{Edit, LegKind, Problem, TurnDirection};
 use geometry::{LatLon, LocalFrame};
@@ -28,12 +28,16 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
 fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Problem>) {
     let needed_m = view.turn_radius_m(step.speed_mps);
     if radius_m < needed_m {
+        let speed_mps = speed_for_radius_mps(view, radius_m);
         let message = format!(
-            "widen the arc to {needed_m:.0} m or fly it slower: its radius is {radius_m:.0} m, too tight at {:.0} m/s",
+            "widen the arc to {:.0} m{}: its radius is {:.0} m, too tight at {:.0} m/s",
+            needed_m.ceil(),
+            or_slower(view, speed_mps),
+            radius_m.floor(),
             step.speed_mps
         );
         let leg = &step.leg.id;
-        let fix = slower(view, leg, speed_for_radius_mps(view, radius_m));
+        let fix = slower(view, leg, speed_mps);
         problems.push(Problem::error("turn-too-tight", message).of(leg).perhaps_fixed_by(fix));
     }
 }

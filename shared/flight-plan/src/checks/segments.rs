@@ -2,7 +2,7 @@
 
 use super::Inspection;
 use super::path::{Path, course_change_deg};
-use super::remedy::slower;
+use super::remedy::{slow_mps, slower};
 use super::step::Step;
 use crate::{Edit, LegKind, Problem};
 
@@ -24,8 +24,11 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     }
     let needed_m = turns.start_m + turns.end_m;
     if length_m < needed_m {
+        // enough for whoever sees rounded metres, too
+        let (wanted_m, shown_m) = ((needed_m + 0.5).ceil(), length_m.floor());
+        let or_slower = if can_be_slow(view, step, length_m / needed_m) { ", or fly it slower" } else { "" };
         let message = format!(
-            "lengthen this track to {needed_m:.0} m, or fly it slower: it is {length_m:.0} m long, the turns at its ends need more"
+            "lengthen this track to {wanted_m:.0} m{or_slower}: it is {shown_m:.0} m long, the turns at its ends need more"
         );
         let problem = Problem::warning("segment-too-short", message).of(&step.leg.id);
         problems.push(problem.perhaps_fixed_by(fitted(view, step, &turns, length_m)));
@@ -54,11 +57,22 @@ fn fitted(view: &Inspection, step: &Step, turns: &Turns, length_m: f64) -> Optio
     if turn_is_fly_by && turns.start_m <= length_m && turns.end_deg <= STEEPEST_FLY_BY_DEG {
         return Some(Edit::SetFlyOver { leg: leg.id.clone(), fly_over: true });
     }
-    // the room of a turn grows with the square of the speed, which rounds down to tenths
-    let factor = (length_m / (turns.start_m + turns.end_m)).sqrt();
+    let factor = slower_by(length_m / (turns.start_m + turns.end_m));
     let before = view.before(step)?;
     let both = [before, step].map(|s| slower(view, &s.leg.id, s.speed_mps * factor));
     Some(Edit::All(both.into_iter().collect::<Option<Vec<_>>>()?))
+}
+
+/// The turns at both ends can be flown so slowly that they take only such a share of the room.
+fn can_be_slow(view: &Inspection, step: &Step, share: f64) -> bool {
+    let factor = slower_by(share);
+    let mut both = view.before(step).into_iter().chain([step]);
+    both.all(|s| slow_mps(view, s.speed_mps * factor).is_some())
+}
+
+/// The room of a turn grows with the square of the speed, which rounds down to tenths.
+fn slower_by(share: f64) -> f64 {
+    share.sqrt()
 }
 
 /// Metres that a turn takes of the track before it and of the track after it (guidance.md §1).
@@ -84,7 +98,7 @@ fn fly_over_room_m(radius_m: f64, change_rad: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, fixed_legs, message_of};
 
     /// East, `metres` north, then west again: two turns of 90° by 137 m each.
     fn with(metres: f64, attributes: &str) -> String {
@@ -107,5 +121,16 @@ mod tests {
             (&with(250.0, ""), "segment-too-short"),
             (&with(500.0, r#"flyOver="true""#), "segment-too-short"),
         ]);
+    }
+
+    #[test]
+    fn what_is_advised_helps() {
+        for (metres, slow) in [(273.0, true), (250.0, true), (60.0, false)] {
+            let message = message_of(&with(metres, ""), "segment-too-short");
+            let (wanted, rest) =
+                message.strip_prefix("lengthen this track to ").unwrap().split_once(" m").unwrap();
+            check_legs(&[(&with(wanted.parse().unwrap(), ""), &[])]);
+            assert_eq!(rest.starts_with(", or fly it slower"), slow, "{message}");
+        }
     }
 }

@@ -60,6 +60,12 @@ pub fn check_legs(cases: &[(&str, &[&str])]) {
     }
 }
 
+/// What is said of the main plan's legs with this code.
+pub fn message_of(legs: &str, code: &str) -> String {
+    let problem = with_code(&read(plan_with(legs)).plan, code);
+    problem.unwrap_or_else(|| panic!("no {code}: {legs}")).message
+}
+
 /// Each main plan's legs have a problem with this code, and the edit that it offers removes it.
 pub fn fixed_legs(cases: &[(&str, &str)]) {
     for (legs, code) in cases {
