@@ -1,7 +1,9 @@
-//! `turn-too-tight`: a circle tighter than the aircraft's turn; `bad-orbit`: less than a quarter turn.
+//! `turn-too-tight`: a circle tighter than the aircraft's turn; `bad-orbit`: less than a quarter turn, or a radius that is a
+//! mistake.
 
 use super::Inspection;
-use super::remedy::{changed, slower, speed_for_radius_mps};
+use super::patterns::LARGEST_M;
+use super::remedy::{changed, or_slower, slower, speed_for_radius_mps};
 use super::step::Step;
 use crate::{LegKind, Pattern, Problem, Value};
 
@@ -12,9 +14,12 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     {
         too_tight(view, step, radius_m, problems);
     }
-    if let LegKind::Orbit { turns, .. } = &leg.kind
-        && view.number(turns).is_some_and(|t| t < 0.25)
-    {
+    let LegKind::Orbit { radius_m, turns, .. } = &leg.kind else { return };
+    if view.number(radius_m).is_some_and(|m| m > LARGEST_M) {
+        let message = format!("make the radius at most {LARGEST_M:.0} m");
+        problems.push(Problem::error("bad-orbit", message).of(&leg.id));
+    }
+    if view.number(turns).is_some_and(|t| t < 0.25) {
         let problem = Problem::error("bad-orbit", "fly at least a quarter turn (`turns` of 0.25 or more)");
         problems.push(problem.of(&leg.id).perhaps_fixed_by(changed(leg, once)));
     }
@@ -24,10 +29,12 @@ fn too_tight(view: &Inspection, step: &Step, radius: &Value<f64>, problems: &mut
     let leg = &step.leg;
     let needed_m = view.turn_radius_m(step.speed_mps);
     let Some(radius_m) = view.number(radius).filter(|r| *r < needed_m) else { return };
+    let (wide_m, speed_mps) = (needed_m.ceil(), speed_for_radius_mps(view, radius_m));
+    let or_slower = or_slower(view, speed_mps);
     let message =
-        format!("widen the circle to {needed_m:.0} m or fly it slower: its radius is {radius_m:.0} m");
-    let slower = slower(view, &leg.id, speed_for_radius_mps(view, radius_m));
-    let fix = slower.or_else(|| changed(leg, |kind| widen(kind, needed_m.ceil())));
+        format!("widen the circle to {wide_m:.0} m{or_slower}: its radius is {:.0} m", radius_m.floor());
+    let slower = slower(view, &leg.id, speed_mps);
+    let fix = slower.or_else(|| changed(leg, |kind| widen(kind, wide_m)));
     problems.push(Problem::error("turn-too-tight", message).of(&leg.id).perhaps_fixed_by(fix));
 }
 
@@ -63,6 +70,9 @@ mod tests {
             (&orbit(r#"radius="100""#), &["turn-too-tight"]),
             (&orbit(r#"radius="100" speed="20""#), &[]),
             (&orbit(r#"radius="200" turns="0.1""#), &["bad-orbit"]),
+            (&orbit(r#"radius="200000""#), &[]),
+            (&orbit(r#"radius="200001""#), &["bad-orbit"]),
+            (&orbit(&format!(r#"radius="{}""#, 1e300)), &["bad-orbit"]),
             (&eight(200), &[]),
             (&eight(100), &["turn-too-tight"]),
         ]);

@@ -2,11 +2,12 @@
 
 use super::Inspection;
 use super::remedy::changed;
+use super::spacings::spacing_m;
 use super::step::Step;
 use crate::{Edit, Leg, LegKind, Pattern, Place, Problem, Value};
 
 /// Radii and widths beyond this are mistakes, metres.
-const LARGEST_M: f64 = 200_000.0;
+pub(super) const LARGEST_M: f64 = 200_000.0;
 /// Most points of a route, passes, loops or turns.
 const MOST_POINTS: usize = 10_000;
 const MOST_PASSES: f64 = 12.0;
@@ -18,7 +19,7 @@ const SAME_PLACE_M: f64 = 1.0;
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let LegKind::Pattern(pattern) = &step.leg.kind else { return };
     let leg = &step.leg;
-    for (message, fix) in Faults::of(view, leg, pattern) {
+    for (message, fix) in Faults::of(view, step, pattern) {
         problems.push(Problem::error("bad-pattern", message).of(&leg.id).perhaps_fixed_by(fix));
     }
 }
@@ -26,13 +27,14 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
 /// What is wrong with one pattern.
 struct Faults<'a> {
     view: &'a Inspection<'a>,
+    step: &'a Step,
     leg: &'a Leg,
     found: Vec<(String, Option<Edit>)>,
 }
 
 impl<'a> Faults<'a> {
-    fn of(view: &'a Inspection<'a>, leg: &'a Leg, pattern: &Pattern) -> Vec<(String, Option<Edit>)> {
-        let mut faults = Self { view, leg, found: Vec::new() };
+    fn of(view: &'a Inspection<'a>, step: &'a Step, pattern: &Pattern) -> Vec<(String, Option<Edit>)> {
+        let mut faults = Self { view, step, leg: &step.leg, found: Vec::new() };
         faults.pattern(pattern);
         faults.found
     }
@@ -49,7 +51,10 @@ impl<'a> Faults<'a> {
                 self.sectors(sectors);
                 self.whole("passes", passes, MOST_PASSES);
             }
-            Pattern::TrackLine { route, .. } => self.route(route),
+            Pattern::TrackLine { route, .. } => {
+                self.route(route);
+                self.beside();
+            }
             Pattern::Corridor { route, width_m, .. } => {
                 self.route(route);
                 self.size("width", width_m);
@@ -73,6 +78,13 @@ impl<'a> Faults<'a> {
     fn size(&mut self, what: &str, value: &Value<f64>) {
         if let Some(m) = self.view.number(value).filter(|m| !(*m > 0.0 && *m <= LARGEST_M)) {
             self.report(format!("make the {what} more than 0 m and at most {LARGEST_M:.0} m, not {m} m"));
+        }
+    }
+
+    /// How far beside a route its passes are; a spacing of 0 m is another rule's business.
+    fn beside(&mut self) {
+        if spacing_m(self.view, self.step).is_some_and(|m| m > LARGEST_M) {
+            self.report(format!("make the spacing at most {LARGEST_M:.0} m"));
         }
     }
 
@@ -177,6 +189,12 @@ mod tests {
         format!(r#"<corridor id="p" width="600" spacing="300"><route>{points}</route></corridor>"#)
     }
 
+    fn line(spacing: f64) -> String {
+        format!(
+            r#"<trackLine id="p" spacing="{spacing}"><route><point fix="A"/><point fix="B"/></route></trackLine>"#
+        )
+    }
+
     fn contour(attributes: &str) -> String {
         format!(
             r#"<contour id="p" spacing="150" turn="left" {attributes}><area fix="A" radius="900"/></contour>"#
@@ -200,6 +218,9 @@ mod tests {
             (&route(&["A", "B", "C"]), &[]),
             (&route(&["A"]), bad),
             (&route(&["A", "B", "B"]), bad),
+            (&line(2000.0), &[]),
+            (&line(300_000.0), bad),
+            (&line(1e300), bad),
             (&contour(r#"direction="inward""#), &[]),
             (&contour(r#"direction="outward""#), bad),
             (&contour(r#"direction="outward" loops="2""#), &[]),

@@ -1,6 +1,7 @@
 //! `bad-scan`: radius or overshoot that give no scan; `bad-polygon`: the area of a pattern is no simple polygon.
 
 use super::Inspection;
+use super::patterns::LARGEST_M;
 use super::remedy::changed;
 use super::step::Step;
 use crate::{Area, Edit, Leg, LegKind, Pattern, Problem, Scan, Value};
@@ -36,8 +37,9 @@ fn without_overshoot(leg: &Leg) -> Option<Edit> {
 fn area(view: &Inspection, leg: &Leg, area: &Area, problems: &mut Vec<Problem>) {
     match area {
         Area::Circle { radius_m, .. } => {
-            if view.number(radius_m).is_some_and(|r| r <= 0.0) {
-                let message = "make the radius of the area more than 0 m";
+            if view.number(radius_m).is_some_and(|r| r <= 0.0 || r > LARGEST_M) {
+                let message =
+                    format!("make the radius of the area more than 0 m and at most {LARGEST_M:.0} m");
                 problems.push(Problem::error("bad-scan", message).of(&leg.id));
             }
         }
@@ -108,6 +110,7 @@ mod tests {
             (&with(r#"spacing="150""#, "500"), &[]),
             (&with(r#"spacing="150" overshoot="-1""#, "500"), &["bad-scan"]),
             (&with(r#"spacing="150""#, "0"), &["bad-scan"]),
+            (&with(r#"spacing="1500""#, "200001"), &["bad-scan"]),
         ]);
         fixed_legs(&[(&with(r#"spacing="150" overshoot="-1""#, "500"), "bad-scan")]);
     }
