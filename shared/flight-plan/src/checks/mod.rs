@@ -26,6 +26,7 @@ mod patterns;
 mod procedures;
 mod references;
 mod remedy;
+mod returns;
 mod rf;
 mod runways;
 mod scans;
@@ -69,7 +70,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 40] = {
+const RULES: [Rule; 41] = {
     use Rule::{Leg, Plan};
     [
         Plan(empty::check),
@@ -90,6 +91,7 @@ const RULES: [Rule; 40] = {
         Leg(iteratives::check),
         Leg(intersections::check),
         Leg(tracks::check),
+        Leg(returns::check),
         Leg(rf::check),
         Leg(segments::check),
         Leg(courses::check),

@@ -80,7 +80,7 @@ mod tests {
             (r#"<IF id="a" fix="A"/><TF id="b" fix="B" next="a"/>"#, &["endless-loop", "endless-loop"]),
             (
                 r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>
-                   <intersection id="i" default="on"><branch id="back" next="b"/><branch id="on"/></intersection><TF id="c" fix="C"/>"#,
+                   <intersection id="i" default="on"><branch id="back" next="a"/><branch id="on"/></intersection><TF id="c" fix="C"/>"#,
                 &[],
             ),
         ]);
