@@ -70,8 +70,12 @@ impl Variable {
         if x.is_finite() && low && high {
             return Ok(());
         }
-        let bound = |b: Option<f64>| b.map_or_else(|| "any".into(), |b| b.to_string());
-        Err(self.out_of_bounds(format!("a number between {} and {}", bound(self.min), bound(self.max))))
+        Err(self.out_of_bounds(match (self.min, self.max) {
+            (Some(min), Some(max)) => format!("a number between {min} and {max}"),
+            (Some(min), None) => format!("a number of at least {min}"),
+            (None, Some(max)) => format!("a number of at most {max}"),
+            (None, None) => "a finite number".into(),
+        }))
     }
 
     fn accepts_text(&self, text: &str) -> Result<(), VariableError> {
@@ -190,6 +194,20 @@ mod tests {
             let name = Id::new(name);
             assert_eq!(variables.set(&plan, &name, value.clone()).is_ok(), accepted, "{name} {value:?}");
             assert_eq!(variables == before, !accepted, "{name} {value:?}");
+        }
+    }
+
+    #[test]
+    fn bounds_are_said_as_far_as_there_are_some() {
+        for (min, max, said) in [
+            (Some(1.0), Some(5.0), "between 1 and 5"),
+            (Some(1.0), None, "of at least 1"),
+            (None, Some(5.0), "of at most 5"),
+            (None, None, "a finite number"),
+        ] {
+            let variable = Variable { min, max, ..plan(1.0, 5.0).variables[0].clone() };
+            let error = variable.accepts(&Number(f64::INFINITY)).unwrap_err().to_string();
+            assert!(error.ends_with(said), "{error}");
         }
     }
 

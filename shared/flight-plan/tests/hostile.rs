@@ -101,6 +101,16 @@ fn stage_of(legs: &str) -> String {
     plan_of(&format!(r#"<mainPlan><stage id="s" type="mission">{legs}</stage></mainPlan>"#))
 }
 
+#[test]
+fn a_spacing_said_twice_is_told_as_that() {
+    let scan = r#"<scan id="p" fieldOfView="60" spacing="10"><area fix="A" radius="100"/></scan>"#;
+    let document = stage_of(scan);
+    let [problem] = &read(&document).problems[..] else { panic!("one problem was expected") };
+    assert!(problem.message.contains("exactly one way"), "{problem}");
+    let column = document.find("spacing").unwrap() + 1;
+    assert_eq!(problem.location.unwrap().column, column);
+}
+
 /// Faults of the newer elements: each a problem of its own, at its place.
 #[test]
 fn each_element_says_what_is_wrong_with_it() {

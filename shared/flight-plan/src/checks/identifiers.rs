@@ -24,8 +24,11 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 pub(super) fn leg(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     well_formed(&step.leg.id, problems);
     if let LegKind::Intersection { branches, .. } = &step.leg.kind {
-        branches.iter().for_each(|b| well_formed(&b.id, problems));
-        unique(branches.iter().map(|b| &b.id), problems);
+        let mut of_branches = Vec::new();
+        branches.iter().for_each(|b| well_formed(&b.id, &mut of_branches));
+        unique(branches.iter().map(|b| &b.id), &mut of_branches);
+        // branches have no place in the document that is known by their identifiers, and may be called like legs
+        problems.extend(of_branches.into_iter().map(|problem| of_branch(problem, &step.leg.id)));
     }
 }
 
@@ -37,6 +40,12 @@ fn well_formed(id: &Id, problems: &mut Vec<Problem>) {
         );
         problems.push(Problem::error("bad-id", message).of(id));
     }
+}
+
+/// What is wrong with a branch's identifier, as a problem of its intersection.
+fn of_branch(problem: Problem, intersection: &Id) -> Problem {
+    let message = format!("of a branch: {}", problem.message);
+    Problem { message, ..problem }.of(intersection)
 }
 
 fn unique<'a>(ids: impl Iterator<Item = &'a Id>, problems: &mut Vec<Problem>) {
@@ -78,6 +87,9 @@ fn variable_name(name: &Id, problems: &mut Vec<Problem>) {
 #[cfg(test)]
 mod tests {
     use crate::checks::testing::{check_legs, codes, document_with, fixed, fixed_legs, plan_with};
+    use crate::{check, read};
+    use aircraft::Profile;
+    use terrain::Flat;
 
     #[test]
     fn duplicate_and_malformed_ids() {
@@ -87,6 +99,25 @@ mod tests {
             (r#"<IF id="a b" fix="A"/>"#, &["bad-id"]),
             (r#"<IF id="" fix="A"/>"#, &["bad-id"]),
         ]);
+    }
+
+    #[test]
+    fn a_branch_is_found_at_its_intersection() {
+        let fork = |first: &str, second: &str| {
+            plan_with(&format!(
+                r#"<IF id="a" fix="A"/><intersection id="i" default="{first}"><branch id="{first}" next="c"/><branch id="{second}"/></intersection><TF id="b" fix="B"/><TF id="c" fix="C"/>"#
+            ))
+        };
+        assert_eq!(codes(&fork("x", "y")), [""; 0]);
+        for (document, code) in [(fork("x", "x"), "duplicate-id"), (fork("x", "y z"), "bad-id")] {
+            let reading = read(&document);
+            let mut problems = check(&reading.plan, &Profile::default(), &Flat(300.0));
+            reading.places.locate(&mut problems);
+            let [problem] = &problems[..] else { panic!("{problems:?}") };
+            assert_eq!((problem.code, problem.location), (code, reading.places.get(&"i".into())));
+            assert!(problem.location.is_some());
+        }
+        fixed(&fork("x", "x"), "duplicate-id");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use super::cursor::Element;
 use super::read::Document;
 use super::write::{Tag, Writer};
 use crate::{
-    Area, EmergencyChoice, Id, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing, Value,
+    Area, EmergencyChoice, Id, LegAction, LegKind, Pattern, Place, Problem, Scan, ScanEntry, ScanStyle,
+    Spacing, Value,
 };
 use geometry::LatLon;
 
@@ -240,6 +241,11 @@ impl<'a> Document<'a> {
     fn spacing(&mut self, element: &Element<'a>) -> Spacing {
         if !element.attributes.has("fieldOfView") {
             return Spacing::Metres(self.required_value(element, "spacing"));
+        }
+        if let Some(location) = element.attributes.location("spacing") {
+            element.attributes.take("spacing");
+            let message = "remove `spacing`, or `fieldOfView` and what belongs to it: how far apart the tracks are is said in exactly one way";
+            self.cursor.report(Problem::error("unknown-attribute", message).at(location));
         }
         Spacing::Camera {
             field_of_view_deg: self.required_value(element, "fieldOfView"),
