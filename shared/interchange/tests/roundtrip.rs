@@ -313,7 +313,16 @@ fn speed_and_video_of_a_survey_come_back() {
     let video = |trigger, act| LegAction { trigger, act };
     leg.actions = vec![video(Trigger::Start, Act::VideoStart), video(Trigger::End, Act::VideoStop)];
     let height = Altitude { metres: Value::Constant(120.0), reference: AltitudeReference::Agl };
-    let (_, found) = surveyed(&leg, Some(height));
+    let (written, found) = surveyed(&leg, Some(height));
+    // QGC refuses a pattern above terrain without it
+    let json: serde_json::Value = serde_json::from_slice(&written.bytes).unwrap();
+    let pattern = json["mission"]["items"].as_array().unwrap().iter().find(|i| i["type"] == "ComplexItem");
+    let transect = &pattern.unwrap()["TransectStyleComplexItem"];
+    for (key, value) in [("Tolerance", 10.0), ("MaxClimbRate", 0.0), ("MaxDescentRate", 0.0)]
+        .map(|(k, v)| (format!("TerrainAdjust{k}"), v))
+    {
+        assert_eq!(transect[&key], value, "{key}");
+    }
     let found = &found.stages[0].legs[0];
     assert_eq!((&found.speed_mps, &found.actions), (&Some(Value::Constant(21.0)), &leg.actions));
 }

@@ -96,7 +96,7 @@ impl Importer<'_> {
         land: (LatLon, f64),
         relative: bool,
     ) {
-        let frame = if relative { cmd::FRAME_RELATIVE } else { cmd::FRAME_GLOBAL };
+        let frame = if approach.relative { cmd::FRAME_RELATIVE } else { cmd::FRAME_GLOBAL };
         let kind = match approach.loiter_radius_m {
             Some(signed_m) => {
                 let turn = if signed_m < 0.0 { TurnDirection::Left } else { TurnDirection::Right };

@@ -71,7 +71,7 @@ pub enum Entry {
         approach: Approach,
         /// The touch-down point and its altitude, metres.
         land: (LatLon, f64),
-        /// Altitudes are above home, else AMSL.
+        /// That altitude is above home, else AMSL.
         relative: bool,
     },
 }
@@ -81,8 +81,10 @@ pub enum Entry {
 pub struct Approach {
     /// Where.
     pub position: LatLon,
-    /// Metres, as the pattern's altitudes are meant.
+    /// Metres.
     pub altitude_m: f64,
+    /// That altitude is above home, else AMSL.
+    pub relative: bool,
     /// Circle down to the altitude here: signed radius in metres, positive clockwise.
     pub loiter_radius_m: Option<f64>,
 }

@@ -3,7 +3,7 @@
 use super::json::{flag, number};
 use crate::note::Notes;
 use flight_plan::{Altitude, AltitudeReference, Spacing, Value};
-use serde_json::{Value as Json, json};
+use serde_json::{Map, Value as Json, json};
 
 /// The spacing that a camera gives and the one in the file differ at most by this share, else the file's counts.
 const SAME: f64 = 0.01;
@@ -93,6 +93,17 @@ pub fn write(spacing_m: f64, every_m: Option<f64>, altitude: &Altitude) -> Optio
         "DistanceToSurface": height_m,
         "version": 2,
     }))
+}
+
+/// How closely the ground is followed, with what QGC sets where nobody says: without it, QGC refuses a pattern above terrain.
+pub fn terrain(reference: AltitudeReference) -> Map<String, Json> {
+    let settings = [
+        ("TerrainAdjustTolerance", 10.0),
+        ("TerrainAdjustMaxClimbRate", 0.0),
+        ("TerrainAdjustMaxDescentRate", 0.0),
+    ];
+    let follows = reference == AltitudeReference::Agl;
+    settings.into_iter().filter(|_| follows).map(|(key, value)| (key.to_owned(), json!(value))).collect()
 }
 
 fn mode(reference: AltitudeReference) -> u64 {

@@ -166,8 +166,9 @@ pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec
         Act::PhotoSeries { every_m } => constant(every_m),
         _ => None,
     });
-    let transect = json!({
-        "CameraCalc": camera::write(metres(spacing)?, every_m, altitude?)?,
+    let altitude = altitude?;
+    let mut transect = json!({
+        "CameraCalc": camera::write(metres(spacing)?, every_m, altitude)?,
         "CameraShots": 0,
         "CameraTriggerInTurnAround": every_m.is_some(),
         "HoverAndCapture": false,
@@ -177,6 +178,9 @@ pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec
         "VisualTransectPoints": visual,
         "version": 2,
     });
+    if let Some(transect) = transect.as_object_mut() {
+        transect.extend(camera::terrain(altitude.reference));
+    }
     match &leg.kind {
         LegKind::Scan(scan) => area(scan, transect),
         LegKind::Pattern(Pattern::Corridor { route, width_m, .. }) => {

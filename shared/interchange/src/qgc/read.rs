@@ -165,8 +165,12 @@ impl Reader<'_> {
         let circles = item.get("useLoiterToAlt").and_then(Value::as_bool).unwrap_or(true);
         let side = if flag(item, "loiterClockwise") { 1.0 } else { -1.0 };
         let radius_m = number(item, "loiterRadius").unwrap_or(self.assumptions.loiter_radius_m);
-        let approach =
-            Approach { position, altitude_m, loiter_radius_m: circles.then_some(side * radius_m.abs()) };
+        let loiter_radius_m = circles.then_some(side * radius_m.abs());
+        let (above_home, relative) = relative(item);
+        let approach = Approach { position, altitude_m, relative: above_home, loiter_radius_m };
+        if item.get("complexItemType").and_then(Value::as_str) == Some("vtolLandingPattern") {
+            self.notes.push("vtol", &place, "a vertical landing becomes one on a runway");
+        }
         if flag(item, "stopTakingPhotos") || flag(item, "stopVideoPhotos") {
             self.notes.push(
                 "pattern-setting",
@@ -174,8 +178,14 @@ impl Reader<'_> {
                 "stopping photos and video for the landing is left out: end them on the leg before",
             );
         }
-        let relative = item.get("altitudesAreRelative").and_then(Value::as_bool).unwrap_or(true);
         self.number = self.number.saturating_add(1);
         self.entries.push(Entry::Landing { place, number: self.number, approach, land, relative });
     }
+}
+
+/// Whether the altitudes of approach and touch-down count from home. Version 1 of the pattern says so of each.
+fn relative(landing: &Value) -> (bool, bool) {
+    let both = landing.get("altitudesAreRelative").and_then(Value::as_bool);
+    let said = |key: &str| both.or(landing.get(key).and_then(Value::as_bool)).unwrap_or(true);
+    (said("loiterAltitudeRelative"), said("landAltitudeRelative"))
 }
