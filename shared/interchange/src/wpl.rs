@@ -45,7 +45,12 @@ fn assembled(items: Vec<Item>) -> Result<Mission, Error> {
     let mut mission = Mission::default();
     for (index, item) in items.into_iter().enumerate() {
         match (item.number, index) {
-            (0, 0) => mission.home = item.position().map(|p| (p, finite(item.param(7)))),
+            (0, 0) => {
+                mission.home = item.position();
+                let metres = item.param(7);
+                mission.home_amsl_m =
+                    (mission.home.is_some() && metres.is_finite()).then(|| metres.clamp(-1e5, 1e5));
+            }
             (0, _) => {
                 let reason =
                     "item 0 is the home position and comes first, once: give this one another number";
@@ -55,10 +60,6 @@ fn assembled(items: Vec<Item>) -> Result<Mission, Error> {
         }
     }
     Ok(mission)
-}
-
-fn finite(metres: f64) -> f64 {
-    if metres.is_finite() { metres.clamp(-1e5, 1e5) } else { 0.0 }
 }
 
 fn item(number: usize, line: &str, notes: &mut Notes) -> Result<Item, Error> {

@@ -88,6 +88,8 @@ fn a_waypoint_list() {
             ("command-not-carried", "line 15"),
             ("command-not-carried", "line 16"),
             ("endless-jump", "line 17"),
+            ("nested-jump", "line 17"),
+            ("speed-in-loop", "line 17"),
             ("land-start", "line 18"),
             ("after-landing", "line 21"),
         ]

@@ -49,3 +49,84 @@ fn a_vertical_landing_pattern_is_told() {
     assert_eq!(said(&import(&file(&landing("vtolLandingPattern", keys))), "vtol").len(), 1);
     assert_eq!(said(&import(&file(&landing("fwLandingPattern", keys))), "vtol").len(), 0);
 }
+
+#[test]
+fn heights_that_are_not_known_are_not_zero() {
+    let rally = r#""rallyPoints":{"version":2,"points":[[36.32,-84.172,null]]},"version":1,"#;
+    let file = file("").replace("-84.173,349]", "-84.173,null]").replacen(r#""version":1,"#, rally, 1);
+    let import = import(&file);
+    assert_eq!(
+        said(&import, "no-home"),
+        ["the file doesn't say how high home is: its elevation is taken as 0 m"]
+    );
+    assert_eq!(said(&import, "no-altitude").len(), 1);
+    let rally = import.plan.emergency_plans[0].stages[0].legs[0].altitude.as_ref();
+    assert_eq!(
+        rally,
+        Some(&flight_plan::Altitude {
+            metres: flight_plan::Value::Constant(100.0),
+            reference: flight_plan::AltitudeReference::Agl
+        })
+    );
+}
+
+#[test]
+fn a_landing_that_qgc_puts_above_terrain_is_as_high_as_it_says() {
+    let land = r#",{"AMSLAltAboveTerrain":361.5,"Altitude":0,"AltitudeMode":3,"autoContinue":true,"command":21,"doJumpId":2,"frame":0,
+        "params":[0,0,0,null,36.3118,-84.1744,361.5],"type":"SimpleItem"}"#;
+    assert_eq!(import(&file(land)).plan.runways[1].elevation_amsl_m, 361.5);
+}
+
+/// A survey of items 2 to 5 that QGC has worked out this way for, and items behind it.
+fn survey(keys: &str, way: &str, behind: &str) -> String {
+    let item = |number: usize, place: &str| {
+        format!(
+            r#"{{"autoContinue":true,"command":16,"doJumpId":{number},"frame":3,"params":[0,0,0,null,{place},100],"type":"SimpleItem"}}"#
+        )
+    };
+    let items = [
+        item(2, "36.331,-84.15"),
+        item(3, "36.335,-84.15"),
+        item(4, "36.335,-84.14"),
+        item(5, "36.331,-84.14"),
+    ];
+    file(&format!(
+        r#",{{"TransectStyleComplexItem":{{"CameraCalc":{{"AdjustedFootprintFrontal":0,"AdjustedFootprintSide":40,"DistanceMode":1,
+        "DistanceToSurface":100,"version":2}},"Items":[{}],"TurnAroundDistance":0,"VisualTransectPoints":[{way}],"version":2}},
+        {keys}"complexItemType":"survey","polygon":[[36.331,-84.15],[36.335,-84.15],[36.335,-84.14],[36.331,-84.14]],
+        "type":"ComplexItem","version":5}}{behind}"#,
+        items.join(",")
+    ))
+}
+
+fn loiter(number: usize) -> String {
+    format!(
+        r#",{{"autoContinue":true,"command":18,"doJumpId":{number},"frame":3,"params":[2,0,100,0,0,0,0],"type":"SimpleItem"}}"#
+    )
+}
+
+#[test]
+fn a_loiter_on_the_spot_behind_a_survey_is_where_that_ends() {
+    let way = "[36.331,-84.15],[36.335,-84.15],[36.335,-84.14],[36.331,-84.14]";
+    let known = import(&survey(r#""angle":0,"#, way, &loiter(6)));
+    assert_eq!(outline(&known.plan)[3], "  item6: orbit 36.331 -84.14, 100 m, 2 times Right");
+    let unknown = import(&survey(r#""angle":0,"#, "", &loiter(6)));
+    assert_eq!((outline(&unknown.plan).len(), said(&unknown, "no-position").len()), (3, 1));
+}
+
+#[test]
+fn a_jump_into_a_survey_is_told() {
+    let jump = |to: usize| {
+        format!(
+            r#",{{"autoContinue":true,"command":177,"doJumpId":6,"frame":2,"params":[{to},2,0,0,0,0,0],"type":"SimpleItem"}}"#
+        )
+    };
+    let middle = import(&survey("", "", &jump(4)));
+    assert!(said(&middle, "jump")[0].contains("into the middle"), "{:?}", middle.notes);
+    let begin = import(&survey("", "", &jump(2)));
+    assert!(
+        said(&begin, "jump").is_empty() && outline(&begin.plan)[2] == "  loop2: 3 times",
+        "{:?}",
+        begin.notes
+    );
+}

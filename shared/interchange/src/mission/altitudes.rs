@@ -53,7 +53,7 @@ impl Datum {
                 notes.again(
                     "no-home",
                     place,
-                    "altitude above home is taken as above ground: the file has no home position",
+                    "altitude above home is taken as above ground: the file doesn't say how high home is",
                 );
                 altitude(metres, AltitudeReference::Agl)
             }

@@ -58,6 +58,29 @@ pub const FRAME_RELATIVE_INT: u16 = 6;
 pub const FRAME_TERRAIN: u16 = 10;
 /// As `FRAME_TERRAIN`, sent as integers.
 pub const FRAME_TERRAIN_INT: u16 = 11;
+/// Positions are metres from somewhere: `MAV_FRAME_LOCAL_NED`, `LOCAL_ENU`, `LOCAL_OFFSET_NED`, `BODY_NED`, `BODY_OFFSET_NED`,
+/// `BODY_FRD`, `LOCAL_FRD` and `LOCAL_FLU`.
+pub const LOCAL_FRAMES: [u16; 8] = [1, 4, 7, 8, 9, 12, 20, 21];
+
+/// Altitudes of this frame are heights above home or above ground.
+pub fn counts_from_below(frame: u16) -> bool {
+    matches!(frame, FRAME_RELATIVE | FRAME_RELATIVE_INT | FRAME_TERRAIN | FRAME_TERRAIN_INT)
+}
+
+/// This command is about a place on the way; one without a position would be done on the spot.
+pub fn is_somewhere(command: u16) -> bool {
+    matches!(
+        command,
+        WAYPOINT
+            | SPLINE_WAYPOINT
+            | LOITER_UNLIMITED
+            | LOITER_TURNS
+            | LOITER_TIME
+            | LOITER_TO_ALTITUDE
+            | LAND
+            | VTOL_LAND
+    )
+}
 
 /// Commands that have no counterpart in a plan, with their names.
 const TOLD: &[(u16, &str)] = &[

@@ -1,7 +1,8 @@
 //! Where a mission begins and ends: take-off, landing and what leads to it, with the runways they need.
 
 use super::commands as cmd;
-use super::import::{Importer, racetrack};
+use super::import::Importer;
+use super::loiters::racetrack;
 use super::placed::{leg, waypoint};
 use super::runways::Direction;
 use super::{Approach, Item};
@@ -17,21 +18,14 @@ impl Importer<'_> {
         if item.command == cmd::VTOL_TAKEOFF {
             self.notes.push("vtol", &item.place, "a vertical take-off becomes one from a runway");
         }
-        let Some(position) = self.home.map(|h| h.0).or(item.position()).or(ahead) else {
+        let Some(position) = self.home.or(item.position()).or(ahead) else {
             return self.notes.push(
                 "no-position",
                 &item.place,
                 "a take-off without home or position is left out",
             );
         };
-        let elevation_m = self.datum.home_amsl_m.unwrap_or_else(|| {
-            self.notes.push(
-                "no-home",
-                &item.place,
-                "the file has no home position: its elevation is taken as 0 m",
-            );
-            0.0
-        });
+        let elevation_m = self.home_amsl_m(&item.place);
         let direction =
             Direction { heading_deg: item.param(4), towards: item.position().or(ahead), from: None };
         let naming = (&mut *self.names, &mut *self.notes);
@@ -40,6 +34,7 @@ impl Importer<'_> {
             synthetic::stage(self.names.take("take-off", "take-off"), "Take-off", StageKind::TakeOff);
         stage.runway = Some(id);
         stage.altitude = self.altitude(item).or(Some(self.assumptions.altitude()));
+        self.level = stage.altitude.clone();
         self.take_off = Some(stage);
         self.last = Some(position);
     }
@@ -48,22 +43,30 @@ impl Importer<'_> {
         if item.command == cmd::VTOL_LAND {
             self.notes.push("vtol", &item.place, "a vertical landing becomes one on a runway");
         }
-        let Some(position) = item.position().or(self.home.map(|h| h.0)) else {
+        let Some(position) = item.position().or(self.last).or(self.home) else {
             return self.notes.push(
                 "no-position",
                 &item.place,
                 "a landing without home or position is left out",
             );
         };
+        if item.position().or(self.here()).is_none() {
+            let message = "the landing is put at home: the file doesn't say where the pattern before it ends";
+            self.notes.push("no-position", &item.place, message);
+        }
+        if matches!(item.frame, cmd::FRAME_TERRAIN | cmd::FRAME_TERRAIN_INT) {
+            let message = "the ground where this lands is taken to be as high as home: the file doesn't say how high it is";
+            self.notes.push("terrain-landing", &item.place, message);
+        }
         let elevation_m = match item.frame {
             cmd::FRAME_GLOBAL | cmd::FRAME_GLOBAL_INT => item.param(7),
-            _ => self.datum.home_amsl_m.unwrap_or(0.0) + item.param(7),
+            _ => self.home_amsl_m(&item.place) + item.param(7),
         };
         self.land_at(&item.place, (position, elevation_m), item.param(4));
     }
 
     pub(super) fn return_home(&mut self, item: &Item) {
-        let Some((position, elevation_m)) = self.home else {
+        let Some(position) = self.home else {
             return self.notes.push(
                 "no-home",
                 &item.place,
@@ -75,11 +78,30 @@ impl Importer<'_> {
             &item.place,
             "the return to launch becomes a landing at the home position",
         );
+        let elevation_m = self.home_amsl_m(&item.place);
         self.land_at(&item.place, (position, elevation_m), f64::NAN);
     }
 
+    /// The elevation of home, or 0 with a note.
+    fn home_amsl_m(&mut self, place: &str) -> f64 {
+        self.datum.home_amsl_m.unwrap_or_else(|| {
+            let message = "the file doesn't say how high home is: its elevation is taken as 0 m";
+            self.notes.push("no-home", place, message);
+            0.0
+        })
+    }
+
     fn land_at(&mut self, at: &str, (position, elevation_m): (LatLon, f64), heading_deg: f64) {
-        let elevation_m = if elevation_m.is_finite() { elevation_m } else { 0.0 };
+        let elevation_m = if elevation_m.is_finite() {
+            elevation_m
+        } else {
+            self.notes.push(
+                "bad-altitude",
+                at,
+                "the landing has no altitude: its elevation is taken as home's",
+            );
+            self.home_amsl_m(at)
+        };
         let direction = Direction { heading_deg, towards: None, from: self.last };
         let naming = (&mut *self.names, &mut *self.notes);
         let id = self.runways.at("landing", (position, elevation_m), direction, at, naming);
@@ -110,7 +132,7 @@ impl Importer<'_> {
         way.altitude = self.datum.altitude(frame, approach.altitude_m, at, self.notes);
         self.ready(number, way);
         self.last = Some(approach.position);
-        let home_m = if relative { self.datum.home_amsl_m.unwrap_or(0.0) } else { 0.0 };
+        let home_m = if relative { self.home_amsl_m(at) } else { 0.0 };
         self.land_at(at, (land.0, land.1 + home_m), f64::NAN);
     }
 }

@@ -2,30 +2,25 @@
 
 use super::altitudes::Datum;
 use super::commands as cmd;
-use super::placed::{Placed, action, leg, place, waypoint};
+use super::placed::{Placed, action, leg, waypoint};
 use super::runways::Runways;
 use super::{Entry, Item, Mission, jumps, rally};
 use crate::names::Names;
 use crate::note::Notes;
 use crate::synthetic::{self, Assumptions};
 use crate::{Import, MAX_ITEMS};
-use flight_plan::{
-    Act, Altitude, FlightPlan, Holding, HoldingLength, Id, Leg, LegAction, LegKind, Stage, StageKind,
-    Trigger, TurnDirection, Value,
-};
+use flight_plan::{Act, Altitude, FlightPlan, Id, Leg, LegAction, LegKind, Stage, StageKind, Trigger, Value};
 use geometry::LatLon;
 
 /// An acceptance radius (parameter 2) up to this is a waypoint that is to be crossed, metres; so the gateway sends its fly-overs.
 pub const FLY_OVER_M: f64 = 5.0;
-/// Straight legs of the racetrack that stands for an endless circle, metres.
-const RACETRACK_M: f64 = 500.0;
 
 /// A mission as a plan.
 pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
     let mut names = Names::default();
     let runways = Runways::new(assumptions, &mut names);
     let has_take_off = takes_off(&mission);
-    let home_amsl_m = mission.home.map(|h| h.1).or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
+    let home_amsl_m = mission.home_amsl_m.or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
     let mut importer = Importer {
         assumptions,
         names: &mut names,
@@ -38,6 +33,7 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         legs: Vec::new(),
         pending: Vec::new(),
         speed_mps: None,
+        level: None,
         last: None,
     };
     for (entry, ahead) in mission.entries.iter().zip(ahead(&mission.entries)) {
@@ -48,7 +44,7 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         zone.id = names.take(zone.id.as_str(), "zone");
         plan.zones.push(zone);
     }
-    rally::add(&mut plan, &mission.rally, home_amsl_m, &mut names, &mut notes);
+    rally::add(&mut plan, &mission.rally, home_amsl_m, assumptions, (&mut names, &mut notes));
     if plan.stages.is_empty() {
         notes.push("empty", "file", "there is no mission in this file");
     }
@@ -96,13 +92,16 @@ pub(super) struct Importer<'a> {
     pub(super) notes: &'a mut Notes,
     pub(super) runways: Runways<'a>,
     pub(super) datum: Datum,
-    pub(super) home: Option<(LatLon, f64)>,
+    pub(super) home: Option<LatLon>,
     pub(super) take_off: Option<Stage>,
     pub(super) land: Option<Stage>,
     pub(super) legs: Vec<Placed>,
     /// Actions that wait for the leg they begin with.
     pending: Vec<LegAction>,
     speed_mps: Option<f64>,
+    /// The altitude of the last leg that has one, before that of the take-off.
+    pub(super) level: Option<Altitude>,
+    /// Where the last leg ends, if the file says.
     pub(super) last: Option<LatLon>,
 }
 
@@ -121,14 +120,28 @@ impl Importer<'_> {
         }
         match entry {
             Entry::Item(item) => self.item(item, ahead),
-            Entry::Leg { leg, .. } => self.ready(number, (**leg).clone()),
+            Entry::Leg { leg, last, end, .. } => {
+                self.ready(number, (**leg).clone());
+                self.legs.iter_mut().next_back().into_iter().for_each(|l| l.last = (*last).max(number));
+                self.last = *end;
+            }
             Entry::Landing { place, approach, land, relative, .. } => {
                 self.landing(place, number, approach, *land, *relative)
             }
         }
     }
 
+    /// Where the aircraft is: where the leg before ends, or at home while there is none.
+    pub(super) fn here(&self) -> Option<LatLon> {
+        self.last.or(self.home.filter(|_| self.legs.is_empty()))
+    }
+
     fn item(&mut self, item: &Item, ahead: Option<LatLon>) {
+        if item.is_local() && cmd::is_somewhere(item.command) {
+            let message =
+                "an item in a local frame is left out: the file doesn't say where its metres count from";
+            return self.notes.again("local-frame", &item.place, message);
+        }
         match item.command {
             cmd::WAYPOINT | cmd::SPLINE_WAYPOINT => self.waypoint(item),
             cmd::LOITER_UNLIMITED | cmd::LOITER_TURNS | cmd::LOITER_TIME | cmd::LOITER_TO_ALTITUDE => {
@@ -151,7 +164,7 @@ impl Importer<'_> {
         }
     }
 
-    fn not_carried(&mut self, item: &Item) {
+    pub(super) fn not_carried(&mut self, item: &Item) {
         let message = format!("{} has no counterpart in a plan and is left out", cmd::shown(item.command));
         self.notes.again("command-not-carried", &item.place, &message);
     }
@@ -188,95 +201,32 @@ impl Importer<'_> {
         self.last = Some(position);
     }
 
-    fn loiter(&mut self, item: &Item) {
-        let Some(position) = item.position().or(self.last).or(self.home.map(|h| h.0)) else {
-            return self.notes.push("no-position", &item.place, "a loiter before any position is left out");
-        };
-        let signed_m = match item.command {
-            cmd::LOITER_TO_ALTITUDE => item.param(2),
-            _ => item.param(3),
-        };
-        let turn = if signed_m < 0.0 { TurnDirection::Left } else { TurnDirection::Right };
-        match item.command {
-            cmd::LOITER_TURNS => self.orbit(item, position, signed_m, turn),
-            cmd::LOITER_TIME => {
-                self.push(item, LegKind::Tf(waypoint(position, false)));
-                // no time is none to wait
-                let seconds = if item.param(1).is_finite() { item.param(1).clamp(0.0, 1e6) } else { 0.0 };
-                self.at_end(Act::Wait { seconds: Value::Constant(seconds) });
-                self.radius_lost(item, signed_m);
-            }
-            cmd::LOITER_TO_ALTITUDE => {
-                self.push(item, LegKind::Ha(racetrack(position, turn, signed_m.abs())));
-                self.notes.again(
-                    "loiter-as-racetrack",
-                    &item.place,
-                    "a circle to an altitude becomes a holding to that altitude (HA)",
-                );
-            }
-            _ => {
-                let holding = racetrack(position, turn, signed_m.abs());
-                self.push(item, LegKind::Hm { holding, until: None, max_laps: None });
-                self.notes.again(
-                    "loiter-as-racetrack",
-                    &item.place,
-                    "an endless circle becomes a holding until released (HM)",
-                );
-            }
-        }
-        self.last = Some(position);
-    }
-
-    fn orbit(&mut self, item: &Item, centre: LatLon, signed_m: f64, turn: TurnDirection) {
-        let radius_m = match signed_m.abs() {
-            radius_m if radius_m > 0.0 => radius_m,
-            _ => {
-                let radius_m = self.assumptions.loiter_radius_m;
-                self.notes.again(
-                    "loiter-radius",
-                    &item.place,
-                    &format!("a circle without a radius gets {radius_m:.0} m"),
-                );
-                radius_m
-            }
-        };
-        let turns = item.param(1);
-        let turns = if turns.is_finite() { turns.clamp(0.25, 1e6) } else { 1.0 };
-        let (radius_m, turns) = (Value::Constant(radius_m), Value::Constant(turns));
-        self.push(item, LegKind::Orbit { centre: place(centre), radius_m, turns, turn });
-    }
-
-    fn radius_lost(&mut self, item: &Item, signed_m: f64) {
-        if signed_m != 0.0 && signed_m.is_finite() {
-            self.notes.again(
-                "loiter-radius",
-                &item.place,
-                "the radius of a timed circle is left out: the aircraft's own counts",
-            );
-        }
-    }
-
-    fn delay(&mut self, item: &Item) {
-        let seconds = item.param(1);
-        if seconds > 0.0 && !self.legs.is_empty() {
-            self.at_end(Act::Wait { seconds: Value::Constant(seconds) });
-        } else {
-            self.not_carried(item);
-        }
-    }
-
     fn jump(&mut self, item: &Item) {
         // what was to be done before the jump is done at the end of each pass
         self.flush_at_end();
         let (target, repeats) = (item.param(1), item.param(2));
         let target = if target.is_finite() { target as i64 } else { i64::MAX };
         match jumps::close(&mut self.legs, target, item.number, repeats, self.names) {
-            Ok(()) if repeats < 0.0 => {
-                let message = format!("a jump for ever becomes a loop of {} passes", jumps::FOR_EVER);
-                self.notes.push("endless-jump", &item.place, message);
-            }
+            Ok(()) if repeats != 0.0 => self.looped(item, repeats),
             Ok(()) => {}
             Err(why) => self.notes.push("jump", &item.place, why),
+        }
+    }
+
+    /// What of the loop that was just made an autopilot flies otherwise.
+    fn looped(&mut self, item: &Item, repeats: f64) {
+        let Some(made) = self.legs.last() else { return };
+        if repeats < 0.0 {
+            let message = format!("a jump for ever becomes a loop of {} passes", jumps::FOR_EVER);
+            self.notes.push("endless-jump", &item.place, message);
+        }
+        if made.depth > 1 {
+            let message = "the loops inside are flown in each pass: an autopilot counts a jump once for the whole mission, and flies them in the first pass only";
+            self.notes.push("nested-jump", &item.place, message);
+        }
+        if jumps::first_flown(&made.leg).speed_mps != self.speed_mps.map(Value::Constant) {
+            let message = "each pass begins at the speed of the first: an autopilot goes on at the speed that the pass before ended with";
+            self.notes.push("speed-in-loop", &item.place, message);
         }
     }
 
@@ -308,8 +258,13 @@ impl Importer<'_> {
     }
 
     fn push(&mut self, item: &Item, kind: LegKind) {
+        let altitude = self.altitude(item);
+        self.push_at(item, altitude, kind);
+    }
+
+    pub(super) fn push_at(&mut self, item: &Item, altitude: Option<Altitude>, kind: LegKind) {
         let mut leg = leg(Id::new(&format!("item{}", item.number)), kind);
-        leg.altitude = self.altitude(item);
+        leg.altitude = altitude;
         self.ready(item.number, leg);
     }
 
@@ -317,17 +272,18 @@ impl Importer<'_> {
     pub(super) fn ready(&mut self, number: i64, mut leg: Leg) {
         leg.id = self.names.take(leg.id.as_str(), "leg");
         leg.speed_mps = self.speed_mps.map(Value::Constant);
+        self.level = leg.altitude.clone().or(self.level.take());
         leg.actions.splice(0..0, self.pending.drain(..));
         self.legs.push(Placed { leg, first: number, last: number, depth: 0 });
     }
 
-    fn at_end(&mut self, act: Act) {
+    pub(super) fn at_end(&mut self, act: Act) {
         if let Some(last) = self.legs.last_mut() {
             last.leg.actions.push(action(Trigger::End, act));
         }
     }
 
-    fn flush_at_end(&mut self) {
+    pub(super) fn flush_at_end(&mut self) {
         for waiting in std::mem::take(&mut self.pending) {
             self.at_end(waiting.act);
         }
@@ -353,16 +309,6 @@ impl Importer<'_> {
         plan.stages.extend(self.land);
         plan.runways = self.runways.into_vec();
         plan
-    }
-}
-
-pub(super) fn racetrack(position: LatLon, turn: TurnDirection, radius_m: f64) -> Holding {
-    let length_m = if radius_m > 0.0 { radius_m.min(1e5) } else { RACETRACK_M };
-    Holding {
-        fix: waypoint(position, false),
-        inbound_course_deg: None,
-        turn,
-        leg: HoldingLength::Distance(Value::Constant(length_m)),
     }
 }
 

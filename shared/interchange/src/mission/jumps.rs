@@ -2,7 +2,7 @@
 
 use super::placed::{Placed, leg};
 use crate::names::Names;
-use flight_plan::{IterativeForm, LegKind, TurnDirection, Value};
+use flight_plan::{IterativeForm, Leg, LegKind, TurnDirection, Value};
 
 /// Deepest nest of loops.
 const MAX_DEPTH: usize = 8;
@@ -21,17 +21,15 @@ pub fn close(
     repeats: f64,
     names: &mut Names,
 ) -> Result<(), String> {
+    if target < number && legs.iter().any(|l| target <= l.last && target > l.first) {
+        return Err(format!(
+            "the jump to item {target} leads into the middle of another loop, a pattern or a wait and is left out"
+        ));
+    }
     let begin = legs.iter().position(|l| l.first >= target).filter(|_| target < number);
     let Some(begin) = begin else {
         return Err(format!("the jump to item {target} leads to no leg before it and is left out"));
     };
-    // the last one before: jumps into its middle are not a loop
-    let before = begin.checked_sub(1).and_then(|i| legs.get(i));
-    if before.is_some_and(|l| target <= l.last && target > l.first) {
-        return Err(format!(
-            "the jump to item {target} leads into the middle of another loop and is left out"
-        ));
-    }
     let depth = legs.iter().skip(begin).map(|l| l.depth).max().unwrap_or(0) + 1;
     if depth > MAX_DEPTH {
         return Err(format!("the jump to item {target} would nest {depth} loops and is left out"));
@@ -55,4 +53,9 @@ pub fn close(
     let id = names.take(&format!("loop{first}"), "loop");
     legs.push(Placed { leg: leg(id, kind), first, last: number, depth });
     Ok(())
+}
+
+/// The leg that a loop begins with, however deep.
+pub fn first_flown(leg: &Leg) -> &Leg {
+    leg.body().first().map_or(leg, |first| first_flown(first))
 }

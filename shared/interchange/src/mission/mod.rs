@@ -8,6 +8,7 @@ mod ends;
 mod export;
 mod import;
 mod jumps;
+mod loiters;
 pub mod placed;
 pub mod rally;
 mod runways;
@@ -43,7 +44,12 @@ impl Item {
     pub fn position(&self) -> Option<LatLon> {
         let position = LatLon::new(self.param(5), self.param(6));
         let here = position.lat_deg == 0.0 && position.lon_deg == 0.0;
-        (position.is_valid() && !here).then_some(position)
+        (position.is_valid() && !here && !self.is_local()).then_some(position)
+    }
+
+    /// Its place is in metres, from where the aircraft or its estimator started.
+    pub fn is_local(&self) -> bool {
+        commands::LOCAL_FRAMES.contains(&self.frame)
     }
 }
 
@@ -58,8 +64,12 @@ pub enum Entry {
         place: String,
         /// The number that jumps name.
         number: i64,
+        /// The number of its last item.
+        last: i64,
         /// The leg.
         leg: Box<Leg>,
+        /// Where it ends, if the file says.
+        end: Option<LatLon>,
     },
     /// A landing after an approach.
     Landing {
@@ -92,12 +102,14 @@ pub struct Approach {
 /// A mission and what belongs to it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mission {
-    /// Where the aircraft starts, and its elevation in metres AMSL.
-    pub home: Option<(LatLon, f64)>,
+    /// Where the aircraft starts.
+    pub home: Option<LatLon>,
+    /// Elevation of home, metres AMSL.
+    pub home_amsl_m: Option<f64>,
     /// Its steps.
     pub entries: Vec<Entry>,
     /// Its fences.
     pub zones: Vec<Zone>,
     /// Rally points: place in the file, position, metres above home.
-    pub rally: Vec<(String, LatLon, f64)>,
+    pub rally: Vec<(String, LatLon, Option<f64>)>,
 }

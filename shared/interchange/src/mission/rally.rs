@@ -3,7 +3,7 @@
 use super::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
-use crate::synthetic::{altitude, stage};
+use crate::synthetic::{Assumptions, altitude, stage};
 use flight_plan::{
     Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, Place, StageKind, Value,
 };
@@ -16,10 +16,10 @@ const NEAR_M: f64 = 2000.0;
 /// if home is not known.
 pub fn add(
     plan: &mut FlightPlan,
-    rally: &[(String, LatLon, f64)],
+    rally: &[(String, LatLon, Option<f64>)],
     home_amsl_m: Option<f64>,
-    names: &mut Names,
-    notes: &mut Notes,
+    assumptions: &Assumptions,
+    (names, notes): (&mut Names, &mut Notes),
 ) {
     for (place, position, height_m) in rally {
         let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
@@ -37,7 +37,15 @@ pub fn add(
             LegKind::Df { to: waypoint(*position, false), turn: None },
         );
         let home_amsl_m = home_amsl_m.unwrap_or(runway.elevation_amsl_m);
-        way.altitude = Some(altitude(home_amsl_m + height_m, AltitudeReference::Amsl));
+        way.altitude = Some(match height_m {
+            Some(height_m) => altitude(home_amsl_m + height_m, AltitudeReference::Amsl),
+            None => {
+                let message =
+                    format!("what has no altitude is flown {:.0} m above ground", assumptions.height_agl_m);
+                notes.again("no-altitude", place, &message);
+                assumptions.altitude()
+            }
+        });
         let mut arrival =
             stage(names.take("rally-arrival", "arrival"), "To the rally point", StageKind::Arrival);
         arrival.legs.push(way.into());

@@ -24,10 +24,10 @@ pub fn position(value: &Value) -> Option<LatLon> {
     position.is_valid().then_some(position)
 }
 
-/// `[latitude, longitude, altitude]`; without an altitude: 0.
-pub fn position_3d(value: &Value) -> Option<(LatLon, f64)> {
-    let altitude_m = value.get(2).and_then(Value::as_f64).unwrap_or(0.0);
-    Some((position(value)?, altitude_m.clamp(-1e5, 1e5)))
+/// `[latitude, longitude, altitude]`; the altitude may be missing or `null`.
+pub fn position_3d(value: &Value) -> Option<(LatLon, Option<f64>)> {
+    let altitude_m = value.get(2).and_then(Value::as_f64).filter(|m| m.is_finite());
+    Some((position(value)?, altitude_m.map(|m| m.clamp(-1e5, 1e5))))
 }
 
 /// A position as QGC writes it.

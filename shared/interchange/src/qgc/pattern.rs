@@ -51,6 +51,16 @@ pub fn read(
     Ok(Some(leg(wish, kind, &camera)))
 }
 
+/// Where the way that QGC has worked out for a pattern ends, if the file has it.
+pub fn end(item: &Json) -> Option<LatLon> {
+    visual(item).last().and_then(position)
+}
+
+/// The points of the way that QGC has worked out, if the file has it.
+fn visual(item: &Json) -> &[Json] {
+    item.get("TransectStyleComplexItem").map_or(&[], |transect| list(transect, "VisualTransectPoints"))
+}
+
 fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
     let action = |trigger, act| LegAction { trigger, act };
     let pictures = camera.every_m.map(|every_m| {

@@ -58,8 +58,10 @@ pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
     for (index, item) in items.iter().enumerate() {
         reader.item(item, format!("item {}", index + 1))?;
     }
+    let home = mission.get("plannedHomePosition").and_then(position_3d);
     let mission = Mission {
-        home: mission.get("plannedHomePosition").and_then(position_3d),
+        home: home.map(|h| h.0),
+        home_amsl_m: home.and_then(|h| h.1),
         entries: reader.entries,
         zones: fence::read(file.get("geoFence").unwrap_or(&Value::Null), &mut notes)?,
         rally: rally(file.get("rallyPoints").unwrap_or(&Value::Null), &mut notes),
@@ -75,7 +77,7 @@ fn unknown(object: &Value, known: &[&str], place: &str, notes: &mut Notes) {
     }
 }
 
-fn rally(points: &Value, notes: &mut Notes) -> Vec<(String, geometry::LatLon, f64)> {
+fn rally(points: &Value, notes: &mut Notes) -> Vec<(String, geometry::LatLon, Option<f64>)> {
     let mut good = Vec::new();
     for (index, point) in list(points, "points").iter().take(MAX_ITEMS).enumerate() {
         let place = format!("rally point {}", index + 1);
@@ -125,8 +127,10 @@ impl Reader<'_> {
         }
         let whole = |key: &str| item.get(key).and_then(Value::as_u64).unwrap_or(u64::MAX);
         let mut frame = whole("frame").min(u16::MAX.into()) as u16;
-        // altitude mode 3: QGC has worked out AMSL from terrain; what was meant is the height above it
+        let command = whole("command").min(u16::MAX.into()) as u16;
+        // altitude mode 3: QGC has worked out AMSL from terrain; what was meant is the height above it, but a runway needs the other
         if whole("AltitudeMode") == 3
+            && !matches!(command, commands::LAND | commands::VTOL_LAND)
             && let Some(height_m) = number(item, "Altitude")
         {
             (frame, params[6]) = (commands::FRAME_TERRAIN, height_m);
@@ -136,7 +140,6 @@ impl Reader<'_> {
         }
         let number = item.get("doJumpId").and_then(Value::as_i64).unwrap_or(self.number + 1);
         self.number = number;
-        let command = whole("command").min(u16::MAX.into()) as u16;
         self.entries.push(Entry::Item(Item { place, number, frame, command, params }));
     }
 
@@ -146,7 +149,8 @@ impl Reader<'_> {
         let number = numbers().next().unwrap_or(self.number.saturating_add(1));
         self.number = numbers().next_back().unwrap_or(number);
         if let Some(leg) = pattern::read(item, &place, self.assumptions, self.notes)? {
-            self.entries.push(Entry::Leg { place, number, leg: Box::new(leg) });
+            let (last, end) = (self.number, pattern::end(item));
+            self.entries.push(Entry::Leg { place, number, last, leg: Box::new(leg), end });
         }
         Ok(())
     }
@@ -167,6 +171,8 @@ impl Reader<'_> {
         let radius_m = number(item, "loiterRadius").unwrap_or(self.assumptions.loiter_radius_m);
         let loiter_radius_m = circles.then_some(side * radius_m.abs());
         let (above_home, relative) = relative(item);
+        // without an altitude there is none, which is told where it is used
+        let (altitude_m, land) = (altitude_m.unwrap_or(f64::NAN), (land.0, land.1.unwrap_or(f64::NAN)));
         let approach = Approach { position, altitude_m, relative: above_home, loiter_radius_m };
         if item.get("complexItemType").and_then(Value::as_str) == Some("vtolLandingPattern") {
             self.notes.push("vtol", &place, "a vertical landing becomes one on a runway");
