@@ -1,91 +1,22 @@
 //! What is written is read again: the same waypoints, within 1e-7 degrees and 0.1 m.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use flight_exec::{Action, Token, Waypoint};
+mod made;
+
+use flight_exec::Action;
 use flight_plan::{
-    Act, Altitude, AltitudeReference, Area, FlightPlan, Leg, LegAction, LegKind, Pattern, Place,
-    PlanWaypoint, Runway, Scan, ScanEntry, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone,
-    ZoneKind, ZoneShape,
+    Act, Altitude, AltitudeReference, Area, FlightPlan, Leg, LegAction, LegKind, Pattern, Place, Runway,
+    Scan, ScanEntry, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone, ZoneKind, ZoneShape,
 };
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Import, Step, read, write};
+use made::{RUNWAY, leg, plan, step, to};
 use proptest::prelude::*;
 use std::sync::Arc;
 
 /// Formats that hold a path.
 const PATHS: [Format; 6] =
     [Format::Plan, Format::Waypoints, Format::Kml, Format::Kmz, Format::GeoJson, Format::Gpx];
-const RUNWAY: LatLon = LatLon::new(36.319, -84.173);
-
-fn leg(id: &str, kind: LegKind) -> Leg {
-    Leg {
-        id: id.into(),
-        name: String::new(),
-        emergency: Default::default(),
-        altitude: None,
-        speed_mps: None,
-        next: None,
-        actions: Vec::new(),
-        kind,
-    }
-}
-
-fn to(position: LatLon) -> PlanWaypoint {
-    PlanWaypoint { place: Place::Position(Value::Constant(position)), fly_over: false }
-}
-
-fn plan(legs: Vec<Leg>) -> FlightPlan {
-    let stage = |id: &str, kind, legs| Stage {
-        id: id.into(),
-        name: String::new(),
-        kind,
-        emergency: Default::default(),
-        runway: (kind != StageKind::Mission).then(|| "R05".into()),
-        altitude: None,
-        speed_mps: None,
-        legs,
-    };
-    FlightPlan {
-        name: "There & back <again>".into(),
-        aircraft: "trainer".into(),
-        runways: vec![Runway {
-            id: "R05".into(),
-            threshold: RUNWAY,
-            elevation_amsl_m: 349.0,
-            heading_deg: 52.0,
-            length_m: 600.0,
-            priority: 1,
-            approach_entry: None,
-        }],
-        stages: vec![
-            stage("to", StageKind::TakeOff, vec![]),
-            stage("m", StageKind::Mission, legs.into_iter().map(Arc::new).collect()),
-            stage("l", StageKind::Land, vec![]),
-        ],
-        ..FlightPlan::default()
-    }
-}
-
-fn step(
-    leg: &str,
-    passage: usize,
-    position: LatLon,
-    altitude_amsl_m: f64,
-    airspeed_mps: f64,
-    action: Action,
-) -> Step {
-    let waypoint = Waypoint {
-        token: Token(1),
-        position,
-        altitude_amsl_m,
-        airspeed_mps,
-        action,
-        fly_over: false,
-        leg: leg.into(),
-        end_of_plan: false,
-    };
-    Step { waypoint, passage }
-}
 
 /// Waypoints of the legs that were read: position, metres AMSL and speed.
 fn flown(import: &Import) -> Vec<(LatLon, f64, Option<f64>)> {

@@ -5,7 +5,7 @@ use super::import::FLY_OVER_M;
 use crate::note::Notes;
 use crate::{Export, Step};
 use flight_exec::{Action, Waypoint};
-use flight_plan::{Act, Id, Leg, LegAction, Trigger, Value};
+use flight_plan::{Act, Id, Leg, LegAction, LegContext, LegKind, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
 
@@ -30,15 +30,20 @@ pub struct Flown {
 /// The items that fly these waypoints; actions that items can't do are noted.
 pub fn items(export: &Export<'_>, notes: &mut Notes) -> Vec<Flown> {
     let contexts = export.plan.all_legs();
-    let legs: HashMap<&str, &Leg> = contexts.iter().map(|c| (c.leg.id.as_str(), c.leg)).collect();
-    let mut writer = Writer { items: Vec::new(), speed_mps: f64::NAN };
+    let legs: HashMap<&str, &LegContext> = contexts.iter().map(|c| (c.leg.id.as_str(), c)).collect();
+    let mut writer = Writer { items: Vec::new(), speed_mps: f64::NAN, loops: Vec::new() };
     for passage in export.steps.chunk_by(|a, b| a.passage == b.passage && a.waypoint.leg == b.waypoint.leg) {
         let Some(first) = passage.first() else { continue };
-        let leg = legs.get(first.waypoint.leg.as_str());
-        let actions = leg.map_or(&[][..], |l| &l.actions);
-        writer.passage(first, passage, actions);
+        let context = legs.get(first.waypoint.leg.as_str());
+        let loops: Vec<&Leg> = context.map_or(Vec::new(), |c| around(c));
+        writer.change_loops(&loops, first.passage);
+        // the turns of a loop are in it: its actions are those of all of it
+        let own = context.filter(|c| !is_loop(c.leg)).map_or(&[][..], |c| &c.leg.actions);
+        writer.passage(first, passage, own);
     }
-    for context in contexts.iter().filter(|c| !c.leg.actions.is_empty()) {
+    writer.change_loops(&[], export.steps.last().map_or(0, |s| s.passage));
+    contexts.iter().filter(|c| !c.leg.actions.is_empty()).for_each(|context| {
+        merged(context, notes);
         let lost = context.leg.actions.iter().filter(|a| command(a).is_none() && wait_s(a).is_none()).count();
         if lost > 0 {
             let message = format!(
@@ -46,8 +51,26 @@ pub fn items(export: &Export<'_>, notes: &mut Notes) -> Vec<Flown> {
             );
             notes.push("action-not-carried", context.leg.id.as_str(), message);
         }
-    }
+    });
     writer.items
+}
+
+fn is_loop(leg: &Leg) -> bool {
+    matches!(leg.kind, LegKind::Iterative { .. })
+}
+
+/// The loops that a waypoint of this leg is in, outermost first.
+fn around<'a>(context: &LegContext<'a>) -> Vec<&'a Leg> {
+    let own = is_loop(context.leg).then_some(context.leg);
+    context.loops.iter().copied().chain(own).collect()
+}
+
+/// A loop that is all of another's body: from one pass to the next nothing lies between that would show where it begins again.
+fn merged(context: &LegContext<'_>, notes: &mut Notes) {
+    if is_loop(context.leg) && !context.loops.is_empty() && context.siblings.len() == 1 {
+        let message = "its actions are written once for all passes of the loop around it";
+        notes.push("action-not-carried", context.leg.id.as_str(), message);
+    }
 }
 
 /// The runway the plan takes off from, else its first runway, else, with a note, where the waypoints begin.
@@ -65,36 +88,67 @@ pub fn home(export: &Export<'_>, notes: &mut Notes) -> (LatLon, f64) {
     }
 }
 
-struct Writer {
+struct Writer<'a> {
     items: Vec<Flown>,
     speed_mps: f64,
+    /// The loops that the last waypoint is in, outermost first.
+    loops: Vec<&'a Leg>,
 }
 
-impl Writer {
-    fn passage(&mut self, first: &Step, passage: &[Step], actions: &[LegAction]) {
-        let of = (&first.waypoint.leg, first.passage);
+impl<'a> Writer<'a> {
+    /// Ends the actions of the loops that are left and begins those of the loops that are entered.
+    fn change_loops(&mut self, loops: &[&'a Leg], passage: usize) {
+        let same = self.loops.iter().zip(loops).take_while(|(a, b)| a.id == b.id).count();
+        while self.loops.len() > same
+            && let Some(left) = self.loops.pop()
+        {
+            self.end((&left.id, passage), &left.actions);
+        }
+        for entered in loops.iter().skip(same) {
+            self.begin((&entered.id, passage), &entered.actions);
+            self.loops.push(entered);
+        }
+    }
+
+    fn begin(&mut self, of: (&Id, usize), actions: &[LegAction]) {
         for (when, command, params) in actions.iter().filter_map(command) {
             if when != Trigger::End {
                 self.push(of, cmd::FRAME_MISSION, command, params);
             }
         }
-        let wait_s = actions.iter().filter_map(wait_s).reduce(|all_s, wait_s| all_s + wait_s);
-        for (index, step) in passage.iter().enumerate() {
-            let wait_s = wait_s.filter(|_| index + 1 == passage.len());
-            self.waypoint(of, &step.waypoint, wait_s);
-        }
+    }
+
+    fn end(&mut self, of: (&Id, usize), actions: &[LegAction]) {
         for action in actions {
             match (command(action), &action.trigger) {
                 (Some((Trigger::End, command, params)), _) => {
                     self.push(of, cmd::FRAME_MISSION, command, params)
                 }
-                // a series that this leg alone asks for ends with it
+                // a series that this leg alone asks for ends with it; that of a loop around it goes on
                 (Some(_), Trigger::Every(_)) => {
-                    self.push(of, cmd::FRAME_MISSION, cmd::CAMERA_TRIGGER_DISTANCE, [0.0; 7]);
+                    let params = self.series_around().unwrap_or([0.0; 7]);
+                    self.push(of, cmd::FRAME_MISSION, cmd::CAMERA_TRIGGER_DISTANCE, params);
                 }
                 _ => {}
             }
         }
+    }
+
+    fn series_around(&self) -> Option<[f64; 7]> {
+        let actions = self.loops.iter().rev().flat_map(|l| &l.actions);
+        let mut series = actions.filter(|a| matches!(a.trigger, Trigger::Every(_))).filter_map(command);
+        series.next().map(|(_, _, params)| params)
+    }
+
+    fn passage(&mut self, first: &Step, passage: &[Step], actions: &[LegAction]) {
+        let of = (&first.waypoint.leg, first.passage);
+        self.begin(of, actions);
+        let wait_s = actions.iter().filter_map(wait_s).reduce(|all_s, wait_s| all_s + wait_s);
+        for (index, step) in passage.iter().enumerate() {
+            let wait_s = wait_s.filter(|_| index + 1 == passage.len());
+            self.waypoint(of, &step.waypoint, wait_s);
+        }
+        self.end(of, actions);
     }
 
     fn waypoint(&mut self, of: (&Id, usize), waypoint: &Waypoint, wait_s: Option<f64>) {

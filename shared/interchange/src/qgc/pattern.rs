@@ -172,10 +172,7 @@ pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec
         LegKind::Pattern(Pattern::Corridor { spacing, .. }) => (spacing, false),
         _ => return None,
     };
-    let every_m = leg.actions.iter().find_map(|a| match &a.act {
-        Act::PhotoSeries { every_m } => constant(every_m),
-        _ => None,
-    });
+    let every_m = every_m(leg);
     let altitude = altitude?;
     let mut transect = json!({
         "CameraCalc": camera::write(metres(spacing)?, every_m, altitude)?,
@@ -207,6 +204,16 @@ pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec
         }
         _ => None,
     }
+}
+
+/// Metres between the pictures that a pattern takes by itself; without any, its items leave the camera alone.
+pub fn every_m(leg: &Leg) -> Option<f64> {
+    leg.actions.iter().find_map(|a| match (&a.trigger, &a.act) {
+        (Trigger::Start, Act::PhotoSeries { every_m }) | (Trigger::Every(every_m), Act::Photo) => {
+            constant(every_m)
+        }
+        _ => None,
+    })
 }
 
 fn area(scan: &Scan, transect: Json) -> Option<Json> {

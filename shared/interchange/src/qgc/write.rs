@@ -73,7 +73,8 @@ impl Writer<'_> {
             return passage.iter().for_each(|item| self.simple(item));
         }
         let last = passage.iter().rposition(moves).unwrap_or(0);
-        let own = |item: &Flown| moves(item) || item.command == commands::CAMERA_TRIGGER_DISTANCE;
+        let pictures = self.legs.get(leg).is_some_and(|c| pattern::every_m(c.leg).is_some());
+        let own = |item: &Flown| moves(item) || pictures && item.command == commands::CAMERA_TRIGGER_DISTANCE;
         let beside = |after: bool| {
             let there = move |(index, item): &(usize, &Flown)| !own(item) && (*index > last) == after;
             passage.iter().enumerate().filter(there).map(|(_, item)| item)

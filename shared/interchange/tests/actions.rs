@@ -1,0 +1,126 @@
+//! Actions of legs and loops, as items.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod made;
+
+use flight_exec::Action;
+use flight_plan::{
+    Act, Altitude, AltitudeReference, Area, IterativeForm, Leg, LegAction, LegKind, Scan, ScanEntry,
+    ScanStyle, Spacing, Trigger, TurnDirection, Value,
+};
+use geometry::LatLon;
+use interchange::{Assumptions, Export, Format, Step, Written, read, write};
+use made::{RUNWAY, leg, plan, step, to};
+use std::sync::Arc;
+
+fn on(trigger: Trigger, act: Act) -> LegAction {
+    LegAction { trigger, act }
+}
+
+fn every(metres: f64) -> Trigger {
+    Trigger::Every(Value::Constant(metres))
+}
+
+fn twice(id: &str, actions: Vec<LegAction>, body: Vec<Leg>) -> Leg {
+    let kind = LegKind::Iterative {
+        form: IterativeForm::Reverse,
+        count: Some(Value::Constant(2.0)),
+        until: None,
+        turn: TurnDirection::Right,
+        body: body.into_iter().map(Arc::new).collect(),
+    };
+    Leg { actions, ..leg(id, kind) }
+}
+
+fn way(id: &str) -> Leg {
+    leg(id, LegKind::Tf(to(RUNWAY)))
+}
+
+/// The legs with these identifiers, flown at one speed.
+fn flown(ids: &[&str]) -> Vec<Step> {
+    let at = |i: usize| RUNWAY.destination(10.0 * i as f64, 3000.0);
+    ids.iter().enumerate().map(|(i, id)| step(id, i, at(i), 500.0, 25.0, Action::Fly)).collect()
+}
+
+fn written(format: Format, legs: Vec<Leg>, ids: &[&str]) -> Written {
+    write(format, &Export { plan: &plan(legs), steps: &flown(ids) }).unwrap()
+}
+
+/// Command and first parameter of each line, home and the speed left out.
+fn commands(written: &Written) -> Vec<(u16, f64)> {
+    let text = std::str::from_utf8(&written.bytes).unwrap();
+    let fields = text.lines().skip(2).map(|line| line.split('\t').collect::<Vec<_>>());
+    fields
+        .map(|f| (f[3].parse().unwrap(), f[4].parse().unwrap()))
+        .filter(|(command, _)| *command != 178)
+        .collect()
+}
+
+#[test]
+fn actions_of_a_loop_are_those_of_all_of_it() {
+    let actions = vec![
+        on(Trigger::Start, Act::VideoStart),
+        on(every(40.0), Act::Photo),
+        on(Trigger::End, Act::VideoStop),
+    ];
+    let legs = vec![way("a"), twice("there", actions, vec![way("b"), way("c")]), way("d")];
+    let list = written(Format::Waypoints, legs, &["a", "b", "c", "there", "c", "b", "d"]);
+    let fly = (16, 0.0);
+    assert_eq!(
+        commands(&list),
+        [fly, (2500, 0.0), (206, 40.0), fly, fly, fly, fly, fly, (206, 0.0), (2501, 0.0), fly]
+    );
+    assert!(list.notes.iter().all(|n| n.code != "action-not-carried"), "{:?}", list.notes);
+}
+
+#[test]
+fn the_series_of_a_loop_goes_on_behind_that_of_a_leg_in_it() {
+    let own = Leg { actions: vec![on(every(10.0), Act::Photo)], ..way("b") };
+    let outer =
+        twice("outer", vec![on(every(40.0), Act::Photo)], vec![twice("inner", vec![], vec![own]), way("c")]);
+    let list = written(Format::Waypoints, vec![outer], &["b", "c"]);
+    let fly = (16, 0.0);
+    assert_eq!(commands(&list), [(206, 40.0), (206, 10.0), fly, (206, 40.0), fly, (206, 0.0)]);
+}
+
+#[test]
+fn a_loop_that_is_all_of_another_is_told() {
+    let inner = twice("inner", vec![on(Trigger::Start, Act::Photo)], vec![way("b")]);
+    let list = written(Format::Waypoints, vec![twice("outer", vec![], vec![inner])], &["b", "b", "b", "b"]);
+    let lost: Vec<_> =
+        list.notes.iter().filter(|n| n.code == "action-not-carried").map(|n| &n.place[..]).collect();
+    assert_eq!(lost, ["inner"]);
+}
+
+fn survey(actions: Vec<LegAction>) -> Leg {
+    let corners =
+        [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon));
+    let kind = LegKind::Scan(Scan {
+        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
+        style: ScanStyle::Parallel,
+        spacing: Spacing::Metres(Value::Constant(40.0)),
+        heading_deg: Some(Value::Constant(75.0)),
+        overshoot_m: Value::Constant(30.0),
+        entry: ScanEntry::StartRight,
+    });
+    let altitude = Altitude { metres: Value::Constant(500.0), reference: AltitudeReference::Amsl };
+    Leg { altitude: Some(altitude), actions, ..leg("survey", kind) }
+}
+
+/// What comes back of a survey that QGC was given: in its camera, or beside it.
+#[test]
+fn pictures_of_a_survey_come_back() {
+    let series = |metres| Act::PhotoSeries { every_m: Value::Constant(metres) };
+    let both = vec![on(Trigger::Start, series(25.0)), on(Trigger::End, Act::PhotoStop)];
+    let alone = vec![survey(vec![on(every(25.0), Act::Photo)])];
+    let looped = vec![twice("loop", vec![on(every(25.0), Act::Photo)], vec![survey(vec![])])];
+    for (legs, camera_m) in [(alone, 25.0), (looped, 0.0)] {
+        let file = written(Format::Plan, legs, &["survey"; 1]);
+        let json: serde_json::Value = serde_json::from_slice(&file.bytes).unwrap();
+        let items = json["mission"]["items"].as_array().unwrap();
+        let pattern = items.iter().find(|i| i["type"] == "ComplexItem").unwrap();
+        assert_eq!(pattern["TransectStyleComplexItem"]["CameraCalc"]["AdjustedFootprintFrontal"], camera_m);
+        let found = read(Format::Plan, &file.bytes, &Assumptions::default()).unwrap().plan;
+        assert_eq!(found.stages[0].legs[0].actions, both);
+    }
+}
