@@ -110,7 +110,8 @@ fn a_loiter_on_the_spot_behind_a_survey_is_where_that_ends() {
     let way = "[36.331,-84.15],[36.335,-84.15],[36.335,-84.14],[36.331,-84.14]";
     let known = import(&survey(r#""angle":0,"#, way, &loiter(6)));
     assert_eq!(outline(&known.plan)[3], "  item6: orbit 36.331 -84.14, 100 m, 2 times Right");
-    let unknown = import(&survey(r#""angle":0,"#, "", &loiter(6)));
+    let unworked = survey(r#""angle":0,"#, "", &loiter(6)).replace(r#""command":16"#, r#""command":206"#);
+    let unknown = import(&unworked);
     assert_eq!((outline(&unknown.plan).len(), said(&unknown, "no-position").len()), (3, 1));
 }
 
@@ -129,4 +130,80 @@ fn a_jump_into_a_survey_is_told() {
         "{:?}",
         begin.notes
     );
+}
+
+/// East of north by 120° QGC flies tracks at -60°, and names its corners there.
+#[test]
+fn a_survey_begins_where_its_way_does() {
+    for (angle_deg, first, entry) in [
+        ("0", "[36.331,-84.15]", "StartLeft"),
+        ("0", "[36.335,-84.14]", "EndRight"),
+        ("120", "[36.336,-84.151]", "StartLeft"),
+        ("-60", "[36.336,-84.151]", "EndRight"),
+        ("200", "[36.335,-84.14]", "StartLeft"),
+    ] {
+        let keys = format!(r#""angle":{angle_deg},"entryLocation":3,"#);
+        let found = outline(&import(&survey(&keys, first, "")).plan);
+        assert!(found[2].contains(&format!(" {entry},")), "{angle_deg} {first}: {}", found[2]);
+    }
+    let unworked =
+        survey(r#""angle":0,"entryLocation":3,"#, "", "").replace(r#""command":16"#, r#""command":206"#);
+    assert!(outline(&import(&unworked).plan)[2].contains(" StartRight,"));
+}
+
+/// As QGC wrote surveys until version 3.3.
+#[test]
+fn a_survey_of_the_third_version() {
+    let old = |kind: &str, more: &str| {
+        file(&format!(
+            r#",{{"camera":{{"focalLength":16,"groundResolution":3,"imageFrontalOverlap":70,"imageSideOverlap":75,"name":"Sony ILCE-QX1",
+            "orientationLandscape":true,"resolutionHeight":3632,"resolutionWidth":5456,"sensorHeight":15.4,"sensorWidth":23.2}},
+            "cameraTrigger":true,"cameraTriggerDistance":25,{kind},"fixedValueIsAltitude":false,"grid":{{"altitude":100,"angle":35,
+            "relativeAltitude":false,"spacing":36.25,"turnAroundDistance":20}},{more}"manualGrid":false,
+            "polygon":[[36.331,-84.15],[36.335,-84.15],[36.335,-84.14],[36.331,-84.14]]}}"#
+        ))
+    };
+    let third = import(&old(
+        r#""type":"ComplexItem","complexItemType":"survey","version":3"#,
+        r#""hoverAndCapture":true,"#,
+    ));
+    assert_eq!(
+        outline(&third.plan)[2],
+        "  survey: scan of 4 corners, 36.25 m, heading 35, overshoot 20, EndRight, 100 amsl, start series 25, end stop"
+    );
+    assert_eq!(said(&third, "pattern-setting"), ["stopping for each picture is left out"]);
+    let second = import(&old(r#""type":"survey","version":2"#, r#""refly90Degrees":true,"#));
+    let flight_plan::LegKind::Scan(scan) = &second.plan.stages[1].legs[0].kind else {
+        panic!("{:?}", second.plan)
+    };
+    assert_eq!(scan.style, flight_plan::ScanStyle::CrissCross);
+}
+
+fn fence(fence: &str) -> Import {
+    import(&file("").replacen(r#""version":1,"#, &format!(r#""geoFence":{fence},"version":1,"#), 1))
+}
+
+#[test]
+fn several_fences_to_stay_inside_of_are_told() {
+    let circle = |inclusion: bool| {
+        format!(
+            r#"{{"circle":{{"center":[36.32,-84.15],"radius":250}},"inclusion":{inclusion},"version":1}}"#
+        )
+    };
+    let told = |a, b| {
+        let import =
+            fence(&format!(r#"{{"version":2,"polygons":[],"circles":[{},{}]}}"#, circle(a), circle(b)));
+        let export = interchange::Export { plan: &import.plan, steps: &[] };
+        let written = interchange::write(Format::Plan, &export).unwrap();
+        let again = written.notes.iter().filter(|n| n.code == "several-keep-in").count();
+        (said(&import, "several-keep-in").len(), again)
+    };
+    assert_eq!((told(true, true), told(true, false)), ((1, 1), (0, 0)));
+}
+
+#[test]
+fn a_fence_of_the_first_version_is_told() {
+    let old =
+        fence(r#"{"version":1,"parameters":[],"polygon":[[36.25,-84.25],[36.25,-84.1],[36.37,-84.1]]}"#);
+    assert_eq!(said(&old, "fence-version").len(), 2);
 }

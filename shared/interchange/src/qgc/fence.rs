@@ -6,6 +6,9 @@ use crate::{Error, MAX_POINTS};
 use flight_plan::{Id, Zone, ZoneKind, ZoneShape};
 use serde_json::{Value, json};
 
+/// What is understood of a `geoFence`.
+const KEYS: [&str; 4] = ["breachReturn", "circles", "polygons", "version"];
+
 /// The zones of a `geoFence`.
 pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
     let mut zones = Vec::new();
@@ -32,6 +35,15 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
             _ => notes.push("bad-fence", place, "this circle is left out: it has no good centre and radius"),
         }
     }
+    for key in fence.as_object().into_iter().flat_map(|f| f.keys()).filter(|k| !KEYS.contains(&k.as_str())) {
+        let key: String = key.chars().take(60).collect();
+        let message = format!("`{key}` of the fence is left out: it is not known, or of a version before 2");
+        notes.push("fence-version", "fence", message);
+    }
+    if several(&zones) {
+        let message = "of several fences to stay inside of, each is enough here: ArduPilot stays inside all of them at once, unless FENCE_OPTIONS has it otherwise";
+        notes.push("several-keep-in", "fence", message);
+    }
     if fence.get("breachReturn").is_some_and(|b| !b.is_null()) {
         notes.push(
             "breach-return",
@@ -40,6 +52,11 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
         );
     }
     Ok(zones)
+}
+
+/// More than one zone to stay inside of.
+fn several(zones: &[Zone]) -> bool {
+    zones.iter().filter(|z| z.kind == ZoneKind::KeepIn).count() > 1
 }
 
 fn zone(fence: &Value, shape: ZoneShape, place: &str, notes: &mut Notes) -> Zone {
@@ -54,7 +71,11 @@ fn zone(fence: &Value, shape: ZoneShape, place: &str, notes: &mut Notes) -> Zone
 }
 
 /// The `geoFence` of zones.
-pub fn write(zones: &[Zone]) -> Value {
+pub fn write(zones: &[Zone], notes: &mut Notes) -> Value {
+    if several(zones) {
+        let message = "ArduPilot stays inside all of the keep-in zones at once, where each is enough here: set bit 1 of its FENCE_OPTIONS";
+        notes.push("several-keep-in", "zones", message);
+    }
     let inclusion = |zone: &Zone| zone.kind == ZoneKind::KeepIn;
     let mut polygons = Vec::new();
     let mut circles = Vec::new();

@@ -4,8 +4,10 @@
 mod camera;
 mod fence;
 mod json;
+mod old;
 mod pattern;
 mod read;
+mod way;
 mod write;
 
 pub use read::{bounded_json, read};

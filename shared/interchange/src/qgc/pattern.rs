@@ -2,6 +2,7 @@
 
 use super::camera::{self, Camera};
 use super::json::{flag, list, number, of, position};
+use super::way;
 use crate::note::Notes;
 use crate::synthetic::{Assumptions, altitude};
 use crate::{Error, MAX_POINTS};
@@ -51,16 +52,6 @@ pub fn read(
     Ok(Some(leg(wish, kind, &camera)))
 }
 
-/// Where the way that QGC has worked out for a pattern ends, if the file has it.
-pub fn end(item: &Json) -> Option<LatLon> {
-    visual(item).last().and_then(position)
-}
-
-/// The points of the way that QGC has worked out, if the file has it.
-fn visual(item: &Json) -> &[Json] {
-    item.get("TransectStyleComplexItem").map_or(&[], |transect| list(transect, "VisualTransectPoints"))
-}
-
 fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
     let action = |trigger, act| LegAction { trigger, act };
     let pictures = camera.every_m.map(|every_m| {
@@ -81,15 +72,16 @@ fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
 
 fn survey(item: &Json, transect: &Json, corners: Vec<LatLon>, spacing: Spacing) -> Scan {
     let crossed = flag(transect, "Refly90Degrees");
-    let entry = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
+    let angle_deg = number(item, "angle").map(|a| geometry::geodesy::normalise_360(a % 360.0));
+    let named = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
+    let begun = way::ends(item).zip(angle_deg).and_then(|((first, _), deg)| way::entry(first, &corners, deg));
     Scan {
         area: Area::Polygon { corners, holes: Vec::new() },
         style: if crossed { ScanStyle::CrissCross } else { ScanStyle::Parallel },
         spacing,
-        heading_deg: number(item, "angle")
-            .map(|a| Value::Constant(geometry::geodesy::normalise_360(a % 360.0))),
+        heading_deg: angle_deg.map(Value::Constant),
         overshoot_m: Value::Constant(number(transect, "TurnAroundDistance").unwrap_or(0.0).clamp(0.0, 1e5)),
-        entry: entry.copied().unwrap_or(ScanEntry::Nearest),
+        entry: begun.or(named.copied()).unwrap_or(ScanEntry::Nearest),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A `.plan` as a plan.
 
 use super::json::{flag, list, number, position_3d};
-use super::{fence, pattern};
+use super::{fence, old, pattern, way};
 use crate::mission::{self, Approach, Entry, Item, Mission, commands};
 use crate::note::Notes;
 use crate::synthetic::Assumptions;
@@ -102,7 +102,9 @@ impl Reader<'_> {
         let kind = item.get("type").and_then(Value::as_str).unwrap_or("SimpleItem");
         match (kind, item.get("complexItemType").and_then(Value::as_str)) {
             ("SimpleItem", _) => self.simple(item, place),
-            (_, Some("survey" | "CorridorScan")) => self.pattern(item, place)?,
+            ("survey", _) | (_, Some("survey" | "CorridorScan")) => {
+                self.pattern(&old::renewed(item), place)?
+            }
             (_, Some("fwLandingPattern" | "vtolLandingPattern")) => self.landing(item, place),
             (_, other) => {
                 let name: String = other.unwrap_or(kind).chars().take(60).collect();
@@ -149,7 +151,7 @@ impl Reader<'_> {
         let number = numbers().next().unwrap_or(self.number.saturating_add(1));
         self.number = numbers().next_back().unwrap_or(number);
         if let Some(leg) = pattern::read(item, &place, self.assumptions, self.notes)? {
-            let (last, end) = (self.number, pattern::end(item));
+            let (last, end) = (self.number, way::ends(item).map(|(_, last)| last));
             self.entries.push(Entry::Leg { place, number, last, leg: Box::new(leg), end });
         }
         Ok(())

@@ -35,7 +35,7 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     let cruise_mps = export.steps.iter().map(|s| s.waypoint.airspeed_mps).find(|s| *s > 0.0).unwrap_or(15.0);
     let file = json!({
         "fileType": "Plan",
-        "geoFence": fence::write(&export.plan.zones),
+        "geoFence": fence::write(&export.plan.zones, notes),
         "groundStation": "Legwork",
         "mission": {
             "cruiseSpeed": cruise_mps,
