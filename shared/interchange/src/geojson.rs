@@ -8,6 +8,7 @@ use crate::{Error, MAX_ITEMS};
 use flight_plan::{AltitudeReference, Value};
 use geojson::{FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, JsonValue, Position};
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 use std::str::FromStr;
 
 /// Reads a file.
@@ -195,7 +196,8 @@ fn written(feature: &Feature) -> geojson::Feature {
         Shape::Point(vertex) => GeometryValue::Point { coordinates: position(vertex) },
         Shape::Line(line) => GeometryValue::LineString { coordinates: line.iter().map(position).collect() },
         Shape::Area { outer, holes, .. } => {
-            let coordinates = std::iter::once(outer).chain(holes).map(|r| ring(r)).collect();
+            let holes = holes.iter().map(|hole| ring(hole, false));
+            let coordinates = std::iter::once(ring(outer, true)).chain(holes).collect();
             GeometryValue::Polygon { coordinates }
         }
     };
@@ -210,6 +212,30 @@ fn position(vertex: &Vertex) -> Position {
     }
 }
 
-fn ring(corners: &[LatLon]) -> Vec<Position> {
+/// RFC 7946 wants outer rings anticlockwise and holes clockwise.
+fn ring(corners: &[LatLon], anticlockwise: bool) -> Vec<Position> {
+    let mut corners = corners.to_vec();
+    // the first corner stays the first one
+    if is_anticlockwise(&corners) != anticlockwise
+        && let Some((_, rest)) = corners.split_first_mut()
+    {
+        rest.reverse();
+    }
     corners.iter().chain(corners.first()).map(|c| Position::from([c.lon_deg, c.lat_deg])).collect()
+}
+
+/// By the sign of the area in degrees, across the antimeridian too.
+fn is_anticlockwise(corners: &[LatLon]) -> bool {
+    let Some(first) = corners.first() else { return true };
+    let flat = |c: &LatLon| (normalise_180(c.lon_deg - first.lon_deg), c.lat_deg - first.lat_deg);
+    let next = corners.iter().cycle().skip(1);
+    let twice: f64 = corners
+        .iter()
+        .zip(next)
+        .map(|(a, b)| {
+            let ((a_lon, a_lat), (b_lon, b_lat)) = (flat(a), flat(b));
+            a_lon * b_lat - b_lon * a_lat
+        })
+        .sum();
+    twice > 0.0
 }

@@ -10,12 +10,13 @@ use flight_plan::{AltitudeReference, Value};
 use geometry::LatLon;
 use std::fmt::Write;
 
-/// What is read of the file, a route or track, and a point.
-const KNOWN: [&[&str]; 3] = [
-    &["metadata", "wpt", "rte", "trk"],
-    &["name", "desc", "rtept", "trkseg", "trkpt"],
-    &["ele", "name", "desc", "type"],
-];
+/// What is read of the file, and of a route or track.
+const KNOWN: [&[&str]; 2] =
+    [&["metadata", "wpt", "rte", "trk"], &["name", "desc", "rtept", "trkseg", "trkpt"]];
+/// What is read of a point; the type comes last, because it is a mark of ours.
+const KNOWN_POINT: [&str; 4] = ["ele", "name", "desc", "type"];
+/// Who wrote a file with such marks.
+const CREATOR: &str = "Legwork";
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
@@ -30,14 +31,15 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     let metadata = root.child("metadata").unwrap_or(&root);
     drawing.name = metadata.text_of("name").to_owned();
     lost(&root, KNOWN[0], &mut drawing.notes);
+    let ours = root.attribute("creator") == Some(CREATOR);
     for element in &root.children {
         match element.name.as_str() {
-            "wpt" => point(element, &mut drawing)?,
-            "rte" => line(element, element, &mut drawing)?,
+            "wpt" => point(element, ours, &mut drawing)?,
+            "rte" => line(element, element, ours, &mut drawing)?,
             "trk" => {
                 lost(element, KNOWN[1], &mut drawing.notes);
                 let mut segments = element.children.iter().filter(|c| c.name == "trkseg");
-                segments.try_for_each(|segment| line(element, segment, &mut drawing))?;
+                segments.try_for_each(|segment| line(element, segment, ours, &mut drawing))?;
             }
             _ => {}
         }
@@ -45,38 +47,40 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     Ok(drawing)
 }
 
-fn point(element: &Element, drawing: &mut Drawing) -> Result<(), Error> {
-    let Some(vertex) = vertex(element, &mut drawing.notes) else { return Ok(()) };
+fn point(element: &Element, ours: bool, drawing: &mut Drawing) -> Result<(), Error> {
+    let Some(vertex) = vertex(element, ours, &mut drawing.notes) else { return Ok(()) };
     let marks = vec![("legwork".to_owned(), vertex.kind.clone())];
     let (place, name, description) =
         (element.place(), vertex.name.clone(), element.text_of("desc").to_owned());
     drawing.add(Feature { place, name, description, marks, shape: Shape::Point(vertex) })
 }
 
-fn line(named: &Element, element: &Element, drawing: &mut Drawing) -> Result<(), Error> {
+fn line(named: &Element, element: &Element, ours: bool, drawing: &mut Drawing) -> Result<(), Error> {
     lost(element, KNOWN[1], &mut drawing.notes);
     let points = element.children.iter().filter(|c| matches!(c.name.as_str(), "rtept" | "trkpt"));
-    let vertices: Vec<Vertex> = points.filter_map(|p| vertex(p, &mut drawing.notes)).collect();
+    let vertices: Vec<Vertex> = points.filter_map(|p| vertex(p, ours, &mut drawing.notes)).collect();
     let (place, name, description) =
         (element.place(), named.text_of("name").to_owned(), named.text_of("desc").to_owned());
     drawing.add(Feature { place, name, description, marks: Vec::new(), shape: Shape::Line(vertices) })
 }
 
-fn vertex(element: &Element, notes: &mut Notes) -> Option<Vertex> {
+fn vertex(element: &Element, ours: bool, notes: &mut Notes) -> Option<Vertex> {
     let degrees = |name: &str| element.attribute(name).and_then(|v| v.trim().parse::<f64>().ok());
     let position = degrees("lat").zip(degrees("lon")).map(|(lat, lon)| LatLon::new(lat, lon));
     let Some(position) = position.filter(|p| p.is_valid()) else {
         notes.again("no-position", element.place(), "a point without a good `lat` and `lon` is left out");
         return None;
     };
-    lost(element, KNOWN[2], notes);
+    lost(element, if ours { &KNOWN_POINT } else { &KNOWN_POINT[..3] }, notes);
     let ele = element.child("ele").map(|e| e.text.parse::<f64>());
     let metres = ele.as_ref().and_then(|e| e.as_ref().ok()).copied().filter(|m| m.abs() < 1e5);
     if ele.is_some() && metres.is_none() {
         notes.again("bad-altitude", element.place(), "an elevation that is no number is left out");
     }
     let altitude = metres.map(|m| altitude(m, AltitudeReference::Amsl));
-    let (name, kind) = (element.text_of("name").to_owned(), element.text_of("type").to_owned());
+    // other programs' types are not marks of ours, though one may be called a path or a runway
+    let kind = if ours { element.text_of("type") } else { "" };
+    let (name, kind) = (element.text_of("name").to_owned(), kind.to_owned());
     Some(Vertex { position, altitude, name, kind })
 }
 
@@ -94,7 +98,9 @@ fn shown(name: &str) -> String {
 
 /// Writes a file.
 pub fn write(drawing: &Drawing) -> Vec<u8> {
-    let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<gpx xmlns=\"http://www.topografix.com/GPX/1/1\" version=\"1.1\" creator=\"Legwork\">\n".to_owned();
+    let mut text = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<gpx xmlns=\"http://www.topografix.com/GPX/1/1\" version=\"1.1\" creator=\"{CREATOR}\">\n"
+    );
     // writing to a string can't fail
     let _ = writeln!(text, "  <metadata><name>{}</name></metadata>", escaped(&drawing.name));
     for feature in &drawing.features {

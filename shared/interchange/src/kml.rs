@@ -111,14 +111,21 @@ impl Reader {
         let mut outer = Vec::new();
         let mut holes = Vec::new();
         for child in &polygon.children {
-            let Some(ring) = child.child("LinearRing") else {
+            let mut rings = child.children.iter().filter(|c| c.name == "LinearRing").peekable();
+            if rings.peek().is_none() {
                 self.lost(child);
-                continue;
-            };
-            let ring = self.coordinates(polygon, ring)?;
-            match child.name.as_str() {
-                "outerBoundaryIs" => outer = ring,
-                _ => holes.push(positions(ring)),
+            }
+            for ring in rings {
+                let place = ring.place();
+                let ring = self.coordinates(polygon, ring)?;
+                match child.name.as_str() {
+                    "outerBoundaryIs" if outer.is_empty() => outer = ring,
+                    "outerBoundaryIs" => {
+                        let message = "a second outer boundary of an area is left out";
+                        self.drawing.notes.again("element-not-carried", place, message);
+                    }
+                    _ => holes.push(positions(ring)),
+                }
             }
         }
         let altitude = outer.first().and_then(|v| v.altitude.clone());

@@ -207,3 +207,15 @@ fn a_fence_of_the_first_version_is_told() {
         fence(r#"{"version":1,"parameters":[],"polygon":[[36.25,-84.25],[36.25,-84.1],[36.37,-84.1]]}"#);
     assert_eq!(said(&old, "fence-version").len(), 2);
 }
+
+#[test]
+fn items_with_a_coordinate() {
+    for params in [r#""params":[0,3,0,0]"#, r#""param1":0,"param2":3,"param3":0,"param4":0"#] {
+        let item = format!(
+            r#",{{"autoContinue":true,"command":16,"coordinate":[36.3209,-84.1537,90],"doJumpId":2,"frame":3,{params},"type":"SimpleItem"}}"#
+        );
+        assert_eq!(outline(&import(&file(&item)).plan)[2], "  item2: TF 36.3209 -84.1537 over, 90 home");
+    }
+    let without = r#",{"autoContinue":true,"command":16,"doJumpId":2,"frame":3,"type":"SimpleItem"}"#;
+    assert_eq!(said(&import(&file(without)), "bad-item").len(), 1);
+}

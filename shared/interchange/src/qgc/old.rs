@@ -1,6 +1,6 @@
-//! Surveys of versions 2 and 3, which QGC wrote before 2018, in the words of those after them.
+//! What older versions of QGC wrote, in the words of those after them: surveys of versions 2 and 3, and items with a coordinate.
 
-use super::json::{flag, number};
+use super::json::{flag, list, number};
 use serde_json::{Value as Json, json};
 use std::borrow::Cow;
 
@@ -53,4 +53,25 @@ fn camera(item: &Json, grid: &Json) -> Json {
         }
     }
     calc
+}
+
+/// The seven parameters of an item, NaN where there is none. Items once had their place beside four of them, which before that were
+/// called `param1` to `param4`. `None` for an item without any.
+pub fn params(item: &Json) -> Option<[f64; 7]> {
+    let mut params = [f64::NAN; 7];
+    let place = list(item, "coordinate");
+    let named =
+        ["param1", "param2", "param3", "param4"].map(|key| item.get(key).cloned().unwrap_or(Json::Null));
+    let listed = match list(item, "params") {
+        [] if !place.is_empty() => &named,
+        listed => listed,
+    };
+    let beside = if listed.len() <= 4 { place } else { &[] };
+    let all = listed.iter().take(7).enumerate().chain((4..7).zip(beside));
+    for (index, value) in all {
+        if let Some(param) = params.get_mut(index) {
+            *param = value.as_f64().unwrap_or(f64::NAN);
+        }
+    }
+    (!listed.is_empty()).then_some(params)
 }

@@ -119,14 +119,9 @@ impl Reader<'_> {
     }
 
     fn simple(&mut self, item: &Value, place: String) {
-        let listed = list(item, "params");
-        if listed.is_empty() {
+        let Some(mut params) = old::params(item) else {
             return self.notes.push("bad-item", place, "this item is left out: it has no params");
-        }
-        let mut params = [f64::NAN; 7];
-        for (param, value) in params.iter_mut().zip(listed) {
-            *param = value.as_f64().unwrap_or(f64::NAN);
-        }
+        };
         let whole = |key: &str| item.get(key).and_then(Value::as_u64).unwrap_or(u64::MAX);
         let mut frame = whole("frame").min(u16::MAX.into()) as u16;
         let command = whole("command").min(u16::MAX.into()) as u16;

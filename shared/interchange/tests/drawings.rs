@@ -1,0 +1,80 @@
+//! Drawings of other programs, and how ours are drawn.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod outline;
+
+use flight_plan::{Zone, ZoneKind, ZoneShape};
+use geometry::LatLon;
+use interchange::{Assumptions, Export, Format, Import, read, write};
+use outline::outline;
+
+fn import(format: Format, text: &str) -> Import {
+    read(format, text.as_bytes(), &Assumptions::default()).unwrap()
+}
+
+fn said<'a>(import: &'a Import, code: &str) -> Vec<&'a str> {
+    import.notes.iter().filter(|n| n.code == code).map(|n| n.message.as_str()).collect()
+}
+
+#[test]
+fn types_of_other_programs_points_are_no_marks_of_ours() {
+    let file = |creator: &str| {
+        let text = format!(
+            "<gpx version='1.1' creator='{creator}'><wpt lat='36.33' lon='-84.15'><ele>349</ele><name>Trailhead</name><type>path</type></wpt>\
+             <wpt lat='36.34' lon='-84.15'><name>Old strip</name><type>runway</type></wpt></gpx>"
+        );
+        import(Format::Gpx, &text)
+    };
+    let other = file("Garmin Connect");
+    assert_eq!(outline(&other.plan), ["fix Trailhead 36.33 -84.15 ", "fix Old-strip 36.34 -84.15 "]);
+    assert_eq!(said(&other, "element-not-carried"), ["<type> of <wpt> is left out (2 times, here first)"]);
+    let ours = file("Legwork");
+    assert_eq!((ours.plan.fixes.len(), ours.plan.runways.len()), (0, 1));
+}
+
+#[test]
+fn every_hole_of_a_boundary_is_one() {
+    let ring = |at: f64| {
+        format!(
+            "<LinearRing><coordinates>{at},36.302 {at}5,36.302 {at}5,36.304 {at},36.302</coordinates></LinearRing>"
+        )
+    };
+    let text = format!(
+        "<kml><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>-84.17,36.30 -84.15,36.30 -84.15,36.31 -84.17,36.30\
+         </coordinates></LinearRing>{}</outerBoundaryIs><innerBoundaryIs>{}{}</innerBoundaryIs></Polygon></Placemark></kml>",
+        ring(-84.1),
+        ring(-84.16),
+        ring(-84.15)
+    );
+    let import = import(Format::Kml, &text);
+    assert!(outline(&import.plan).last().unwrap().contains("2 holes"), "{:?}", outline(&import.plan));
+    assert_eq!(said(&import, "element-not-carried"), ["a second outer boundary of an area is left out"]);
+}
+
+#[test]
+fn rings_turn_as_geojson_wants() {
+    let corners =
+        |places: &[(f64, f64)]| places.iter().map(|(lat, lon)| LatLon::new(*lat, *lon)).collect::<Vec<_>>();
+    // clockwise, the second across the antimeridian
+    for clockwise in [
+        corners(&[(36.25, -84.25), (36.37, -84.25), (36.37, -84.1), (36.25, -84.1)]),
+        corners(&[(10.0, 179.9), (10.2, 179.9), (10.2, -179.9), (10.0, -179.9)]),
+    ] {
+        let anticlockwise: Vec<_> = [0, 3, 2, 1].map(|i| clockwise[i]).to_vec();
+        for drawn in [clockwise, anticlockwise.clone()] {
+            let zone = Zone {
+                id: "z".into(),
+                name: String::new(),
+                kind: ZoneKind::KeepIn,
+                shape: ZoneShape::Polygon(drawn),
+                floor: None,
+                ceiling: None,
+                active: Vec::new(),
+            };
+            let plan = flight_plan::FlightPlan { zones: vec![zone], ..Default::default() };
+            let written = write(Format::GeoJson, &Export { plan: &plan, steps: &[] }).unwrap();
+            let found = read(Format::GeoJson, &written.bytes, &Assumptions::default()).unwrap().plan;
+            assert_eq!(found.zones[0].shape, ZoneShape::Polygon(anticlockwise.clone()));
+        }
+    }
+}
