@@ -1,6 +1,6 @@
 //! GeoJSON, RFC 7946.
 
-use crate::drawing::{Drawing, Feature, Shape, Vertex, open_ring};
+use crate::drawing::{Drawing, Feature, Shape, Vertex, level, open_ring};
 use crate::note::Notes;
 use crate::qgc::bounded_json;
 use crate::synthetic::altitude;
@@ -161,7 +161,7 @@ impl Reader<'_> {
     fn area(&mut self, rings: &[Vec<Position>]) -> Option<Shape> {
         let mut rings = rings.iter().map(|r| self.line(r)).collect::<Vec<_>>().into_iter();
         let outer = rings.next()?;
-        let altitude = outer.first().and_then(|v| v.altitude.clone());
+        let altitude = level(&outer, self.place, self.notes);
         let positions = |ring: Vec<Vertex>| open_ring(ring.into_iter().map(|v| v.position).collect());
         let outer = positions(outer);
         if outer.len() < 3 {

@@ -13,8 +13,6 @@ use std::fmt::Write;
 /// What is read of the file, and of a route or track.
 const KNOWN: [&[&str]; 2] =
     [&["metadata", "wpt", "rte", "trk"], &["name", "desc", "rtept", "trkseg", "trkpt"]];
-/// What is read of a point; the type comes last, because it is a mark of ours.
-const KNOWN_POINT: [&str; 4] = ["ele", "name", "desc", "type"];
 /// Who wrote a file with such marks.
 const CREATOR: &str = "Legwork";
 
@@ -71,7 +69,9 @@ fn vertex(element: &Element, ours: bool, notes: &mut Notes) -> Option<Vertex> {
         notes.again("no-position", element.place(), "a point without a good `lat` and `lon` is left out");
         return None;
     };
-    lost(element, if ours { &KNOWN_POINT } else { &KNOWN_POINT[..3] }, notes);
+    let marks = ours.then_some("type").into_iter();
+    let described = (element.name == "wpt").then_some("desc");
+    lost(element, &marks.chain(described).chain(["ele", "name"]).collect::<Vec<_>>(), notes);
     let ele = element.child("ele").map(|e| e.text.parse::<f64>());
     let metres = ele.as_ref().and_then(|e| e.as_ref().ok()).copied().filter(|m| m.abs() < 1e5);
     if ele.is_some() && metres.is_none() {

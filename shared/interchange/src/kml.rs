@@ -1,7 +1,7 @@
 //! KML 2.2: placemarks with points, lines, rings, polygons and collections of them.
 //! Source: OGC 12-007r2. Own marks are written as `ExtendedData`.
 
-use crate::drawing::{Drawing, Feature, Shape, Vertex, open_ring};
+use crate::drawing::{Drawing, Feature, Shape, Vertex, level, open_ring};
 use crate::note::Notes;
 use crate::synthetic::altitude;
 use crate::xml::{self, Element, escaped};
@@ -128,7 +128,7 @@ impl Reader {
                 }
             }
         }
-        let altitude = outer.first().and_then(|v| v.altitude.clone());
+        let altitude = level(&outer, &polygon.place(), &mut self.drawing.notes);
         let outer = positions(outer);
         holes.retain(|h| h.len() >= 3);
         Ok((outer.len() >= 3).then_some(Shape::Area { outer, holes, altitude }))

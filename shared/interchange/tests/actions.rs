@@ -124,3 +124,13 @@ fn pictures_of_a_survey_come_back() {
         assert_eq!(found.stages[0].legs[0].actions, both);
     }
 }
+
+#[test]
+fn the_series_of_a_loop_goes_on_behind_a_survey_with_its_own() {
+    let own = survey(vec![on(every(25.0), Act::Photo)]);
+    let legs = vec![twice("loop", vec![on(every(40.0), Act::Photo)], vec![own, way("b")])];
+    let file = written(Format::Plan, legs, &["survey", "b"]);
+    let found = read(Format::Plan, &file.bytes, &Assumptions::default()).unwrap().plan;
+    let behind: Vec<_> = found.stages[0].legs[1].actions.iter().map(|a| a.act.clone()).collect();
+    assert_eq!(behind, [Act::PhotoSeries { every_m: Value::Constant(40.0) }, Act::PhotoStop]);
+}

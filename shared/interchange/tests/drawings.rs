@@ -78,3 +78,23 @@ fn rings_turn_as_geojson_wants() {
         }
     }
 }
+
+#[test]
+fn descriptions_and_altitudes_that_have_no_place_are_told() {
+    let kml = import(
+        Format::Kml,
+        "<kml><Placemark><name>Route</name><description>slowly</description><LineString><coordinates>-84.16,36.32 -84.17,36.33\
+         </coordinates></LineString></Placemark><Placemark><Polygon><altitudeMode>absolute</altitudeMode><outerBoundaryIs><LinearRing>\
+         <coordinates>-84.17,36.30,450 -84.15,36.30,450 -84.15,36.31,460 -84.17,36.30,450</coordinates></LinearRing></outerBoundaryIs>\
+         </Polygon></Placemark></kml>",
+    );
+    assert_eq!(
+        (said(&kml, "description-not-carried").len(), said(&kml, "altitude-not-carried").len()),
+        (1, 1)
+    );
+    let gpx = import(
+        Format::Gpx,
+        "<gpx version='1.1' creator='x'><rte><rtept lat='36.3' lon='-84.1'><desc>the mill</desc></rtept></rte></gpx>",
+    );
+    assert_eq!(said(&gpx, "element-not-carried"), ["<desc> of <rtept> is left out"]);
+}

@@ -118,3 +118,14 @@ fn a_home_without_an_elevation_is_not_at_sea_level() {
     assert_eq!(outline(&import.plan)[1], "  item1: DF 36.3273 -84.1598, 80 agl");
     assert_eq!(said(&import, "no-home"), ["line 3"]);
 }
+
+#[test]
+fn settings_of_loiters_and_landings_that_have_no_counterpart() {
+    let import = list(
+        "1 0 3 22 15 0 0 0 0 0 80 1\n2 0 3 18 2 0 100 0 0 0 90 1\n3 0 3 21 60 0 0 0 36.319 -84.173 0 1\n",
+    );
+    assert_eq!(
+        (said(&import, "loiter-place"), said(&import, "landing-setting")),
+        (vec!["line 4"], vec!["line 5"])
+    );
+}

@@ -219,3 +219,10 @@ fn items_with_a_coordinate() {
     let without = r#",{"autoContinue":true,"command":16,"doJumpId":2,"frame":3,"type":"SimpleItem"}"#;
     assert_eq!(said(&import(&file(without)), "bad-item").len(), 1);
 }
+
+#[test]
+fn a_mission_of_another_vehicle_is_told() {
+    let of = |kind: &str| file("").replace(r#""vehicleType":1"#, &format!(r#""vehicleType":{kind}"#));
+    assert_eq!(said(&import(&of("2")), "vehicle-type").len(), 1);
+    assert!(["1", "20", "null"].iter().all(|kind| said(&import(&of(kind)), "vehicle-type").is_empty()));
+}

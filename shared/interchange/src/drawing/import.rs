@@ -163,6 +163,7 @@ impl Importer<'_> {
     }
 
     fn line(&mut self, feature: &Feature, line: &[Vertex]) {
+        self.undescribed(feature);
         let line = self.without_ends(feature, line);
         if line.is_empty() {
             return;
@@ -183,6 +184,14 @@ impl Importer<'_> {
             stage.legs.push(way.into());
         }
         self.plan.stages.push(stage);
+    }
+
+    /// Legs and stages have names, and no descriptions.
+    fn undescribed(&mut self, feature: &Feature) {
+        if !feature.description.is_empty() {
+            let message = "the description of a line or an area is left out";
+            self.notes.again("description-not-carried", &feature.place, message);
+        }
     }
 
     fn altitude(&mut self, drawn: Option<&Altitude>, place: &str) -> Altitude {
@@ -221,6 +230,7 @@ impl Importer<'_> {
             "area `{id}` is scanned with tracks {spacing_m:.0} m apart: change that, or make a zone of it"
         );
         self.notes.push("area-as-scan", &feature.place, message);
+        self.undescribed(feature);
         let scan = Scan {
             area: Area::Polygon { corners: outer.to_vec(), holes: holes.to_vec() },
             style: ScanStyle::Parallel,

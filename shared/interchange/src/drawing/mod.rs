@@ -144,6 +144,16 @@ impl Feature {
     }
 }
 
+/// The altitude of an area that is drawn with this outer ring: that of its first corner.
+pub fn level(ring: &[Vertex], place: &str, notes: &mut Notes) -> Option<Altitude> {
+    let altitude = ring.first().and_then(|v| v.altitude.clone());
+    if ring.iter().any(|v| v.altitude != altitude) {
+        let message = "an area has one altitude, that of its first corner: those of the others are left out";
+        notes.again("altitude-not-carried", place, message);
+    }
+    altitude
+}
+
 /// A ring without the closing corner.
 pub fn open_ring(mut ring: Vec<LatLon>) -> Vec<LatLon> {
     if ring.len() > 1 && ring.first() == ring.last() {

@@ -43,6 +43,10 @@ impl Importer<'_> {
         if item.command == cmd::VTOL_LAND {
             self.notes.push("vtol", &item.place, "a vertical landing becomes one on a runway");
         }
+        if item.param(1) > 0.0 {
+            let message = "the altitude to climb to when a landing is broken off is left out";
+            self.notes.push("landing-setting", &item.place, message);
+        }
         let Some(position) = item.position().or(self.last).or(self.home) else {
             return self.notes.push(
                 "no-position",

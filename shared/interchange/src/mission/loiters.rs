@@ -18,6 +18,10 @@ impl Importer<'_> {
             let message = "a loiter on the spot is left out: the file doesn't say where that is";
             return self.notes.push("no-position", &item.place, message);
         };
+        if item.position().is_none() && self.legs.is_empty() {
+            let message = "a loiter on the spot before any place is put at home";
+            self.notes.push("loiter-place", &item.place, message);
+        }
         let signed_m = match item.command {
             cmd::LOITER_TO_ALTITUDE => item.param(2),
             _ => item.param(3),

@@ -11,6 +11,10 @@ use serde_json::Value;
 /// Most values in a file: each takes memory while it is read.
 pub const MAX_VALUES: usize = 8_000_000;
 
+/// MAV_TYPE_FIXED_WING, and the types that fly as one when they have taken off.
+const FIXED_WING: u64 = 1;
+const VTOL: std::ops::RangeInclusive<u64> = 19..=25;
+
 /// Keys of the file, and of its mission, that are understood (or say nothing about the flight).
 const KEYS: &[&str] = &["fileType", "geoFence", "groundStation", "mission", "rallyPoints", "version"];
 const MISSION_KEYS: &[&str] = &[
@@ -50,6 +54,7 @@ pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
         let message = "the cruise speed is left out: QGC plans with it, but no item commands it";
         notes.push("cruise-speed", "mission", message);
     }
+    vehicle(mission, &mut notes);
     let items = list(mission, "items");
     if items.len() > MAX_ITEMS {
         return Err(Error::TooMany { what: "items", limit: MAX_ITEMS });
@@ -74,6 +79,17 @@ fn unknown(object: &Value, known: &[&str], place: &str, notes: &mut Notes) {
     {
         let key: String = key.chars().take(60).collect();
         notes.push("unknown-key", place, format!("`{key}` is not known and left out"));
+    }
+}
+
+/// Legwork flies aeroplanes: what another vehicle flies by turning on the spot comes out with turns.
+fn vehicle(mission: &Value, notes: &mut Notes) {
+    let Some(kind) = mission.get("vehicleType").and_then(Value::as_u64) else { return };
+    if kind != 0 && kind != FIXED_WING && !VTOL.contains(&kind) {
+        let message = format!(
+            "the mission is for another kind of vehicle (MAV_TYPE {kind}): its take-off, landing and turns become those of an aeroplane"
+        );
+        notes.push("vehicle-type", "mission", message);
     }
 }
 

@@ -74,14 +74,19 @@ impl Writer<'_> {
         }
         let last = passage.iter().rposition(moves).unwrap_or(0);
         let pictures = self.legs.get(leg).is_some_and(|c| pattern::every_m(c.leg).is_some());
-        let own = |item: &Flown| moves(item) || pictures && item.command == commands::CAMERA_TRIGGER_DISTANCE;
+        // behind the last place a series is one of a loop around, which goes on
+        let own = |(index, item): &(usize, &Flown)| {
+            let goes_on = *index > last && item.params[0] > 0.0;
+            moves(item) || pictures && item.command == commands::CAMERA_TRIGGER_DISTANCE && !goes_on
+        };
         let beside = |after: bool| {
-            let there = move |(index, item): &(usize, &Flown)| !own(item) && (*index > last) == after;
+            let there =
+                move |(index, item): &(usize, &Flown)| !own(&(*index, item)) && (*index > last) == after;
             passage.iter().enumerate().filter(there).map(|(_, item)| item)
         };
         beside(false).for_each(|item| self.simple(item));
         let inside: Vec<Value> =
-            passage.iter().filter(|item| own(item)).map(|item| self.numbered(item)).collect();
+            passage.iter().enumerate().filter(own).map(|(_, item)| self.numbered(item)).collect();
         self.items.extend(self.pattern(leg, &inside, visual(passage)));
         self.approach = None;
         beside(true).for_each(|item| self.simple(item));
