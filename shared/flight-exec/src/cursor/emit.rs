@@ -73,7 +73,12 @@ impl Cursor {
             Action::TakeOff { .. } => (altitude_amsl_m, altitude_amsl_m),
             Action::Land { .. } => (altitude_amsl_m, towards(from.predicted_amsl_m, 0.0)),
             Action::Fly | Action::Loiter { .. } => {
-                (towards(from.predicted_amsl_m, CLIMB_LEAD_M), towards(from.predicted_amsl_m, 0.0))
+                // ahead of the aircraft, and from the waypoint before it no steeper than the gateway grants
+                let ahead_m = towards(from.predicted_amsl_m, CLIMB_LEAD_M);
+                let (down_m, up_m) = (descent_m + CLIMB_LEAD_M, climb_m + CLIMB_LEAD_M);
+                let commanded_m =
+                    ahead_m.max(from.commanded_amsl_m - down_m).min(from.commanded_amsl_m + up_m);
+                (commanded_m, towards(from.predicted_amsl_m, 0.0))
             }
         };
         self.path = PathState {

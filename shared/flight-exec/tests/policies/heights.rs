@@ -51,10 +51,15 @@ fn altitude_m(leg: &Leg, n: f64) -> Option<f64> {
 fn is_as_said(leg: &Leg, n: f64, from: &Waypoint, to: &Waypoint) -> bool {
     let profile = Profile::default();
     let time_s = apart_m(from.position, to.position) / to.airspeed_mps.max(1.0);
-    let up_m = profile.max_climb_mps * time_s + LEAD_M;
-    let down_m = profile.max_descent_mps * time_s + LEAD_M;
-    let reached_m = |m: f64| m.max(from.altitude_amsl_m - down_m).min(from.altitude_amsl_m + up_m);
-    let off_m = altitude_m(leg, n).map_or(0.0, |m| (to.altitude_amsl_m - reached_m(m)).abs());
+    let (up_m, down_m) = (profile.max_climb_mps * time_s, profile.max_descent_mps * time_s);
+    let reached_m = |m: f64, lead_m: f64| {
+        m.max(from.altitude_amsl_m - down_m - lead_m).min(from.altitude_amsl_m + up_m + lead_m)
+    };
+    // the waypoint before may have been ahead of the aircraft as well
+    let off_m = altitude_m(leg, n).map_or(0.0, |m| {
+        let (a, b) = (reached_m(m, 0.0), reached_m(m, LEAD_M));
+        (a.min(b) - to.altitude_amsl_m).max(to.altitude_amsl_m - a.max(b)).max(0.0)
+    });
     has_speed(leg, n, to) && off_m < SENT_M
 }
 
