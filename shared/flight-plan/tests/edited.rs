@@ -28,7 +28,7 @@ fn plans() -> Vec<FlightPlan> {
         "bad/duplicate-argument",
     ];
     let plan = |name: &str| read(std::fs::read(folder.join(format!("{name}.xml"))).unwrap()).plan;
-    names.into_iter().map(plan).chain([tracks(12), nested(), varied()]).collect()
+    names.into_iter().map(plan).chain([tracks(12), nested(), varied(), arriving()]).collect()
 }
 
 const AROUND: [&str; 2] = [
@@ -63,6 +63,16 @@ fn varied() -> FlightPlan {
         <stage id="t" type="en-route" altitude="500" altitudeReference="amsl" speed="= v"><TF id="d" lat="36.33" lon="-84.2"/><TF id="e" lat="36.32" lon="-84.2"/>"#;
     let around = AROUND.map(|text| text.replace("</runways>", &format!("</runways>{variables}")));
     read(format!("{}{legs}{}", around[0], around[1])).plan
+}
+
+/// Courses that are joined, places abeam of tracks, and ways that lead again to where the aircraft is.
+fn arriving() -> FlightPlan {
+    let legs = r#"<TF id="a" fix="A"/><TF id="b" lat="36.31" lon="-84.2"><action on="abeam" fix="A"><photo/></action></TF>
+        <CF id="c" lat="36.33" lon="-84.18" course="70"/><DF id="d" lat="36.34" lon="-84.16"/><CF id="e" lat="36.35" lon="-84.15" course="0"/>
+        <HF id="h" fix="A" course="0" turn="left" length="500"/><CF id="f" lat="36.32" lon="-84.19" course="40"/>
+        <iterative id="l" form="forward" count="2"><TF id="k" lat="36.31" lon="-84.19"><action on="abeam" lat="36.3" lon="-84.1"><photo/></action></TF></iterative>
+        <TF id="y" lat="36.32" lon="-84.2"/><intersection id="i" default="on"><branch id="on"/><branch id="back" next="y"/></intersection><TF id="z" lat="36.33" lon="-84.2"/>"#;
+    read(format!("{}{legs}{}", AROUND[0], AROUND[1])).plan
 }
 
 /// What a random edit is made of: which kind, and numbers to choose with.
@@ -163,7 +173,7 @@ proptest! {
     /// Whatever was edited, fixed as proposed, or undone.
     #[test]
     fn an_edited_plan_is_checked_and_compiled_as_if_it_were_new(
-        base in 0..11_usize, edits in vec((choice(), 0..9_u8), 1..8),
+        base in 0..12_usize, edits in vec((choice(), 0..9_u8), 1..8),
     ) {
         let ground: Arc<dyn Terrain> = Arc::new(Flat(300.0));
         let mut memories = [(); 2].map(|()| Memory::new(Profile::default(), ground.clone()));

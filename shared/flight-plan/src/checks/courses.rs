@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Attributes that are directions.
 const DIRECTIONS: [&str; 3] = ["course", "heading", "bearing"];
+/// Wind for which turns are laid out where none is measured, m/s: that of whoever flies the plan.
+const DESIGN_WIND_MPS: f64 = 6.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
@@ -107,7 +109,8 @@ fn not_intercepted(
     let (before_m, aside_m) = seen_from(fix, course_deg, start);
     let radius_m = view.turn_radius_m(step.speed_mps);
     let needed_m = radius_m.min(2.0 * (radius_m * aside_m).sqrt());
-    let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, radius_m));
+    let flown_m = view.turn_radius_m(step.speed_mps + DESIGN_WIND_MPS);
+    let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, flown_m));
     let joining = way.map(|way| way.joining);
     let from =
         format!("the path comes from {aside_m:.0} m beside the course and {before_m:.0} m before the fix");
@@ -212,8 +215,12 @@ mod tests {
     /// The turn onto the course is half flown where the path comes from.
     #[test]
     fn who_comes_slanting_needs_less_room() {
-        let cf = r#"<IF id="a" lat="36.3" lon="-84.2"/><TF id="b" lat="36.31" lon="-84.19"/><CF id="c" lat="36.3105" lon="-84.1886" course="90"/>"#;
-        check_legs(&[(cf, &[])]);
+        let cf = |lon: f64| {
+            format!(
+                r#"<IF id="a" lat="36.30384" lon="-84.211"/><TF id="b" lat="36.31" lon="-84.19"/><CF id="c" lat="36.31018" lon="{lon}" course="90"/>"#
+            )
+        };
+        check_legs(&[(&cf(-84.1889), &[]), (&cf(-84.1895), &["course-not-intercepted"])]);
     }
 
     #[test]
@@ -231,6 +238,13 @@ mod tests {
             assert_eq!(codes(&bad), ["bad-course"], "{bad}");
             fixed(&bad, "bad-course");
         }
+        let outer =
+            r#"<procedure id="q"><call id="inner" procedure="p" bearing="400"/></procedure></procedures>"#;
+        let nested = plan("0", "0")
+            .replace("</procedures>", outer)
+            .replace(r#"procedure="p" bearing="0""#, r#"procedure="q""#);
+        assert_eq!(codes(&nested), ["bad-course"], "told once, where it is written");
+        fixed(&nested, "bad-course");
     }
 
     #[test]
