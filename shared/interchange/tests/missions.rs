@@ -30,6 +30,8 @@ fn a_landing_on_the_spot_is_where_the_aircraft_is() {
     let import = behind_two("4 0 3 21 0 0 0 0 0 0 0 1\n");
     let runway = import.plan.runways.last().unwrap();
     assert_eq!((runway.threshold, runway.elevation_amsl_m), (LatLon::new(36.3209, -84.1537), 349.0));
+    // as it came there, south-west
+    assert!((200.0..220.0).contains(&runway.heading_deg), "{}", runway.heading_deg);
 }
 
 #[test]
@@ -128,4 +130,13 @@ fn settings_of_loiters_and_landings_that_have_no_counterpart() {
         (said(&import, "loiter-place"), said(&import, "landing-setting")),
         (vec!["line 4"], vec!["line 5"])
     );
+}
+
+#[test]
+fn a_landing_that_is_not_as_high_as_its_runway_is_told() {
+    let at = |height_m: &str| {
+        let landing = format!("4 0 3 21 0 0 0 52.1 36.319 -84.173 {height_m} 1\n");
+        said(&behind_two(&landing), "runway-elevation").len()
+    };
+    assert_eq!((at("0"), at("12")), (0, 1));
 }

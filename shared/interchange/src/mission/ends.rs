@@ -4,7 +4,7 @@ use super::commands as cmd;
 use super::import::Importer;
 use super::loiters::racetrack;
 use super::placed::{leg, waypoint};
-use super::runways::Direction;
+use super::runways::{Direction, SAME_M};
 use super::{Approach, Item};
 use crate::synthetic;
 use flight_plan::{Id, LegKind, StageKind, TurnDirection};
@@ -36,7 +36,7 @@ impl Importer<'_> {
         stage.altitude = self.altitude(item).or(Some(self.assumptions.altitude()));
         self.level = stage.altitude.clone();
         self.take_off = Some(stage);
-        self.last = Some(position);
+        self.arrive(Some(position));
     }
 
     pub(super) fn land(&mut self, item: &Item) {
@@ -106,7 +106,10 @@ impl Importer<'_> {
             );
             self.home_amsl_m(at)
         };
-        let direction = Direction { heading_deg, towards: None, from: self.last };
+        // what lands on the spot goes on as it came there
+        let mut before = [self.last, self.passed].into_iter().flatten();
+        let from = before.find(|p| p.distance_m(position) > SAME_M);
+        let direction = Direction { heading_deg, towards: None, from };
         let naming = (&mut *self.names, &mut *self.notes);
         let id = self.runways.at("landing", (position, elevation_m), direction, at, naming);
         let mut stage = synthetic::stage(self.names.take("land", "land"), "Landing", StageKind::Land);
@@ -135,7 +138,7 @@ impl Importer<'_> {
         let mut way = leg(Id::new("approach"), kind);
         way.altitude = self.datum.altitude(frame, approach.altitude_m, at, self.notes);
         self.ready(number, way);
-        self.last = Some(approach.position);
+        self.arrive(Some(approach.position));
         let home_m = if relative { self.home_amsl_m(at) } else { 0.0 };
         self.land_at(at, (land.0, land.1 + home_m), f64::NAN);
     }

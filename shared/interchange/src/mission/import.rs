@@ -35,6 +35,7 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         speed_mps: None,
         level: None,
         last: None,
+        passed: None,
     };
     for (entry, ahead) in mission.entries.iter().zip(ahead(&mission.entries)) {
         importer.entry(entry, ahead);
@@ -103,6 +104,8 @@ pub(super) struct Importer<'a> {
     pub(super) level: Option<Altitude>,
     /// Where the last leg ends, if the file says.
     pub(super) last: Option<LatLon>,
+    /// The last known place before that.
+    pub(super) passed: Option<LatLon>,
 }
 
 impl Importer<'_> {
@@ -123,7 +126,7 @@ impl Importer<'_> {
             Entry::Leg { leg, last, end, .. } => {
                 self.ready(number, (**leg).clone());
                 self.legs.iter_mut().next_back().into_iter().for_each(|l| l.last = (*last).max(number));
-                self.last = *end;
+                self.arrive(*end);
             }
             Entry::Landing { place, approach, land, relative, .. } => {
                 self.landing(place, number, approach, *land, *relative)
@@ -134,6 +137,12 @@ impl Importer<'_> {
     /// Where the aircraft is: where the leg before ends, or at home while there is none.
     pub(super) fn here(&self) -> Option<LatLon> {
         self.last.or(self.home.filter(|_| self.legs.is_empty()))
+    }
+
+    /// The aircraft is here now, if anybody knows.
+    pub(super) fn arrive(&mut self, here: Option<LatLon>) {
+        self.passed = self.last.or(self.passed);
+        self.last = here;
     }
 
     fn item(&mut self, item: &Item, ahead: Option<LatLon>) {
@@ -198,7 +207,7 @@ impl Importer<'_> {
         if item.param(1) > 0.0 {
             self.at_end(Act::Wait { seconds: Value::Constant(item.param(1)) });
         }
-        self.last = Some(position);
+        self.arrive(Some(position));
     }
 
     fn jump(&mut self, item: &Item) {

@@ -21,15 +21,17 @@ pub fn close(
     repeats: f64,
     names: &mut Names,
 ) -> Result<(), String> {
-    if target < number && legs.iter().any(|l| target <= l.last && target > l.first) {
+    let begin = legs.iter().position(|l| l.first >= target).unwrap_or(legs.len());
+    // the last one before: jumps into its middle are not a loop
+    let before = begin.checked_sub(1).and_then(|i| legs.get(i)).filter(|_| target < number);
+    if before.is_some_and(|l| target <= l.last && target > l.first) {
         return Err(format!(
             "the jump to item {target} leads into the middle of another loop, a pattern or a wait and is left out"
         ));
     }
-    let begin = legs.iter().position(|l| l.first >= target).filter(|_| target < number);
-    let Some(begin) = begin else {
+    if begin == legs.len() || target >= number {
         return Err(format!("the jump to item {target} leads to no leg before it and is left out"));
-    };
+    }
     let depth = legs.iter().skip(begin).map(|l| l.depth).max().unwrap_or(0) + 1;
     if depth > MAX_DEPTH {
         return Err(format!("the jump to item {target} would nest {depth} loops and is left out"));

@@ -44,7 +44,7 @@ impl Importer<'_> {
                 );
             }
         }
-        self.last = Some(position);
+        self.arrive(Some(position));
     }
 
     /// ArduPilot takes a height of 0 as the present one: there is no altitude of its own then, and that of the leg before counts.

@@ -7,7 +7,7 @@ use flight_plan::{Id, Runway};
 use geometry::LatLon;
 
 /// Two points nearer than this are one runway, and give it no direction, metres.
-const SAME_M: f64 = 1.0;
+pub const SAME_M: f64 = 1.0;
 /// Directions nearer than this are the same, degrees.
 const SAME_DEG: f64 = 1.0;
 
@@ -43,6 +43,13 @@ impl<'a> Runways<'a> {
         if let Some(same) = self.list.iter().find(|r| {
             r.threshold.distance_m(point.0) < SAME_M && (r.heading_deg - heading_deg).abs() < SAME_DEG
         }) {
+            if (same.elevation_amsl_m - point.1).abs() > SAME_M {
+                let message = format!(
+                    "the altitude of this landing, {:.0} m AMSL, is left out: runway `{}` is {:.0} m high",
+                    point.1, same.id, same.elevation_amsl_m
+                );
+                notes.push("runway-elevation", place, message);
+            }
             return same.id.clone();
         }
         let length_m = self.assumptions.runway_length_m;
