@@ -148,7 +148,9 @@ fn a_survey_begins_where_its_way_does() {
     }
     let unworked =
         survey(r#""angle":0,"entryLocation":3,"#, "", "").replace(r#""command":16"#, r#""command":206"#);
-    assert!(outline(&import(&unworked).plan)[2].contains(" StartRight,"));
+    let unworked = import(&unworked);
+    assert!(outline(&unworked.plan)[2].contains(" StartRight,"));
+    assert_eq!(said(&unworked, "entry-point").len(), 1);
 }
 
 /// As QGC wrote surveys until version 3.3.
@@ -225,4 +227,15 @@ fn a_mission_of_another_vehicle_is_told() {
     let of = |kind: &str| file("").replace(r#""vehicleType":1"#, &format!(r#""vehicleType":{kind}"#));
     assert_eq!(said(&import(&of("2")), "vehicle-type").len(), 1);
     assert!(["1", "20", "null"].iter().all(|kind| said(&import(&of(kind)), "vehicle-type").is_empty()));
+}
+
+#[test]
+fn rates_of_climb_over_terrain_are_told() {
+    let keys = r#""DistanceMode":3"#;
+    let terrain = survey("", "", "").replace(r#""DistanceMode":1"#, keys).replace(
+        r#""TurnAroundDistance":0"#,
+        r#""TerrainAdjustMaxClimbRate":3,"TerrainAdjustMaxDescentRate":0,"TerrainAdjustTolerance":10,"TurnAroundDistance":0"#,
+    );
+    assert_eq!(said(&import(&terrain), "pattern-setting").len(), 1);
+    assert_eq!(said(&import(&survey("", "", "")), "pattern-setting").len(), 0);
 }

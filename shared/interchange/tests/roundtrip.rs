@@ -184,6 +184,12 @@ fn surveys_and_corridors_come_back_as_patterns() {
     let plan = plan(legs.clone());
     let written = write(Format::Plan, &Export { plan: &plan, steps: &steps }).unwrap();
     assert!(written.notes.iter().all(|n| n.code != "flattened"), "{:?}", written.notes);
+    // QGC has its own way of finding a corner
+    assert!(
+        written.notes.iter().any(|n| n.code == "entry-point" && n.place == "survey"),
+        "{:?}",
+        written.notes
+    );
     let found = read(Format::Plan, &written.bytes, &Assumptions::default()).unwrap().plan;
     for (wanted, found) in legs.iter().zip(&found.stages[0].legs) {
         assert_eq!(

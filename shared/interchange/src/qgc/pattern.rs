@@ -47,7 +47,7 @@ pub fn read(
     lost(item, transect, place, notes);
     let (kind, wish) = match corridor {
         true => (LegKind::Pattern(along(item, transect, &corners, spacing, place, notes)), "corridor"),
-        false => (LegKind::Scan(survey(item, transect, corners, spacing)), "survey"),
+        false => (LegKind::Scan(survey(item, transect, corners, spacing, place, notes)), "survey"),
     };
     Ok(Some(leg(wish, kind, &camera)))
 }
@@ -70,11 +70,22 @@ fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
     }
 }
 
-fn survey(item: &Json, transect: &Json, corners: Vec<LatLon>, spacing: Spacing) -> Scan {
+fn survey(
+    item: &Json,
+    transect: &Json,
+    corners: Vec<LatLon>,
+    spacing: Spacing,
+    place: &str,
+    notes: &mut Notes,
+) -> Scan {
     let crossed = flag(transect, "Refly90Degrees");
     let angle_deg = number(item, "angle").map(|a| geometry::geodesy::normalise_360(a % 360.0));
     let named = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
     let begun = way::ends(item).zip(angle_deg).and_then(|((first, _), deg)| way::entry(first, &corners, deg));
+    if begun.is_none() && named.is_some() {
+        let message = "the file has no way for this survey: the corner where QGC would begin may be another";
+        notes.push("entry-point", place, message);
+    }
     Scan {
         area: Area::Polygon { corners, holes: Vec::new() },
         style: if crossed { ScanStyle::CrissCross } else { ScanStyle::Parallel },
@@ -110,9 +121,9 @@ fn along(
 
 /// What of a leg that is written as a pattern QGC has no word for.
 pub fn tell(leg: &Leg, notes: &mut Notes) {
-    let (spacing, entry) = match &leg.kind {
-        LegKind::Scan(scan) => (&scan.spacing, scan.entry),
-        LegKind::Pattern(Pattern::Corridor { spacing, .. }) => (spacing, ScanEntry::EndLeft),
+    let spacing = match &leg.kind {
+        LegKind::Scan(scan) => &scan.spacing,
+        LegKind::Pattern(Pattern::Corridor { spacing, .. }) => spacing,
         _ => return,
     };
     if matches!(spacing, Spacing::Camera { .. }) {
@@ -120,9 +131,9 @@ pub fn tell(leg: &Leg, notes: &mut Notes) {
             "field of view and overlap of the camera are left out: the distance between tracks stays";
         notes.push("camera", leg.id.as_str(), message);
     }
-    if entry == ScanEntry::Nearest {
-        let message = "the pattern begins at its top left and no more where it is nearest";
-        notes.push("entry-point", leg.id.as_str(), message);
+    if matches!(leg.kind, LegKind::Scan(_)) {
+        let message = "the way in the file begins where it is flown from now: if QGC works it out anew, it may begin at another corner";
+        notes.again("entry-point", leg.id.as_str(), message);
     }
 }
 
@@ -149,6 +160,12 @@ fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
     }
     if transect.get("CameraTriggerInTurnAround").and_then(Json::as_bool) == Some(false) {
         let message = "pictures are taken in the turns, too: a series lasts as long as its leg";
+        notes.again("pattern-setting", place, message);
+    }
+    let limited = |key: &&str| number(transect, key).is_some_and(|rate_mps| rate_mps > 0.0);
+    if ["TerrainAdjustMaxClimbRate", "TerrainAdjustMaxDescentRate"].iter().any(limited) {
+        let message =
+            "the rates at which it climbs and descends over terrain are left out: the aircraft's own count";
         notes.again("pattern-setting", place, message);
     }
 }
