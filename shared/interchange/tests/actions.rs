@@ -85,11 +85,19 @@ fn the_series_of_a_loop_goes_on_behind_that_of_a_leg_in_it() {
 
 #[test]
 fn a_loop_that_is_all_of_another_is_told() {
-    let inner = twice("inner", vec![on(Trigger::Start, Act::Photo)], vec![way("b")]);
-    let list = written(Format::Waypoints, vec![twice("outer", vec![], vec![inner])], &["b", "b", "b", "b"]);
-    let lost: Vec<_> =
-        list.notes.iter().filter(|n| n.code == "action-not-carried").map(|n| &n.place[..]).collect();
-    assert_eq!(lost, ["inner"]);
+    let lost = |form: IterativeForm| {
+        let inner = twice("inner", vec![on(Trigger::Start, Act::Photo)], vec![way("b")]);
+        let mut outer = twice("outer", vec![], vec![inner]);
+        if let LegKind::Iterative { form: of, .. } = &mut outer.kind {
+            *of = form;
+        }
+        let list = written(Format::Waypoints, vec![outer], &["b", "b", "b", "b"]);
+        let lost: Vec<_> = list.notes.into_iter().filter(|n| n.code == "action-not-carried").collect();
+        lost.into_iter().map(|n| n.place).collect::<Vec<_>>()
+    };
+    assert_eq!(lost(IterativeForm::Forward), ["inner"]);
+    // a call has one pass
+    assert_eq!(lost(IterativeForm::Once), Vec::<String>::new());
 }
 
 fn survey(actions: Vec<LegAction>) -> Leg {

@@ -5,7 +5,7 @@ use super::import::FLY_OVER_M;
 use crate::note::Notes;
 use crate::{Export, Step};
 use flight_exec::{Action, Waypoint};
-use flight_plan::{Act, Id, Leg, LegAction, LegContext, LegKind, Trigger, Value};
+use flight_plan::{Act, Id, IterativeForm, Leg, LegAction, LegContext, LegKind, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
 
@@ -67,7 +67,9 @@ fn around<'a>(context: &LegContext<'a>) -> Vec<&'a Leg> {
 
 /// A loop that is all of another's body: from one pass to the next nothing lies between that would show where it begins again.
 fn merged(context: &LegContext<'_>, notes: &mut Notes) {
-    if is_loop(context.leg) && !context.loops.is_empty() && context.siblings.len() == 1 {
+    let again =
+        |around: &&Leg| matches!(around.kind, LegKind::Iterative { form, .. } if form != IterativeForm::Once);
+    if is_loop(context.leg) && context.siblings.len() == 1 && context.loops.last().is_some_and(again) {
         let message = "its actions are written once for all passes of the loop around it";
         notes.push("action-not-carried", context.leg.id.as_str(), message);
     }
