@@ -9,7 +9,6 @@ pub(crate) struct Order {
     lines: u64,
     /// How many lines a turn leads over at least, where there are enough of them.
     step: u64,
-    blocks: Blocks,
     corner: Corner,
 }
 
@@ -62,7 +61,7 @@ impl Order {
     /// Lines beginning at a corner, each turn over `step` lines at least if there are so many.
     fn new(lines: u64, step: u64, corner: Corner) -> Self {
         let step = step.clamp(1, lines.max(1));
-        Self { lines, step, blocks: Blocks::of(lines, step), corner }
+        Self { lines, step, corner }
     }
 
     /// Turns between tracks need no loops: k lines at least from one to the next, k · spacing ≥ 2 · turn radius (both in metres), if there
@@ -70,6 +69,10 @@ impl Order {
     pub fn interleaved(lines: u64, turn_radius_m: f64, spacing_m: f64, corner: Corner) -> Self {
         let step = (2.0 * turn_radius_m / spacing_m - 1e-9).ceil().max(1.0);
         Self::new(lines, step as u64, corner)
+    }
+
+    fn blocks(&self) -> Blocks {
+        Blocks::of(self.lines, self.step)
     }
 
     pub fn lines(&self) -> u64 {
@@ -92,7 +95,7 @@ impl Order {
             // the usual case, without the divisions
             return self.mirrored(track);
         }
-        let (start, size) = self.blocks.around(track, self.lines);
+        let (start, size) = self.blocks().around(track, self.lines);
         let place = track.saturating_sub(start);
         let half = if place.is_multiple_of(2) { 0 } else { size.div_ceil(2) };
         self.mirrored(start + half + place / 2)
@@ -104,7 +107,7 @@ impl Order {
         if self.step == 1 {
             return line;
         }
-        let (start, size) = self.blocks.around(line, self.lines);
+        let (start, size) = self.blocks().around(line, self.lines);
         let (place, half) = (line.saturating_sub(start), size.div_ceil(2));
         start + if place < half { 2 * place } else { 2 * (place - half) + 1 }
     }

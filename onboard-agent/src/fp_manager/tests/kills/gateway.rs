@@ -139,12 +139,6 @@ impl Gateway {
         self.buffer.clear();
     }
 
-    /// The pilot, or Safe mode, has brought it down.
-    pub fn land(&mut self) {
-        self.state = GatewayState::Stop;
-        self.buffer.clear();
-    }
-
     pub fn alarm(&mut self, id: &str, cause: Cause) {
         let alarm = Alarm {
             id: id.into(),
