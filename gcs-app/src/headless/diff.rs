@@ -138,6 +138,7 @@ fn told(report: &ProposalReport) -> Vec<String> {
     }
     match report.differs_in_m.zip(report.differs_in_s) {
         Some((m, s)) => lines.push(format!("its way differs in {m:.0} m and {s:.0} s")),
+        None if report.entry_needed => {}
         None => lines.push("its way is the same, as far ahead as it is laid out".into()),
     }
     if !report.acceptable {

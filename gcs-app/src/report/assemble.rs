@@ -91,13 +91,14 @@ pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<A
         .filter_map(|(i, passage)| {
             let range = track.range(i);
             let end_s = track.points().get(range.end).map_or(f64::INFINITY, |p| p.time_s);
-            let (outline, spacing_m) =
-                outline(program, &Id::new(&passage.key.leg), &variables_at(program, events, end_s))?;
+            let leg = Id::new(&passage.key.leg);
+            let (outline, spacing_m) = outline(program, &leg, &variables_at(program, events, end_s))?;
+            let holes = holes(program, &leg);
             let label = match passage.key.iterations.is_empty() {
                 true => passage.key.leg.clone(),
                 false => format!("{}, {}", passage.key.leg, passage.key.iterations),
             };
-            Some(Area { label, outline, spacing_m, passage: passage.key.clone() })
+            Some(Area { label, outline, holes, spacing_m, passage: passage.key.clone() })
         })
         .collect()
 }
@@ -120,6 +121,16 @@ fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<La
     let Spacing::Metres(spacing) = &scan.spacing else { return None };
     let spacing_m = program.eval_number(spacing, &env).ok()?;
     Some((corners(program, &scan.area, &env)?, spacing_m))
+}
+
+/// The rings that are left out of a scan's area.
+fn holes(program: &Program, leg: &Id) -> Vec<Vec<LatLon>> {
+    match program.leg(leg).map(|leg| &leg.kind) {
+        Some(LegKind::Scan(flight_plan::Scan { area: flight_plan::Area::Polygon { holes, .. }, .. })) => {
+            holes.clone()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// The outer ring of an area (of a circle: enough of its points); `None` if its values can't be computed.

@@ -1,7 +1,7 @@
 //! How much of a scanned area was seen.
 
 use super::record::{Area, PassageKey, Track};
-use geometry::{LocalFrame, Vec2};
+use geometry::{LatLon, LocalFrame, Vec2};
 
 /// Cells a side of the grid on which coverage is counted.
 const CELLS: usize = 300;
@@ -24,7 +24,9 @@ pub struct Coverage {
 pub fn of(area: &Area, flown: &Track) -> Option<Coverage> {
     let passage = flown.passages().iter().position(|p| p.key == area.passage)?;
     let frame = LocalFrame::new(*area.outline.first()?);
-    let outline: Vec<Vec2> = area.outline.iter().map(|p| frame.to_local(*p)).collect();
+    let ring = |ring: &Vec<LatLon>| ring.iter().map(|p| frame.to_local(*p)).collect::<Vec<Vec2>>();
+    let outline = ring(&area.outline);
+    let holes: Vec<Vec<Vec2>> = area.holes.iter().map(ring).collect();
     let track: Vec<Vec2> =
         flown.points().get(flown.range(passage))?.iter().map(|p| frame.to_local(p.position)).collect();
     let grid = Grid::around(&outline)?;
@@ -33,7 +35,10 @@ pub fn of(area: &Area, flown: &Track) -> Option<Coverage> {
     for ends in track.windows(2) {
         grid.mark(&mut seen, ends[0], ends[1], reach_m);
     }
-    let inside: Vec<bool> = (0..CELLS * CELLS).map(|i| contains(&outline, grid.centre(i))).collect();
+    let inside: Vec<bool> = (0..CELLS * CELLS)
+        .map(|i| grid.centre(i))
+        .map(|p| contains(&outline, p) && !holes.iter().any(|hole| contains(hole, p)))
+        .collect();
     let total = inside.iter().filter(|i| **i).count();
     let covered = inside.iter().zip(&seen).filter(|(i, s)| **i && **s).count();
     (total > 0).then(|| Coverage {
@@ -110,7 +115,6 @@ mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::report::record::TrackPoint;
-    use geometry::LatLon;
 
     fn key() -> PassageKey {
         PassageKey { leg: "sweep".into(), iterations: String::new(), reverse: false, occurrence: 0 }
@@ -118,6 +122,10 @@ mod tests {
 
     /// A square of 1 km and tracks over it at the given distances from its southern edge.
     fn scanned(norths_m: &[f64]) -> Option<Coverage> {
+        scanned_around(norths_m, &[])
+    }
+
+    fn scanned_around(norths_m: &[f64], hole: &[(f64, f64)]) -> Option<Coverage> {
         let frame = LocalFrame::new(LatLon::new(36.3, -84.2));
         let at = |e: f64, n: f64| frame.to_geo(Vec2::new(e, n));
         let outline = vec![at(0.0, 0.0), at(1000.0, 0.0), at(1000.0, 1000.0), at(0.0, 1000.0)];
@@ -128,7 +136,8 @@ mod tests {
                 flown.push(TrackPoint { time_s: 0.0, position: at(east, *north), altitude_amsl_m: 0.0 });
             }
         }
-        of(&Area { label: "square".into(), outline, spacing_m: 200.0, passage: key() }, &flown)
+        let holes = vec![hole.iter().map(|&(e, n)| at(e, n)).collect()];
+        of(&Area { label: "square".into(), outline, holes, spacing_m: 200.0, passage: key() }, &flown)
     }
 
     #[test]
@@ -147,8 +156,16 @@ mod tests {
     }
 
     #[test]
+    fn a_hole_is_not_to_be_seen() {
+        let hole = [(0.0, 400.0), (1000.0, 400.0), (1000.0, 600.0), (0.0, 600.0)];
+        let found = scanned_around(&[100.0, 300.0, 700.0, 900.0], &hole).unwrap();
+        assert!(found.share > 0.99 && (found.area_m2 - 8e5).abs() < 4e3, "{found:?}");
+    }
+
+    #[test]
     fn nothing_to_measure() {
-        let empty = Area { label: String::new(), outline: vec![], spacing_m: 10.0, passage: key() };
+        let (label, outline, holes) = (String::new(), vec![], vec![]);
+        let empty = Area { label, outline, holes, spacing_m: 10.0, passage: key() };
         assert_eq!(of(&empty, &Track::default()), None);
     }
 }

@@ -197,6 +197,10 @@ fn draw_area(canvas: &mut Canvas, view: &View, area: &Area) {
     canvas.polygon(&points, AREA.faded(22));
     canvas.outline(&points, Pen::solid(PAPER.faded(200), 4.5));
     canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
+    for hole in &area.holes {
+        let points: Vec<_> = hole.iter().map(|p| view.place(*p)).collect();
+        canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
+    }
 }
 
 /// Labels stand at the bottom of their area, one above the other where areas overlap; areas that lie in the same place

@@ -149,6 +149,8 @@ pub struct Area {
     pub label: String,
     /// Its corners (of a circle: enough of them).
     pub outline: Vec<LatLon>,
+    /// What is left out of it: rings of corners.
+    pub holes: Vec<Vec<LatLon>>,
     /// Distance between tracks, metres.
     pub spacing_m: f64,
     /// The passage that scanned it.
@@ -227,6 +229,7 @@ pub(crate) mod tests {
             areas: vec![Area {
                 label: "fire, pass 1".into(),
                 outline: (0..36).map(|i| centre.destination(f64::from(i) * 10.0, 900.0)).collect(),
+                holes: Vec::new(),
                 spacing_m: 150.0,
                 passage: key("sweep", "patrol 1"),
             }],

@@ -280,7 +280,7 @@ fn the_plan_writes_its_variables_within_their_bounds() {
         .collect();
     assert_eq!(told, [1.0, 2.0, 3.0].map(|n| (n, "plan".to_owned())));
     assert_eq!(refusals(&rig).len(), 2);
-    assert!(refusals(&rig)[0].contains("between"), "{:?}", refusals(&rig));
+    assert!(refusals(&rig)[0].contains("at most 3"), "{:?}", refusals(&rig));
 }
 
 #[test]
