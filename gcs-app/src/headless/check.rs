@@ -18,19 +18,9 @@ pub struct Circumstances {
     /// The air that it is flown in.
     #[command(flatten)]
     pub air: super::wind::Air,
-    /// When the flight starts (UTC, as 2026-06-01T06:00:00Z); without it every zone counts as active.
-    #[arg(long, value_name = "TIME")]
-    pub start: Option<jiff::Timestamp>,
     /// The plan only, not the path.
     #[arg(long)]
     pub quick: bool,
-}
-
-impl Circumstances {
-    fn conditions(&self) -> Conditions {
-        let start_unix_s = self.start.map(jiff::Timestamp::as_second);
-        Conditions { wind: self.air.wind, start_unix_s, ..Conditions::default() }
-    }
 }
 
 /// Prints the problems, as lines `file:line:column: severity [code] subject: message` or as one JSON document; 0
@@ -42,7 +32,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
     let loaded = source.load()?;
     let mut problems = loaded.problems();
     if !circumstances.quick {
-        problems.extend(reviewed(&loaded, circumstances.conditions()));
+        problems.extend(reviewed(&loaded, circumstances.air.conditions()));
     }
     if json {
         say!("{:#}", document(&source.file, &problems, &loaded.notes));

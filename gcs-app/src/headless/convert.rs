@@ -3,8 +3,8 @@
 use super::foreign::FileFormat;
 use super::output::Output;
 use super::select::Selection;
+use super::wind::Air;
 use super::{Source, check, expand, foreign};
-use aircraft::Wind;
 use anyhow::bail;
 use interchange::{Export, Note};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub struct Target {
 ///
 /// # Errors
 /// A file can't be read or written.
-pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
+pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
     let Some(format) = target.to.or_else(|| FileFormat::by_path(&target.file)) else {
         bail!("{}: name the format with --to, or by the extension", target.file.display());
     };
@@ -52,7 +52,7 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
             (flight_plan::write(&loaded.reading.plan).into_bytes(), loaded.notes)
         }
         FileFormat::Other(format) => {
-            let flown = match expand::fly(source, wind, selection)? {
+            let flown = match expand::fly(source, air, selection)? {
                 Ok(flown) => flown,
                 Err(status) => return Ok(status),
             };
@@ -82,7 +82,7 @@ mod tests {
     const SQUARE: &[u8] = include_bytes!("../../../assets/plans/square.xml");
 
     fn convert(source: &Source, target: &Target) -> anyhow::Result<String> {
-        run(source, Wind::default(), &Selection::default(), target).map(|status| format!("{status:?}"))
+        run(source, Air::default(), &Selection::default(), target).map(|status| format!("{status:?}"))
     }
 
     fn target(file: PathBuf) -> Target {

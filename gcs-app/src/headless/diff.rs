@@ -1,8 +1,8 @@
 //! `legwork diff`: what changed between two plans, and where an aircraft would go.
 
 use super::source::{Loaded, Source};
+use super::wind::Air;
 use super::{check, forecast, select};
-use aircraft::Wind;
 use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
 use flight_exec::preview::{Act, Scenario, Trigger, When};
@@ -26,12 +26,12 @@ pub struct Moment {
 ///
 /// # Errors
 /// A file can't be read, or there is no such leg.
-pub fn run(old: &Source, new: &Path, moment: &Moment, wind: Wind, json: bool) -> anyhow::Result<ExitCode> {
+pub fn run(old: &Source, new: &Path, moment: &Moment, air: Air, json: bool) -> anyhow::Result<ExitCode> {
     let new = Source { file: new.to_owned(), ..old.clone() };
     let (Some(before), Some(after)) = (readable(old)?, readable(&new)?) else { return Ok(ExitCode::from(1)) };
     let changes = flight_plan::diff::changes(&before.reading.plan, &after.reading.plan);
     let takeover = match &moment.at {
-        Some(leg) => Some(takeover((old, &before), (&new, &after), leg, moment.pass, wind)?),
+        Some(leg) => Some(takeover((old, &before), (&new, &after), leg, moment.pass, air)?),
         None => None,
     };
     match json {
@@ -86,7 +86,7 @@ fn takeover(
     (new, after): (&Source, &Loaded),
     leg: &str,
     pass: Option<u64>,
-    wind: Wind,
+    air: Air,
 ) -> anyhow::Result<Takeover> {
     let leg = select::known_leg(&before.reading.plan, leg)?;
     let refused = |file: &Source, problems: Vec<Problem>| {
@@ -100,14 +100,14 @@ fn takeover(
         Ok(compiled) => compiled,
         Err(problems) => return Ok(refused(new, problems)),
     };
-    let forbidden = after.forbidden(wind);
+    let forbidden = after.forbidden(air.conditions());
     if !forbidden.is_empty() {
         return Ok(refused(new, forbidden));
     }
     let at = When::Entering { leg: leg.clone(), iteration: pass };
     let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
-    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, wind, &scenario)?;
+    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air.wind, &scenario)?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");
     }
@@ -158,7 +158,7 @@ mod tests {
     fn status(old: &str, new: &str, moment: &Moment) -> anyhow::Result<String> {
         let (_old, old) = source(old.as_bytes());
         let (_new, new) = source(new.as_bytes());
-        run(&old, &new.file, moment, Wind::default(), true).map(|status| format!("{status:?}"))
+        run(&old, &new.file, moment, Air::default(), true).map(|status| format!("{status:?}"))
     }
 
     #[test]
@@ -181,8 +181,8 @@ mod tests {
         let (_new, new) = source(new.as_bytes());
         let (before, after) = (readable(&old).unwrap().unwrap(), readable(&new).unwrap().unwrap());
         let changes = flight_plan::diff::changes(&before.reading.plan, &after.reading.plan);
-        let wind = Wind::default();
-        let takeover = at.map(|leg| takeover((&old, &before), (&new, &after), leg, None, wind).unwrap());
+        let air = Air::default();
+        let takeover = at.map(|leg| takeover((&old, &before), (&new, &after), leg, None, air).unwrap());
         lines(&changes, takeover.as_ref())
     }
 
@@ -214,7 +214,7 @@ mod tests {
         let (_new, new) = source(SQUARE.replacen("<mainPlan", zone, 1).as_bytes());
         let (before, after) = (readable(&old).unwrap().unwrap(), readable(&new).unwrap().unwrap());
         let problems =
-            takeover((&old, &before), (&new, &after), "side2", None, Wind::default()).unwrap().unwrap_err();
+            takeover((&old, &before), (&new, &after), "side2", None, Air::default()).unwrap().unwrap_err();
         let file = new.file.display().to_string();
         assert!(problems.iter().all(|p| p.starts_with(&file)), "{problems:?}");
         assert!(problems.iter().any(|p| p.contains("[keep-out]")), "{problems:?}");

@@ -3,8 +3,8 @@
 use super::foreign::FileFormat;
 use super::output::{DASH, Output, or_stdout};
 use super::select::Selection;
+use super::wind::Air;
 use super::{Source, check, forecast, foreign};
-use aircraft::Wind;
 use flight_exec::preview::Preview;
 use flight_exec::{Action, Waypoint};
 use flight_plan::Program;
@@ -63,14 +63,9 @@ impl Written {
 ///
 /// # Errors
 /// A file can't be read or written.
-pub fn run(
-    source: &Source,
-    wind: Wind,
-    selection: &Selection,
-    written: &Written,
-) -> anyhow::Result<ExitCode> {
+pub fn run(source: &Source, air: Air, selection: &Selection, written: &Written) -> anyhow::Result<ExitCode> {
     let format = written.format()?;
-    let Flown { program, preview, notes } = match fly(source, wind, selection)? {
+    let Flown { program, preview, notes } = match fly(source, air, selection)? {
         Ok(flown) => flown,
         Err(status) => return Ok(status),
     };
@@ -109,7 +104,7 @@ pub struct Flown {
 ///
 /// # Errors
 /// A file can't be read, or there is no such way.
-pub fn fly(source: &Source, wind: Wind, selection: &Selection) -> anyhow::Result<Result<Flown, ExitCode>> {
+pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<Result<Flown, ExitCode>> {
     let mut loaded = source.load()?;
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
@@ -117,13 +112,13 @@ pub fn fly(source: &Source, wind: Wind, selection: &Selection) -> anyhow::Result
         Ok(compiled) => compiled,
         Err(problems) => return Ok(Err(check::complain(&source.file, &problems))),
     };
-    let forbidden = if selection.anyway { Vec::new() } else { loaded.forbidden(wind) };
+    let forbidden = if selection.anyway { Vec::new() } else { loaded.forbidden(air.conditions()) };
     if !forbidden.is_empty() {
         eprintln!("{}: the path must not be flown; --anyway writes it all the same", source.file.display());
         return Ok(Err(check::complain(&source.file, &forbidden)));
     }
     let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
+    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
             eprintln!("{}: {error}", source.file.display());

@@ -122,15 +122,9 @@ pub enum Command {
 pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
     match command {
         Command::Check { source, circumstances, json } => check::run(source, circumstances, *json),
-        Command::Preview { source, selection, target, air } => {
-            preview::run(source, air.wind, selection, target)
-        }
-        Command::Expand { source, selection, written, air } => {
-            expand::run(source, air.wind, selection, written)
-        }
-        Command::Convert { source, target, selection, air } => {
-            convert::run(source, air.wind, selection, target)
-        }
-        Command::Diff { old, new, moment, air, json } => diff::run(old, new, moment, air.wind, *json),
+        Command::Preview { source, selection, target, air } => preview::run(source, *air, selection, target),
+        Command::Expand { source, selection, written, air } => expand::run(source, *air, selection, written),
+        Command::Convert { source, target, selection, air } => convert::run(source, *air, selection, target),
+        Command::Diff { old, new, moment, air, json } => diff::run(old, new, moment, *air, *json),
     }
 }

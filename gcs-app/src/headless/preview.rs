@@ -2,9 +2,9 @@
 
 use super::output::Output;
 use super::select::Selection;
+use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use crate::report;
-use aircraft::Wind;
 use flight_exec::preview::Preview;
 use flight_plan::Id;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub struct Target {
 ///
 /// # Errors
 /// A file can't be read or written.
-pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
+pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) -> anyhow::Result<ExitCode> {
     match &target.diagram {
         Some(picture) => target.overwriting.allow(picture)?,
         None => report::FILES.iter().try_for_each(|name| target.overwriting.allow(&target.out.join(name)))?,
@@ -52,9 +52,9 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
     };
     // a diagram shows the geometry, whatever it is worth
     let looks = target.diagram.is_none() && !selection.anyway;
-    let forbidden = if looks { loaded.forbidden(wind) } else { Vec::new() };
+    let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
     let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, wind, &scenario) {
+    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
             eprintln!("{}: {error}", source.file.display());
@@ -72,7 +72,7 @@ pub fn run(source: &Source, wind: Wind, selection: &Selection, target: &Target) 
             target.overwriting.write(picture, &report::diagram::png(&program, &preview, stage.as_ref())?)?;
         }
         None => {
-            report::write(&forecast::record(&loaded, &program, &preview, &wind), &target.out)?;
+            report::write(&forecast::record(&loaded, &program, &preview, &air.wind), &target.out)?;
         }
     }
     match target.json {

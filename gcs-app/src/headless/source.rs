@@ -3,7 +3,7 @@
 use super::foreign::Foreign;
 use super::output::DASH;
 use crate::assets;
-use aircraft::{Profile, Wind};
+use aircraft::Profile;
 use anyhow::Context;
 use flight_exec::{Conditions, review, review_extremes};
 use flight_plan::{Problem, Program, Reading};
@@ -145,9 +145,9 @@ impl Loaded {
         found
     }
 
-    /// What forbids to fly the path in a wind.
-    pub fn forbidden(&self, wind: Wind) -> Vec<Problem> {
-        let mut found = self.review(Conditions { wind, ..Conditions::default() });
+    /// What forbids to fly the path.
+    pub fn forbidden(&self, conditions: Conditions) -> Vec<Problem> {
+        let mut found = self.review(conditions);
         found.retain(Problem::is_error);
         found
     }

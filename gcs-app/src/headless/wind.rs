@@ -1,16 +1,28 @@
 //! Wind on the command line.
 
 use aircraft::Wind;
+use flight_exec::Conditions;
 
 /// Strongest wind that makes sense, m/s.
 const MOST_MPS: f64 = 50.0;
 
-/// The wind of a command that flies a plan ahead of time.
+/// The wind and the time of a command that flies a plan ahead of time.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct Air {
     /// Where the wind comes from (degrees true) and its speed (m/s).
     #[arg(long, value_name = "DIRECTION,SPEED", value_parser = parse, default_value = "0,0")]
     pub wind: Wind,
+    /// When the flight starts (UTC, as 2026-06-01T06:00:00Z); without it every zone counts as active.
+    #[arg(long, value_name = "TIME")]
+    pub start: Option<jiff::Timestamp>,
+}
+
+impl Air {
+    /// For what a path is looked at.
+    pub fn conditions(&self) -> Conditions {
+        let start_unix_s = self.start.map(jiff::Timestamp::as_second);
+        Conditions { wind: self.wind, start_unix_s, ..Conditions::default() }
+    }
 }
 
 /// `DIRECTION,SPEED`: where it comes from in degrees true, and m/s.

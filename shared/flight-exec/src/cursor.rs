@@ -109,12 +109,14 @@ pub struct LoopFrame {
     pub reverse: bool,
     /// The loop as a whole is flown backwards: its passes end at the body's start.
     pub mirrored: bool,
-    /// Legs of the body passed on the last forward pass, in order.
+    /// Legs of the body passed on the last forward pass, in order (kept aside in a snapshot).
+    #[serde(skip)]
     pub trail: Trail,
     /// On a pass back: how many of the trail's legs are still to be flown.
     pub back: usize,
-    /// Patterns of the body as they were flown last, by their index: flown again where the values of now make none.
-    #[serde(default)]
+    /// Patterns of the body as they were flown last, by their index: flown again where the values of now make none
+    /// (kept aside in a snapshot).
+    #[serde(skip)]
     pub patterns: rpds::HashTrieMapSync<usize, Arc<Expansion>>,
     /// Where the path was when the loop was entered.
     pub entered: Passing,

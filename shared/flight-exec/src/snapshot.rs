@@ -1,14 +1,16 @@
 //! What survives the process: everything the executor knows, without the plan itself.
 
+mod shared;
+
 use crate::api::Time;
 use crate::config::Config;
 use crate::cursor::Cursor;
 use crate::executor::Executor;
-use crate::expand::Expansion;
 use crate::state::State;
 use aircraft::Profile;
 use flight_plan::Program;
 use serde::{Deserialize, Serialize};
+use shared::{Holding, Shared};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -18,9 +20,9 @@ pub struct Snapshot {
     /// Hash of the active plan: restore with that one.
     pub plan: Option<Arc<str>>,
     state: State,
-    /// Patterns under way, each once, and which of them each bookmark is in.
-    expansions: Vec<Arc<Expansion>>,
-    in_expansion: Vec<Option<usize>>,
+    /// What the bookmarks have in common, and which of it each has.
+    shared: Shared,
+    of_bookmarks: Vec<Holding>,
     sealed: Vec<Option<Box<Cursor>>>,
 }
 
@@ -43,11 +45,11 @@ pub enum RestoreError {
 impl Executor {
     /// Everything needed to come back to this very place.
     pub fn snapshot(&self) -> Snapshot {
-        let mut expansions: Vec<Arc<Expansion>> = Vec::new();
-        let in_expansion = bookmarks(&self.state).map(|c| index_in(&mut expansions, c)).collect();
+        let mut shared = Shared::default();
+        let of_bookmarks = bookmarks(&self.state).map(|c| shared.take(c)).collect();
         let sealed = self.state.handed.iter().map(|h| h.sealed.clone()).collect();
         let plan = self.program().map(|p| p.hash().clone());
-        Snapshot { plan, state: self.state.clone(), expansions, in_expansion, sealed }
+        Snapshot { plan, state: self.state.clone(), shared, of_bookmarks, sealed }
     }
 
     /// The executor as it was, with its plan.
@@ -81,21 +83,18 @@ impl Executor {
 }
 
 fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
-    let Snapshot { mut state, expansions, in_expansion, sealed, .. } = snapshot;
+    let Snapshot { mut state, shared, of_bookmarks, sealed, .. } = snapshot;
     if state.handed.len() != sealed.len() {
         return Err(RestoreError::Damaged);
     }
     for (handed, sealed) in state.handed.iter_mut().zip(sealed) {
         handed.sealed = sealed;
     }
-    if bookmarks(&state).count() != in_expansion.len() {
+    if bookmarks(&state).count() != of_bookmarks.len() {
         return Err(RestoreError::Damaged);
     }
-    for (cursor, index) in bookmarks_mut(&mut state).zip(in_expansion) {
-        cursor.expansion = match index {
-            Some(i) => Some(expansions.get(i).cloned().ok_or(RestoreError::Damaged)?),
-            None => None,
-        };
+    for (cursor, holding) in bookmarks_mut(&mut state).zip(of_bookmarks) {
+        shared.give_back(&holding, cursor).ok_or(RestoreError::Damaged)?;
     }
     Ok(state)
 }
@@ -109,13 +108,4 @@ fn bookmarks(state: &State) -> impl Iterator<Item = &Cursor> {
 pub(crate) fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
     let handed = state.handed.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
     handed.flatten().chain(&mut state.tail)
-}
-
-fn index_in(expansions: &mut Vec<Arc<Expansion>>, cursor: &Cursor) -> Option<usize> {
-    let expansion = cursor.expansion.as_ref()?;
-    let known = expansions.iter().position(|e| Arc::ptr_eq(e, expansion));
-    Some(known.unwrap_or_else(|| {
-        expansions.push(expansion.clone());
-        expansions.len() - 1
-    }))
 }

@@ -33,7 +33,10 @@ impl Executor {
                 self.activate(proposed, out);
                 self.jump(*cursor, out);
             }
-            Carried::On { bookmarks, keep } => self.go_on_in(proposed, &bookmarks, keep, out),
+            Carried::On { bookmarks, sealed, keep } => {
+                self.seal_in_the_new_plan(sealed);
+                self.go_on_in(proposed, &bookmarks, keep, out);
+            }
         }
         Ok(())
     }
@@ -97,6 +100,13 @@ impl Executor {
         self.replan_with(kept.len(), onward, false, out);
     }
 
+    /// The cursors behind choices that are final when their waypoints are steered to.
+    fn seal_in_the_new_plan(&mut self, sealed: Vec<Option<Cursor>>) {
+        for (handed, cursor) in self.state.handed.iter_mut().zip(sealed) {
+            handed.sealed = cursor.map(Box::new);
+        }
+    }
+
     /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left. On the way to a leg the
     /// loops around the one before it are still there.
     fn forget_counts_of_loops_left(&mut self, before: Option<&Cursor>) {
@@ -125,7 +135,12 @@ impl Executor {
                 translated(&bookmark, leg, &current, entered, new, &world)
             };
             let bookmarks = (0..=self.state.handed.len()).map(translate).collect();
-            return Ok(Carried::On { bookmarks, keep });
+            let sealed = self.state.handed.iter().map(|handed| {
+                let sealed = handed.sealed.as_deref()?;
+                Some(translated(sealed, Some(&handed.place.leg), &current, entered, new, &world))
+            });
+            let sealed = sealed.collect();
+            return Ok(Carried::On { bookmarks, sealed, keep });
         }
         let Some(entry) = entry else {
             let reason =
@@ -198,6 +213,8 @@ enum Carried {
     On {
         /// Bookmarks before each waypoint ahead, and behind the last of them.
         bookmarks: Vec<Cursor>,
+        /// Likewise, behind the choices that led to each.
+        sealed: Vec<Option<Cursor>>,
         /// So many of the waypoints stay.
         keep: usize,
     },

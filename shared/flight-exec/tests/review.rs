@@ -365,16 +365,30 @@ fn altitudes_and_times_of_a_zone() {
 
 #[test]
 fn zones_to_stay_in_are_one_area() {
-    let half = |id: &str, west: f64, east: f64| {
+    let part = |id: &str, (west, east): (f64, f64), band: &str| {
         let corner = |lat: f64, lon: f64| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#);
         let ring = [(36.27, west), (36.27, east), (36.36, east), (36.36, west)];
-        format!(r#"<keepIn id="{id}">{}</keepIn>"#, ring.map(|(lat, lon)| corner(lat, lon)).concat())
+        format!(r#"<keepIn id="{id}" {band}>{}</keepIn>"#, ring.map(|(lat, lon)| corner(lat, lon)).concat())
     };
-    let (west, east) = (half("w", -84.25, -84.179), half("ea", -84.181, -84.13));
-    assert_eq!(broken(&format!("{west}{east}"), "", Conditions::default()), []);
-    assert!(!broken(&west, "", Conditions::default()).is_empty());
-    let gap = half("ea", -84.177, -84.13);
-    assert!(!broken(&format!("{west}{gap}"), "", Conditions::default()).is_empty());
+    let halves = |seam: f64| {
+        let (west, east) = (part("w", (-84.25, -84.18), ""), part("ea", (seam, -84.13), ""));
+        broken(&format!("{west}{east}"), "", Conditions::default())
+    };
+    assert_eq!(halves(-84.182), [], "they overlap");
+    assert_eq!(halves(-84.18005), [], "by less than the margin");
+    assert_eq!(halves(-84.18), [], "they touch");
+    assert!(!halves(-84.177).is_empty(), "there is a gap");
+    assert!(!halves(-84.17995).is_empty(), "there is a narrow gap");
+    let whole = (-84.25, -84.13);
+    let floors = |seam: f64| {
+        let lower =
+            part("low", whole, r#"floor="0" ceiling="450" floorReference="amsl" ceilingReference="amsl""#);
+        let upper = format!(r#"floor="{seam}" ceiling="900" floorReference="amsl" ceilingReference="amsl""#);
+        broken(&format!("{lower}{}", part("up", whole, &upper)), "", Conditions::default())
+    };
+    assert_eq!(floors(450.0), [], "one above the other");
+    assert!(!floors(470.0).is_empty(), "one far above the other");
+    assert!(!broken(&part("w", (-84.25, -84.18), ""), "", Conditions::default()).is_empty());
 }
 
 #[test]

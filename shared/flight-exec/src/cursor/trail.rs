@@ -62,6 +62,19 @@ impl Trail {
         self.0.get(index)
     }
 
+    /// The first so many legs; `None`: it has fewer.
+    pub fn first(&self, legs: usize) -> Option<Self> {
+        let mut first = self.clone();
+        while first.0.len() > legs && first.0.drop_last_mut() {}
+        (first.0.len() == legs).then_some(first)
+    }
+
+    /// A trail goes on from this one: legs passed are shared, never changed, so that where one leg is the same all before it are.
+    pub fn begins(&self, longer: &Self) -> bool {
+        let Some(last) = self.0.len().checked_sub(1) else { return true };
+        self.0.get(last).zip(longer.0.get(last)).is_some_and(|(own, other)| std::ptr::eq(own, other))
+    }
+
     /// How many legs.
     pub fn len(&self) -> usize {
         self.0.len()

@@ -10,6 +10,8 @@ use terrain::Terrain;
 
 /// Pieces of path shorter than this are not cut further when they lie in no zone to stay in, metres.
 const FINEST_M: f64 = 2.0;
+/// Where several zones are to be stayed in, it is looked for the outside in so many directions.
+const BEARINGS: u32 = 16;
 
 /// Zones, and when the flight is.
 pub(super) struct Zones {
@@ -17,6 +19,8 @@ pub(super) struct Zones {
     /// Zones that can't be held against anything, and why.
     pub refused: Vec<(Id, String)>,
     start_unix_s: Option<i64>,
+    /// Distance to keep from their edges, metres.
+    margin_m: f64,
     /// When no flight lasts any longer, seconds since the start.
     latest_s: f64,
 }
@@ -27,6 +31,8 @@ pub(super) struct Prepared {
     pub kind: ZoneKind,
     /// Its limits above mean sea level and those above the ground: it is where both of them are.
     parts: Vec<(Datum, Ground)>,
+    /// The same without the margin.
+    bare: Vec<(Datum, Ground)>,
     /// The zone without its limits: what counts of those above the ground where nothing is known of it.
     outline: Ground,
     active: Vec<ZoneTime>,
@@ -63,6 +69,7 @@ impl Zones {
             zones: Vec::new(),
             refused: Vec::new(),
             start_unix_s: conditions.start_unix_s,
+            margin_m: conditions.margins.zone_m,
             latest_s: profile.energy_j / power_w.max(1.0),
         };
         for zone in &program.plan.zones {
@@ -93,7 +100,7 @@ impl Zones {
         let mut found: Vec<_> = keep_out.filter_map(intrusion).collect();
         let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from.when).collect();
         if !keep_in.is_empty() {
-            found.extend(outside_all(&keep_in, from, to, terrain));
+            found.extend(outside_all(&keep_in, from, to, (self.margin_m, terrain)));
         }
         found
     }
@@ -155,6 +162,23 @@ impl Prepared {
             (Datum::Agl, None) => self.outline.breach(&piece.amsl),
         }
     }
+
+    /// It is inside, however near to the edge.
+    fn contains(&self, at: &Piece) -> bool {
+        self.bare.iter().all(|part| self.breach(part, at).is_none())
+    }
+}
+
+/// Zones to stay in are one where they touch: within them all, nothing outside is nearer than the margin.
+fn is_surrounded(zones: &[(&Prepared, bool)], at: At, margin_m: f64, terrain: &dyn Terrain) -> bool {
+    let inside = |position: LatLon| {
+        let here = At { position, ..at };
+        let piece = Piece::new(here, here, terrain);
+        zones.iter().any(|(zone, _)| zone.contains(&piece))
+    };
+    let around =
+        (0..BEARINGS).map(|i| at.position.destination(f64::from(i) * 360.0 / f64::from(BEARINGS), margin_m));
+    inside(at.position) && around.into_iter().all(inside)
 }
 
 /// The part of a piece that lies in none of the zones to stay in: halved until each part lies in one or is very short.
@@ -162,7 +186,7 @@ fn outside_all<'z>(
     zones: &[(&'z Prepared, bool)],
     from: At,
     to: At,
-    terrain: &dyn Terrain,
+    (margin_m, terrain): (f64, &dyn Terrain),
 ) -> Option<(&'z Prepared, Breach, bool)> {
     let piece = Piece::new(from, to, terrain);
     let mut nearest: Option<(&Prepared, Breach, bool)> = None;
@@ -173,8 +197,7 @@ fn outside_all<'z>(
             nearest = Some((zone, breach, *perhaps));
         }
     }
-    let lone = zones.len() == 1;
-    if lone || crate::path::distance_m(from.position, to.position) < FINEST_M {
+    if zones.len() == 1 {
         return nearest;
     }
     let middle = At {
@@ -183,7 +206,11 @@ fn outside_all<'z>(
         altitude_amsl_m: 0.5 * (from.altitude_amsl_m + to.altitude_amsl_m),
         when: from.when,
     };
-    outside_all(zones, from, middle, terrain).or_else(|| outside_all(zones, middle, to, terrain))
+    if crate::path::distance_m(from.position, to.position) < FINEST_M {
+        return nearest.filter(|_| !is_surrounded(zones, middle, margin_m, terrain));
+    }
+    let sight = (margin_m, terrain);
+    outside_all(zones, from, middle, sight).or_else(|| outside_all(zones, middle, to, sight))
 }
 
 fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneError> {
@@ -195,11 +222,14 @@ fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneErr
         ZoneKind::KeepIn => Rule::KeepIn,
         ZoneKind::KeepOut => Rule::KeepOut,
     };
-    let ground = |band| Ground::new(&shape, band, rule, margin_m);
-    let part = |datum| Ok((datum, ground(limits(zone, datum, home_m))?));
-    let parts = data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()?;
-    let (outline, active) = (ground(Band::ALL)?, zone.active.clone());
-    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, outline, active })
+    let ground = |band, margin_m| Ground::new(&shape, band, rule, margin_m);
+    let parts_with = |margin_m| {
+        let part = |datum| Ok((datum, ground(limits(zone, datum, home_m), margin_m)?));
+        data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()
+    };
+    let (parts, bare) = (parts_with(margin_m)?, parts_with(0.0)?);
+    let (outline, active) = (ground(Band::ALL, margin_m)?, zone.active.clone());
+    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, bare, outline, active })
 }
 
 /// The data in which a zone has limits; without any: sea level.

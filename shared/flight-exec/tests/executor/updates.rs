@@ -1,7 +1,7 @@
 //! What a new plan may change about the leg being flown, and around it.
 
 use crate::rig::{Rig, document, document_with, fix, program};
-use flight_exec::{Command, Event, Refusal};
+use flight_exec::{Command, Event, Input, Refusal};
 use flight_plan::Cause;
 
 const BASE: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
@@ -159,4 +159,35 @@ fn a_count_is_told_for_the_waypoints_of_its_loop_alone() {
     assert_eq!(of(&rig), Some(3));
     rig.fly_to("y");
     assert_eq!(of(&rig), Some(1));
+}
+
+/// The first waypoint behind a loop is too near to be taken back, and the new plan has another leg before it: refused when it has been
+/// entered, it is laid out from where the new plan has it.
+#[test]
+fn what_follows_a_loop_that_an_update_moves_is_gone_on_with_though_it_is_refused() {
+    let near = fix("B2").destination(225.0, 120.0);
+    let legs = |first: &str| {
+        format!(
+            r#"{first}<TF id="a" fix="A3"/><iterative id="l" form="forward" count="2"><TF id="b" fix="B3"/><TF id="c" fix="B2"/></iterative>
+               <TF id="w" lat="{}" lon="{}"/><TF id="z" fix="A4"/>"#,
+            near.lat_deg, near.lon_deg
+        )
+    };
+    let mut rig = Rig::started(&legs(""));
+    rig.fly_to("c");
+    rig.fly_one();
+    rig.fly_to("c");
+    rig.position = fix("B2").destination(90.0, 20.0);
+    rig.report();
+    rig.update(&program(&document(&legs(r#"<TF id="n" fix="A1"/>"#)))).unwrap();
+    rig.fly_to("w");
+    for _ in 0..2 {
+        rig.command(Command::Hold).unwrap();
+        let first = rig.buffer[0].token;
+        rig.step(Input::Rejected { first, reason: "range".into() });
+        rig.buffer.clear();
+        rig.command(Command::Resume).unwrap();
+    }
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b c b c w z");
 }
