@@ -39,6 +39,7 @@ impl Executor {
 
     /// The choices that led to the current waypoint are due: if they would be others now, the way is changed.
     fn arrive_at_current(&mut self, out: &mut Vec<Output>) {
+        self.end_the_leg_before_a_choice(out);
         if self.front_choices_changed() {
             self.replan_from(0, true, out);
         }
@@ -47,6 +48,17 @@ impl Executor {
             self.state.handed.push_front(front);
         }
         self.settle_phase(out);
+    }
+
+    /// The leg flown last is over, whichever way is taken from there, and what it sets at its end counts for the choice. Only a holding
+    /// is over by the choice itself.
+    fn end_the_leg_before_a_choice(&mut self, out: &mut Vec<Output>) {
+        let Some(front) = self.state.handed.front() else { return };
+        let by_itself = front.choices.iter().any(|c| matches!(c, Choice::Hold { .. }));
+        let over = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
+        if let Some((passage, leg)) = over.filter(|_| !front.choices.is_empty() && !by_itself) {
+            self.end_passages(|p| p.is(&leg, passage), out);
+        }
     }
 
     fn front_choices_changed(&self) -> bool {

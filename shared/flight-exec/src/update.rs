@@ -4,6 +4,7 @@ use crate::actions::is_control;
 use crate::api::{Event, Output, Phase, Refusal};
 use crate::cursor::{Cursor, Doing, LoopFrame, Trail, Visit};
 use crate::executor::{Executor, refusal};
+use crate::handed::Handed;
 use crate::world::World;
 use flight_plan::{Id, Leg, LegPath, Program, Variable};
 use std::collections::HashMap;
@@ -130,14 +131,14 @@ impl Executor {
             let translate = |i: usize| {
                 let begun = self.at_the_leg_begun(i, &world);
                 let kept = i.checked_sub(1).filter(|_| begun.is_none());
-                let leg = kept.and_then(|i| self.state.handed.get(i)).map(|h| &h.place.leg);
+                let kept = kept.and_then(|i| self.state.handed.get(i));
                 let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
-                translated(&bookmark, leg, &current, entered, new, &world)
+                translated(&bookmark, kept, &current, entered, new, &world)
             };
             let bookmarks = (0..=self.state.handed.len()).map(translate).collect();
             let sealed = self.state.handed.iter().map(|handed| {
                 let sealed = handed.sealed.as_deref()?;
-                Some(translated(sealed, Some(&handed.place.leg), &current, entered, new, &world))
+                Some(translated(sealed, Some(handed), &current, entered, new, &world))
             });
             let sealed = sealed.collect();
             return Ok(Carried::On { bookmarks, sealed, keep });
@@ -223,10 +224,11 @@ enum Carried {
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
 /// identifiers. In the middle of a leg that has become another kind of leg, it is the beginning of that one, on the same passage. If
 /// its leg is gone, or in another of the document's plans, it is the beginning of `current` (nothing kept before it) or the end of it.
-/// Loops that the new plan puts around it were `entered` after that passage, whichever bookmark it is.
+/// Loops that the new plan puts around it were `entered` after that passage, whichever bookmark it is. Where a waypoint was `kept` of
+/// a leg that had been taken away and is there again, it is the beginning of that one, on the passage of the waypoint.
 fn translated(
     cursor: &Cursor,
-    kept_leg: Option<&Id>,
+    kept: Option<&Handed>,
     current: &LegPath,
     entered: u64,
     new: &Program,
@@ -238,6 +240,13 @@ fn translated(
         Cursor { passage: cursor.passage, ..entering.placed_at(target, &known, new) }
     };
     let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
+    let brought_back = kept.filter(|handed| world.program.path(&handed.place.leg).is_none());
+    let brought_back =
+        brought_back.and_then(|handed| Some((handed, new.path(&handed.place.leg).filter(same_plan)?)));
+    if let Some((handed, target)) = brought_back {
+        return Cursor { passage: handed.passage.saturating_sub(1), ..placed_at(&target) };
+    }
+    let kept_leg = kept.map(|handed| &handed.place.leg);
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
         let unfinished = cursor.doing == Doing::Flying && !cursor.at_the_end_of_its_leg();
         let other_form = cursor.leg(world).filter(|_| unfinished && kept_leg.is_some());

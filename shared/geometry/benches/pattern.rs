@@ -100,6 +100,7 @@ fn contours(polygon: &Polygon, spacing_m: f64) -> Contours {
         levels: 10_000,
         turn: Turn::Right,
         entry: CENTRE,
+        turn_radius_m: 70.0,
         tolerance_m: 1.0,
     };
     Contours::covering(polygon, &parameters).unwrap()

@@ -100,7 +100,10 @@ impl Found<'_> {
     }
 
     fn problem(&self, view: &View) -> Problem {
-        let Breach { position, altitude_m, horizontal_m, vertical_m, .. } = self.breach;
+        let Breach { position, altitude_m, .. } = self.breach;
+        // in whole metres that are enough
+        let (horizontal_m, vertical_m) =
+            (self.breach.horizontal_m.ceil().max(1.0), self.breach.vertical_m.ceil().max(1.0));
         let (lat, lon) = (position.lat_deg, position.lon_deg);
         let zone = &self.zone.id;
         let place = format!("at {lat:.5}, {lon:.5}");
@@ -108,17 +111,16 @@ impl Found<'_> {
             ZoneKind::KeepOut => (
                 "keep-out",
                 format!(
-                    "move this leg by {horizontal_m:.0} m or change its altitude: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
+                    "move this leg by {horizontal_m} m or change its altitude: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
                 ),
             ),
-            ZoneKind::KeepIn if horizontal_m > 0.0 => (
-                "keep-in",
-                format!("move this leg by {horizontal_m:.0} m: it leaves the zone `{zone}` {place}"),
-            ),
+            ZoneKind::KeepIn if self.breach.horizontal_m > 0.0 => {
+                ("keep-in", format!("move this leg by {horizontal_m} m: it leaves the zone `{zone}` {place}"))
+            }
             ZoneKind::KeepIn => (
                 "keep-in",
                 format!(
-                    "change this leg's altitude by {vertical_m:.0} m: {place} it is {altitude_m:.0} m high, outside the limits of the zone `{zone}`"
+                    "change this leg's altitude by {vertical_m} m: {place} it is {altitude_m:.0} m high, outside the limits of the zone `{zone}`"
                 ),
             ),
         };

@@ -58,8 +58,10 @@ impl Shared {
     }
 
     fn in_loop(&mut self, frame: &LoopFrame) -> InLoop {
-        let mut patterns: Vec<_> = frame.patterns.iter().map(|(leg, e)| (*leg, self.expansion(e))).collect();
-        patterns.sort_unstable();
+        let mut patterns: Vec<_> = frame.patterns.iter().collect();
+        // the map has no order of its own
+        patterns.sort_unstable_by_key(|(leg, _)| **leg);
+        let patterns = patterns.into_iter().map(|(leg, e)| (*leg, self.expansion(e))).collect();
         InLoop { trail: self.trail(&frame.trail), patterns }
     }
 

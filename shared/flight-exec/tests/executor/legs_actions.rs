@@ -420,3 +420,31 @@ fn at_the_end_of_a_loop_its_iteration_is_the_last() {
         .collect();
     assert_eq!(written, [VariableValue::Number(3.0), VariableValue::Number(3.0)]);
 }
+
+/// What the last leg of a pass sets at its end counts for whether there is another one.
+#[test]
+fn the_end_of_a_pass_sees_what_its_last_leg_sets_there() {
+    let set = r#"<action on="end"><set variable="n" to="= n + 1.0"/></action>"#;
+    let last = format!(r#"<TF id="b" fix="B2">{set}</TF>"#);
+    let cases = [
+        (
+            format!(
+                r#"<iterative id="l" form="forward" until="n &gt; 1.0"><TF id="a" fix="B1"/>{last}</iterative><TF id="z" fix="A3"/>"#
+            ),
+            "s a b a b z",
+        ),
+        (
+            format!(
+                r#"<iterative id="l" form="reverse" count="9" until="n &gt; 0.0"><TF id="a" fix="B1"/>{last}</iterative><TF id="z" fix="A3"/>"#
+            ),
+            "s a b z",
+        ),
+    ];
+    for (legs, flown) in cases {
+        let mut rig = flying(&format!(r#"<TF id="s" fix="A1"/>{legs}"#));
+        rig.fly_to_the_end();
+        assert_eq!(rig.legs(), flown, "{legs}");
+        let written = rig.events.iter().filter(|e| matches!(e, Event::VariableChanged { .. })).count();
+        assert_eq!(written, flown.matches('b').count(), "{legs}");
+    }
+}

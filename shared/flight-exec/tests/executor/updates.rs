@@ -191,3 +191,22 @@ fn what_follows_a_loop_that_an_update_moves_is_gone_on_with_though_it_is_refused
     rig.fly_to_the_end();
     assert_eq!(rig.legs(), "a b c b c w z");
 }
+
+/// Its waypoint is too near to be taken back, by one update and by the next.
+#[test]
+fn a_leg_taken_away_and_brought_back_is_begun_once() {
+    let near = fix("B2").destination(225.0, 120.0);
+    let legs = |middle: bool| {
+        let middle = format!(r#"<TF id="x" lat="{}" lon="{}"/>"#, near.lat_deg, near.lon_deg)
+            .repeat(usize::from(middle));
+        format!(r#"<TF id="b" fix="B3"/><TF id="c" fix="B2"/>{middle}<TF id="z" fix="A4"/>"#)
+    };
+    let mut rig = Rig::started(&legs(true));
+    rig.fly_to("c");
+    rig.position = fix("B2").destination(90.0, 20.0);
+    rig.report();
+    rig.update(&program(&document(&legs(false)))).unwrap();
+    rig.update(&program(&document(&legs(true)))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "b c x z");
+}

@@ -28,6 +28,11 @@ pub const POLICIES: &[Policy] = &[
 /// end of the lap.
 const ENTRY: f64 = 3.0;
 
+/// The one condition that the plans' holdings are left by.
+pub fn says_stop(seen: &Seen) -> bool {
+    seen.variables.get(&"stop".into()) == Some(&VariableValue::Bool(true))
+}
+
 /// A holding until released, as the plan has it: whether it has a condition, and its laps.
 fn holding(program: &Program, place: &PlacePointer) -> Option<(bool, Option<f64>)> {
     match &program.leg(&place.leg)?.kind {
@@ -126,7 +131,6 @@ fn released_at_its_fix(trace: &Trace, found: &mut Findings) {
 }
 
 fn left_for_a_reason(trace: &Trace, found: &mut Findings) {
-    let stop = |seen: &Seen| seen.variables.get(&"stop".into()) == Some(&VariableValue::Bool(true));
     for held in passages(trace) {
         let Some(last) = held.steps.last().filter(|s| !s.is_jump() && s.entered().next().is_some()) else {
             continue;
@@ -134,7 +138,7 @@ fn left_for_a_reason(trace: &Trace, found: &mut Findings) {
         let Some((until, laps)) = holding(held.program, held.place) else { continue };
         // a leg that was of another kind ends as that did
         let updated = updated_since_jump(*last);
-        let stopped = until && held.steps.iter().any(|s| stop(s.before) || stop(s.after));
+        let stopped = until && held.steps.iter().any(|s| says_stop(s.before) || says_stop(s.after));
         let steps = held.steps.iter().chain([&held.entered]);
         let passed: usize = steps.map(|step| held.fixes_passed(step)).sum();
         let flown = laps.is_some_and(|n| passed as f64 >= n);

@@ -1,6 +1,7 @@
 //! Plans that change in flight: nothing half applied, the place kept.
 
 use crate::answers::told_last;
+use crate::holdings::says_stop;
 use crate::horizon::waits;
 use crate::place::iterations;
 use crate::policy::{Findings, Policy, policy};
@@ -201,9 +202,11 @@ fn place_survives(trace: &Trace, found: &mut Findings) {
         // nobody has to decide any more: the new plan does
         let is_decided = decides(step, &before.leg);
         let is_there = knows(new, &before.leg) && kind(old) == kind(new) && !ends_early && !is_decided;
+        // laid out anew from its fix, one that is to be left by now ends there
+        let is_released = is_left_by_condition(new, &before.leg) && says_stop(step.after);
         // nor is there anything to circle for
         let is_over = step.before.circles() && !waits(new, &before.leg);
-        if !is_there || is_over || !step.is_begun() {
+        if !is_there || is_over || is_released || !step.is_begun() {
             continue;
         }
         // a loop of another form begins its directions anew
@@ -223,6 +226,10 @@ fn most_laps(program: &Program, leg: &Id) -> Option<f64> {
         LegKind::Hm { max_laps: Some(Value::Constant(laps)), .. } => Some(*laps),
         _ => None,
     }
+}
+
+fn is_left_by_condition(program: &Program, leg: &Id) -> bool {
+    matches!(kind(program, leg), Some(LegKind::Hm { until: Some(_), .. }))
 }
 
 /// The choice that was waited for is made in this step, by a condition or a default.

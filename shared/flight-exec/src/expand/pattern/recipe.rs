@@ -102,6 +102,7 @@ impl Recipe {
                     levels: loops.unwrap_or(MOST_LOOPS),
                     turn,
                     entry: frame.to_local(from),
+                    turn_radius_m: self.turn_radius_m,
                     tolerance_m,
                 };
                 // without a number of loops the area is to be filled

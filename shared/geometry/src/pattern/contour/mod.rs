@@ -50,8 +50,10 @@ pub struct ContourParameters {
     pub levels: u64,
     /// How loops along the outer edge are flown; those round holes go the other way.
     pub turn: Turn,
-    /// Where the aircraft comes from: each loop begins at its corner nearest to the end of the one before.
+    /// Where the aircraft comes from: the first loop begins at its corner nearest to it.
     pub entry: Vec2,
+    /// Radius of turns, metres: each further loop begins at a corner that can be turned to from the end of the one before.
+    pub turn_radius_m: f64,
     /// How far straight lines may cut a loop's rounded corners, metres.
     pub tolerance_m: f64,
 }
@@ -112,6 +114,7 @@ impl ContourParameters {
         not_negative("distance from the edge", self.first_m)?;
         counted("distances from the edge", self.levels, MOST_LEVELS)?;
         finite("entry", self.entry.length())?;
+        not_negative("turn radius", self.turn_radius_m)?;
         positive("tolerance", self.tolerance_m)
     }
 
@@ -233,8 +236,11 @@ fn without_loops_inside(mut areas: Vec<Shape>, others: &[Shape]) -> Vec<Shape> {
 struct Path {
     stored: Stored,
     turn: Turn,
+    turn_radius_m: f64,
     /// Where it ends.
     at: Vec2,
+    /// The end of the last loop, towards there.
+    along: Option<Vec2>,
     /// The area, if ways between loops have to be kept inside it.
     interior: Option<Interior>,
     looks: Looks,
@@ -243,25 +249,50 @@ struct Path {
 impl Path {
     fn new(area: &Polygon, p: &ContourParameters) -> Self {
         let interior = (p.side == Side::Inward && !area.is_convex()).then(|| Interior::of(area.clone()));
-        Self { stored: Stored::default(), turn: p.turn, at: p.entry, interior, looks: Looks::new(MOST_LOOKS) }
+        Self {
+            stored: Stored::default(),
+            turn: p.turn,
+            turn_radius_m: p.turn_radius_m,
+            at: p.entry,
+            along: None,
+            interior,
+            looks: Looks::new(MOST_LOOKS),
+        }
     }
 
     /// Adds the loops of areas, always the one nearest to where the last ended.
     fn fly(&mut self, areas: Vec<Shape>) -> Result<(), PatternError> {
         let mut loops: Vec<Vec<Vec2>> = areas.into_iter().flatten().collect();
-        while let Some((ring, corner)) = nearest(&loops, self.at) {
+        if self.turn == Turn::Right {
+            loops.iter_mut().for_each(|ring| ring.reverse());
+        }
+        while let Some((ring, nearest)) = nearest(&loops, self.at) {
             let mut flown = loops.swap_remove(ring);
-            flown.rotate_left(corner);
+            let begin = self.along.map_or(nearest, |along| self.corner_turned_to(&flown, along));
+            flown.rotate_left(begin);
             let begin = flown.first().copied().unwrap_or(self.at);
+            self.along = flown.last().map(|last| begin - *last);
             flown.push(begin);
-            if self.turn == Turn::Right {
-                flown.reverse();
-            }
             let way = self.way_to(begin)?;
             self.stored.push_after(way, flown)?;
             self.at = begin;
         }
         Ok(())
+    }
+
+    /// The nearest corner of a loop to which there is room to turn, and from there along the loop; else the one with the most room.
+    fn corner_turned_to(&self, ring: &[Vec2], along: Vec2) -> usize {
+        let corner = |i: usize| {
+            let (begin, next) = (*ring.get(i)?, *ring.get((i + 1) % ring.len())?);
+            let way = begin - self.at;
+            let need_m = self.turn_radius_m * (half_tangent(along, way) + half_tangent(way, next - begin));
+            Some((i, way.length(), need_m))
+        };
+        let lack_m = |(_, way_m, need_m): &(usize, f64, f64)| (need_m - way_m).max(0.0);
+        let better = |a: &(usize, f64, f64), b: &(usize, f64, f64)| {
+            lack_m(a).total_cmp(&lack_m(b)).then(a.1.total_cmp(&b.1))
+        };
+        (0..ring.len()).filter_map(corner).min_by(better).map_or(0, |(i, ..)| i)
     }
 
     /// The corners of the way from one loop to the next one; the first one is come to from wherever.
@@ -273,6 +304,11 @@ impl Path {
         let too_intricate = PatternError::TooIntricate { corners, levels: self.stored.starts.len() as u64 };
         interior.way(self.at, begin, &mut self.looks).ok_or(too_intricate)
     }
+}
+
+/// What a turn needs of the ways before and after it, in radii: tan(Δ/2).
+fn half_tangent(before: Vec2, after: Vec2) -> f64 {
+    (before.cross(after).atan2(before.dot(after)).abs() / 2.0).tan()
 }
 
 /// The ring, and its corner, that is nearest to a point.

@@ -12,6 +12,7 @@ fn parameters() -> ContourParameters {
         levels: 100,
         turn: Turn::Right,
         entry: Vec2::new(-10.0, -10.0),
+        turn_radius_m: 50.0,
         tolerance_m: 1.0,
     }
 }
@@ -226,5 +227,35 @@ proptest! {
         let ways = loops.iter().flat_map(|ring| ring.windows(2).map(|w| (w[0], w[1])));
         let share = crate::scan::coverage(&area, ways, spacing_m / 2.0);
         prop_assert!(share >= 0.995, "{}", share);
+    }
+}
+
+/// Turns at both ends of every way between the loops of a round area.
+#[test]
+fn there_is_room_to_turn_from_a_loop_to_the_next() {
+    for (radius_m, spacing_m, turn) in [
+        (450.0, 100.0, Turn::Right),
+        (450.0, 100.0, Turn::Left),
+        (1000.0, 60.0, Turn::Left),
+        (3000.0, 250.0, Turn::Right),
+    ] {
+        let corner = |i: i32| Vec2::from_bearing_rad(-f64::from(i) * std::f64::consts::TAU / 36.0) * radius_m;
+        let area = Polygon::new((0..36).map(corner).collect(), vec![]).unwrap();
+        let p = ContourParameters { spacing_m, first_m: spacing_m / 2.0, turn, ..parameters() };
+        let rings = loops(&area, &p);
+        let (mut ways, mut fitting) = (0, 0);
+        for pair in rings.windows(2) {
+            let (from, to) = (&pair[0], &pair[1]);
+            let (end, begin) = (from[from.len() - 1], to[0]);
+            // round smaller loops than the aircraft's circle there is nothing to be had
+            let smallest_m = to.iter().map(|&c| (c - to[0]).length()).fold(0.0, f64::max) / 2.0;
+            if smallest_m > 2.0 * p.turn_radius_m {
+                let way = begin - end;
+                let turns = half_tangent(end - from[from.len() - 2], way) + half_tangent(way, to[1] - begin);
+                ways += 1;
+                fitting += i32::from(p.turn_radius_m * turns <= way.length());
+            }
+        }
+        assert!(ways > 0 && fitting == ways, "{fitting} of {ways}, {radius_m} m, {spacing_m} m");
     }
 }
