@@ -30,3 +30,30 @@ fn checks_answer_as_the_tutorial_says() {
         assert_eq!(answer.trim(), shown.trim(), "{command}");
     }
 }
+
+/// The lines of a step's file.
+fn lines_of(step: usize) -> Vec<String> {
+    let file = folder().join(format!("step-{step:02}.xml"));
+    let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    text.lines().map(|line| line.trim().to_owned()).filter(|line| !line.is_empty()).collect()
+}
+
+/// Whoever types along has all of it: what a step adds to the one before is on the page, as it is in its file.
+#[test]
+fn every_step_is_on_the_page() {
+    let page = std::fs::read_to_string(folder().join("../tutorial.md")).unwrap();
+    let mut before = vec![r#"<?xml version="1.0" encoding="UTF-8"?>"#.to_owned()];
+    for step in 1..=10 {
+        let section = page.split("\n## ").find(|s| s.starts_with(&format!("{step}. "))).expect("its section");
+        let blocks = section.split("```xml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+        let shown: Vec<_> = blocks.flat_map(str::lines).map(str::trim).collect();
+        let lines = lines_of(step);
+        for line in shown.iter().filter(|shown| !lines.iter().any(|l| l == *shown)) {
+            panic!("step {step} shows what is not in its file: {line}");
+        }
+        for line in lines.iter().filter(|l| !before.contains(l) && !shown.contains(&l.as_str())) {
+            panic!("step {step} doesn't show {line}");
+        }
+        before = lines;
+    }
+}
