@@ -83,7 +83,7 @@ impl Selection {
             Some(name) => Ok(known_leg(plan, name)?),
             None => {
                 let first = plan.stages.iter().flat_map(|s| &s.legs).next();
-                first.map(|l| innermost(l).clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
+                first.map(|l| innermost(l).id.clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
             }
         }
     }
@@ -103,22 +103,29 @@ impl Selection {
 }
 
 /// Where a loop is entered.
-fn innermost(leg: &flight_plan::Leg) -> &Id {
-    leg.body().first().map_or(&leg.id, |first| innermost(first))
+fn innermost(leg: &flight_plan::Leg) -> &flight_plan::Leg {
+    leg.body().first().map_or(leg, |first| innermost(first))
 }
 
-/// A leg's identifier, if there is such a leg.
+/// The leg that begins what has this name: a leg, a loop, or a stage.
 ///
 /// # Errors
-/// There is none.
+/// There is none, or it is passed without being flown.
 pub fn known_leg(plan: &FlightPlan, name: &str) -> anyhow::Result<Id> {
-    match plan.leg(&Id::new(name)) {
-        Some(context) => Ok(innermost(context.leg).clone()),
-        None => match plan.stage(&Id::new(name)) {
-            Some(stage) => Ok(stage.id.clone()),
-            None => bail!("there is no leg `{name}` in the plan"),
+    let id = Id::new(name);
+    let begun = match (plan.leg(&id), plan.stage(&id)) {
+        (Some(context), _) => context.leg,
+        (None, Some(stage)) => match stage.legs.first() {
+            Some(first) => first,
+            None => return Ok(stage.id.clone()),
         },
+        (None, None) => bail!("there is no leg `{name}` in the plan"),
+    };
+    let leg = innermost(begun);
+    if matches!(leg.kind, LegKind::Intersection { .. }) {
+        bail!("`{}` is passed without being flown: name the leg before or behind it", leg.id);
     }
+    Ok(leg.id.clone())
 }
 
 fn branch_of(plan: &FlightPlan, leg: &str, branch: &str) -> anyhow::Result<(Id, Id)> {
@@ -171,6 +178,20 @@ mod tests {
         selection.prepare(&mut loaded)?;
         let name = selection.set.first().map(|(name, _)| name.as_str()).unwrap_or_default();
         Ok(loaded.reading.plan.variable(&name.into()).unwrap().initial.clone())
+    }
+
+    #[test]
+    fn a_stage_or_a_loop_is_where_it_begins() {
+        let (_file, source) = source(FIRE_WATCH);
+        let plan = source.load().unwrap().reading.plan;
+        let begins = |name: &str| known_leg(&plan, name).map(|id| id.to_string()).map_err(|e| e.to_string());
+        for (name, leg) in
+            [("sweep", "sweep"), ("rounds", "sweep"), ("watch", "sweep"), ("take-off", "take-off")]
+        {
+            assert_eq!(begins(name).as_deref(), Ok(leg));
+        }
+        assert!(begins("ask").unwrap_err().contains("passed without being flown"));
+        assert!(begins("nowhere").unwrap_err().contains("there is no leg"));
     }
 
     #[test]
