@@ -1,5 +1,5 @@
 //! `expression-syntax`, `unknown-name`, `wrong-type`, `expression-too-large`: expressions that don't compile, or give
-//! something else than is needed; `no-value`: one that has no value at the variables' initial values.
+//! something else than is needed; `never-a-value`: one that reads nothing and has no value; `no-value`: one that has none at the variables' initial values.
 
 use super::Inspection;
 use super::step::Step;
@@ -42,6 +42,10 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
             );
             problems.push(Problem::error("wrong-type", message).of(of));
         }
+        Ok(compiled) if compiled.is_constant() && !view.has_value(source, used) => {
+            let message = format!("`{source}` never has a value: correct it");
+            problems.push(Problem::error("never-a-value", message).of(of));
+        }
         Ok(_) if !view.has_value(source, used) => {
             let message =
                 format!("`{source}` has no value at the start: change it or the variables' initial values");
@@ -57,7 +61,7 @@ mod tests {
 
     #[test]
     fn expressions_are_typed() {
-        let cases: [(&str, &[&str]); 12] = [
+        let cases: [(&str, &[&str]); 14] = [
             (r#"count="= n""#, &[]),
             (r#"count="= 3""#, &[]),
             (r#"until="done || battery &lt; 0.3""#, &[]),
@@ -70,6 +74,8 @@ mod tests {
             (r#"until="done &amp;&amp;""#, &["expression-syntax"]),
             (r#"until="n + 1 &gt; 3.0""#, &["wrong-type"]),
             (r#"count="= 1.0 / (n - n)""#, &["no-value"]),
+            (r#"count="= 1.0 / (2.0 - 2.0)""#, &["never-a-value"]),
+            (r#"until="1 / (iteration - iteration) &gt; 2""#, &["no-value"]),
         ];
         for (attributes, expected) in cases {
             let variables = r#"<variable name="n" type="number" initial="2"/> <variable name="done" type="bool" initial="false"/>

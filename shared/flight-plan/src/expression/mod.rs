@@ -79,7 +79,12 @@ pub struct Expression {
 impl Expression {
     /// Its value depends on the flight: on time, energy, motion, wind or place (not on the iteration, which is the plan's).
     pub fn reads_flight(&self) -> bool {
-        self.node.reads_flight()
+        self.node.reads(|name| name != FlightName::Iteration)
+    }
+
+    /// Its value is the same whenever it is asked for.
+    pub fn is_constant(&self) -> bool {
+        self.variables.is_empty() && !self.node.reads(|_| true)
     }
 }
 
@@ -213,15 +218,15 @@ enum Node {
 }
 
 impl Node {
-    fn reads_flight(&self) -> bool {
+    fn reads(&self, wanted: fn(FlightName) -> bool) -> bool {
         match self {
-            Node::Flight(name) => *name != FlightName::Iteration,
+            Node::Flight(name) => wanted(*name),
             Node::Bool(_) | Node::Int(_) | Node::Number(_) | Node::Text(_) => false,
             Node::Position(_) | Node::Variable(_) => false,
-            Node::Not(a) | Node::Negate(a) => a.reads_flight(),
-            Node::And(a, b) | Node::Or(a, b) | Node::Binary(_, a, b) => a.reads_flight() || b.reads_flight(),
-            Node::Choose(a, b, c) => [a, b, c].iter().any(|node| node.reads_flight()),
-            Node::Call(_, arguments) => arguments.iter().any(Node::reads_flight),
+            Node::Not(a) | Node::Negate(a) => a.reads(wanted),
+            Node::And(a, b) | Node::Or(a, b) | Node::Binary(_, a, b) => a.reads(wanted) || b.reads(wanted),
+            Node::Choose(a, b, c) => [a, b, c].iter().any(|node| node.reads(wanted)),
+            Node::Call(_, arguments) => arguments.iter().any(|node| node.reads(wanted)),
         }
     }
 }
