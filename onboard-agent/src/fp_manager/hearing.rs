@@ -40,10 +40,10 @@ impl Manager {
     /// Something happened at the gateway.
     pub fn gateway_event(&mut self, now: Time, event: GatewayEvent, out: &mut Vec<Effect>) {
         match event {
-            GatewayEvent::Progress { current: Some(current) } => self.progress(now, current, out),
+            GatewayEvent::Progress { current: Some(current), .. } => self.progress(now, current, out),
             // while waypoints are on their way it is not the end, nor what Safe mode or the pilot flies
-            GatewayEvent::Progress { current: None }
-                if self.feeder.is_idle() && !self.liaison.is_controlled() =>
+            GatewayEvent::Progress { current: None, taken }
+                if self.feeder.is_idle() && !self.liaison.is_controlled() && !self.is_ahead_of(taken) =>
             {
                 self.step(now, Input::Progress { current: None }, out);
             }
@@ -57,6 +57,11 @@ impl Manager {
             _ => {}
         }
         self.send(now, out);
+    }
+
+    /// Waypoints were handed out beyond what the gateway had taken when it spoke.
+    fn is_ahead_of(&self, taken: Token) -> bool {
+        self.executor.ahead().last().is_some_and(|last| last.token > taken)
     }
 
     /// An alarm of the gateway asks for an emergency plan. On the ground it has to ask again in the air; while a plan

@@ -112,7 +112,7 @@ mod tests {
         check(&Stamped {
             time_s: 1.0,
             validity_s: 2.0,
-            value: GatewayEvent::Progress { current: Some(Token(u64::MAX)) },
+            value: GatewayEvent::Progress { current: Some(Token(u64::MAX)), taken: Token(u64::MAX) },
         });
         check(&Stamped {
             time_s: 1.0,

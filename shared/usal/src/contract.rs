@@ -241,6 +241,8 @@ pub enum GatewayEvent {
     Progress {
         /// `None`: everything in the buffer has been flown.
         current: Option<Token>,
+        /// The highest token ever taken: of a feed beyond it, on its way at the same time, nothing has been flown.
+        taken: Token,
     },
     /// The buffer is below its low-water mark.
     BufferLow {

@@ -282,7 +282,7 @@ impl Gateway {
         self.finished = self.window.current().is_some_and(theirs) && self.told.is_some();
         if self.finished {
             self.told = Some(None);
-            out.push(Output::Event(GatewayEvent::Progress { current: None }));
+            out.push(Output::Event(GatewayEvent::Progress { current: None, taken: self.highest }));
         }
         self.change(Trigger::Landed, "landed and disarmed", out);
         self.window.clear();
@@ -322,7 +322,7 @@ impl Gateway {
             return;
         }
         self.told = Some(current);
-        out.push(Output::Event(GatewayEvent::Progress { current }));
+        out.push(Output::Event(GatewayEvent::Progress { current, taken: self.highest }));
         out.push(Output::Save);
         self.tell_level(out);
     }

@@ -163,7 +163,7 @@ impl Gateway {
             self.state = GatewayState::Stop;
         }
         let current = self.buffer.front().map(|w| w.token);
-        self.events.push_back(GatewayEvent::Progress { current });
+        self.events.push_back(GatewayEvent::Progress { current, taken: self.highest });
     }
 
     pub fn launches(&self) -> usize {

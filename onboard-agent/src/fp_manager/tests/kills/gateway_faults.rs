@@ -242,3 +242,22 @@ fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
     run(&mut flight, 2);
     assert_eq!(emergencies(&flight), 2, "{:?}", flight.heard);
 }
+
+/// It ran dry; what it then took is not flown by what it says of before.
+#[test]
+fn everything_flown_told_before_more_was_taken_is_not_the_end() {
+    let mut flight = flown(10, STARTED);
+    let ahead = |f: &Flight| f.process.manager.executor().ahead().map(|w| w.token).collect::<Vec<_>>();
+    let before = ahead(&flight);
+    assert!(before.len() > 1);
+    let taken = Token(before[0].0);
+    flight.tell(|manager, now, out| {
+        manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
+    });
+    assert_eq!(ahead(&flight), before);
+    let taken = before[before.len() - 1];
+    flight.tell(|manager, now, out| {
+        manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
+    });
+    assert_ne!(ahead(&flight), before, "everything that was taken");
+}

@@ -167,7 +167,7 @@ impl Flight {
 
     pub fn progress(&self) -> Vec<Option<u64>> {
         let token = |e: &(f64, GatewayEvent)| match e.1 {
-            GatewayEvent::Progress { current } => Some(current.map(|t| t.0)),
+            GatewayEvent::Progress { current, .. } => Some(current.map(|t| t.0)),
             _ => None,
         };
         self.events.iter().filter_map(token).collect()
