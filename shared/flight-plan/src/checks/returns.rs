@@ -1,15 +1,18 @@
-//! `zero-length` (a warning): a loop, or a branch of an intersection, that leads again to where the aircraft already is. Nothing
-//! is flown then, and if only time or the battery would end it, that goes on for ever.
+//! `zero-length`: a loop, or a branch of an intersection, that leads again to where the aircraft already is. Nothing is flown then:
+//! at a loop the aircraft holds instead (a warning); by a branch taken by default the autopilot would get the same waypoint over and
+//! over (of another branch: a warning).
 
 use super::Inspection;
 use super::step::Step;
-use crate::{Act, Branch, Edit, IterativeForm, Leg, LegKind, Place, Problem, Value};
+use crate::{Act, Branch, Edit, Id, IterativeForm, Leg, LegKind, Place, Problem, Value};
 use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     match &step.leg.kind {
         LegKind::Iterative { .. } => problems.extend(next_pass(view, &step.leg)),
-        LegKind::Intersection { branches, .. } => back(view, step, branches, problems),
+        LegKind::Intersection { branches, default, .. } => {
+            back(view, step, branches, default.as_ref(), problems)
+        }
         _ => {}
     }
 }
@@ -29,7 +32,13 @@ fn next_pass(view: &Inspection, leg: &Leg) -> Option<Problem> {
 }
 
 /// Branches to the leg behind which their intersection is.
-fn back(view: &Inspection, step: &Step, branches: &[Branch], problems: &mut Vec<Problem>) {
+fn back(
+    view: &Inspection,
+    step: &Step,
+    branches: &[Branch],
+    default: Option<&Id>,
+    problems: &mut Vec<Problem>,
+) {
     let before = view.before(step).map(|before| &before.leg);
     let Some(before) = before.filter(|leg| only_place(leg).is_some()) else { return };
     for branch in branches.iter().filter(|b| b.next.as_ref() == Some(&before.id)) {
@@ -37,7 +46,8 @@ fn back(view: &Inspection, step: &Step, branches: &[Branch], problems: &mut Vec<
             "lead the branch `{}` to another leg, or hold there with HM: `{}` ends where this intersection is, and nothing would be flown",
             branch.id, before.id
         );
-        problems.push(Problem::warning("zero-length", message).of(&step.leg.id));
+        let problem = if default == Some(&branch.id) { Problem::error } else { Problem::warning };
+        problems.push(problem("zero-length", message).of(&step.leg.id));
     }
 }
 
@@ -113,5 +123,19 @@ mod tests {
             (&fork("a", ""), &[]),
             (&fork("b", hold), &[]),
         ]);
+    }
+
+    #[test]
+    fn what_happens_without_a_decision_is_forbidden() {
+        let fork = |default: &str| {
+            let legs = format!(
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"/><intersection id="i" default="{default}">
+                <branch id="back" next="b"/><branch id="on"/></intersection><TF id="c" fix="C"/>"#
+            );
+            let plan = crate::read(crate::checks::testing::plan_with(&legs)).plan;
+            let found = crate::check(&plan, &aircraft::Profile::default(), &terrain::Flat(300.0));
+            found.iter().filter(|p| p.code == "zero-length").map(crate::Problem::is_error).collect::<Vec<_>>()
+        };
+        assert_eq!((fork("back"), fork("on")), (vec![true], vec![false]));
     }
 }
