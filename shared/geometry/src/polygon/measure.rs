@@ -53,8 +53,37 @@ impl Polygon {
         high - low
     }
 
-    /// The heading across which the extent is smallest, hence with the fewest tracks: degrees
-    /// in 0..180. It is that of an edge of the convex hull (rotating calipers); of equal ones, the first.
+    /// The heading of the fewest parallel tracks, each of them as often as holes and bays divide it: degrees in 0..180.
+    ///
+    /// Tracks cross the edges as often as those are long across the heading. That sum is concave from the heading of one edge to that
+    /// of the next, so that it is smallest along one of them; for a convex area that is [`Self::narrowest_heading_deg`].
+    pub fn fewest_tracks_heading_deg(&self) -> f64 {
+        let mut ways: Vec<Vec2> = self.edges().map(|(a, b)| b - a).collect();
+        for way in &mut ways {
+            if way.e < 0.0 || (way.e == 0.0 && way.n < 0.0) {
+                *way = *way * -1.0;
+            }
+        }
+        let narrowest_deg = self.narrowest_heading_deg();
+        let across = Vec2::from_bearing_rad((narrowest_deg + 90.0).to_radians());
+        let mut best = (ways.iter().map(|way| way.dot(across).abs()).sum::<f64>(), narrowest_deg);
+        ways.sort_by(|a, b| a.bearing_rad().total_cmp(&b.bearing_rad()));
+        let (mut before, mut after) =
+            (Vec2::default(), ways.iter().fold(Vec2::default(), |sum, way| sum + *way));
+        for way in ways {
+            after = after - way;
+            let sum_m = (way * way.length().recip()).cross(after - before).abs();
+            // equal ones must not be told apart by rounding
+            if sum_m < best.0 - 1e-3 {
+                best = (sum_m, way.bearing_rad().to_degrees().rem_euclid(180.0));
+            }
+            before = before + way;
+        }
+        best.1
+    }
+
+    /// The heading across which the extent is smallest: degrees in 0..180. It is that of an edge of the convex hull (rotating
+    /// calipers); of equal ones, the first.
     pub fn narrowest_heading_deg(&self) -> f64 {
         let hull = hull(self.outer());
         let n = hull.len();

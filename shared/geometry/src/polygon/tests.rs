@@ -111,6 +111,17 @@ fn the_narrowest_heading_lies_along_the_long_side() {
     }
 }
 
+/// Two arms at right angles, the way between their ends being the narrowest one's edge of the hull.
+#[test]
+fn the_fewest_tracks_lie_along_an_arm() {
+    let corners =
+        [(0.0, 0.0), (2000.0, 0.0), (2000.0, 300.0), (300.0, 300.0), (300.0, 2000.0), (0.0, 2000.0)];
+    let p = Polygon::new(corners.map(|(e, n)| Vec2::new(e, n)).to_vec(), vec![]).unwrap();
+    assert_eq!(p.narrowest_heading_deg(), 135.0);
+    let found = p.fewest_tracks_heading_deg();
+    assert!([0.0, 90.0].contains(&found), "{found}");
+}
+
 #[test]
 fn circles_contain_their_circle() {
     let centre = Vec2::new(300.0, -200.0);
@@ -134,6 +145,12 @@ fn ten_thousand_corners_are_checked_at_once() {
         .collect();
     let p = Polygon::new(star, vec![]).unwrap();
     assert!(!p.is_convex() && p.narrowest_heading_deg().is_finite());
+}
+
+/// How long the edges are across a heading.
+fn crossed_m(p: &Polygon, heading_deg: f64) -> f64 {
+    let across = Vec2::from_bearing_rad((heading_deg + 90.0).to_radians());
+    p.edges().map(|(a, b)| (b - a).dot(across).abs()).sum()
 }
 
 /// Star-shaped outlines are simple by construction.
@@ -209,6 +226,7 @@ proptest! {
     fn no_heading_is_narrower(outer in star(), heading in 0.0..180.0) {
         let p = Polygon::new(outer, vec![]).unwrap();
         prop_assert!(p.width_m(p.narrowest_heading_deg()) <= p.width_m(heading) + 2e-3);
+        prop_assert!(crossed_m(&p, p.fewest_tracks_heading_deg()) <= crossed_m(&p, heading) + 4e-3);
     }
 
     #[test]

@@ -229,7 +229,7 @@ impl Scan {
     /// A parameter that makes no sense.
     pub fn new(polygon: &Polygon, p: &ScanParameters) -> Result<Self, ScanError> {
         p.check()?;
-        let heading_deg = p.heading_deg.unwrap_or_else(|| polygon.narrowest_heading_deg());
+        let heading_deg = p.heading_deg.unwrap_or_else(|| polygon.fewest_tracks_heading_deg());
         let axes = Axes::new(heading_deg);
         let outline = Outline::new(polygon, axes);
         let lines = match p.grid {
