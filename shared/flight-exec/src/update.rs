@@ -235,16 +235,20 @@ fn translated(
     world: &World,
 ) -> Cursor {
     let known = cursor.loop_ids(world);
-    let placed_at = |target: &LegPath| {
+    let placed_at = |target: &LegPath, stand: Stand| {
         let entering = Cursor { passage: entered, ..cursor.clone() };
-        Cursor { passage: cursor.passage, ..entering.placed_at(target, &known, new) }
+        let mut placed = Cursor { passage: cursor.passage, ..entering.placed_at(target, &known, new) };
+        restore_trails(&mut placed, (cursor, &known, world), new, target, stand);
+        placed
     };
     let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
     let brought_back = kept.filter(|handed| world.program.path(&handed.place.leg).is_none());
     let brought_back =
         brought_back.and_then(|handed| Some((handed, new.path(&handed.place.leg).filter(same_plan)?)));
-    if let Some((handed, target)) = brought_back {
-        return Cursor { passage: handed.passage.saturating_sub(1), ..placed_at(&target) };
+    // on the way back, what it is to fly is no longer known
+    if let Some((handed, target)) = brought_back.filter(|_| !cursor.is_reverse()) {
+        let passage = handed.passage.saturating_sub(1);
+        return Cursor { passage, ..placed_at(&target, Stand::Before) };
     }
     let kept_leg = kept.map(|handed| &handed.place.leg);
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
@@ -253,24 +257,32 @@ fn translated(
         let other_form = other_form.filter(|leg| new.leg(&leg.id).is_some_and(|leg| !is_control(leg)));
         if let Some(target) = other_form.and_then(|leg| new.path(&leg.id)).filter(same_plan) {
             let passage = cursor.passage.saturating_sub(1);
-            return Cursor { passage, ..placed_at(&target) };
+            return Cursor { passage, ..placed_at(&target, Stand::Before) };
         }
-        let fallback = kept_leg.and_then(|id| new.path(id)).filter(same_plan);
-        let mut placed = placed_at(fallback.as_ref().unwrap_or(current));
-        if kept_leg.is_some() {
-            placed.doing = Doing::Flying;
-        }
-        return placed;
+        let Some(kept_leg) = kept_leg else { return placed_at(current, Stand::Before) };
+        let fallback = new.path(kept_leg).filter(same_plan);
+        let mut behind = placed_at(fallback.as_ref().unwrap_or(current), Stand::Behind);
+        behind.leave_behind(&World { program: new, ..*world });
+        return behind;
     };
-    let mut moved = placed_at(&target);
-    restore_trails(&mut moved, cursor, &known, world, new, &target);
     Cursor {
         doing: cursor.doing,
         given: cursor.given,
         expansion: cursor.expansion.clone(),
         leg_start: cursor.leg_start,
-        ..moved
+        ..placed_at(&target, Stand::AsBefore)
     }
+}
+
+/// Where a cursor stands to its leg in the new plan.
+#[derive(Clone, Copy, PartialEq)]
+enum Stand {
+    /// As in the old plan.
+    AsBefore,
+    /// At its beginning.
+    Before,
+    /// At its end.
+    Behind,
 }
 
 /// Where the new plan has the leg (or stage) that a cursor is at; on the full turn of a loop, the beginning of that loop's body.
@@ -288,15 +300,15 @@ fn same_place(cursor: &Cursor, known: &[Id], new: &Program, world: &World) -> Op
 /// Direction and trail of each loop that is still there.
 fn restore_trails(
     moved: &mut Cursor,
-    old: &Cursor,
-    known: &[Id],
-    world: &World,
+    (old, known, world): (&Cursor, &[Id], &World),
     new: &Program,
     target: &LegPath,
+    stand: Stand,
 ) {
     let old_chain = old.chain(world);
     let new_chain = new.chain(target);
-    for (frame, leg) in moved.loops.iter_mut().zip(new_chain) {
+    let innermost = moved.loops.len().saturating_sub(1);
+    for (depth, (frame, leg)) in moved.loops.iter_mut().zip(new_chain).enumerate() {
         let place = known.iter().position(|id| *id == leg.id);
         let was = place.and_then(|i| old.loops.get(i).zip(old_chain.get(i)));
         let Some((before, old_leg)) = was else { continue };
@@ -304,13 +316,20 @@ fn restore_trails(
             // forth and back has become round and round, or the reverse: directions and trails mean nothing any more
             break;
         }
-        *frame = LoopFrame {
-            index: frame.index,
-            trail: remap(before.trail.iter(), old_leg, leg),
-            patterns: rpds::HashTrieMapSync::default(),
-            ..before.clone()
+        let trail = remap(before.trail.iter(), old_leg, leg);
+        let still = remap(before.trail.iter().take(before.back), old_leg, leg);
+        let at_target = still.iter().position(|visit| visit.index == moved.index);
+        let back = match stand {
+            Stand::Behind if depth == innermost => at_target.unwrap_or(still.len()),
+            Stand::Before if depth == innermost && before.reverse => match at_target {
+                Some(visit) => visit + 1,
+                // it was not passed on the way out
+                None => break,
+            },
+            _ => still.len(),
         };
-        frame.back = remap(before.trail.iter().take(before.back), old_leg, leg).len();
+        let patterns = rpds::HashTrieMapSync::default();
+        *frame = LoopFrame { index: frame.index, trail, back, patterns, ..before.clone() };
     }
 }
 

@@ -56,6 +56,22 @@ impl Cursor {
         self.index = successor(self.list(world), leg, self.index);
     }
 
+    /// The leg it is at is behind it, for an update: nothing of it is flown any more. What is flown back has it already if it was passed
+    /// before; on the way back it is not among what is still to be flown.
+    pub(crate) fn leave_behind(&mut self, world: &World) {
+        let remembered =
+            |frame: &LoopFrame| frame.reverse || frame.trail.iter().any(|visit| visit.index == self.index);
+        let is_remembered = self.loops.last().is_some_and(remembered);
+        match self.leg(world).filter(|_| is_remembered) {
+            Some(leg) => {
+                let reverse = self.loops.last().is_some_and(|frame| frame.reverse);
+                self.index = if reverse { self.index } else { successor(self.list(world), leg, self.index) };
+                self.doing = Doing::Arriving;
+            }
+            None => self.doing = Doing::Flying,
+        }
+    }
+
     /// A leg is passed without a waypoint of its own.
     fn mark(&self, leg: &Leg, notes: &mut Notes) {
         if !leg.actions.is_empty() {

@@ -210,3 +210,81 @@ fn a_leg_taken_away_and_brought_back_is_begun_once() {
     rig.fly_to_the_end();
     assert_eq!(rig.legs(), "b c x z");
 }
+
+/// A reversing loop with a leg that may be of two kinds.
+fn there_and_back(b: &str, c: &str) -> String {
+    format!(
+        r#"<TF id="s" fix="A2"/><iterative id="l" form="reverse" count="2" turn="left"><TF id="a" fix="A3"/><{b} id="b" fix="B3"/><{c} id="c" fix="C3"/></iterative>
+           <TF id="z" fix="D4"/>"#
+    )
+}
+
+#[test]
+fn the_way_back_survives_a_change_of_the_leg_that_is_flown_out() {
+    let mut rig = Rig::started(&there_and_back("TF", "TF"));
+    rig.fly_to("c");
+    rig.update(&program(&document(&there_and_back("TF", "DF")))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "s a b c <l <c <b <a l a b c z");
+}
+
+#[test]
+fn the_way_back_survives_a_change_of_the_leg_that_is_flown_back() {
+    let mut rig = Rig::started(&there_and_back("TF", "TF"));
+    rig.fly_to("c");
+    rig.fly_to("b");
+    rig.update(&program(&document(&there_and_back("DF", "TF")))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "s a b c <l <c <b <a l a b c z");
+}
+
+/// A loop with a leg 120 m behind `c`, of which the waypoint is too near to be taken back when the aircraft is at `c`.
+fn near_in_a_loop(near: bool) -> String {
+    let at = fix("C3").destination(225.0, 120.0);
+    let near = format!(r#"<TF id="d" lat="{}" lon="{}"/>"#, at.lat_deg, at.lon_deg).repeat(usize::from(near));
+    format!(
+        r#"<TF id="s" fix="A2"/><iterative id="l" form="reverse" count="2" turn="left"><TF id="a" fix="A3"/><TF id="b" fix="B3"/><TF id="c" fix="C3"/>{near}<TF id="e" fix="D3"/></iterative>
+           <TF id="z" fix="D4"/>"#
+    )
+}
+
+#[test]
+fn the_way_back_survives_the_loss_of_a_leg_too_near_to_be_taken_back() {
+    for back_again in [false, true] {
+        let mut rig = Rig::started(&near_in_a_loop(true));
+        rig.fly_to("c");
+        rig.position = fix("C3").destination(270.0, 20.0);
+        rig.report();
+        rig.update(&program(&document(&near_in_a_loop(false)))).unwrap();
+        if back_again {
+            rig.update(&program(&document(&near_in_a_loop(true)))).unwrap();
+        }
+        rig.fly_to_the_end();
+        let flown = if back_again {
+            "s a b c d e <l <e <d <c <b <a l a b c d e z"
+        } else {
+            "s a b c d e <l <e <c <b <a l a b c e z"
+        };
+        assert_eq!(rig.legs(), flown);
+    }
+}
+
+#[test]
+fn on_the_way_back_the_loss_of_a_leg_too_near_to_be_taken_back_changes_no_direction() {
+    for back_again in [false, true] {
+        let mut rig = Rig::started(&near_in_a_loop(true));
+        rig.fly_to("l");
+        rig.fly_to("e");
+        // backwards `d` leads to `c`, 120 m on
+        rig.position = fix("C3").destination(225.0, 140.0);
+        rig.report();
+        assert_eq!(rig.legs(), "s a b c d e <l <e");
+        rig.update(&program(&document(&near_in_a_loop(false)))).unwrap();
+        if back_again {
+            rig.update(&program(&document(&near_in_a_loop(true)))).unwrap();
+        }
+        rig.fly_to_the_end();
+        let rest = if back_again { "a b c d e z" } else { "a b c e z" };
+        assert_eq!(rig.legs(), format!("s a b c d e <l <e <d <c <b <a l {rest}"));
+    }
+}
