@@ -53,9 +53,7 @@ pub(crate) struct Wait {
 impl Executor {
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
     pub(crate) fn change_passage(&mut self, handed: &Handed, mut marks: Vec<Mark>, out: &mut Vec<Output>) {
-        // of a passage that has begun it may turn out, laid out anew, that nothing of it is left
-        let is_followed = |m: &Mark| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
-        marks.retain(|mark| !is_followed(mark));
+        self.retain_new(&mut marks);
         self.end_passages(|p| !p.is_around(handed), out);
         for passage in &mut self.state.passages {
             passage.iteration = iteration_of(&self.program, &passage.leg, handed);
@@ -65,6 +63,12 @@ impl Executor {
         for (leg, number) in self.flown_at(handed) {
             self.begin_passage(&leg, number, handed, out);
         }
+    }
+
+    /// Of a passage that has begun it may turn out, laid out anew, that nothing of it is left: it is not passed once more.
+    pub(crate) fn retain_new(&self, marks: &mut Vec<Mark>) {
+        let is_followed = |m: &Mark| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
+        marks.retain(|mark| !is_followed(mark));
     }
 
     /// What is flown on the way to a waypoint, with the numbers of its passages: the loops around it, outermost first, and its leg.
@@ -238,7 +242,7 @@ impl Passage {
     }
 
     /// It is that of a loop around a waypoint.
-    fn is_around(&self, handed: &Handed) -> bool {
+    pub(crate) fn is_around(&self, handed: &Handed) -> bool {
         loops_of(handed).any(|l| l == (&self.leg, self.number))
     }
 }

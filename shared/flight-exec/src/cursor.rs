@@ -16,15 +16,19 @@ pub use trail::{Trail, Visit};
 
 use crate::api::Action;
 use crate::expand::{Expansion, Point};
-use crate::path::{Level, Passing, PathState};
+use crate::path::{Level, Passing, PathState, distance_and_course};
 use crate::world::World;
 use flight_plan::{Id, Leg, Stage};
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// So many steps without a single waypoint: a loop that flies nothing.
 const MOST_SILENT_STEPS: usize = 2000;
+
+/// A fly-by of a sharper turn begins more than two radii before its corner, degrees: in a pattern such a corner is crossed.
+const SHARP_DEG: f64 = 127.0;
 
 /// A place in the program and the end of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -234,7 +238,20 @@ impl Cursor {
         {
             return None;
         }
-        self.expansion.as_ref()?.point(self.given)
+        let (expansion, number) = (self.expansion.as_ref()?, self.given);
+        let point = expansion.point(number)?;
+        let sharp = || {
+            expansion.point(number + 1).is_some_and(|next| self.turns_sharply(point.position, next.position))
+        };
+        Some(Point { fly_over: point.fly_over || (expansion.is_pattern() && sharp()), ..point })
+    }
+
+    /// Where the path turns so sharply a turn ahead of time would leave out far too much.
+    fn turns_sharply(&self, at: LatLon, next: LatLon) -> bool {
+        let from = self.rejoined.as_ref().map_or(&self.path, |path| path);
+        let (length_m, course_deg) = distance_and_course(from.last.position, at);
+        let (_, next_deg) = distance_and_course(at, next);
+        length_m > 0.5 && normalise_180(next_deg - course_deg).abs() > SHARP_DEG
     }
 
     /// It is left at this crossing: as was chosen here before, else by a choice.

@@ -134,6 +134,22 @@ impl Executor {
         self.state.late.retain(|(l, n)| l != leg || *n > crossing);
     }
 
+    /// A decision for a branch that the plan has no more is none: it is asked again.
+    pub(crate) fn forget_branches_gone(&mut self) {
+        let program = self.program.clone();
+        let is_there = |d: &Decision| {
+            let fork = program.leg(&d.leg).and_then(Leg::as_fork);
+            fork.is_some_and(|fork| fork.branches.iter().any(|b| b.id == d.branch))
+        };
+        let decisions = std::mem::take(&mut self.state.decisions);
+        let (kept, gone): (Vec<_>, Vec<_>) = decisions.into_iter().partition(is_there);
+        self.state.decisions = kept;
+        let is_gone =
+            |(leg, crossing): &(Id, u64)| gone.iter().any(|d| d.leg == *leg && d.crossing == *crossing);
+        self.state.requested.retain(|key| !is_gone(key));
+        self.state.late.retain(|key| !is_gone(key));
+    }
+
     /// What was taken for want of a decision is not decided when the way leads to the intersection anew: it is asked again.
     pub(crate) fn forget_defaults(&mut self) {
         self.state.decisions.retain(|d| matches!(d.by, By::Somebody(_)));

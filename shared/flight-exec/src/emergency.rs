@@ -76,7 +76,8 @@ impl Executor {
         }
         let mut cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
         // crossings are counted on, so that a decision for the next one is not taken for another after the return
-        cursor.crossings = self.bookmark(0).crossings;
+        let before = self.bookmark(0);
+        (cursor.crossings, cursor.uncounted) = (before.crossings, before.uncounted);
         self.leave_hold(out);
         self.jump(cursor, out);
     }

@@ -37,11 +37,16 @@ impl Executor {
         }
     }
 
-    /// The choices that led to the current waypoint are due: if they would be others now, the way is changed.
+    /// The choices that led to the current waypoint are due: if they would be others now, the way is changed. What is set at the end of
+    /// a leg or loop counts for those behind it.
     fn arrive_at_current(&mut self, out: &mut Vec<Output>) {
-        self.end_the_leg_before_a_choice(out);
-        if self.front_choices_changed() {
-            self.replan_from(0, true, out);
+        let mut made = 0;
+        while self.state.handed.front().is_some_and(|front| made < front.choices.len()) {
+            self.end_what_is_over_after(made, out);
+            if self.front_choices_changed(made) {
+                self.replan_from(0, true, out);
+            }
+            made += 1;
         }
         if let Some(mut front) = self.state.handed.pop_front() {
             self.announce(&mut front, out);
@@ -50,20 +55,26 @@ impl Executor {
         self.settle_phase(out);
     }
 
-    /// The leg flown last is over, whichever way is taken from there, and what it sets at its end counts for the choice. Only a holding
-    /// is over by the choice itself.
-    fn end_the_leg_before_a_choice(&mut self, out: &mut Vec<Output>) {
-        let Some(front) = self.state.handed.front() else { return };
-        let by_itself = front.choices.iter().any(|c| matches!(c, Choice::Hold { .. }));
-        let over = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
-        if let Some((passage, leg)) = over.filter(|_| !front.choices.is_empty() && !by_itself) {
-            self.end_passages(|p| p.is(&leg, passage), out);
+    /// Ends what is over for certain when so many of the choices before the current waypoint are made: first the leg flown last, but a
+    /// holding is over by its own choice, and a loop by that to leave it.
+    fn end_what_is_over_after(&mut self, made: usize, out: &mut Vec<Output>) {
+        let Some(front) = self.state.handed.front().cloned() else { return };
+        let holds = matches!(front.choices.first(), Some(Choice::Hold { .. }));
+        let last = made.checked_sub(1).and_then(|i| front.choices.get(i));
+        if made == usize::from(holds) {
+            let over = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
+            over.iter().for_each(|(passage, leg)| self.end_passages(|p| p.is(leg, *passage), out));
+        }
+        if let Some(Choice::Loop { leg, again: false, .. }) = last {
+            self.end_passages(|p| p.leg == *leg && !p.is_around(&front), out);
         }
     }
 
-    fn front_choices_changed(&self) -> bool {
-        let front = self.state.handed.front().filter(|front| !front.choices.is_empty() && !front.pinned);
-        front.is_some_and(|front| choices_changed(front, &World { arriving: true, ..self.world() }))
+    /// Behind the first so many, which are made.
+    fn front_choices_changed(&self, made: usize) -> bool {
+        let front = self.state.handed.front().filter(|front| !front.pinned);
+        let world = World { arriving: true, ..self.world() };
+        front.and_then(|front| first_changed(front, &world)).is_some_and(|first| first >= made)
     }
 
     /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
@@ -97,10 +108,12 @@ impl Executor {
         }
     }
 
-    fn announce_leg(&mut self, handed: &Handed, marks: Vec<Mark>, out: &mut Vec<Output>) {
+    fn announce_leg(&mut self, handed: &Handed, mut marks: Vec<Mark>, out: &mut Vec<Output>) {
         let passage = Some((handed.passage, handed.place.leg.clone()));
         if self.state.announced != passage {
-            self.state.announced = passage;
+            // laid out anew it may turn out that nothing is left of what was flown last
+            let flown = std::mem::replace(&mut self.state.announced, passage);
+            marks.retain(|mark| flown.as_ref().is_none_or(|(n, leg)| *n != mark.passage || *leg != mark.leg));
             self.change_passage(handed, marks, out);
         }
     }
@@ -144,8 +157,10 @@ impl Executor {
     /// Loops that ended together with the plan, decisions that led to its end, and actions there.
     fn announce_end(&mut self, last: &Handed, out: &mut Vec<Output>) {
         let Step::Ended { notes } = self.bookmark(0).next(&self.world()) else { return };
+        let mut marks = notes.marks;
+        self.retain_new(&mut marks);
         self.end_passages(|_| true, out);
-        self.pass_silently(notes.marks, last, out);
+        self.pass_silently(marks, last, out);
         self.tell_choices(notes.choices, out);
     }
 
@@ -207,12 +222,17 @@ impl Executor {
 
 /// The choices that led to a waypoint would be others in this world.
 fn choices_changed(handed: &Handed, world: &World) -> bool {
+    first_changed(handed, world).is_some()
+}
+
+/// The number of the first choice, from 0, that led to a waypoint and would be another one in this world.
+fn first_changed(handed: &Handed, world: &World) -> Option<usize> {
     let mut cursor = handed.before.clone();
     let now = match cursor.next(world) {
         Step::Waypoint(emission) => emission.notes.choices,
         Step::Ended { notes } => notes.choices,
-        Step::Waiting | Step::Stalled { .. } => return true,
+        Step::Waiting | Step::Stalled { .. } => return Some(handed.choices.len()),
     };
-    let alike = |(a, b): (&Choice, &Choice)| a.leads_as(b);
-    now.len() != handed.choices.len() || !now.iter().zip(&handed.choices).all(alike)
+    let alike = now.iter().zip(&handed.choices).take_while(|(a, b)| a.leads_as(b)).count();
+    (alike < now.len().max(handed.choices.len())).then_some(alike)
 }

@@ -52,6 +52,7 @@ impl Executor {
         // what couldn't be flown in the old plan may come to be told again in the new one
         self.state.told.clear();
         self.carry_passages_over(&before);
+        self.forget_branches_gone();
         out.push(Output::Event(event));
     }
 

@@ -94,14 +94,36 @@ impl Expansion {
             Expansion::Holding(racetrack) => racetrack.point(index),
             Expansion::Orbit(circle) => circle.point(index),
             Expansion::UntilAltitude(track) => track.point(index),
-            Expansion::Scan(sweeps) => sweeps.point(index),
-            Expansion::Pattern(flight) => flight.point(index),
+            Expansion::Scan(sweeps) => sweeps.point(index).map(|point| self.crossed_at_the_end(index, point)),
+            Expansion::Pattern(flight) => {
+                flight.point(index).map(|point| self.crossed_at_the_end(index, point))
+            }
             // its last point is where the path is already
             Expansion::Reversed { pattern, points, start } => match points.checked_sub(index + 2) {
-                Some(mirrored) => pattern.point(mirrored),
+                Some(mirrored) => {
+                    pattern.point(mirrored).map(|point| pattern.crossed_backwards(mirrored, point))
+                }
                 None => (index + 1 == (*points).max(1)).then_some(*start),
             },
         }
+    }
+
+    fn crossed_backwards(&self, index: u64, point: Point) -> Point {
+        Point { fly_over: index == 0 || (point.fly_over && !self.is_last(index)), ..point }
+    }
+
+    fn is_last(&self, index: u64) -> bool {
+        self.count().is_some_and(|points| index + 1 == points)
+    }
+
+    /// The last track is flown to its end, however sharply the path turns to what follows.
+    fn crossed_at_the_end(&self, index: u64, point: Point) -> Point {
+        Point { fly_over: point.fly_over || self.is_last(index), ..point }
+    }
+
+    /// It is there to be seen along its tracks: their corners are not to be cut far.
+    pub fn is_pattern(&self) -> bool {
+        matches!(self, Expansion::Scan(_) | Expansion::Pattern(_) | Expansion::Reversed { .. })
     }
 
     /// How many points it has; `None`: no end of its own (what is left by a choice).

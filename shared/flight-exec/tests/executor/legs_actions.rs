@@ -426,25 +426,51 @@ fn at_the_end_of_a_loop_its_iteration_is_the_last() {
 fn the_end_of_a_pass_sees_what_its_last_leg_sets_there() {
     let set = r#"<action on="end"><set variable="n" to="= n + 1.0"/></action>"#;
     let last = format!(r#"<TF id="b" fix="B2">{set}</TF>"#);
+    let hold = format!(r#"<HM id="b" fix="B2" course="90" turn="left" length="600" maxLaps="1">{set}</HM>"#);
+    let inner = format!(
+        r#"<iterative id="i" form="forward" count="2">{set}<TF id="b" fix="B2"/><TF id="c" fix="C2"/></iterative>"#
+    );
+    let looped = |until: u32, last: &str| {
+        format!(
+            r#"<iterative id="l" form="forward" until="n &gt; {until}.0"><TF id="a" fix="B1"/>{last}</iterative><TF id="z" fix="A3"/>"#
+        )
+    };
+    let reverse = looped(0, &last).replace(r#"form="forward""#, r#"form="reverse" count="9""#);
     let cases = [
-        (
-            format!(
-                r#"<iterative id="l" form="forward" until="n &gt; 1.0"><TF id="a" fix="B1"/>{last}</iterative><TF id="z" fix="A3"/>"#
-            ),
-            "s a b a b z",
-        ),
-        (
-            format!(
-                r#"<iterative id="l" form="reverse" count="9" until="n &gt; 0.0"><TF id="a" fix="B1"/>{last}</iterative><TF id="z" fix="A3"/>"#
-            ),
-            "s a b z",
-        ),
+        (looped(1, &last), "s a b a b z", 2),
+        (reverse, "s a b z", 1),
+        (looped(1, &hold), "s a b a b z", 2),
+        (looped(0, &inner), "s a b c b c z", 1),
     ];
-    for (legs, flown) in cases {
+    for (legs, flown, times) in cases {
         let mut rig = flying(&format!(r#"<TF id="s" fix="A1"/>{legs}"#));
         rig.fly_to_the_end();
         assert_eq!(rig.legs(), flown, "{legs}");
         let written = rig.events.iter().filter(|e| matches!(e, Event::VariableChanged { .. })).count();
-        assert_eq!(written, flown.matches('b').count(), "{legs}");
+        assert_eq!(written, times, "{legs}");
     }
+}
+
+/// The leg being flown is moved to where the path is already: it is over, and was begun before.
+#[test]
+fn a_leg_of_which_nothing_is_left_before_a_choice_acts_once() {
+    let act = |on: &str| format!(r#"<action on="{on}"><photo/></action>"#);
+    let legs = format!(
+        r#"<TF id="s" fix="A1"/><iterative id="l" form="forward" count="2"><TF id="a" fix="B1"/><IF id="x" at="= where">{}{}</IF></iterative>
+           <TF id="z" fix="A3"/>"#,
+        act("start"),
+        act("end")
+    );
+    let b1 = fix("B1");
+    let far = b1.destination(90.0, 3000.0);
+    let variables =
+        format!(r#"<variable name="where" type="position" initial="{} {}"/>"#, far.lat_deg, far.lon_deg);
+    let mut rig = Rig::flying(&document_with(&legs, &variables, ""));
+    rig.fly_to("x");
+    let value = VariableValue::Position(b1);
+    rig.command(Command::SetVariable { name: "where".into(), value }).unwrap();
+    rig.fly_to("z");
+    let acts: Vec<_> = rig.acts.iter().map(|(leg, passage, _)| (leg.clone(), *passage)).collect();
+    let once = acts.iter().filter(|a| **a == acts[0]).count();
+    assert_eq!(once, 2, "start and end of the first passage: {acts:?}");
 }

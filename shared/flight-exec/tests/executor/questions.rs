@@ -1,6 +1,6 @@
 //! When a decision is asked for: in time, whatever comes before the intersection, and by the speed over the ground.
 
-use crate::rig::{Rig, fix};
+use crate::rig::{Rig, document, fix, program};
 use flight_exec::{Command, DecisionRequest, Event};
 
 fn fork(before: &str, due: &str) -> String {
@@ -121,5 +121,31 @@ fn back_before_the_intersection_it_is_asked_again() {
         assert!(asked(&rig).is_some(), "decided, and nobody was asked");
         rig.events.clear();
         rig.command(Command::GoTo { leg: "a".into() }).unwrap();
+    }
+}
+
+/// The branch decided for is no more in the new plan: that was no decision for what is there now.
+#[test]
+fn a_decision_for_a_branch_that_an_update_takes_away_is_asked_for_again() {
+    for default in [r#"default="left""#, ""] {
+        let legs = |branch: &str| {
+            format!(
+                r#"<TF id="a" fix="A3"/><TF id="b" fix="B3"/><intersection id="x" {default} decideBefore="60s">
+                  <branch id="left" label="Left" next="l"/><branch id="{branch}" label="Other" next="r"/>
+                </intersection>
+                <TF id="l" fix="B5" next="z"/><TF id="r" fix="C4" next="z"/><TF id="z" fix="A4"/>"#
+            )
+        };
+        let mut rig = Rig::started(&legs("right"));
+        rig.fly_to("a");
+        rig.command(Command::Decide { leg: "x".into(), branch: "right".into() }).unwrap();
+        rig.update(&program(&document(&legs("middle")))).unwrap();
+        rig.fly_to("b");
+        rig.position = fix("B3").destination(270.0, 500.0);
+        rig.report();
+        assert!(asked(&rig).is_some(), "{default}");
+        rig.command(Command::Decide { leg: "x".into(), branch: "middle".into() }).unwrap();
+        rig.fly_to_the_end();
+        assert!(rig.legs().ends_with("r z"), "{default}: {}", rig.legs());
     }
 }
