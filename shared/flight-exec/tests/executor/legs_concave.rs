@@ -190,7 +190,7 @@ impl Case {
     }
 }
 
-/// From half the spacing on, slanted edges are covered wholly; less of them is seen with less.
+/// From half the spacing on, what these areas' slanted edges leave unseen is next to nothing.
 fn is_covered(path: &[Vec2], case: &Case, spacing_m: f64) -> bool {
     let ways = path.windows(2).map(|w| (w[0], w[1]));
     case.overshoot_m() < spacing_m / 2.0 || coverage(&case.area, ways, spacing_m / 2.0 + 0.1) >= 0.995

@@ -34,16 +34,15 @@ pub struct ExpandingSquare {
 impl ExpandingSquare {
     /// Legs after which everything within a distance of the datum has been within half a spacing of a track, but for what
     /// the pattern leaves inside each of its corners, at most (1 − π/4) · spacing² / 4. The square's k-th ring,
-    /// k ≥ radius / spacing − ½, is complete after 4k + 1 legs. Both in metres.
+    /// k ≥ radius / spacing − ½, is complete after 4k + 1 legs; the first one is always flown. Both in metres.
     ///
     /// # Errors
     /// Numbers that are not positive, and more legs than can be counted.
     pub fn legs_to_cover(radius_m: f64, spacing_m: f64) -> Result<u64, PatternError> {
         positive("radius", radius_m)?;
         positive("spacing", spacing_m)?;
-        let rings = (radius_m / spacing_m - 0.5 - 1e-9).ceil().max(0.0);
-        // +1 once rounded: `whole` never gives less than 1
-        if rings == 0.0 { Ok(1) } else { Ok(super::whole(4.0 * rings)? + 1) }
+        let rings = (radius_m / spacing_m - 0.5 - 1e-9).ceil().max(1.0);
+        Ok(super::whole(4.0 * rings)? + 1)
     }
 
     /// Lays it out.
@@ -122,7 +121,7 @@ mod tests {
 
     #[test]
     fn legs_for_a_radius() {
-        for (radius_m, legs) in [(40.0, 1), (50.0, 1), (51.0, 5), (150.0, 5), (151.0, 9), (1000.0, 41)] {
+        for (radius_m, legs) in [(40.0, 5), (51.0, 5), (150.0, 5), (151.0, 9), (1000.0, 41)] {
             assert_eq!(ExpandingSquare::legs_to_cover(radius_m, 100.0), Ok(legs), "{radius_m}");
         }
         assert!(ExpandingSquare::legs_to_cover(1e9, 1e-9).is_err());
