@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Where the aircraft is when the new plan comes.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Moment {
-    /// Say where an aircraft that begins this leg of the old plan would go.
+    /// Say where an aircraft that begins this leg of the old plan (in a call: CALL.LEG) would go.
     #[arg(long, value_name = "LEG")]
     pub at: Option<String>,
     /// In this pass of the innermost loop around the leg, from 1.
@@ -88,7 +88,8 @@ fn takeover(
     pass: Option<u64>,
     air: Air,
 ) -> anyhow::Result<Takeover> {
-    let leg = select::known_leg(&before.reading.plan, leg)?;
+    let (flown, _) = flight_plan::instantiate(&before.reading.plan);
+    let leg = select::known_leg(&flown, leg)?;
     let refused = |file: &Source, problems: Vec<Problem>| {
         Err(problems.iter().map(|problem| check::line(&file.file, problem)).collect())
     };
@@ -203,6 +204,19 @@ mod tests {
         assert!(lines.iter().any(|l| l.starts_with("entering at side3, it would go to 36.")), "{lines:?}");
         let lines = said(SQUARE, &renamed, Some("side3"));
         assert!(lines.iter().any(|l| l.starts_with("the aircraft would go on leg side3")), "{lines:?}");
+    }
+
+    #[test]
+    fn a_call_and_its_legs_are_places_too() {
+        let navaid = include_str!("../../../assets/plans/navaid-inspection.xml");
+        let slower = navaid.replace("default=\"= 24.0\"", "default=\"= 23.0\"");
+        for at in ["radial-100", "radial-100.round"] {
+            let lines = said(navaid, &slower, Some(at));
+            assert!(
+                lines.iter().any(|l| l.starts_with("the aircraft would go on leg radial-100.")),
+                "{lines:?}"
+            );
+        }
     }
 
     /// Aboard it would be refused, and the file with the problem is named.

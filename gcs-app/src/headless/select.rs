@@ -14,13 +14,14 @@ pub struct Selection {
     /// Let a variable begin with this value (a position: LAT LON; a polygon: LAT LON, LAT LON, …).
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
     pub set: Vec<(String, String)>,
-    /// Take this branch when the intersection is reached for the first time; otherwise conditions and defaults decide.
+    /// Take this branch when the intersection (in a call: CALL.LEG) is reached for the first time; otherwise conditions and
+    /// defaults decide.
     #[arg(long, value_name = "LEG=BRANCH", value_parser = pair)]
     pub decide: Vec<(String, String)>,
     /// The way of this emergency plan.
     #[arg(long, value_name = "PLAN")]
     pub emergency: Option<String>,
-    /// The leg on which the emergency is raised; the first one if there is none named.
+    /// The leg on which the emergency is raised (in a call: CALL.LEG); the first one if there is none named.
     #[arg(long, value_name = "LEG", requires = "emergency")]
     pub at: Option<String>,
     /// Also if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
@@ -53,11 +54,13 @@ impl Selection {
         Ok(())
     }
 
-    /// What is done on the way.
+    /// What is done on the way. Legs have the names that they have when the plan is flown: `call.leg` in a call.
     ///
     /// # Errors
     /// No such intersection, branch, emergency plan or leg.
     pub fn scenario(&self, plan: &FlightPlan) -> anyhow::Result<Scenario> {
+        let (flown, _) = flight_plan::instantiate(plan);
+        let plan = flown.as_ref();
         let mut triggers = Vec::new();
         for (leg, branch) in &self.decide {
             let (leg, branch) = branch_of(plan, leg, branch)?;
@@ -102,12 +105,13 @@ impl Selection {
     }
 }
 
-/// Where a loop is entered.
+/// Where a loop, or a call, is entered.
 fn innermost(leg: &flight_plan::Leg) -> &flight_plan::Leg {
     leg.body().first().map_or(leg, |first| innermost(first))
 }
 
-/// The leg that begins what has this name: a leg, a loop, or a stage.
+/// The leg that begins what has this name: a leg, a loop, a call, or a stage. The plan is the one that is flown: its calls are
+/// the legs they stand for.
 ///
 /// # Errors
 /// There is none, or it is passed without being flown.
@@ -170,6 +174,8 @@ mod tests {
 
     const FIRE_WATCH: &[u8] = include_bytes!("../../../assets/plans/fire-watch.xml");
 
+    const NAVAID: &str = include_str!("../../../assets/plans/navaid-inspection.xml");
+
     fn set(pairs: &[&str]) -> anyhow::Result<VariableValue> {
         let (_file, source) = source(FIRE_WATCH);
         let mut loaded = source.load().unwrap();
@@ -192,6 +198,33 @@ mod tests {
         }
         assert!(begins("ask").unwrap_err().contains("passed without being flown"));
         assert!(begins("nowhere").unwrap_err().contains("there is no leg"));
+    }
+
+    #[test]
+    fn a_call_is_where_it_begins_and_its_legs_have_its_name() {
+        let intersection = r#"<intersection id="again" default="on"><branch id="on"/><branch id="back" next="outbound"/></intersection>"#;
+        let document = NAVAID.replace("    </procedure>", &format!("{intersection}</procedure>"));
+        let plan = flight_plan::read(document.as_bytes()).plan;
+        let (flown, problems) = flight_plan::instantiate(&plan);
+        assert_eq!(problems, []);
+        for (name, leg) in
+            [("radial-190", "radial-190.outbound"), ("radial-190.inbound", "radial-190.inbound")]
+        {
+            assert_eq!(known_leg(&flown, name).unwrap().as_str(), leg);
+        }
+        assert!(known_leg(&flown, "inbound").is_err(), "which of the calls' is not said");
+        let decide = |text: &str| {
+            Selection { decide: vec![pair(text).unwrap()], ..Selection::default() }.scenario(&plan)
+        };
+        assert_eq!(decide("radial-190.again=back").unwrap().triggers.len(), 1);
+        let error = decide("radial-190.again=round").unwrap_err().to_string();
+        assert!(error.contains("it has on, back"), "{error}");
+        let selection = Selection {
+            emergency: Some("return".into()),
+            at: Some("radial-280.round".into()),
+            ..Selection::default()
+        };
+        assert_eq!(selection.scenario(&plan).unwrap().triggers.len(), 1);
     }
 
     #[test]
