@@ -34,10 +34,12 @@ pub fn parse(text: &str) -> Result<Wind, String> {
         Some((direction.trim().parse::<f64>().ok()?, speed.trim().parse::<f64>().ok()?))
     });
     match numbers {
-        Some((from_deg, speed_mps)) if from_deg.is_finite() && (0.0..=MOST_MPS).contains(&speed_mps) => {
+        Some((from_deg, speed_mps))
+            if (0.0..=360.0).contains(&from_deg) && (0.0..=MOST_MPS).contains(&speed_mps) =>
+        {
             Ok(Wind::from_direction(from_deg, speed_mps))
         }
-        _ => Err("write DIRECTION,SPEED, as 270,5: degrees it comes from, m/s up to 50".into()),
+        _ => Err("write DIRECTION,SPEED, as 270,5: degrees it comes from, 0 to 360, and m/s up to 50".into()),
     }
 }
 
@@ -58,7 +60,8 @@ mod tests {
     fn winds() {
         assert_eq!(shown(&parse("270,5").unwrap()), "5 m/s from 270°");
         assert_eq!(shown(&parse(" 0 , 0 ").unwrap()), "calm");
-        for bad in ["", "270", "270,", "a,b", "270,51", "270,-1", "270,NaN", "inf,5"] {
+        assert!(parse("360,5").is_ok());
+        for bad in ["", "270", "270,", "a,b", "270,51", "270,-1", "270,NaN", "inf,5", "400,5", "-1,5"] {
             assert!(parse(bad).is_err(), "{bad}");
         }
     }

@@ -325,6 +325,12 @@ impl Checker<'_> {
             "contains" => (Function::Contains, &[Text, Text], Bool),
             "startsWith" => (Function::StartsWith, &[Text, Text], Bool),
             "endsWith" => (Function::EndsWith, &[Text, Text], Bool),
+            // how the parser calls the operator
+            "@in" => {
+                let message =
+                    "`in` is not part of plan expressions: compare with each value, and join that with ||";
+                return Err(self.error(at, "expression-syntax", message));
+            }
             _ => {
                 return Err(self.error(
                     at,

@@ -153,6 +153,7 @@ fn what_does_not_compile_and_where() {
         ("contains(field, 'a')", "wrong-type", 17),
         ("contains(place, place)", "wrong-type", 10),
         ("[1, 2]", "expression-syntax", 1),
+        ("x in [1.0]", "expression-syntax", 3),
         ("word.length", "expression-syntax", 5),
     ];
     let plan = plan();

@@ -128,7 +128,7 @@ pub enum Pattern {
         sectors: Value<f64>,
         /// Direction of the first spoke, degrees true.
         heading_deg: Value<f64>,
-        /// How often; each further pass is turned by half a sector.
+        /// How often; each further pass is turned by 30°.
         passes: Value<f64>,
         /// Side of the turns.
         turn: TurnDirection,

@@ -54,7 +54,10 @@ impl<'a> Document<'a> {
                     act = Some(found);
                     self.cursor.close(child);
                 }
-                _ => self.cursor.unknown(child, "action", ACTS),
+                Some(_) => self
+                    .cursor
+                    .refuse(child, "an <action> has exactly one act: give this one an <action> of its own"),
+                None => self.cursor.unknown(child, "action", ACTS),
             }
         }
         self.cursor.finish(&element);

@@ -89,6 +89,11 @@ impl<'a> Cursor<'a> {
             "<{}> does not belong in <{parent}>: remove it or correct its name (allowed: {allowed})",
             shown(element.name)
         );
+        self.refuse(element, &message);
+    }
+
+    /// Says why an element can't be here, and reads past it.
+    pub fn refuse(&mut self, element: Element<'a>, message: &str) {
         self.report(Problem::error("unknown-element", message).at(element.location));
         self.skip(element);
     }

@@ -56,7 +56,10 @@ impl<'a> Document<'a> {
         let name = self.text(&element, "name");
         let floor = self.limit(&element, "floor", "floorReference");
         let ceiling = self.limit(&element, "ceiling", "ceilingReference");
-        let circle = element.attributes.has("radius").then(|| ZoneShape::Circle {
+        // a centre alone is a circle too, without its radius
+        let is_circle = element.attributes.has("radius")
+            || ["lat", "lon"].iter().all(|name| element.attributes.has(name));
+        let circle = is_circle.then(|| ZoneShape::Circle {
             centre: self.lat_lon(&element, "lat", "lon").unwrap_or(LatLon::new(f64::NAN, f64::NAN)),
             radius_m: self.required_number(&element, "radius"),
         });
