@@ -97,7 +97,12 @@ impl Loaded {
     pub fn problems(&self) -> Vec<Problem> {
         let mut problems = self.reading.problems.clone();
         match &self.profile {
-            Err(reason) => problems.push(Problem::error("unknown-aircraft", reason.clone())),
+            // a document that names none has told so itself
+            Err(_) if self.reading.plan.aircraft.is_empty() && self.reading.has_errors() => {}
+            Err(reason) => {
+                let message = format!("{reason}: correct the plan's `aircraft`, or give the profile itself");
+                problems.push(Problem::error("unknown-aircraft", message));
+            }
             // a broken document gives a plan full of holes: its problems come first
             Ok(_) if self.reading.has_errors() => {}
             Ok(profile) => {
@@ -229,6 +234,21 @@ pub(super) mod tests {
             let (_file, source) = source(garbage);
             assert!(source.load().is_err(), "{garbage:?}");
         }
+    }
+
+    #[test]
+    fn a_missing_aircraft_is_told_once() {
+        let codes = |text: &str| {
+            let (_file, source) = source(text.as_bytes());
+            source.load().unwrap().problems().iter().map(|p| p.code).collect::<Vec<_>>()
+        };
+        let plan = |aircraft: &str| {
+            format!("<flightPlan xmlns=\"urn:legwork:flight-plan:1\" {aircraft}><mainPlan/></flightPlan>")
+        };
+        assert_eq!(codes(""), ["not-a-plan"]);
+        assert_eq!(codes("<oops/>"), ["not-a-plan"]);
+        assert_eq!(codes(&plan("")), ["missing-attribute"]);
+        assert_eq!(codes(&plan("aircraft=\"zeppelin\"")), ["unknown-aircraft"]);
     }
 
     #[test]

@@ -15,7 +15,7 @@ fn codes(document: impl AsRef<[u8]>) -> Vec<&'static str> {
 }
 
 fn plan_of(inside: &str) -> String {
-    format!(r#"<flightPlan xmlns="urn:legwork:flight-plan:1">{inside}</flightPlan>"#)
+    format!(r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">{inside}</flightPlan>"#)
 }
 
 #[test]
@@ -111,6 +111,20 @@ fn a_spacing_said_twice_is_told_as_that() {
     assert_eq!(problem.location.unwrap().column, column);
 }
 
+#[test]
+fn what_is_missing_or_too_much_is_named() {
+    let action = r#"<TF id="t" fix="A"><action on="start"><photo/><photo/></action></TF>"#;
+    let circle = r#"<zones><keepOut id="z" lat="1" lon="1"/></zones>"#;
+    for (document, said) in [
+        (stage_of(action), "exactly one act"),
+        (plan_of(circle), "give <keepOut> the attribute `radius`"),
+        (plan_of("").replace(r#" aircraft="trainer""#, ""), "give <flightPlan> the attribute `aircraft`"),
+    ] {
+        let [problem] = &read(&document).problems[..] else { panic!("one problem was expected: {document}") };
+        assert!(problem.message.contains(said), "{problem}");
+    }
+}
+
 /// Faults of the newer elements: each a problem of its own, at its place.
 #[test]
 fn each_element_says_what_is_wrong_with_it() {
@@ -121,7 +135,7 @@ fn each_element_says_what_is_wrong_with_it() {
         plan_of(&format!(r#"<zones><keepOut id="z" {attributes}>{inside}</keepOut></zones>"#))
     };
     let circle = r#"<area fix="A" radius="100"/>"#;
-    let cases: [(String, &[&str]); 30] = [
+    let cases: [(String, &[&str]); 31] = [
         (in_leg(r#"<action on="start"><photo/></action>"#), &[]),
         (in_leg(r#"<action on="start"/>"#), &["missing-element"]),
         (in_leg(r#"<action on="start"><photo/><photo/></action>"#), &["unknown-element"]),
@@ -148,6 +162,7 @@ fn each_element_says_what_is_wrong_with_it() {
         (stage_of(r#"<corridor id="p" width="5" spacing="1"/>"#), &["missing-element"]),
         (stage_of(r#"<sector id="p" radius="5" turn="up"><centre fix="A"/></sector>"#), &["bad-value"]),
         (zone(r#"lat="1" lon="1" radius="5""#, r#"<corner lat="1" lon="1"/>"#), &["unknown-element"]),
+        (zone(r#"lat="1" lon="1""#, ""), &["missing-attribute"]),
         (zone(r#"floor="5""#, ""), &["missing-attribute"]),
         (zone(r#"ceilingReference="agl""#, ""), &["missing-attribute"]),
         (zone("", r#"<active from="today" until="2026-06-01T06:00:00Z"/>"#), &["bad-value"]),

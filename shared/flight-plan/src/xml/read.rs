@@ -148,7 +148,7 @@ impl<'a> Document<'a> {
             self.cursor.report(Problem::error("namespace", message).at(root.location));
         }
         plan.name = self.text(&root, "name");
-        plan.aircraft = self.text(&root, "aircraft");
+        plan.aircraft = self.required_text(&root, "aircraft");
         while let Some(part) = self.cursor.child(&root) {
             self.part(part, &mut plan);
         }

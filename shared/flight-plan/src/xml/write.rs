@@ -17,7 +17,7 @@ pub fn write(plan: &FlightPlan) -> String {
     let tag = Tag::new("flightPlan")
         .with("xmlns", NAMESPACE)
         .text("name", &plan.name)
-        .text("aircraft", &plan.aircraft);
+        .with("aircraft", &plan.aircraft);
     out.element(tag, |out| {
         out.list("fixes", &plan.fixes, fix);
         out.list("runways", &plan.runways, runway);
@@ -52,7 +52,7 @@ pub(crate) fn text(piece: &Piece) -> String {
     let mut out = Writer { text: String::new(), depth: 0 };
     match piece {
         Piece::Head(plan) => {
-            let tag = Tag::new("flightPlan").text("name", &plan.name).text("aircraft", &plan.aircraft);
+            let tag = Tag::new("flightPlan").text("name", &plan.name).with("aircraft", &plan.aircraft);
             out.element(fallback(tag, &plan.emergency), |out| out.emergencies(&plan.emergency));
         }
         Piece::Fix(x) => fix(&mut out, x),
