@@ -51,12 +51,33 @@ impl FileFormat {
 
     /// By content first: a name may lie. What is nothing else is a plan of ours, and broken if need be.
     pub fn of(path: &Path, bytes: &[u8]) -> Self {
-        match (Format::by_content(bytes), Self::by_path(path)) {
+        let by_content = Format::by_content(bytes).filter(|format| match format {
+            Format::Kml | Format::Gpx => root(bytes).is_none_or(|root| root == format.name()),
+            _ => true,
+        });
+        match (by_content, Self::by_path(path)) {
             (Some(format), _) => FileFormat::Other(format),
             (None, Some(format)) => format,
             (None, None) => FileFormat::Legwork,
         }
     }
+}
+
+/// The name of an XML document's first element, without its prefix; `None`: there is none near its beginning.
+fn root(bytes: &[u8]) -> Option<String> {
+    let head = String::from_utf8_lossy(bytes.get(..4096).unwrap_or(bytes));
+    let mut rest = head.trim_start_matches('\u{feff}');
+    loop {
+        rest = rest.split_once('<')?.1;
+        let aside =
+            [("!--", "-->"), ("?", "?>"), ("!", ">")].into_iter().find(|(start, _)| rest.starts_with(start));
+        match aside {
+            Some((_, end)) => rest = rest.split_once(end)?.1,
+            None => break,
+        }
+    }
+    let name = rest.split(|c: char| c.is_whitespace() || matches!(c, '>' | '/')).next()?;
+    Some(name.rsplit(':').next()?.to_owned())
 }
 
 /// A format's name on the command line.
@@ -133,6 +154,10 @@ mod tests {
         assert_eq!(of("a.xml", "QGC WPL 110\n"), FileFormat::Other(Format::Waypoints));
         assert_eq!(of("a.kml", "garbage"), FileFormat::Other(Format::Kml));
         assert_eq!(of("-", "<flightPlan/>"), FileFormat::Legwork);
+        assert_eq!(of("-", "<?xml version='1.0'?><!-- no <oops> --><kml/>"), FileFormat::Other(Format::Kml));
+        // that it speaks of KML doesn't make it one
+        assert_eq!(of("a.xml", "<missionPlan><!-- from <kml> --></missionPlan>"), FileFormat::Legwork);
+        assert_eq!(of("a.xml", "<flightPlan><!-- from <gpx> --></flightPlan>"), FileFormat::Legwork);
         assert!(format("dwg").unwrap_err().contains("geojson"));
     }
 
