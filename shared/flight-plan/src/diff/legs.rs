@@ -1,8 +1,9 @@
 //! What became of legs.
 
-use super::{Change, Fate, out_of_order, words};
+use super::words::{self, told};
+use super::{Change, Fate, out_of_order};
 use crate::xml::Piece;
-use crate::{FlightPlan, Id, Leg, LegContext, Place};
+use crate::{Altitude, FlightPlan, Id, Leg, LegContext, Place, Stage, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -104,7 +105,11 @@ fn reordered(before: &Legs, after: &Legs) -> Vec<bool> {
 }
 
 fn properties((before, was): (&Legs, &At), (after, now): (&Legs, &At)) -> Vec<String> {
-    let mut words = words::between(&Piece::Leg(was.leg), &Piece::Leg(now.leg));
+    // plans made of each other share what is the same
+    let mut words = match std::ptr::eq(was.leg, now.leg) {
+        true => Vec::new(),
+        false => words::between(&Piece::Leg(was.leg), &Piece::Leg(now.leg)),
+    };
     let (old, new) = (fix_of(before, was.leg), fix_of(after, now.leg));
     if let (Some((id, from)), Some((same, to))) = (old, new)
         && id == same
@@ -120,13 +125,27 @@ fn properties((before, was): (&Legs, &At), (after, now): (&Legs, &At)) -> Vec<St
         let (old, new) = (was.stage, now.stage);
         let ((high, fast), (still_high, still_fast)) = (own(was), own(now));
         if !(high && still_high) && old.altitude != new.altitude {
-            words.push("its stage's altitude changed".into());
+            let of = |stage: &Stage| stage.altitude.as_ref().map(altitude);
+            words.extend(told("its stage's altitude", of(old).as_deref(), of(new).as_deref()));
         }
         if !(fast && still_fast) && old.speed_mps != new.speed_mps {
-            words.push("its stage's speed changed".into());
+            let of = |stage: &Stage| stage.speed_mps.as_ref().map(number);
+            words.extend(told("its stage's speed", of(old).as_deref(), of(new).as_deref()));
         }
     }
     words
+}
+
+/// As the document has it: `900 amsl`.
+fn altitude(altitude: &Altitude) -> String {
+    format!("{} {}", number(&altitude.metres), altitude.reference.name())
+}
+
+fn number(value: &Value<f64>) -> String {
+    match value {
+        Value::Constant(x) => x.to_string(),
+        Value::Expression(source) => format!("= {source}"),
+    }
 }
 
 fn fix_of<'p>(legs: &Legs, leg: &'p Leg) -> Option<(&'p Id, LatLon)> {

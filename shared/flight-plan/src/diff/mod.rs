@@ -1,6 +1,7 @@
 //! What changed between two plans.
 
 mod legs;
+mod users;
 mod words;
 
 use crate::xml::Piece;
@@ -99,8 +100,10 @@ pub fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
     list("fix", (&old.fixes, &new.fixes), |f| (&f.id, Piece::Fix(f)), &mut changes);
     list("runway", (&old.runways, &new.runways), |r| (&r.id, Piece::Runway(r)), &mut changes);
     list("variable", (&old.variables, &new.variables), |v| (&v.name, Piece::Variable(v)), &mut changes);
+    users::of_variables(old, new, &mut changes);
     list("zone", (&old.zones, &new.zones), |z| (&z.id, Piece::Zone(z)), &mut changes);
     list("procedure", (&old.procedures, &new.procedures), |p| (&p.id, Piece::Procedure(p)), &mut changes);
+    users::of_procedures(old, new, &mut changes);
     stages(old, new, &mut changes);
     changes.extend(legs::changes(old, new));
     list(

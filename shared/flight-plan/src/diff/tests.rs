@@ -52,7 +52,7 @@ fn each_change_is_told_in_words() {
         (Edit::SetActions { leg: "tf".into(), actions: Vec::new() }, &["leg tf changed: action removed"]),
         (
             Edit::RemoveCorner { leg: "line".into(), hole: None, corner: 1 },
-            &["leg line changed: route changed"],
+            &["leg line changed: route: point removed (lat 36.6, lon -84.2)"],
         ),
         (
             Edit::MoveFix { fix: "COVE".into(), to: LatLon::new(36.542, -84.232) },
@@ -60,7 +60,7 @@ fn each_change_is_told_in_words() {
         ),
         (
             Edit::SetSpeed { of: "patterns".into(), speed_mps: Some(Value::Constant(20.0)) },
-            &["stage patterns changed: speed 20 added", "leg scan changed: its stage's speed changed"],
+            &["stage patterns changed: speed 20 added", "leg scan changed: its stage's speed 20 added"],
         ),
         (
             Edit::Replace { id: "range".into(), with: Box::new(zone) },
@@ -68,15 +68,18 @@ fn each_change_is_told_in_words() {
         ),
         (
             Edit::RemoveCorner { leg: "range".into(), hole: None, corner: 0 },
-            &["zone range changed: corner: 3 instead of 4"],
+            &["zone range changed: corner removed (lat 36, lon -85)"],
         ),
         (Edit::Remove { id: "done".into() }, &["variable done removed"]),
         (
             Edit::SetVariable { name: "size".into(), value: crate::VariableValue::Number(700.0) },
-            &["variable size changed: initial 600 → 700"],
+            &["variable size changed: initial 600 → 700, read by tf fork call criss"],
         ),
         (Edit::Remove { id: "two-gates".into() }, &["procedure two-gates removed", "leg first removed"]),
-        (number("out", "course", Some(91.0)), &["leg out changed: course 90 → 91"]),
+        (
+            number("out", "course", Some(91.0)),
+            &["procedure gate changed: flown otherwise by call there", "leg out changed: course 90 → 91"],
+        ),
         (Edit::Add(Box::new(Thing::EmergencyPlan(emergency))), &["emergency plan other added"]),
         (Edit::MoveStage { stage: "patterns".into(), before: "basic".into() }, &["stage patterns moved"]),
         (
@@ -94,6 +97,72 @@ fn each_change_is_told_in_words() {
     let moved = Edit::MoveLeg { leg: "l1".into(), at: Spot::EndOf("basic".into()) }.apply(&old).unwrap();
     let told: Vec<String> = changes(&old, &moved).iter().map(Change::to_string).collect();
     assert_eq!(told, ["leg l1 moved: from loop to basic"]);
+}
+
+/// Old and new, of what stands inside a part too.
+#[test]
+fn values_are_told_as_they_were_and_are() {
+    let old = read(LANGUAGE).plan;
+    let document: String = LANGUAGE.lines().map(str::trim_start).collect();
+    for (from, to, told) in [
+        (
+            r#"label="Close look" next="l2" when="size &lt; 200.0""#,
+            r#"label="Closer" when="size &lt; 300.0""#,
+            "leg fork changed: branch close: label Close look → Closer; when size < 200.0 → size < 300.0; next l2 removed",
+        ),
+        (
+            r#"<wait seconds="30"/>"#,
+            r#"<wait seconds="45"/>"#,
+            "leg tf changed: action 2: wait: seconds 30 → 45",
+        ),
+        (r#"<videoStart/>"#, r#"<photo/>"#, "leg tf changed: action 1: videoStart → photo"),
+        (
+            r#"<action on="end"><videoStop/></action>"#,
+            "",
+            "leg tf changed: action removed (on end, videoStop)",
+        ),
+        (
+            r#"value="= size / 30.0""#,
+            r#"value="= 21.0""#,
+            "leg call changed: argument fast: value = size / 30.0 → = 21.0",
+        ),
+        (
+            r#"<call id="there" procedure="two-gates"/>"#,
+            r#"<call id="there" procedure="two-gates"><argument name="x" value="= 1.0"/></call>"#,
+            "leg there changed: argument x added (value = 1.0)",
+        ),
+        (
+            r#"default="= 50.0""#,
+            r#"default="= 60.0""#,
+            "procedure gate changed: parameter gap: default = 50.0 → = 60.0",
+        ),
+        (
+            r#"lon="-84.2" radius="700""#,
+            r#"lon="-84.2" radius="800""#,
+            "leg contour changed: area: radius 700 → 800",
+        ),
+        (
+            r#"<emergency cause="link" plan="return"/>"#,
+            r#"<emergency cause="gps" plan="return"/>"#,
+            "stage basic changed: emergency gps added (plan return), emergency link removed (plan return)",
+        ),
+        (
+            r#"altitude="900" altitudeReference="amsl" speed="24""#,
+            r#"altitude="950" altitudeReference="amsl" speed="24""#,
+            "leg if changed: its stage's altitude 900 amsl → 950 amsl",
+        ),
+        // the path of `call` has it from its argument
+        (
+            r#"<argument name="fast" value="= 20.0"/>"#,
+            r#"<argument name="fast" value="= 19.0"/>"#,
+            "procedure two-gates changed: flown otherwise by there",
+        ),
+    ] {
+        assert!(document.contains(from), "{from}");
+        let new = read(document.replacen(from, to, 1)).plan;
+        let found: Vec<String> = changes(&old, &new).iter().map(Change::to_string).collect();
+        assert!(found.iter().any(|change| change == told), "{told}: {found:#?}");
+    }
 }
 
 #[test]

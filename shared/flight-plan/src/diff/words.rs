@@ -1,7 +1,14 @@
 //! What changed in one part, as phrases: its attributes, then what stands inside it.
 
 use crate::xml::{self, Piece};
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+
+/// So many things inside a part are told one by one, more only by their number.
+const MOST: usize = 4;
+/// Longest description of something that came or went, bytes.
+const LONGEST: usize = 120;
+/// What tells things of one name apart: branches, parameters and arguments, emergencies by cause.
+const KEYS: [&str; 3] = ["id", "name", "cause"];
 
 /// Empty: nothing.
 pub(super) fn between(old: &Piece, new: &Piece) -> Vec<String> {
@@ -9,75 +16,188 @@ pub(super) fn between(old: &Piece, new: &Piece) -> Vec<String> {
     if old == new {
         return Vec::new();
     }
-    let (old, new) = (Element::of(&old), Element::of(&new));
     let mut words = Vec::new();
-    if old.name != new.name {
-        words.push(format!("{} → {}", old.name, new.name));
-    }
-    for (name, value) in &new.attributes {
-        match old.attribute(name) {
-            None => words.push(format!("{name} {value} added")),
-            Some(was) if was != value => words.push(format!("{name} {was} → {value}")),
-            Some(_) => {}
+    if let (Some(old), Some(new)) = (Element::of(&old), Element::of(&new)) {
+        if old.name != new.name {
+            words.push(format!("{} → {}", old.name, new.name));
         }
+        words.extend(inside(&old, &new));
     }
-    let gone = old.attributes.iter().filter(|(name, _)| new.attribute(name).is_none());
-    words.extend(gone.map(|(name, value)| format!("{name} {value} removed")));
-    let mut names: Vec<&str> = old.children.keys().chain(new.children.keys()).copied().collect();
-    names.sort_unstable();
-    names.dedup();
-    words.extend(
-        names.into_iter().filter_map(|name| children(name, old.children.get(name), new.children.get(name))),
-    );
+    if words.is_empty() {
+        words.push("other properties".into());
+    }
     words
 }
 
-fn children(name: &str, old: Option<&Vec<&str>>, new: Option<&Vec<&str>>) -> Option<String> {
-    if old == new {
-        return None;
+/// What became of something that may be missing, by its name.
+pub(super) fn told(name: &str, old: Option<&str>, new: Option<&str>) -> Option<String> {
+    match (old, new) {
+        (None, Some(new)) => Some(format!("{name} {new} added")),
+        (Some(old), None) => Some(format!("{name} {old} removed")),
+        (Some(old), Some(new)) if old != new => Some(format!("{name} {old} → {new}")),
+        _ => None,
     }
-    // an element's first line begins it, deeper ones are what is in it
-    let count = |lines: Option<&Vec<&str>>| {
-        lines
-            .into_iter()
-            .flatten()
-            .filter(|line| line.starts_with("  <") && !line.starts_with("  </"))
-            .count()
+}
+
+/// Of two elements: their attributes and what is in them.
+fn inside(old: &Element, new: &Element) -> Vec<String> {
+    let changed = new.attributes.iter().map(|(name, value)| told(name, old.attribute(name), Some(value)));
+    let gone = old.attributes.iter().filter(|(name, _)| new.attribute(name).is_none());
+    let gone = gone.map(|(name, value)| told(name, Some(value), None));
+    let mut words: Vec<String> = changed.chain(gone).flatten().collect();
+    if let ([was], [now]) = (&old.children[..], &new.children[..])
+        && was.name != now.name
+    {
+        words.push(format!("{} → {}", was.short(), now.short()));
+        return words;
+    }
+    let mut names: Vec<&str> = old.children.iter().chain(&new.children).map(|child| child.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    for name in names {
+        words.extend(children(name, old, new));
+    }
+    words
+}
+
+/// Of the children of one name.
+fn children(name: &str, old: &Element, new: &Element) -> Vec<String> {
+    let (old, new) = (old.called(name), new.called(name));
+    let words = match (by_key(&old), by_key(&new)) {
+        (Some(before), Some(after)) => keyed(&old, &new, (&before, &after)),
+        _ => in_order(name, &old, &new),
     };
-    Some(match (count(old), count(new)) {
+    if words.len() <= MOST {
+        return words;
+    }
+    vec![match (old.len(), new.len()) {
         (0, _) => format!("{name} added"),
         (_, 0) => format!("{name} removed"),
         (before, now) if before == now => format!("{name} changed"),
         (before, now) => format!("{name}: {now} instead of {before}"),
-    })
+    }]
+}
+
+/// Elements by what tells them apart; `None`: nothing does.
+type Keys<'e, 'a> = HashMap<&'e str, &'e Element<'a>>;
+
+fn by_key<'e, 'a>(list: &[&'e Element<'a>]) -> Option<Keys<'e, 'a>> {
+    let keys: Keys = list.iter().filter_map(|element| Some((element.key()?, *element))).collect();
+    (keys.len() == list.len()).then_some(keys)
+}
+
+fn keyed(old: &[&Element], new: &[&Element], (before, after): (&Keys, &Keys)) -> Vec<String> {
+    let key = |e: &&Element| e.key().unwrap_or_default().to_owned();
+    let label = |e: &Element| format!("{} {}", e.name, key(&e));
+    let mut words = Vec::new();
+    for now in new {
+        match before.get(key(now).as_str()) {
+            Some(was) => words.extend(within(&label(now), was, now)),
+            None => words.push(format!("{} added{}", label(now), now.in_brackets())),
+        }
+    }
+    let gone = old.iter().filter(|was| !after.contains_key(key(was).as_str()));
+    words.extend(gone.map(|was| format!("{} removed{}", label(was), was.in_brackets())));
+    let kept = |list: &[&Element], other: &Keys| -> Vec<String> {
+        list.iter().map(key).filter(|key| other.contains_key(key.as_str())).collect()
+    };
+    if kept(old, after) != kept(new, before) {
+        words.push(format!("{} in another order", new.first().map_or("", |e| e.name)));
+    }
+    words
+}
+
+/// What is the same at the beginning and at the end stays; the rest is told.
+fn in_order(name: &str, old: &[&Element], new: &[&Element]) -> Vec<String> {
+    let shorter = old.len().min(new.len());
+    let first = old.iter().zip(new).take_while(|(was, now)| was == now).count();
+    let alike = old.iter().rev().zip(new.iter().rev()).take_while(|(was, now)| was == now).count();
+    let last = alike.min(shorter - first);
+    let rest = |list: &'_ [&'_ Element]| first..list.len() - last;
+    let (was, now) = (old.get(rest(old)).unwrap_or_default(), new.get(rest(new)).unwrap_or_default());
+    if was.len() == now.len() {
+        let label = |i: usize| match old.len() {
+            1 => name.to_owned(),
+            _ => format!("{name} {}", first + i + 1),
+        };
+        let pairs = was.iter().zip(now).enumerate();
+        return pairs.flat_map(|(i, (was, now))| within(&label(i), was, now)).collect();
+    }
+    let gone = was.iter().map(|e| format!("{name} removed{}", e.in_brackets()));
+    gone.chain(now.iter().map(|e| format!("{name} added{}", e.in_brackets()))).collect()
+}
+
+/// What changed in something that has a label of its own.
+fn within(label: &str, old: &Element, new: &Element) -> Option<String> {
+    let words = inside(old, new);
+    match words.len() {
+        0 => None,
+        1..=MOST => Some(format!("{label}: {}", words.join("; "))),
+        _ => Some(format!("{label} changed")),
+    }
 }
 
 /// A canonical element, taken apart.
+#[derive(PartialEq)]
 struct Element<'a> {
     name: &'a str,
     attributes: Vec<(&'a str, String)>,
-    /// Lines by the name of the child that they are of.
-    children: BTreeMap<&'a str, Vec<&'a str>>,
+    children: Vec<Element<'a>>,
 }
 
 impl<'a> Element<'a> {
-    fn of(text: &'a str) -> Self {
-        let mut lines = text.lines();
-        let first =
-            lines.next().unwrap_or("").trim_start_matches('<').trim_end_matches('>').trim_end_matches('/');
-        let (name, attributes) = first.split_once(' ').unwrap_or((first, ""));
-        let mut children: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        let mut child = "";
-        for line in lines.filter(|line| line.starts_with("  ")) {
-            if let Some(tag) = line.strip_prefix("  <").filter(|tag| !tag.starts_with('/')) {
-                child = tag.split([' ', '>', '/']).next().unwrap_or("");
-            }
-            children.entry(child).or_default().push(line);
+    /// From its canonical text: one tag a line, what is in it deeper.
+    fn of(text: &'a str) -> Option<Self> {
+        let mut lines = text.lines().map(str::trim_start);
+        let first = lines.next()?;
+        let mut element = Self::opened(first);
+        if !first.ends_with("/>") {
+            element.read(&mut lines);
         }
-        Self { name, attributes: xml::attributes(attributes), children }
+        Some(element)
     }
 
-    fn attribute(&self, name: &str) -> Option<&String> {
-        self.attributes.iter().find(|(n, _)| *n == name).map(|(_, value)| value)
+    /// By its start tag.
+    fn opened(tag: &'a str) -> Self {
+        let tag = tag.trim_start_matches('<').trim_end_matches('>').trim_end_matches('/');
+        let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
+        Self { name, attributes: xml::attributes(attributes), children: Vec::new() }
+    }
+
+    /// What stands in it, up to its end tag. (Documents nest few elements.)
+    fn read(&mut self, lines: &mut dyn Iterator<Item = &'a str>) {
+        while let Some(line) = lines.next().filter(|line| !line.starts_with("</")) {
+            let mut child = Self::opened(line);
+            if !line.ends_with("/>") {
+                child.read(lines);
+            }
+            self.children.push(child);
+        }
+    }
+
+    fn attribute(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|(n, _)| *n == name).map(|(_, value)| value.as_str())
+    }
+
+    fn called(&self, name: &str) -> Vec<&Element<'a>> {
+        self.children.iter().filter(|child| child.name == name).collect()
+    }
+
+    fn key(&self) -> Option<&str> {
+        KEYS.iter().find_map(|key| self.attribute(key))
+    }
+
+    /// `photo`, or `wait (seconds 30)`.
+    fn short(&self) -> String {
+        format!("{}{}", self.name, self.in_brackets())
+    }
+
+    /// ` (on end, photo)`; nothing if there is nothing to say, or too much.
+    fn in_brackets(&self) -> String {
+        let told = self.attributes.iter().filter(|(name, _)| !KEYS.contains(name));
+        let told = told.map(|(name, value)| format!("{name} {value}"));
+        let parts: Vec<String> = told.chain(self.children.iter().map(Element::short)).collect();
+        let text = parts.join(", ");
+        if text.is_empty() || text.len() > LONGEST { String::new() } else { format!(" ({text})") }
     }
 }

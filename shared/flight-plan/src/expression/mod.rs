@@ -14,7 +14,7 @@ mod tokens;
 
 pub use compile::{MAX_DEPTH, MAX_LENGTH, Names, compile, compile_with};
 pub use eval::{Env, EvalError, FlightState};
-pub(crate) use tokens::substitute;
+pub(crate) use tokens::{mentioned, substitute};
 
 use crate::Id;
 use geometry::LatLon;

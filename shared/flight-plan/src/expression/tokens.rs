@@ -1,6 +1,7 @@
 //! Names in CEL source, found token by token: text and numbers are left alone.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 
 /// `source` with names replaced by other expressions. Members (`a.name`) and functions (`name(…)`) are no names; what is
 /// put in is set in brackets unless it is one word or stands alone.
@@ -32,6 +33,16 @@ pub fn substitute<'a>(source: &'a str, replacement: &dyn Fn(&str) -> Option<&'a 
     }
     out.push_str(source.get(copied..).unwrap_or(""));
     out.into()
+}
+
+/// The names in a source that are wanted; some perhaps again.
+pub fn mentioned(source: &str, wanted: &dyn Fn(&str) -> bool) -> Vec<String> {
+    let found = RefCell::new(Vec::new());
+    substitute(source, &|word| {
+        found.borrow_mut().extend(wanted(word).then(|| word.to_owned()));
+        None
+    });
+    found.into_inner()
 }
 
 fn push(out: &mut String, expression: &str) {
