@@ -3,7 +3,7 @@
 use super::source::Loaded;
 use super::{Source, foreign};
 use flight_exec::Conditions;
-use flight_plan::Problem;
+use flight_plan::{FlightPlan, Problem};
 use indicatif::{ProgressBar, ProgressStyle};
 use interchange::Note;
 use std::path::Path;
@@ -35,7 +35,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
         problems.extend(reviewed(&loaded, circumstances.air.conditions()));
     }
     if json {
-        say!("{:#}", document(&source.file, &problems, &loaded.notes));
+        say!("{:#}", document(&source.file, &loaded.reading.plan, &problems, &loaded.notes));
     } else {
         foreign::tell(&source.file, &loaded.notes);
         print(&source.file, &problems);
@@ -90,7 +90,19 @@ pub fn status(problems: &[Problem]) -> ExitCode {
     ExitCode::from(u8::from(problems.iter().any(Problem::is_error)))
 }
 
-fn document(file: &Path, problems: &[Problem], notes: &[Note]) -> serde_json::Value {
+/// What a problem's remedy would do to the plan: a sentence, and its parts as data; null if there is none, or none that can be
+/// applied (to a leg that only a call makes).
+fn fix(plan: &FlightPlan, problem: &Problem) -> serde_json::Value {
+    let repaired = problem.fix.as_ref().and_then(|edit| edit.apply(plan).ok());
+    let changes = repaired.map(|repaired| flight_plan::diff::changes(plan, &repaired)).unwrap_or_default();
+    if changes.is_empty() {
+        return serde_json::Value::Null;
+    }
+    let sentence = changes.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+    serde_json::json!({"message": sentence, "changes": changes})
+}
+
+fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]) -> serde_json::Value {
     let rows: Vec<_> = problems
         .iter()
         .map(|p| {
@@ -101,6 +113,7 @@ fn document(file: &Path, problems: &[Problem], notes: &[Note]) -> serde_json::Va
                 "line": p.location.map(|l| l.line),
                 "column": p.location.map(|l| l.column),
                 "message": p.message,
+                "fix": fix(plan, p),
             })
         })
         .collect();
@@ -117,14 +130,27 @@ mod tests {
     #[test]
     fn a_bad_plan_has_status_1_and_places() {
         let (_file, source) = source(b"<flightPlan xmlns=\"urn:legwork:flight-plan:1\" name=\"x\" aircraft=\"trainer\">\n<oops/>\n</flightPlan>");
-        let problems = source.load().unwrap().problems();
+        let loaded = source.load().unwrap();
+        let problems = loaded.problems();
         assert_eq!(format!("{:?}", status(&problems)), format!("{:?}", ExitCode::from(1)));
-        let json = document(&source.file, &problems, &[]);
+        let json = document(&source.file, &loaded.reading.plan, &problems, &[]);
+        assert!(json["problems"][0]["fix"].is_null(), "{json:#}");
         assert_eq!(json["good"], false);
         assert!(json["problems"].as_array().unwrap().iter().any(|p| p["line"] == 2), "{json:#}");
         assert_eq!(
             format!("{:?}", run(&source, &Circumstances::default(), true).unwrap()),
             format!("{:?}", ExitCode::from(1))
         );
+    }
+
+    #[test]
+    fn a_remedy_is_told_with_what_it_changes() {
+        let (_file, source) = source(include_bytes!("../../../assets/plans/bad/bad-count.xml"));
+        let loaded = source.load().unwrap();
+        let json = document(&source.file, &loaded.reading.plan, &loaded.problems(), &[]);
+        let fix = &json["problems"][0]["fix"];
+        let said = fix["message"].as_str().unwrap();
+        assert!(said.starts_with("leg ") && said.contains(" changed: count "), "{json:#}");
+        assert_eq!(fix["changes"][0]["fate"], "changed");
     }
 }

@@ -29,6 +29,9 @@ pub enum Command {
     /// Prints a line for each problem: file:line:column: severity [code] subject: message. A plan that has no errors
     /// is also flown ahead of time, every branch and every emergency plan, and the path is looked at: zones, terrain, climbs,
     /// energy, ways to the runways.
+    ///
+    /// With --json each problem also has a `fix`: null, or what the remedy that the ground station offers would do, as a sentence
+    /// (`message`) and part by part (`changes`, as `legwork diff --json` lists them).
     #[command(after_help = help::CHECK)]
     Check {
         /// The plan and its surroundings.
