@@ -49,7 +49,8 @@ pub fn prepare(args: &Args) -> anyhow::Result<Prepared> {
         destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
     let steps = mission::steps_for(&program.plan);
     let (preview, last_plan) = preview(&loaded, &program, &profile, args.wind, &steps)?;
-    let planned = forecast::track(&preview, &[&program.plan, &last_plan]);
+    let (last_plan, _) = flight_plan::instantiate(&last_plan);
+    let planned = forecast::track(&preview, &[program.flown(), &last_plan]);
     Ok(Prepared { program, profile, terrain: loaded.terrain, home, destination, steps, planned })
 }
 
@@ -130,7 +131,8 @@ fn preview(
 impl Prepared {
     /// The record of a flight, without a verdict yet. Times count from the start of the plan.
     pub fn record(&self, ending: &Ending, wind: &Wind) -> Record {
-        let plans = [&self.program.plan, &ending.plan];
+        let (last_plan, _) = flight_plan::instantiate(&ending.plan);
+        let plans = [self.program.flown(), last_plan.as_ref()];
         let flown = assemble::track(&ending.points, &ending.events, &plans);
         let turn_radius_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps + wind.speed_mps());
         Record {

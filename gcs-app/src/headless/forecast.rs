@@ -77,7 +77,7 @@ fn start(program: &Program, terrain: &dyn Terrain) -> Start {
     }
 }
 
-/// The previewed track, cut into passages. `plans`: the plan and its updates.
+/// The previewed track, cut into passages. `plans`: the plan and its updates, as they are flown: with the legs of calls.
 pub fn track(preview: &Preview, plans: &[&FlightPlan]) -> Track {
     let points: Vec<TrackPoint> = preview
         .track
@@ -89,7 +89,7 @@ pub fn track(preview: &Preview, plans: &[&FlightPlan]) -> Track {
 
 /// A record of what would be flown.
 pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind) -> Record {
-    let planned = track(preview, &[&program.plan]);
+    let planned = track(preview, &[program.flown()]);
     let happenings: Vec<Happening> = preview.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect();
     Record {
         title: program.plan.name.clone(),

@@ -3,9 +3,11 @@
 use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
 use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
 use flight_plan::{
-    Env, FlightPlan, FlightState, Id, LegKind, Program, Spacing, StageKind, VariableValue, Variables,
+    Altitude, AltitudeReference, Env, FlightPlan, FlightState, Id, LegKind, Program, Spacing, StageKind,
+    Value, VariableValue, Variables,
 };
 use geometry::LatLon;
+use geometry::scan::camera_spacing_m;
 
 /// Corners of the polygon that stands for a circle.
 const CIRCLE_CORNERS: u32 = 120;
@@ -22,7 +24,7 @@ pub fn key(place: &PlacePointer) -> PassageKey {
 }
 
 /// Cuts points, in order of time, into passages where events say that a leg was entered. `plans` are the plan and
-/// its updates: the newest that knows a leg says what it is.
+/// its updates, as they are flown (with the legs of calls): the newest that knows a leg says what it is.
 pub fn track(points: &[TrackPoint], events: &[(f64, Event)], plans: &[&FlightPlan]) -> Track {
     let mut track = Track::default();
     let mut entries = events
@@ -86,7 +88,7 @@ pub fn places(plan: &FlightPlan) -> Vec<Place> {
 
 /// The areas that the scans of a track had to cover: each with the variables' values at the end of its passage.
 pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<Area> {
-    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.kind == "scan");
+    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.is_scan());
     scans
         .filter_map(|(i, passage)| {
             let range = track.range(i);
@@ -118,9 +120,30 @@ pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> 
 fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<LatLon>, f64)> {
     let LegKind::Scan(scan) = &program.leg(leg)?.kind else { return None };
     let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
-    let Spacing::Metres(spacing) = &scan.spacing else { return None };
-    let spacing_m = program.eval_number(spacing, &env).ok()?;
-    Some((corners(program, &scan.area, &env)?, spacing_m))
+    Some((corners(program, &scan.area, &env)?, spacing_m(program, leg, &scan.spacing, &env)?))
+}
+
+/// Metres between the tracks of a leg, as given or as its camera needs them; `None`: a value of it can't be computed.
+fn spacing_m(program: &Program, leg: &Id, spacing: &Spacing, env: &Env) -> Option<f64> {
+    let number = |value: &Value<f64>| program.eval_number(value, env).ok();
+    match spacing {
+        Spacing::Metres(metres) => number(metres),
+        Spacing::Camera { field_of_view_deg, overlap, height_m } => {
+            let height = match height_m {
+                Some(height) => height,
+                None => &altitude(program, leg).filter(|a| a.reference == AltitudeReference::Agl)?.metres,
+            };
+            let height_m = number(height)?;
+            camera_spacing_m(height_m, number(field_of_view_deg)?, number(overlap)?).ok()
+        }
+    }
+}
+
+/// The altitude of a leg: its own, that of a loop around it, or its stage's.
+fn altitude<'p>(program: &'p Program, leg: &Id) -> Option<&'p Altitude> {
+    let path = program.path(leg)?;
+    let own = program.chain(&path).into_iter().rev().find_map(|leg| leg.altitude.as_ref());
+    own.or_else(|| program.stage(&path)?.altitude.as_ref())
 }
 
 /// The rings that are left out of a scan's area.
@@ -259,6 +282,36 @@ mod tests {
         let keys: Vec<String> = track.passages().iter().map(|p| p.key.to_string()).collect();
         assert_eq!(keys, ["a", "b (loop 1)", "b (loop 2)", "b (loop 2) #2"]);
         assert_eq!((0..4).map(|i| track.range(i)).collect::<Vec<_>>(), [0..10, 10..20, 20..25, 25..30]);
+    }
+
+    const SCANS: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">
+      <fixes><fix id="A" lat="36.3" lon="-84.2"/></fixes>
+      <procedures><procedure id="p"><scan id="in" spacing="200"><area fix="A" radius="600"/></scan></procedure></procedures>
+      <mainPlan><stage id="s" type="mission" altitude="150" altitudeReference="agl">
+        <creepingLine id="creeping" fieldOfView="90" overlap="0.5" height="200"><area fix="A" radius="500"/></creepingLine>
+        <crissCross id="criss" fieldOfView="90" overlap="0"><area fix="A" radius="500"/></crissCross>
+        <TF id="tf" fix="A"/><call id="c" procedure="p"/>
+      </stage></mainPlan></flightPlan>"#;
+
+    /// Of every style, in calls too, with the spacing that their camera gives.
+    #[test]
+    fn every_scan_has_an_area() {
+        let profile = aircraft::Profile::default();
+        let program = flight_plan::compile(flight_plan::read(SCANS).plan, &profile, &terrain::Flat(200.0));
+        let program = program.unwrap();
+        let legs: [(&str, &[(&str, u64)]); 4] =
+            [("creeping", &[]), ("criss", &[]), ("tf", &[]), ("c.in", &[("c", 1)])];
+        let places =
+            legs.iter().map(|(leg, passes)| PlacePointer { stage: "s".into(), ..place(leg, passes) });
+        let events: Vec<(f64, Event)> =
+            (0..4).zip(places).map(|(i, place)| (f64::from(i), Event::LegEntered { place })).collect();
+        let point = |i| TrackPoint { time_s: f64::from(i), position: HOME, altitude_amsl_m: 350.0 };
+        let track = track(&(0..4).map(point).collect::<Vec<_>>(), &events, &[program.flown()]);
+        let kinds: Vec<&str> = track.passages().iter().map(|p| p.kind).collect();
+        assert_eq!(kinds, ["creepingLine", "crissCross", "TF", "scan"]);
+        let areas = areas(&program, &track, &events);
+        let found: Vec<(&str, f64)> = areas.iter().map(|a| (a.label.as_str(), a.spacing_m.round())).collect();
+        assert_eq!(found, [("creeping", 200.0), ("criss", 300.0), ("c.in, c 1", 200.0)]);
     }
 
     #[test]

@@ -18,6 +18,10 @@ const MARGIN: f64 = 0.07;
 const SHADE_SCALE: f32 = 2.0;
 /// Minutes between the time marks on the track.
 const TIME_MARK_MIN: u32 = 5;
+/// Size of the times beside them, pixels.
+const TIME_SIZE: f32 = 14.0;
+/// Size of the names of places, pixels.
+const PLACE_SIZE: f32 = 16.0;
 
 /// Side of the enlarged view of the scanned areas, pixels.
 const INSET: f32 = 300.0;
@@ -66,7 +70,7 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
 /// The enlarged view of the scanned areas with the turns around them, where the map shows them too small.
 fn inset_view(record: &Record, map: &View) -> Option<View> {
     let track = record.main_track();
-    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.kind == "scan");
+    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.is_scan());
     let flown = scans.flat_map(|(i, _)| track.points().get(track.range(i)).unwrap_or_default());
     let corners = record.areas.iter().flat_map(|a| a.outline.iter().copied());
     let view = View::around(corners.chain(flown.map(|p| p.position)), (0.0, 0.0, INSET, INSET))?;
@@ -84,7 +88,7 @@ fn inset(record: &Record, view: &View) -> anyhow::Result<Canvas> {
     Ok(canvas)
 }
 
-/// What the map leaves to the enlarged view: there, marks and names would cover everything.
+/// A part of the map: what it leaves to the enlarged view, where marks and names would cover everything; where a text stands.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     left: f32,
@@ -100,6 +104,19 @@ impl Frame {
         let corner = |e: f64, n: f64| map.place(inset.frame.to_geo(Vec2::new(e, n)));
         let ((left, top), (right, bottom)) = (corner(-half_m, half_m), corner(half_m, -half_m));
         Self { left, top, right, bottom }
+    }
+
+    /// Of a text about its middle.
+    fn of_text(canvas: &Canvas, (x, y): (f32, f32), text: &str, size: f32) -> Self {
+        let (half, up) = (canvas.text_width(text, size) / 2.0 + 2.0, size * 0.6);
+        Self { left: x - half, top: y - up, right: x + half, bottom: y + up }
+    }
+
+    fn meets(self, other: Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
     }
 
     fn contains(self, (x, y): (f32, f32)) -> bool {
@@ -254,12 +271,27 @@ pub(super) fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
             canvas.line(&[(x, y), end], Pen::dashed(PAPER, 1.2, [6.0, 4.0]));
         }
     }
-    let text = Type::bold(16.0, FIX).on(PAPER);
-    if x > view.window.0 + view.window.2 - 110.0 {
-        canvas.text((x - 13.0, y), Anchor::Right, &place.label, text);
-    } else {
-        canvas.text((x + 13.0, y + 2.0), Anchor::Left, &place.label, text);
+    let (at, anchor) = name_of_place(view, (x, y));
+    canvas.text(at, anchor, &place.label, Type::bold(PLACE_SIZE, FIX).on(PAPER));
+}
+
+/// Where the name of a place stands.
+fn name_of_place(view: &View, (x, y): (f32, f32)) -> ((f32, f32), Anchor) {
+    match x > view.window.0 + view.window.2 - 110.0 {
+        true => ((x - 13.0, y), Anchor::Right),
+        false => ((x + 13.0, y + 2.0), Anchor::Left),
     }
+}
+
+/// What the names of the places cover.
+fn names_of_places(canvas: &Canvas, record: &Record, view: &View) -> Vec<Frame> {
+    let frame = |place: &Place| {
+        let ((x, y), anchor) = name_of_place(view, view.place(place.position));
+        let half = canvas.text_width(&place.label, PLACE_SIZE) / 2.0;
+        let middle = if matches!(anchor, Anchor::Right) { x - half } else { x + half };
+        Frame::of_text(canvas, (middle, y), &place.label, PLACE_SIZE)
+    };
+    record.places.iter().map(frame).collect()
 }
 
 fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere: Option<Frame>) {
@@ -267,6 +299,7 @@ fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere:
     let Some(start) = track.points().first() else { return };
     let ink = if record.flown.points().is_empty() { PLANNED } else { FLOWN };
     let mut taken: Vec<(f32, f32)> = Vec::new();
+    let mut labels = names_of_places(canvas, record, view);
     let marks = (track.duration_s() / 60.0) as u32 / TIME_MARK_MIN;
     for minute in (1..=marks).map(|i| i * TIME_MARK_MIN) {
         let time_s = start.time_s + f64::from(minute) * 60.0;
@@ -284,7 +317,14 @@ fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere:
         let (dx, dy) = ((x - ax) / length, (y - ay) / length);
         arrow(canvas, (x, y), (dx, dy), ink);
         let beside = (x - dy * 26.0, y + dx * 20.0);
-        canvas.text(beside, Anchor::Middle, &format!("{minute} min"), Type::plain(14.0, TEXT).on(PAPER));
+        let text = format!("{minute} min");
+        let label = Frame::of_text(canvas, beside, &text, TIME_SIZE);
+        // the arrow says enough where the time would cover another one, or the name of a place
+        if labels.iter().any(|other| label.meets(*other)) {
+            continue;
+        }
+        labels.push(label);
+        canvas.text(beside, Anchor::Middle, &text, Type::plain(TIME_SIZE, TEXT).on(PAPER));
     }
 }
 
@@ -368,6 +408,14 @@ mod tests {
         {
             assert_eq!(round_length_m(most), length, "{most}");
         }
+    }
+
+    #[test]
+    fn times_that_would_cover_each_other() {
+        let canvas = Canvas::new(400, 300, PAPER).unwrap();
+        let at = |x: f32, y: f32| Frame::of_text(&canvas, (x, y), "25 min", TIME_SIZE);
+        assert!(at(100.0, 100.0).meets(at(130.0, 108.0)) && at(130.0, 108.0).meets(at(100.0, 100.0)));
+        assert!(!at(100.0, 100.0).meets(at(100.0, 120.0)) && !at(100.0, 100.0).meets(at(170.0, 100.0)));
     }
 
     #[test]

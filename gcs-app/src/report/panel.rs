@@ -100,8 +100,15 @@ fn legend(cursor: &mut Cursor, record: &Record) {
         cursor.sample(&[Pen::dashed(AREA, 2.4, [9.0, 5.0])], "area to be scanned");
     }
     cursor.sample(&[Pen::solid(RUNWAY, 7.5), Pen::dashed(PAPER, 1.2, [6.0, 4.0])], "runway");
-    cursor.sample(&[Pen::solid(CONTOUR, 1.4)], "contour, every 100 m");
+    if has_ground(record) {
+        cursor.sample(&[Pen::solid(CONTOUR, 1.4)], "contour, every 100 m");
+    }
     cursor.y += 12.0;
+}
+
+/// The elevation is known somewhere below the track.
+fn has_ground(record: &Record) -> bool {
+    record.main_track().points().iter().any(|p| record.terrain.elevation_m(p.position).is_some())
 }
 
 fn summary(cursor: &mut Cursor, record: &Record, findings: &Findings) {
@@ -169,5 +176,18 @@ fn happenings(cursor: &mut Cursor, record: &Record) {
         let text = format!("{}  {}", tables::clock(happening.time_s - start), happening.text);
         cursor.paragraph(32.0, &text, Type::plain(SIZE, TEXT));
         cursor.y += 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contours_are_where_the_ground_is_known() {
+        let mut record = crate::report::made_up_record();
+        assert!(has_ground(&record));
+        record.terrain = std::sync::Arc::new(terrain::Tiles::new());
+        assert!(!has_ground(&record));
     }
 }

@@ -59,6 +59,13 @@ pub struct Passage {
     pub first: usize,
 }
 
+impl Passage {
+    /// Of a leg that covers an area with straight tracks.
+    pub fn is_scan(&self) -> bool {
+        matches!(self.kind, "scan" | "creepingLine" | "crissCross")
+    }
+}
+
 /// A track, cut into passages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
