@@ -48,10 +48,10 @@ fn every_step_is_on_the_page() {
         let blocks = section.split("```xml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
         let shown: Vec<_> = blocks.flat_map(str::lines).map(str::trim).collect();
         let lines = lines_of(step);
-        for line in shown.iter().filter(|shown| !lines.iter().any(|l| l == *shown)) {
+        if let Some(line) = shown.iter().find(|shown| !lines.iter().any(|l| l == *shown)) {
             panic!("step {step} shows what is not in its file: {line}");
         }
-        for line in lines.iter().filter(|l| !before.contains(l) && !shown.contains(&l.as_str())) {
+        if let Some(line) = lines.iter().find(|l| !before.contains(l) && !shown.contains(&l.as_str())) {
             panic!("step {step} doesn't show {line}");
         }
         before = lines;
