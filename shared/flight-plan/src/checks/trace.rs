@@ -5,7 +5,7 @@ use super::memory::Recall;
 use super::path::Path;
 use super::step::{Around, Point, Step};
 use crate::ids::Spots;
-use crate::{Branch, Id, Leg, LegKind, Stage, StageKind};
+use crate::{Branch, Id, IterativeForm, Leg, LegKind, Stage, StageKind, Value};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -79,15 +79,23 @@ impl<'i, 'a> Trace<'i, 'a> {
             let number = self.steps.len();
             self.spots.leg(parent, index);
             arrival = self.leg(leg, around, entry, &mut jumps);
-            if let LegKind::Iterative { body, form, .. } = &leg.kind {
+            if let LegKind::Iterative { body, form, count, .. } = &leg.kind {
                 let inside = self.recall.around(around.inside(leg, *form));
                 arrival = self.list(body, &inside, Some(number), entry);
+                if *form == IterativeForm::Reverse && !self.ends_at_its_end(count.as_ref()) {
+                    arrival = Arrival::default();
+                }
             }
         }
         if jumps {
             self.lists.push(legs);
         }
         arrival
+    }
+
+    /// So many passes forth and back end where the legs inside end, not where they begin.
+    fn ends_at_its_end(&self, count: Option<&Value<f64>>) -> bool {
+        count.and_then(|count| self.view.number(count)).is_some_and(|passes| passes % 2.0 == 1.0)
     }
 
     fn leg(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, entry: Arrival, jumps: &mut bool) -> Arrival {
@@ -136,5 +144,21 @@ fn path_of(leg: &Leg, from: LatLon, to: LatLon) -> Option<Path> {
         LegKind::Tf(_) => Some(Path::line(from, to)),
         LegKind::Rf { centre, turn, .. } if centre.is_valid() => Some(Path::arc(from, to, *centre, *turn)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::check_legs;
+
+    /// From A to B and, on two passes, back: C is not behind B then.
+    #[test]
+    fn forth_and_back_ends_where_it_began() {
+        let passes = |count: u32| {
+            format!(
+                r#"<IF id="a" fix="A"/><iterative id="i" form="reverse" count="{count}"><TF id="b" fix="B"/></iterative><TF id="c" fix="B"/>"#
+            )
+        };
+        check_legs(&[(&passes(1), &["zero-length"]), (&passes(2), &[]), (&passes(3), &["zero-length"])]);
     }
 }
