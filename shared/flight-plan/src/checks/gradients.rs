@@ -4,7 +4,7 @@ use super::Inspection;
 use super::path::SHORTEST_M;
 use super::remedy::level;
 use super::step::Step;
-use crate::{Edit, IterativeForm, Problem};
+use crate::{Edit, IterativeForm, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let Some(rate_mps) = vertical_speed_mps(step) else { return };
@@ -14,8 +14,9 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         if flown_backwards(step) { (climb.min(descent), climb.min(descent)) } else { (climb, descent) };
     if rate_mps > climb || -rate_mps > descent {
         let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descent", descent) };
+        let at_least = if step.start.is_none() { "at least " } else { "" };
         let message = format!(
-            "lengthen this leg, change its altitude or hold to {what} (HA): it takes {:.1} m/s, the aircraft does {limit:.1} m/s",
+            "lengthen this leg, change its altitude or hold to {what} (HA): it takes {at_least}{:.1} m/s, the aircraft does {limit:.1} m/s",
             rate_mps.abs()
         );
         let problem = Problem::error("too-steep", message).of(&step.leg.id);
@@ -33,11 +34,20 @@ fn gentler(step: &Step, limit_mps: f64) -> Option<Edit> {
 }
 
 fn vertical_speed_mps(step: &Step) -> Option<f64> {
-    let length_m = step.path.map(|p| p.length_m()).filter(|m| *m >= SHORTEST_M)?;
+    let length_m = longest_m(step).filter(|m| *m >= SHORTEST_M)?;
     let time_s = length_m / step.speed_mps;
-    let gain_m = step.end?.altitude_amsl_m? - step.start?.altitude_amsl_m?;
+    let gain_m = step.end?.altitude_amsl_m? - step.entry_altitude_amsl_m()?;
     // nothing to gain needs no time
     (gain_m.abs() > 0.1).then(|| gain_m / time_s)
+}
+
+/// How long its path is; of a track that is entered within a circle: from the farthest side.
+fn longest_m(step: &Step) -> Option<f64> {
+    let path = step.path.map(|path| path.length_m());
+    path.or_else(|| match step.leg.kind {
+        LegKind::Tf(_) => Some(step.start_within?.distances_m(step.end?.position)?.1),
+        _ => None,
+    })
 }
 
 fn flown_backwards(step: &Step) -> bool {

@@ -247,11 +247,11 @@ impl<'a> Inspection<'a> {
                 self.place(&to.place)
             }
             LegKind::Cf { to, .. } => self.place(&to.place),
+            LegKind::Pattern(pattern) => super::extent::end_of(self, step, pattern),
             LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => self.place(&h.fix.place),
             _ => None,
         }?;
         let own = step.altitude().and_then(|a| self.altitude_amsl_m(a, position));
-        let inherited = || step.start.and_then(|s| s.altitude_amsl_m);
-        Some(Point { position, altitude_amsl_m: own.or_else(inherited) })
+        Some(Point { position, altitude_amsl_m: own.or_else(|| step.entry_altitude_amsl_m()) })
     }
 }

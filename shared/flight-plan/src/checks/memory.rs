@@ -1,5 +1,6 @@
 //! What one check leaves for the next: after an edit nearly every leg of a plan is what it was.
 
+use super::extent::Region;
 use super::inspection::{Expressions, Inspection};
 use super::setting::{Moved, Setting};
 use super::step::{Around, Point, Step};
@@ -114,7 +115,7 @@ impl Recall {
         &mut self,
         leg: &Arc<Leg>,
         around: &Arc<Around>,
-        start: Option<Point>,
+        (start, within): (Option<Point>, Option<Region>),
         before: Option<usize>,
     ) -> Option<Step> {
         let Some(step) = self.find(leg) else {
@@ -125,6 +126,7 @@ impl Recall {
         let before = before.map(|before| self.was(before));
         let same = Arc::ptr_eq(&step.around, around)
             && step.start == start
+            && step.start_within == within
             && step.before.map(Some) == before
             && !self.moved.is_read_by(leg);
         self.from.push(Some(Origin { number, after: step.after, same }));

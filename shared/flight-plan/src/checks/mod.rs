@@ -9,6 +9,7 @@ mod emergency_plans;
 mod empty;
 mod expression_bounds;
 mod expressions;
+mod extent;
 mod gradients;
 mod holdings;
 mod home;

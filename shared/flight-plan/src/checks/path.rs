@@ -145,6 +145,13 @@ fn between(from: LatLon, to: LatLon, share: f64) -> LatLon {
     LatLon::new(from.lat_deg + (to.lat_deg - from.lat_deg) * share, normalise_180(lon_deg))
 }
 
+/// The course on which an arc about `centre` leaves its end, degrees true.
+pub(super) fn leaves_deg(centre: LatLon, end: LatLon, turn: TurnDirection) -> Option<f64> {
+    let way = (centre.is_valid() && end.is_valid()).then(|| Path::line(centre, end))?;
+    let side_deg = if turn == TurnDirection::Right { 90.0 } else { -90.0 };
+    (way.length_m() >= SHORTEST_M).then(|| normalise_360(way.course_end_deg() + side_deg))
+}
+
 /// Angle between two courses, degrees in 0..=180.
 pub(super) fn course_change_deg(from_deg: f64, to_deg: f64) -> f64 {
     normalise_180(to_deg - from_deg).abs()

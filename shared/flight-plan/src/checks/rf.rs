@@ -43,11 +43,19 @@ fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<P
 }
 
 fn circle(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Problem>) {
-    let (Some(start), LegKind::Rf { centre, .. }) = (step.start, &step.leg.kind) else { return };
-    let start_m = centre.distance_m(start.position);
-    if (start_m - radius_m).abs() > TOLERANCE_M.max(radius_m * TOLERANCE_SHARE) {
+    let LegKind::Rf { centre, .. } = &step.leg.kind else { return };
+    let start = step.start.map(|start| centre.distance_m(start.position));
+    let within = step.start_within.and_then(|region| region.distances_m(*centre));
+    let Some((least_m, most_m)) = start.map(|m| (m, m)).or(within) else { return };
+    let off_m = (least_m - radius_m).max(radius_m - most_m);
+    if off_m > TOLERANCE_M.max(radius_m * TOLERANCE_SHARE) {
+        let how_far = match start {
+            Some(start_m) => format!("{start_m:.1} m"),
+            None if least_m > radius_m => format!("at least {least_m:.0} m"),
+            None => format!("at most {most_m:.0} m"),
+        };
         let message = format!(
-            "move the centre or an end: the arc starts {start_m:.1} m from its centre and ends {radius_m:.1} m from it"
+            "move the centre or an end: the arc starts {how_far} from its centre and ends {radius_m:.1} m from it"
         );
         let fix = tangent_arc(view, step).or_else(|| on_circle(view, step));
         let problem = Problem::error("rf-not-on-circle", message).of(&step.leg.id);
@@ -58,13 +66,14 @@ fn circle(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Prob
 /// Where this path meets the one before it, if one of the two is an arc.
 fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let Some(before) = view.before(step) else { return };
-    let (Some(here), Some(there)) = (step.directed(), before.directed()) else { return };
-    let culprit = match (here, there) {
-        (Path::Arc { .. }, _) => step,
-        (_, Path::Arc { .. }) => before,
-        _ => return,
+    let (Some(here), Some(there_deg)) = (step.directed(), before.course_end_deg()) else { return };
+    let is_arc = |step: &Step| matches!(step.leg.kind, LegKind::Rf { .. });
+    let culprit = match () {
+        () if is_arc(step) => step,
+        () if is_arc(before) => before,
+        () => return,
     };
-    let corner_deg = course_change_deg(there.course_end_deg(), here.course_start_deg());
+    let corner_deg = course_change_deg(there_deg, here.course_start_deg());
     if corner_deg > TANGENT_DEG {
         let message = format!(
             "move the centre or an end: between `{}` and `{}` the path turns by {corner_deg:.1}°, at most {TANGENT_DEG}° is tangent",
@@ -135,6 +144,47 @@ mod tests {
             <RF id="r" lat="{}" lon="{}" centreLat="{}" centreLon="{}" turn="right"/>"#,
             end.lat_deg, end.lon_deg, centre.lat_deg, centre.lon_deg
         )
+    }
+
+    /// From C, 3.3 km north of B, round to B about a centre so far north of it, and on.
+    fn behind(before: &str, centre_m: f64, onward_deg: f64) -> String {
+        let end = LatLon::new(36.3, -84.17);
+        let (centre, on) = (end.destination(0.0, centre_m), end.destination(onward_deg, 3000.0));
+        format!(
+            r#"<IF id="a" fix="A"/>{before}<RF id="r" fix="B" centreLat="{}" centreLon="{}" turn="right"/><TF id="t" lat="{}" lon="{}"/>"#,
+            centre.lat_deg, centre.lon_deg, on.lat_deg, on.lon_deg
+        )
+    }
+
+    #[test]
+    fn an_arc_from_nobody_knows_where_ends_on_its_tangent_all_the_same() {
+        let orbit = r#"<orbit id="o" radius="300" turn="left"><centre fix="C"/></orbit>"#;
+        let scan = r#"<scan id="s" spacing="300"><area fix="C" radius="500"/></scan>"#;
+        let climb = r#"<FA id="f" fix="C" course="90" altitude="600" altitudeReference="amsl"/>"#;
+        for before in [orbit, scan, climb] {
+            // about halfway
+            check_legs(&[
+                (&behind(before, 1700.0, 270.0), &[]),
+                (&behind(before, 1700.0, 268.5), &["rf-not-tangent"]),
+                (&behind(before, 1700.0, 133.0), &["rf-not-tangent"]),
+            ]);
+        }
+    }
+
+    /// C is 3.3 km from B: a centre 500 m south of it is 3.8 km away from C.
+    #[test]
+    fn an_arc_is_not_on_its_circle_if_no_place_before_it_is() {
+        let orbit = |m: u32| format!(r#"<orbit id="o" radius="{m}" turn="left"><centre fix="C"/></orbit>"#);
+        let spiral = r#"<spiral id="o" innerRadius="200" outerRadius="900" spacing="300" direction="inward" turn="left"><centre fix="C"/></spiral>"#;
+        let off: &[&str] = &["rf-not-on-circle"];
+        check_legs(&[
+            (&behind(&orbit(300), -500.0, 90.0), off),
+            (&behind(spiral, -500.0, 90.0), off),
+            (&behind(&orbit(3300), -500.0, 90.0), off),
+            (&behind(&orbit(3400), -500.0, 90.0), &[]),
+            // a centre near C
+            (&behind(&orbit(300), 3329.0, 270.0), off),
+        ]);
     }
 
     #[test]

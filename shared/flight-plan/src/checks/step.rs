@@ -1,6 +1,7 @@
 //! The plan's legs with what is known of them before the flight.
 
-use super::path::Path;
+use super::extent::Region;
+use super::path::{Path, leaves_deg};
 use crate::{Altitude, EmergencyChoice, Id, IterativeForm, Leg, LegKind, Problem, Stage, StageKind, Value};
 use geometry::LatLon;
 use std::sync::Arc;
@@ -13,6 +14,10 @@ pub(super) struct Step {
     pub start: Option<Point>,
     /// Where it ends, likewise.
     pub end: Option<Point>,
+    /// What its entry is within, if not even that is known.
+    pub start_within: Option<Region>,
+    /// What its end is within, likewise.
+    pub end_within: Option<Region>,
     /// Airspeed, m/s.
     pub speed_mps: f64,
     /// Its ground path from start to end.
@@ -74,6 +79,23 @@ impl Step {
     /// Its path, if it is long enough to have a direction.
     pub fn directed(&self) -> Option<Path> {
         self.path.filter(|path| path.length_m() >= super::path::SHORTEST_M)
+    }
+
+    /// The course on which its path ends, degrees true: of an arc wherever it begins.
+    pub fn course_end_deg(&self) -> Option<f64> {
+        let directed = self.directed().map(|path| path.course_end_deg());
+        directed.or_else(|| match &self.leg.kind {
+            LegKind::Rf { centre, turn, .. } if self.start.is_none() => {
+                leaves_deg(*centre, self.end?.position, *turn)
+            }
+            _ => None,
+        })
+    }
+
+    /// The altitude at which it is entered, metres AMSL.
+    pub fn entry_altitude_amsl_m(&self) -> Option<f64> {
+        let start = self.start.and_then(|start| start.altitude_amsl_m);
+        start.or_else(|| self.start_within.and_then(|region| region.altitude_amsl_m))
     }
 }
 

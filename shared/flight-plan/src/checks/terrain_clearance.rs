@@ -3,7 +3,7 @@
 use super::Inspection;
 use super::remedy::level;
 use super::step::{Point, Step};
-use crate::{Edit, Problem, StageKind};
+use crate::{Edit, LegKind, Problem, StageKind};
 
 /// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
 const MARGIN_M: f64 = 50.0;
@@ -57,7 +57,8 @@ fn raised(view: &Inspection, step: &Step, clearance_m: f64) -> Option<Edit> {
 
 /// `(least height above the ground, ground elevation there)`, metres.
 fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
-    let end = step.end?;
+    // the preview flies patterns, and sees the ground below all of them
+    let end = step.end.filter(|_| !matches!(step.leg.kind, LegKind::Pattern(_)))?;
     let at_end = clearance_m(view, end, end.altitude_amsl_m?);
     let along = step.start.zip(step.path).and_then(|(start, path)| {
         let from_m = start.altitude_amsl_m?;

@@ -1,5 +1,6 @@
 //! The way through a plan: from leg to leg in the order of the document, as far as that says what follows what.
 
+use super::extent::{self, Region};
 use super::inspection::Inspection;
 use super::memory::Recall;
 use super::path::Path;
@@ -22,6 +23,8 @@ pub(super) struct Trace<'i, 'a> {
 #[derive(Debug, Clone, Copy, Default)]
 struct Arrival {
     point: Option<Point>,
+    /// What the point is within, if it is not known.
+    within: Option<Region>,
     step: Option<usize>,
 }
 
@@ -55,7 +58,7 @@ impl<'i, 'a> Trace<'i, 'a> {
         for (index, stage) in stages.iter().enumerate() {
             self.spots.stage(emergency_plan, index);
             if stage.kind == StageKind::TakeOff {
-                arrival = Arrival { point: self.view.climb_out(stage), step: None };
+                arrival = Arrival { point: self.view.climb_out(stage), ..Arrival::default() };
                 continue;
             }
             let (main, stage_only) = (emergency_plan.is_none(), Arc::new(stage.without_legs()));
@@ -100,8 +103,8 @@ impl<'i, 'a> Trace<'i, 'a> {
 
     fn leg(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, entry: Arrival, jumps: &mut bool) -> Arrival {
         let number = self.steps.len();
-        let known = self.recall.step(leg, around, entry.point, entry.step);
-        let step = known.unwrap_or_else(|| self.step(leg, around, entry.point));
+        let known = self.recall.step(leg, around, (entry.point, entry.within), entry.step);
+        let step = known.unwrap_or_else(|| self.step(leg, around, entry));
         let step = Step { before: entry.step, after: None, ..step };
         *jumps |= step.marks.jumps;
         if step.directed().is_some()
@@ -110,20 +113,23 @@ impl<'i, 'a> Trace<'i, 'a> {
             before.after = Some(number);
         }
         let passes_through = matches!(leg.kind, LegKind::Intersection { .. });
-        let arrival =
-            Arrival { point: step.end, step: if passes_through { entry.step } else { Some(number) } };
+        let last = if passes_through { entry.step } else { Some(number) };
+        let arrival = Arrival { point: step.end, within: step.end_within, step: last };
         self.steps.push(step);
         arrival
     }
 
-    fn step(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, start: Option<Point>) -> Step {
+    fn step(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, entry: Arrival) -> Step {
         let marks = self.view.marks(leg);
+        let start = entry.point;
         let speed = around.speed_of(leg).and_then(|v| self.view.number(v));
         let mut step = Step {
             leg: leg.clone(),
             around: around.clone(),
             start,
             end: start,
+            start_within: entry.within,
+            end_within: entry.within,
             speed_mps: speed.filter(|v| *v > 0.0).unwrap_or(self.view.profile.cruise_airspeed_mps),
             path: None,
             before: None,
@@ -133,6 +139,7 @@ impl<'i, 'a> Trace<'i, 'a> {
         };
         if !matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. }) {
             step.end = self.view.end_of(&step);
+            step.end_within = if step.end.is_none() { extent::region_of(self.view, &step) } else { None };
             step.path = start.zip(step.end).and_then(|(from, to)| path_of(leg, from.position, to.position));
         }
         step
