@@ -29,7 +29,10 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             let message = "give this leg an `altitude`: it ends when that is reached";
             problems.push(Problem::error("fa-incomplete", message).of(&leg.id));
         }
-        LegKind::Cf { to, course_deg } => problems.extend(not_intercepted(view, step, to, course_deg)),
+        LegKind::Cf { to, course_deg } => {
+            problems.extend(not_intercepted(view, step, to, course_deg));
+            problems.extend(never_intercepted(view, step, to, course_deg));
+        }
         _ => {}
     }
 }
@@ -108,7 +111,12 @@ fn not_intercepted(
     let course_deg = view.number(course)?;
     let (before_m, aside_m) = seen_from(fix, course_deg, start);
     let radius_m = view.turn_radius_m(step.speed_mps);
-    let needed_m = radius_m.min(2.0 * (radius_m * aside_m).sqrt());
+    let after_pattern = view.before(step).is_some_and(|b| matches!(b.leg.kind, LegKind::Pattern(_)));
+    let needed_m = if after_pattern {
+        turning_m(radius_m, aside_m)
+    } else {
+        radius_m.min(2.0 * (radius_m * aside_m).sqrt())
+    };
     let flown_m = view.turn_radius_m(step.speed_mps + DESIGN_WIND_MPS);
     let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, flown_m));
     let joining = way.map(|way| way.joining);
@@ -130,6 +138,39 @@ fn not_intercepted(
     Some(problem.of(&step.leg.id).fixed_by(direct(&step.leg, to)))
 }
 
+/// From wherever the path comes within a circle, the fix is too near or behind.
+fn never_intercepted(
+    view: &Inspection,
+    step: &Step,
+    to: &PlanWaypoint,
+    course: &Value<f64>,
+) -> Option<Problem> {
+    let (region, fix) = (step.start_within?, view.place(&to.place)?);
+    region.distances_m(fix)?;
+    let (before_m, aside_m) = seen_from(fix, view.number(course)?, region.centre);
+    let (most_m, aside_m) = (before_m + region.reach_m(), (aside_m - region.reach_m()).max(0.0));
+    let needed_m = turning_m(view.turn_radius_m(step.speed_mps), aside_m);
+    if most_m >= needed_m {
+        return None;
+    }
+    let from = if most_m > 0.0 {
+        format!("{most_m:.0} m before the fix at most")
+    } else {
+        format!("{:.0} m behind the fix at least", -most_m)
+    };
+    let message = format!(
+        "come from farther back, change the course or use DF: the path comes from {from}, the turn onto it needs {needed_m:.0} m before it"
+    );
+    let problem = Problem::error("course-not-intercepted", message).of(&step.leg.id);
+    Some(problem.fixed_by(direct(&step.leg, to)))
+}
+
+/// What whoever comes in the middle of the turn onto a course needs of it: √(2·r·offset − offset²). On no path it is less, metres.
+fn turning_m(radius_m: f64, aside_m: f64) -> f64 {
+    let aside_m = aside_m.min(radius_m);
+    (2.0 * radius_m * aside_m - aside_m * aside_m).sqrt()
+}
+
 /// How far before a fix and beside a course into it a position is, metres.
 fn seen_from(fix: LatLon, course_deg: f64, position: LatLon) -> (f64, f64) {
     let back = fix.inverse(position);
@@ -149,7 +190,7 @@ fn arrival_deg(view: &Inspection, step: &Step) -> Option<f64> {
             let way = Path::line(start.position, end.position);
             (way.length_m() >= SHORTEST_M).then(|| way.course_end_deg())
         }
-        _ => Some(before.directed()?.course_end_deg()),
+        _ => before.course_end_deg(),
     }
 }
 
@@ -210,6 +251,42 @@ mod tests {
         fixed_legs(&[(&cf(60), "course-not-intercepted"), (&after_hold, "course-not-intercepted")]);
         let found = problems(&cf(60));
         assert!(!found.iter().any(Problem::is_error), "it can be flown: {found:?}");
+    }
+
+    /// About B, from which C is 3.3 km to the north.
+    #[test]
+    fn a_course_that_cannot_be_reached_from_anywhere_on_a_circle_is_not_intercepted() {
+        let cf = |radius: u32, course: u32| {
+            format!(
+                r#"<orbit id="o" radius="{radius}" turn="left"><centre fix="B"/></orbit><CF id="c" fix="C" course="{course}"/>"#
+            )
+        };
+        let behind: &[&str] = &["course-not-intercepted"];
+        check_legs(&[
+            (&cf(300, 0), &[]),
+            (&cf(300, 80), &[]),
+            (&cf(300, 180), behind),
+            (&cf(300, 110), behind),
+            // from the west side of the circle
+            (&cf(300, 90), &[]),
+            (&cf(3400, 180), &[]),
+        ]);
+        fixed_legs(&[(&cf(300, 180), "course-not-intercepted")]);
+        let after_climb = r#"<IF id="a" fix="A"/><FA id="f" fix="B" course="90" altitude="600" altitudeReference="amsl"/><CF id="c" fix="C" course="180"/>"#;
+        check_legs(&[(after_climb, &[])]);
+    }
+
+    /// The figure ends at B, nobody knows in which direction the aircraft has turned by then: 50 m aside the turn takes 106 m at least.
+    #[test]
+    fn whoever_comes_from_a_pattern_may_be_turning_already() {
+        let cf = |ahead_m: f64| {
+            let fix = geometry::LatLon::new(36.3, -84.17).destination(90.0, ahead_m).destination(0.0, 50.0);
+            format!(
+                r#"<figureEight id="e" radius="300" turn="left"><centre fix="B"/></figureEight><CF id="c" lat="{}" lon="{}" course="90"/>"#,
+                fix.lat_deg, fix.lon_deg
+            )
+        };
+        check_legs(&[(&cf(110.0), &[]), (&cf(100.0), &["course-not-intercepted"])]);
     }
 
     /// The turn onto the course is half flown where the path comes from.
