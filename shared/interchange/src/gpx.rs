@@ -1,7 +1,7 @@
 //! GPX 1.1 (read: 1.0, too): routes and tracks as lines, waypoints as points. Elevations are metres AMSL.
 //! Source: the schema at topografix.com/GPX/1/1.
 
-use crate::drawing::{Drawing, Feature, Shape, Vertex};
+use crate::drawing::{Drawing, Feature, LABEL, Shape, Vertex};
 use crate::note::Notes;
 use crate::synthetic::altitude;
 use crate::xml::{self, Element, escaped};
@@ -47,7 +47,10 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
 
 fn point(element: &Element, ours: bool, drawing: &mut Drawing) -> Result<(), Error> {
     let Some(vertex) = vertex(element, ours, &mut drawing.notes) else { return Ok(()) };
-    let marks = vec![("legwork".to_owned(), vertex.kind.clone())];
+    let mut marks = vec![("legwork".to_owned(), vertex.kind.clone())];
+    if ours && let Some(comment) = element.child("cmt") {
+        marks.push((LABEL.to_owned(), comment.text.clone()));
+    }
     let (place, name, description) =
         (element.place(), vertex.name.clone(), element.text_of("desc").to_owned());
     drawing.add(Feature { place, name, description, marks, shape: Shape::Point(vertex) })
@@ -69,9 +72,9 @@ fn vertex(element: &Element, ours: bool, notes: &mut Notes) -> Option<Vertex> {
         notes.again("no-position", element.place(), "a point without a good `lat` and `lon` is left out");
         return None;
     };
-    let marks = ours.then_some("type").into_iter();
-    let described = (element.name == "wpt").then_some("desc");
-    lost(element, &marks.chain(described).chain(["ele", "name"]).collect::<Vec<_>>(), notes);
+    let point = element.name == "wpt";
+    let read = [("ele", true), ("name", true), ("type", ours), ("desc", point), ("cmt", point && ours)];
+    lost(element, &read.iter().filter(|(_, read)| *read).map(|(name, _)| *name).collect::<Vec<_>>(), notes);
     let ele = element.child("ele").map(|e| e.text.parse::<f64>());
     let metres = ele.as_ref().and_then(|e| e.as_ref().ok()).copied().filter(|m| m.abs() < 1e5);
     if ele.is_some() && metres.is_none() {
@@ -107,7 +110,8 @@ pub fn write(drawing: &Drawing) -> Vec<u8> {
         if let Shape::Point(vertex) = &feature.shape
             && feature.mark("legwork") != Some("path")
         {
-            write_point(&mut text, "wpt", "  ", vertex, &feature.name);
+            let more = [("cmt", feature.mark(LABEL).unwrap_or_default()), ("desc", &feature.description)];
+            write_point(&mut text, ("wpt", "  "), vertex, &feature.name, &more);
         }
     }
     for feature in &drawing.features {
@@ -117,20 +121,30 @@ pub fn write(drawing: &Drawing) -> Vec<u8> {
             _ => continue,
         };
         let _ = writeln!(text, "  <rte>\n    <name>{}</name>", escaped(&feature.name));
-        vertices.iter().for_each(|v| write_point(&mut text, "rtept", "    ", v, &v.name));
+        vertices.iter().for_each(|v| write_point(&mut text, ("rtept", "    "), v, &v.name, &[]));
         text += "  </rte>\n";
     }
     text += "</gpx>\n";
     text.into_bytes()
 }
 
-fn write_point(text: &mut String, element: &str, indent: &str, vertex: &Vertex, name: &str) {
+/// `more`: elements with a text, in the order of the schema.
+fn write_point(
+    text: &mut String,
+    (element, indent): (&str, &str),
+    vertex: &Vertex,
+    name: &str,
+    more: &[(&str, &str)],
+) {
     // GPX longitudes are below +180
     let lon = if vertex.position.lon_deg >= 180.0 { -180.0 } else { vertex.position.lon_deg };
     let _ = write!(text, "{indent}<{element} lat=\"{:.9}\" lon=\"{lon:.9}\">", vertex.position.lat_deg);
     if let Some(Value::Constant(metres)) = vertex.altitude.as_ref().map(|a| &a.metres) {
         let _ = write!(text, "<ele>{metres:.4}</ele>");
     }
-    let _ =
-        writeln!(text, "<name>{}</name><type>{}</type></{element}>", escaped(name), escaped(&vertex.kind));
+    let _ = write!(text, "<name>{}</name>", escaped(name));
+    for (element, value) in more.iter().filter(|(_, value)| !value.is_empty()) {
+        let _ = write!(text, "<{element}>{}</{element}>", escaped(value));
+    }
+    let _ = writeln!(text, "<type>{}</type></{element}>", escaped(&vertex.kind));
 }

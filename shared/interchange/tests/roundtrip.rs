@@ -116,11 +116,18 @@ fn take_off_and_landing_come_back_as_stages() {
 #[test]
 fn runways_fixes_and_zones_come_back_from_drawings() {
     let mut plan = plan(vec![]);
-    plan.fixes.push(flight_plan::Fix {
-        id: "GAP".into(),
+    let fix = |id: &str, name: &str, description: &str| flight_plan::Fix {
+        id: id.into(),
         position: LatLon::new(36.4, -84.2),
-        name: String::new(),
-        description: "gate".into(),
+        name: name.into(),
+        description: description.into(),
+    };
+    plan.fixes = vec![fix("GAP", "", "gate"), fix("MILL", "The <old> mill", "seen from far"), fix("X", "Ex", "")];
+    plan.runways.push(Runway {
+        id: "R23".into(),
+        priority: 3,
+        approach_entry: Some(LatLon::new(36.35, -84.125)),
+        ..plan.runways[0].clone()
     });
     let zone = |id: &str, kind, shape| Zone {
         id: id.into(),
@@ -139,11 +146,9 @@ fn runways_fixes_and_zones_come_back_from_drawings() {
     for format in [Format::Kml, Format::Kmz, Format::GeoJson] {
         let found = again(format, &plan, &[]).plan;
         assert_eq!((&found.runways, &found.zones), (&plan.runways, &plan.zones), "{format:?}");
-        assert_eq!(
-            (found.fixes[0].position, &found.fixes[0].description),
-            (plan.fixes[0].position, &plan.fixes[0].description)
-        );
+        assert_eq!(found.fixes, plan.fixes, "{format:?}");
     }
+    assert_eq!(again(Format::Gpx, &plan, &[]).plan.fixes, plan.fixes);
     let found = again(Format::Plan, &plan, &[]).plan;
     let shapes = |plan: &FlightPlan| plan.zones.iter().map(|z| (z.kind, z.shape.clone())).collect::<Vec<_>>();
     assert_eq!(shapes(&found), shapes(&plan));

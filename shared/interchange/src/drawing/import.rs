@@ -1,6 +1,6 @@
 //! A drawing as a plan.
 
-use super::{Drawing, Feature, Shape, Vertex, ends};
+use super::{Drawing, Feature, LABEL, Shape, Vertex, ends};
 use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
@@ -108,7 +108,10 @@ impl Importer<'_> {
             );
         }
         let id = self.names.take(&feature.name, "fix");
-        let (name, description) = (feature.name.clone(), feature.description.clone());
+        // of ours the name of the feature is the identifier
+        let ours = feature.mark("legwork") == Some("fix");
+        let name = if ours { feature.mark(LABEL).unwrap_or_default() } else { &feature.name }.to_owned();
+        let description = feature.description.clone();
         self.plan.fixes.push(Fix { id, position: at.position, name, description });
     }
 
@@ -128,8 +131,8 @@ impl Importer<'_> {
             // found later, where a path takes off
             heading_deg: feature.number("heading_deg").unwrap_or(f64::NAN),
             length_m: feature.number("length_m").unwrap_or(self.assumptions.runway_length_m),
-            priority: 1,
-            approach_entry: None,
+            priority: feature.number("priority").and_then(priority).unwrap_or(1),
+            approach_entry: feature.position("approach_entry_lat", "approach_entry_lon"),
         });
     }
 
@@ -211,8 +214,7 @@ impl Importer<'_> {
                 "the holes of this zone are left out: it counts without them",
             );
         }
-        let centre = feature.number("centre_lat").zip(feature.number("centre_lon"));
-        let centre = centre.map(|(lat, lon)| LatLon::new(lat, lon)).filter(|c| c.is_valid());
+        let centre = feature.position("centre_lat", "centre_lon");
         let shape = match (centre, feature.number("radius_m").filter(|r| *r > 0.0)) {
             (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
             _ => ZoneShape::Polygon(outer.to_vec()),
@@ -262,4 +264,9 @@ impl Importer<'_> {
         stage.legs.push(way.into());
         self.plan.stages.push(stage);
     }
+}
+
+/// A whole number from 1 on.
+fn priority(number: f64) -> Option<u32> {
+    (number.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
 }

@@ -21,6 +21,9 @@ const BEGINS: &str = "begins_with";
 /// Mark of a path: what kind of point it ends with.
 const ENDS: &str = "ends_with";
 
+/// Mark of a fix: what people call it.
+pub const LABEL: &str = "label";
+
 /// What a drawing holds.
 #[derive(Debug, Default)]
 pub struct Drawing {
@@ -141,6 +144,12 @@ impl Feature {
     /// A finite number of a mark.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.mark(name)?.parse().ok().filter(|n: &f64| n.is_finite())
+    }
+
+    /// The position that two marks are.
+    pub fn position(&self, lat: &str, lon: &str) -> Option<LatLon> {
+        let position = LatLon::new(self.number(lat)?, self.number(lon)?);
+        position.is_valid().then_some(position)
     }
 }
 

@@ -1,11 +1,11 @@
 //! A plan and its flown waypoints as a drawing.
 
-use super::{BEGINS, Drawing, ENDS, Feature, Shape, Vertex};
+use super::{BEGINS, Drawing, ENDS, Feature, LABEL, Shape, Vertex};
 use crate::losses::{self, Kept};
 use crate::note::Notes;
 use crate::synthetic::altitude;
 use crate::{Export, Format, csv};
-use flight_plan::{AltitudeReference, FlightPlan, Zone, ZoneKind, ZoneShape};
+use flight_plan::{AltitudeReference, Fix, FlightPlan, Runway, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
 
 /// Corners that stand for a circle.
@@ -68,7 +68,7 @@ fn points(plan: &FlightPlan) -> impl Iterator<Item = Feature> + '_ {
         place: String::new(),
         name: fix.id.to_string(),
         description: fix.description.clone(),
-        marks: marks("fix", &[]),
+        marks: fix_marks(fix),
         shape: Shape::Point(Vertex { kind: "fix".into(), ..Vertex::new(fix.position, None) }),
     });
     let runways = plan.runways.iter().map(|r| {
@@ -77,7 +77,7 @@ fn points(plan: &FlightPlan) -> impl Iterator<Item = Feature> + '_ {
             place: String::new(),
             name: r.id.to_string(),
             description: String::new(),
-            marks: marks("runway", &[("heading_deg", r.heading_deg), ("length_m", r.length_m)]),
+            marks: runway_marks(r),
             shape: Shape::Point(Vertex {
                 kind: "runway".into(),
                 ..Vertex::new(r.threshold, Some(elevation))
@@ -85,6 +85,23 @@ fn points(plan: &FlightPlan) -> impl Iterator<Item = Feature> + '_ {
         }
     });
     fixes.chain(runways)
+}
+
+fn fix_marks(fix: &Fix) -> Vec<(String, String)> {
+    let label = (!fix.name.is_empty()).then(|| (LABEL.to_owned(), fix.name.clone()));
+    marks("fix", &[]).into_iter().chain(label).collect()
+}
+
+fn runway_marks(runway: &Runway) -> Vec<(String, String)> {
+    let mut numbers = vec![
+        ("heading_deg", runway.heading_deg),
+        ("length_m", runway.length_m),
+        ("priority", runway.priority.into()),
+    ];
+    if let Some(entry) = runway.approach_entry {
+        numbers.extend([("approach_entry_lat", entry.lat_deg), ("approach_entry_lon", entry.lon_deg)]);
+    }
+    marks("runway", &numbers)
 }
 
 fn zone(zone: &Zone, notes: &mut Notes) -> Feature {
