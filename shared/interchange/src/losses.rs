@@ -2,7 +2,7 @@
 
 use crate::Export;
 use crate::note::Notes;
-use flight_plan::{Leg, LegKind, Zone};
+use flight_plan::{Leg, LegContext, LegKind, Runway, Zone};
 use std::collections::HashSet;
 
 /// What a format keeps.
@@ -10,7 +10,7 @@ use std::collections::HashSet;
 pub struct Kept {
     /// Named positions.
     pub fixes: bool,
-    /// Runways with heading and length.
+    /// Runways with heading, length, priority and approach entry.
     pub runways: bool,
     /// Outlines of zones.
     pub zones: bool,
@@ -26,13 +26,12 @@ pub struct Kept {
 pub fn tell(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes: &mut Notes) {
     let plan = export.plan;
     let flown: HashSet<&str> = export.steps.iter().map(|s| s.waypoint.leg.as_str()).collect();
-    for context in plan.all_legs() {
-        let leg = context.leg;
-        let control =
-            matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. } | LegKind::Call(_));
-        if !control && !flown.contains(leg.id.as_str()) {
-            continue;
-        }
+    let contexts = plan.all_legs();
+    let control = |leg: &Leg| {
+        matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Intersection { .. } | LegKind::Call(_))
+    };
+    let concerned = |c: &&LegContext| control(c.leg) || flown.contains(c.leg.id.as_str());
+    for leg in contexts.iter().filter(concerned).map(|c| c.leg) {
         if !matches!(leg.kind, LegKind::If(_) | LegKind::Tf(_) | LegKind::Df { .. }) && !whole(leg) {
             let message = format!("this leg ({}) becomes the waypoints that are flown", leg.kind_name());
             notes.push("flattened", leg.id.as_str(), message);
@@ -40,6 +39,11 @@ pub fn tell(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes
         if !kept.actions && !leg.actions.is_empty() {
             notes.push("action-not-carried", leg.id.as_str(), "the actions of this leg are left out");
         }
+    }
+    let named = contexts.iter().filter(concerned).filter(|c| !c.leg.name.is_empty()).count();
+    if named > 0 {
+        let message = format!("the names of the legs ({named}) are left out");
+        notes.push("leg-names-not-carried", "legs", message);
     }
     for variable in &plan.variables {
         let message = "this variable is left out: the waypoints are those for the value it had";
@@ -66,11 +70,7 @@ fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
     }
     if !kept.runways {
         for runway in &plan.runways {
-            notes.push(
-                "runway-not-carried",
-                runway.id.as_str(),
-                "heading and length of this runway are left out",
-            );
+            notes.push("runway-not-carried", runway.id.as_str(), left_out(runway));
         }
     }
     if !kept.speeds && !export.steps.is_empty() {
@@ -84,6 +84,13 @@ fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
                 "altitude limits and times of this zone are left out: it counts at every height, always";
             notes.push("zone-limits-not-carried", zone.id.as_str(), message);
         }
+    }
+}
+
+fn left_out(runway: &Runway) -> &'static str {
+    match runway.approach_entry {
+        Some(_) => "heading, length, priority and approach entry of this runway are left out",
+        None => "heading, length and priority of this runway are left out",
     }
 }
 

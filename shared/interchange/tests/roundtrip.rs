@@ -122,7 +122,8 @@ fn runways_fixes_and_zones_come_back_from_drawings() {
         name: name.into(),
         description: description.into(),
     };
-    plan.fixes = vec![fix("GAP", "", "gate"), fix("MILL", "The <old> mill", "seen from far"), fix("X", "Ex", "")];
+    plan.fixes =
+        vec![fix("GAP", "", "gate"), fix("MILL", "The <old> mill", "seen from far"), fix("X", "Ex", "")];
     plan.runways.push(Runway {
         id: "R23".into(),
         priority: 3,
@@ -387,6 +388,32 @@ fn what_is_lost_is_told() {
     ] {
         let expected: Vec<_> = always.iter().chain(more).map(|s| (*s).to_owned()).collect();
         assert_eq!(codes(format), expected, "{format:?}");
+    }
+}
+
+#[test]
+fn names_of_legs_and_what_runways_have_are_told() {
+    let at = LatLon::new(36.33, -84.15);
+    let mut named = plan(vec![Leg { name: "To the mill".into(), ..leg("w", LegKind::Tf(to(at))) }]);
+    named.stages[1].legs.push(Leg { name: "Never".into(), ..leg("x", LegKind::Tf(to(at))) }.into());
+    named.runways[0].approach_entry = Some(at);
+    let steps = [step("w", 0, at, 500.0, 25.0, Action::Fly)];
+    let told = |format, plan: &FlightPlan, code: &str| {
+        let notes = write(format, &Export { plan, steps: &steps }).unwrap().notes;
+        notes.into_iter().filter(|n| n.code == code).map(|n| n.message).collect::<Vec<_>>()
+    };
+    let nameless = plan(vec![leg("w", LegKind::Tf(to(at)))]);
+    for (_, format) in Format::ALL {
+        let names = told(format, &named, "leg-names-not-carried");
+        assert_eq!(names, ["the names of the legs (1) are left out"], "{format:?}");
+        assert!(told(format, &nameless, "leg-names-not-carried").is_empty(), "{format:?}");
+    }
+    for format in [Format::Plan, Format::Waypoints, Format::Gpx, Format::Csv] {
+        let (entry, none) =
+            (told(format, &named, "runway-not-carried"), told(format, &nameless, "runway-not-carried"));
+        let all = "heading, length, priority and approach entry of this runway are left out";
+        assert_eq!((entry, none[0].contains("priority")), (vec![all.to_owned()], true), "{format:?}");
+        assert!(!none[0].contains("entry"), "{format:?}");
     }
 }
 
