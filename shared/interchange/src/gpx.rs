@@ -13,6 +13,8 @@ use std::fmt::Write;
 /// What is read of the file, and of a route or track.
 const KNOWN: [&[&str]; 2] =
     [&["metadata", "wpt", "rte", "trk"], &["name", "desc", "rtept", "trkseg", "trkpt"]];
+/// What is read of the metadata; bounds are those of what is in the file.
+const METADATA: &[&str] = &["name", "bounds"];
 /// Who wrote a file with such marks.
 const CREATOR: &str = "Legwork";
 
@@ -28,7 +30,11 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     let mut drawing = Drawing::default();
     let metadata = root.child("metadata").unwrap_or(&root);
     drawing.name = metadata.text_of("name").to_owned();
-    lost(&root, KNOWN[0], &mut drawing.notes);
+    // before GPX 1.1 the name stood in the root itself
+    let known: Vec<&str> =
+        KNOWN[0].iter().copied().chain(root.child("metadata").is_none().then_some("name")).collect();
+    lost(&root, &known, &mut drawing.notes);
+    root.child("metadata").into_iter().for_each(|m| lost(m, METADATA, &mut drawing.notes));
     let ours = root.attribute("creator") == Some(CREATOR);
     for element in &root.children {
         match element.name.as_str() {

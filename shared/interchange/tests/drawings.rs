@@ -33,6 +33,43 @@ fn types_of_other_programs_points_are_no_marks_of_ours() {
 }
 
 #[test]
+fn a_runway_of_which_a_drawing_says_little_is_made_up() {
+    let made_up = |after: &str| {
+        let text = format!(
+            "<gpx version='1.1' creator='Legwork'><wpt lat='36.319' lon='-84.173'><ele>349</ele><name>R05</name><type>runway</type></wpt>{after}</gpx>"
+        );
+        let import = import(Format::Gpx, &text);
+        let notes = import.notes.iter().filter(|n| n.code == "runway-made-up");
+        let told: Vec<String> = notes.map(|n| format!("{}: {}", n.place, n.message)).collect();
+        (import.plan.runways[0].heading_deg, told)
+    };
+    let alone =
+        "line 1: runway `R05` is made up from a point: 600 m long, heading 0°, elevation 349 m; correct it";
+    assert_eq!(made_up(""), (0.0, vec![alone.to_owned()]));
+    let take_off = "<rte><rtept lat='36.3234283' lon='-84.1659721'><ele>429</ele><type>take-off</type></rtept>\
+                    <rtept lat='36.33' lon='-84.15'><ele>500</ele></rtept></rte>";
+    let (heading_deg, told) = made_up(take_off);
+    assert!((51.0..53.0).contains(&heading_deg) && (heading_deg * 100.0).fract() == 0.0, "{heading_deg}");
+    assert_eq!(told, [alone.replace("heading 0°", "heading 52°")]);
+}
+
+#[test]
+fn what_the_metadata_of_a_gpx_file_say_is_told() {
+    let file = |root: &str| {
+        import(
+            Format::Gpx,
+            &format!("<gpx version='1.1' creator='x'>{root}<wpt lat='36.3' lon='-84.1'/></gpx>"),
+        )
+    };
+    let named = file("<metadata><name>Tour</name><desc>slowly</desc><bounds minlat='36'/></metadata>");
+    assert_eq!(named.plan.name, "Tour");
+    assert_eq!(said(&named, "element-not-carried"), ["<desc> of <metadata> is left out"]);
+    let old = file("<name>Tour</name><desc>slowly</desc>");
+    assert_eq!(old.plan.name, "Tour");
+    assert_eq!(said(&old, "element-not-carried"), ["<desc> of <gpx> is left out"]);
+}
+
+#[test]
 fn every_hole_of_a_boundary_is_one() {
     let ring = |at: f64| {
         format!(

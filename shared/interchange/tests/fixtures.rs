@@ -223,6 +223,7 @@ fn a_gpx_file() {
     assert_eq!(
         codes(&import),
         [
+            ("element-not-carried", "line 3"),
             ("element-not-carried", "line 4"),
             ("element-not-carried", "line 4"),
             ("no-position", "line 9"),

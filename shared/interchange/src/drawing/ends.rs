@@ -28,7 +28,9 @@ pub fn stage(kind: StageKind, at: &Vertex, runways: &mut [Runway], names: &mut N
     let near = distances.min_by(|(a_m, _), (b_m, _)| a_m.total_cmp(b_m));
     let (_, runway) = near.filter(|(metres, _)| *metres <= most_m)?;
     if kind == StageKind::TakeOff && runway.heading_deg.is_nan() {
-        runway.heading_deg = runway.threshold.bearing_deg(at.position);
+        let heading_deg = runway.threshold.bearing_deg(at.position);
+        // no position in a file gives it better
+        runway.heading_deg = (heading_deg * 100.0).round() / 100.0 % 360.0;
     }
     let (wish, name) =
         if kind == StageKind::TakeOff { ("take-off", "Take-off") } else { ("land", "Landing") };

@@ -34,7 +34,8 @@ pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error
     plan.runways.extend(
         assumptions.runway.iter().map(|r| Runway { id: names.take(r.id.as_str(), "runway"), ..r.clone() }),
     );
-    let mut importer = Importer { assumptions, names, notes: drawing.notes, plan, land: None };
+    let mut importer =
+        Importer { assumptions, names, notes: drawing.notes, plan, land: None, made_up: Vec::new() };
     importer.ends(StageKind::TakeOff, "take-off");
     // runways first: paths take off from them and land on them
     let is_runway = |f: &Feature| f.mark("legwork") == Some("runway");
@@ -57,6 +58,8 @@ struct Importer<'a> {
     plan: FlightPlan,
     /// The landing that a path ends with: it comes behind everything else.
     land: Option<Stage>,
+    /// Runways that the drawing says too little of, and where it does.
+    made_up: Vec<(Id, String)>,
 }
 
 impl Importer<'_> {
@@ -64,9 +67,12 @@ impl Importer<'_> {
         self.ends(StageKind::Land, "land");
         self.plan.stages.extend(self.land.take());
         for runway in self.plan.runways.iter_mut().filter(|r| r.heading_deg.is_nan()) {
+            // nothing takes off from it
             runway.heading_deg = 0.0;
-            let message = "the direction of this runway is not known: it is taken as north, correct it";
-            self.notes.push("runway-made-up", runway.id.as_str(), message);
+        }
+        for (id, place) in &self.made_up {
+            let runway = self.plan.runways.iter().find(|runway| runway.id == *id);
+            runway.into_iter().for_each(|runway| synthetic::made_up(runway, place, &mut self.notes));
         }
     }
 
@@ -124,13 +130,18 @@ impl Importer<'_> {
             Some((Value::Constant(metres), AltitudeReference::Amsl)) => *metres,
             _ => 0.0,
         };
+        let id = self.names.take(&feature.name, "runway");
+        let (heading_deg, length_m) = (feature.number("heading_deg"), feature.number("length_m"));
+        if heading_deg.is_none() || length_m.is_none() {
+            self.made_up.push((id.clone(), feature.place.clone()));
+        }
         self.plan.runways.push(Runway {
-            id: self.names.take(&feature.name, "runway"),
+            id,
             threshold: at.position,
             elevation_amsl_m: elevation_m,
             // found later, where a path takes off
-            heading_deg: feature.number("heading_deg").unwrap_or(f64::NAN),
-            length_m: feature.number("length_m").unwrap_or(self.assumptions.runway_length_m),
+            heading_deg: heading_deg.unwrap_or(f64::NAN),
+            length_m: length_m.unwrap_or(self.assumptions.runway_length_m),
             priority: feature.number("priority").and_then(priority).unwrap_or(1),
             approach_entry: feature.position("approach_entry_lat", "approach_entry_lon"),
         });
