@@ -5,6 +5,7 @@ mod camera;
 mod fence;
 mod json;
 mod old;
+mod order;
 mod pattern;
 mod read;
 mod way;

@@ -247,7 +247,8 @@ fn area(scan: &Scan, transect: Json) -> Option<Json> {
     }))
 }
 
-fn metres(spacing: &Spacing) -> Option<f64> {
+/// Metres between the tracks, if they are constant.
+pub(super) fn metres(spacing: &Spacing) -> Option<f64> {
     match spacing {
         Spacing::Metres(metres) => constant(metres),
         Spacing::Camera { field_of_view_deg, overlap, height_m } => {
@@ -257,14 +258,14 @@ fn metres(spacing: &Spacing) -> Option<f64> {
     }
 }
 
-fn constant(value: &Value<f64>) -> Option<f64> {
+pub(super) fn constant(value: &Value<f64>) -> Option<f64> {
     match value {
         Value::Constant(number) => Some(*number),
         Value::Expression(_) => None,
     }
 }
 
-fn at(place: &Place) -> Option<LatLon> {
+pub(super) fn at(place: &Place) -> Option<LatLon> {
     match place {
         Place::Position(Value::Constant(position)) => Some(*position),
         _ => None,

@@ -1,10 +1,10 @@
 //! A `.plan` of flown waypoints.
 
-use super::{fence, pattern};
+use super::{fence, order, pattern};
 use crate::losses::{self, Kept};
 use crate::mission::{self, Flown, commands};
 use crate::note::Notes;
-use crate::{Error, Export};
+use crate::{Error, Export, Step};
 use flight_plan::{Altitude, EmergencyPlan, Leg, LegContext};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -27,6 +27,7 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     let kept = Kept { zones: true, actions: true, speeds: true, rally: true, ..Kept::default() };
     losses::tell(export, kept, &whole, notes);
     contexts.iter().filter(|c| whole(c.leg)).for_each(|c| pattern::tell(c.leg, notes));
+    tell_order(export, &legs, &whole, notes);
     for passage in flown.chunk_by(|a, b| a.passage == b.passage && a.leg == b.leg) {
         writer.passage(passage);
     }
@@ -53,6 +54,25 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     let mut bytes = serde_json::to_vec_pretty(&file).map_err(|e| Error::malformed("file", e.to_string()))?;
     bytes.push(b'\n');
     Ok(bytes)
+}
+
+/// Patterns whose tracks are not flown one beside the other.
+fn tell_order(
+    export: &Export<'_>,
+    legs: &HashMap<&str, &LegContext>,
+    whole: &dyn Fn(&Leg) -> bool,
+    notes: &mut Notes,
+) {
+    let mut told: HashSet<&str> = HashSet::new();
+    let same = |a: &Step, b: &Step| a.passage == b.passage && a.waypoint.leg == b.waypoint.leg;
+    for way in export.steps.chunk_by(same) {
+        let leg = way.first().and_then(|first| legs.get(first.waypoint.leg.as_str()));
+        let leg = leg.map(|context| context.leg).filter(|leg| whole(leg) && order::is_mixed(leg, way));
+        if let Some(leg) = leg.filter(|leg| told.insert(leg.id.as_str())) {
+            let message = "the tracks in the file are not flown one beside the other: if QGC works the pattern out anew, it flies them in its own order";
+            notes.again("track-order", leg.id.as_str(), message);
+        }
+    }
 }
 
 struct Writer<'a> {
