@@ -1,6 +1,7 @@
 //! Every pattern: flown, flown backwards, changed in flight, and gone on with after a restart.
 
-use crate::rig::{GROUND_M, Rig, document_with, fix};
+use crate::grid::compiled;
+use crate::rig::{GROUND_M, Rig, document, document_with, fix};
 use flight_exec::{Event, Executor, Snapshot, Waypoint};
 use flight_plan::VariableValue;
 use geometry::{LatLon, LocalFrame};
@@ -371,4 +372,25 @@ fn turns_are_laid_out_for_the_greatest_ground_speed() {
     assert_eq!(calm, design);
     // r grows with the square of airspeed + wind: (25 + 12)² / (25 + 6)²
     assert!((strong / calm - 37.0_f64.powi(2) / 31.0_f64.powi(2)).abs() < 0.03, "{calm} {strong}");
+}
+
+/// The check knows where some patterns end: a track to there leads nowhere.
+#[test]
+fn patterns_end_where_the_check_says() {
+    let patterns = [
+        r#"<figureEight id="p" radius="300" heading="30" turns="2" turn="left"><centre fix="C3"/></figureEight>"#,
+        r#"<sector id="p" radius="900" sectors="4" heading="20" passes="2" turn="right"><centre fix="C3"/></sector>"#,
+        r#"<expandingSquare id="p" spacing="320" heading="10" radius="900" turn="right"><centre fix="C3"/></expandingSquare>"#,
+        r#"<spiral id="p" outerRadius="900" spacing="250" direction="inward" turn="left"><centre fix="C3"/></spiral>"#,
+        r#"<trackLine id="p" spacing="300" returns="true"><route><point fix="B2"/><point fix="C3"/><point fix="D3"/></route></trackLine>"#,
+        r#"<trackLine id="p" spacing="300" returns="false"><route><point fix="B2"/><point fix="C3"/></route></trackLine>"#,
+    ];
+    for pattern in patterns {
+        let mut rig = Rig::flying(&document(&format!(r#"{pattern}<TF id="z" fix="A5"/>"#)));
+        rig.fly_to("z");
+        let end = rig.flown.iter().rev().find(|w| w.leg.as_str() == "p").unwrap().position;
+        let on = format!(r#"<TF id="on" lat="{}" lon="{}"/><TF id="z" fix="A5"/>"#, end.lat_deg, end.lon_deg);
+        let problems = compiled(&document(&format!("{pattern}{on}"))).unwrap_err();
+        assert!(problems.contains("[zero-length] on"), "{pattern}: {problems}");
+    }
 }
