@@ -24,6 +24,8 @@ const MOST_UNSEEN: f64 = 0.0015;
 const FLOWN_ROUND: f64 = 0.25;
 /// … or than this share of a small area.
 const FLOWN_ROUND_OF_AREA: f64 = 0.0005;
+/// Places on an edge at which a loop may begin.
+const MOST_PARTS: f64 = 50.0;
 /// Strips are taken to be so much wider, metres: between exact ones films would be left.
 const FILM_M: f64 = 0.01;
 
@@ -52,7 +54,7 @@ pub struct ContourParameters {
     pub turn: Turn,
     /// Where the aircraft comes from: the first loop begins at its corner nearest to it.
     pub entry: Vec2,
-    /// Radius of turns, metres: each further loop begins at a corner that can be turned to from the end of the one before.
+    /// Radius of turns, metres: each further loop begins where it can be turned to from the end of the one before.
     pub turn_radius_m: f64,
     /// How far straight lines may cut a loop's rounded corners, metres.
     pub tolerance_m: f64,
@@ -268,8 +270,16 @@ impl Path {
         }
         while let Some((ring, nearest)) = nearest(&loops, self.at) {
             let mut flown = loops.swap_remove(ring);
-            let begin = self.along.map_or(nearest, |along| self.corner_turned_to(&flown, along));
-            flown.rotate_left(begin);
+            match self.along.and_then(|along| self.place_turned_to(&flown, along)) {
+                // in the middle of an edge
+                Some((edge, begin)) if flown.get(edge) != Some(&begin) => {
+                    let corners = flown.len().max(1);
+                    flown.rotate_left((edge + 1) % corners);
+                    flown.insert(0, begin);
+                }
+                Some((corner, _)) => flown.rotate_left(corner),
+                None => flown.rotate_left(nearest),
+            }
             let begin = flown.first().copied().unwrap_or(self.at);
             self.along = flown.last().map(|last| begin - *last);
             flown.push(begin);
@@ -280,19 +290,17 @@ impl Path {
         Ok(())
     }
 
-    /// The nearest corner of a loop to which there is room to turn, and from there along the loop; else the one with the most room.
-    fn corner_turned_to(&self, ring: &[Vec2], along: Vec2) -> usize {
-        let corner = |i: usize| {
-            let (begin, next) = (*ring.get(i)?, *ring.get((i + 1) % ring.len())?);
-            let way = begin - self.at;
-            let need_m = self.turn_radius_m * (half_tangent(along, way) + half_tangent(way, next - begin));
-            Some((i, way.length(), need_m))
-        };
-        let lack_m = |(_, way_m, need_m): &(usize, f64, f64)| (need_m - way_m).max(0.0);
-        let better = |a: &(usize, f64, f64), b: &(usize, f64, f64)| {
-            lack_m(a).total_cmp(&lack_m(b)).then(a.1.total_cmp(&b.1))
-        };
-        (0..ring.len()).filter_map(corner).min_by(better).map_or(0, |(i, ..)| i)
+    /// The nearest place of a loop to which there is room to turn, and from there along the loop; else the one with the most room. With
+    /// the number of its edge.
+    fn place_turned_to(&self, ring: &[Vec2], along: Vec2) -> Option<(usize, Vec2)> {
+        let rated = places(ring, self.turn_radius_m).map(|(edge, place, onward)| {
+            let way = place - self.at;
+            let need_m = self.turn_radius_m * (half_tangent(along, way) + half_tangent(way, onward));
+            let lack_m = (need_m - way.length()).max(0.0);
+            (edge, place, lack_m, way.length())
+        });
+        let best = rated.min_by(|a, b| a.2.total_cmp(&b.2).then(a.3.total_cmp(&b.3)));
+        best.map(|(edge, place, ..)| (edge, place))
     }
 
     /// The corners of the way from one loop to the next one; the first one is come to from wherever.
@@ -304,6 +312,15 @@ impl Path {
         let too_intricate = PatternError::TooIntricate { corners, levels: self.stored.starts.len() as u64 };
         interior.way(self.at, begin, &mut self.looks).ok_or(too_intricate)
     }
+}
+
+/// Corners of a ring and places on its edges, about `every_m` metres apart, each with the number of its edge and the way on along it.
+fn places(ring: &[Vec2], every_m: f64) -> impl Iterator<Item = (usize, Vec2, Vec2)> + '_ {
+    ring.iter().zip(ring.iter().cycle().skip(1)).enumerate().flat_map(move |(edge, (&from, &to))| {
+        let way = to - from;
+        let parts = (way.length() / every_m.max(1.0)).clamp(1.0, MOST_PARTS).floor();
+        (0..parts as u32).map(move |i| (edge, from + way * (f64::from(i) / parts), way))
+    })
 }
 
 /// What a turn needs of the ways before and after it, in radii: tan(Δ/2).

@@ -128,8 +128,8 @@ fn sharp_corners_bring_covering_loops_nearer_instead_of_being_flown_round() {
     let area = Polygon::new(vec![corner(0.0), corner(120.0), corner(240.0)], vec![]).unwrap();
     let p = ContourParameters { tolerance_m: 0.5, ..parameters() };
     let loops = rings_flown(&Contours::covering(&area, &p).unwrap());
-    // triangles all, each in the one before
-    assert!(loops.iter().all(|ring| ring.len() == 4), "{loops:?}");
+    // triangles all, maybe begun on an edge, each in the one before
+    assert!(loops.iter().all(|ring| (4..=5).contains(&ring.len())), "{loops:?}");
     let sizes: Vec<f64> = loops.iter().map(|ring| signed_area_m2(ring).abs()).collect();
     assert!(sizes.is_sorted_by(|a, b| a > b) && sizes.len() > 750 / 100, "{sizes:?}");
 }
