@@ -16,19 +16,19 @@ pub use trail::{Trail, Visit};
 
 use crate::api::Action;
 use crate::expand::{Expansion, Point};
-use crate::path::{Level, Passing, PathState, distance_and_course};
+use crate::path::{Level, Passing, PathState};
 use crate::world::World;
 use flight_plan::{Id, Leg, Stage};
-use geometry::LatLon;
 use geometry::geodesy::normalise_180;
+use geometry::{LatLon, Vec2};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// So many steps without a single waypoint: a loop that flies nothing.
 const MOST_SILENT_STEPS: usize = 2000;
 
-/// A fly-by of a sharper turn begins more than two radii before its corner, degrees: in a pattern such a corner is crossed.
-const SHARP_DEG: f64 = 127.0;
+/// A fly-by of a sharper turn than 127° begins more than two radii before its corner: in a pattern such a corner is crossed. Its cosine.
+const SHARP_COS: f64 = -0.601_815;
 
 /// A place in the program and the end of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -243,15 +243,18 @@ impl Cursor {
         let sharp = || {
             expansion.point(number + 1).is_some_and(|next| self.turns_sharply(point.position, next.position))
         };
-        Some(Point { fly_over: point.fly_over || (expansion.is_pattern() && sharp()), ..point })
+        Some(Point { fly_over: point.fly_over || (expansion.may_turn_sharply(number) && sharp()), ..point })
     }
 
-    /// Where the path turns so sharply a turn ahead of time would leave out far too much.
+    /// Where the path turns so sharply a turn ahead of time would leave out far too much. In the plane: a degree more or less is nothing.
     fn turns_sharply(&self, at: LatLon, next: LatLon) -> bool {
-        let from = self.rejoined.as_ref().map_or(&self.path, |path| path);
-        let (length_m, course_deg) = distance_and_course(from.last.position, at);
-        let (_, next_deg) = distance_and_course(at, next);
-        length_m > 0.5 && normalise_180(next_deg - course_deg).abs() > SHARP_DEG
+        let from = self.rejoined.as_ref().map_or(self.path.last.position, |path| path.last.position);
+        let shrunk = at.lat_deg.to_radians().cos();
+        let way = |a: LatLon, b: LatLon| {
+            Vec2::new(normalise_180(b.lon_deg - a.lon_deg) * shrunk, b.lat_deg - a.lat_deg)
+        };
+        let (before, after) = (way(from, at), way(at, next));
+        before.dot(after) < SHARP_COS * before.length() * after.length()
     }
 
     /// It is left at this crossing: as was chosen here before, else by a choice.

@@ -121,9 +121,18 @@ impl Expansion {
         Point { fly_over: point.fly_over || self.is_last(index), ..point }
     }
 
-    /// It is there to be seen along its tracks: their corners are not to be cut far.
-    pub fn is_pattern(&self) -> bool {
-        matches!(self, Expansion::Scan(_) | Expansion::Pattern(_) | Expansion::Reversed { .. })
+    /// At this point of a pattern, which is there to be seen along its tracks, the path may turn so sharply that a fly-by leaves out far
+    /// too much of them. From a scan's track to the next one it never does: those are right angles.
+    pub fn may_turn_sharply(&self, index: u64) -> bool {
+        match self {
+            Expansion::Scan(sweeps) => sweeps.is_beside_tracks(index),
+            Expansion::Pattern(_) => true,
+            Expansion::Reversed { pattern, points, .. } => {
+                index == 0
+                    || points.checked_sub(index + 2).is_none_or(|mirrored| pattern.may_turn_sharply(mirrored))
+            }
+            _ => false,
+        }
     }
 
     /// How many points it has; `None`: no end of its own (what is left by a choice).

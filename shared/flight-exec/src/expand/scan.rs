@@ -110,6 +110,11 @@ impl Sweep {
         Some(Point { fly_over: stretches.is_broken_off(place, end), ..point })
     }
 
+    /// A corner of a way between cells.
+    fn is_on_a_way(&self, index: u64) -> bool {
+        self.stretches().is_some_and(|stretches| matches!(stretches.spot(index), Some(Spot::Way(_))))
+    }
+
     fn laid_out(&self) -> Option<&LaidOut> {
         self.laid_out.get(|| self.recipe.lay_out(self.entry))
     }

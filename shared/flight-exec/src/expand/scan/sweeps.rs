@@ -53,6 +53,12 @@ impl Sweeps {
         self.sweeps.get(number)?.sweep.point(index)
     }
 
+    /// The beginning of a sweep, or a corner on the way from one part of the area to the next.
+    pub fn is_beside_tracks(&self, index: u64) -> bool {
+        let place = self.locate(index).and_then(|(number, index)| Some((self.sweeps.get(number)?, index)));
+        place.is_some_and(|(s, index)| index == 0 || s.sweep.is_on_a_way(index))
+    }
+
     /// The sweep of a point, and its number there.
     fn locate(&self, mut index: u64) -> Option<(usize, u64)> {
         for (number, s) in self.sweeps.iter().enumerate() {
