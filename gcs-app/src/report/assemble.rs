@@ -3,8 +3,8 @@
 use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
 use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
 use flight_plan::{
-    Altitude, AltitudeReference, Env, FlightPlan, FlightState, Id, LegKind, Program, Spacing, StageKind,
-    Value, VariableValue, Variables,
+    Altitude, AltitudeReference, Env, FlightPlan, FlightState, Id, LegKind, Pattern, Program, Spacing,
+    StageKind, Value, VariableValue, Variables,
 };
 use geometry::LatLon;
 use geometry::scan::camera_spacing_m;
@@ -86,10 +86,10 @@ pub fn places(plan: &FlightPlan) -> Vec<Place> {
     fixes.chain(runways).collect()
 }
 
-/// The areas that the scans of a track had to cover: each with the variables' values at the end of its passage.
+/// The areas that the scans and contours of a track had to cover: each with the variables' values at the end of its passage.
 pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<Area> {
-    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.is_scan());
-    scans
+    let covering = track.passages().iter().enumerate().filter(|(_, p)| p.covers_an_area());
+    covering
         .filter_map(|(i, passage)| {
             let range = track.range(i);
             let end_s = track.points().get(range.end).map_or(f64::INFINITY, |p| p.time_s);
@@ -118,9 +118,18 @@ pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> 
 }
 
 fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<LatLon>, f64)> {
-    let LegKind::Scan(scan) = &program.leg(leg)?.kind else { return None };
+    let (area, spacing) = covered(program, leg)?;
     let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
-    Some((corners(program, &scan.area, &env)?, spacing_m(program, leg, &scan.spacing, &env)?))
+    Some((corners(program, area, &env)?, spacing_m(program, leg, spacing, &env)?))
+}
+
+/// What a leg is to cover, and how far apart its tracks are.
+fn covered<'p>(program: &'p Program, leg: &Id) -> Option<(&'p flight_plan::Area, &'p Spacing)> {
+    match &program.leg(leg)?.kind {
+        LegKind::Scan(scan) => Some((&scan.area, &scan.spacing)),
+        LegKind::Pattern(Pattern::Contour { area, spacing, inward: true, .. }) => Some((area, spacing)),
+        _ => None,
+    }
 }
 
 /// Metres between the tracks of a leg, as given or as its camera needs them; `None`: a value of it can't be computed.
@@ -146,12 +155,10 @@ fn altitude<'p>(program: &'p Program, leg: &Id) -> Option<&'p Altitude> {
     own.or_else(|| program.stage(&path)?.altitude.as_ref())
 }
 
-/// The rings that are left out of a scan's area.
+/// The rings that are left out of what a leg is to cover.
 fn holes(program: &Program, leg: &Id) -> Vec<Vec<LatLon>> {
-    match program.leg(leg).map(|leg| &leg.kind) {
-        Some(LegKind::Scan(flight_plan::Scan { area: flight_plan::Area::Polygon { holes, .. }, .. })) => {
-            holes.clone()
-        }
+    match covered(program, leg) {
+        Some((flight_plan::Area::Polygon { holes, .. }, _)) => holes.clone(),
         _ => Vec::new(),
     }
 }
@@ -290,6 +297,8 @@ mod tests {
       <mainPlan><stage id="s" type="mission" altitude="150" altitudeReference="agl">
         <creepingLine id="creeping" fieldOfView="90" overlap="0.5" height="200"><area fix="A" radius="500"/></creepingLine>
         <crissCross id="criss" fieldOfView="90" overlap="0"><area fix="A" radius="500"/></crissCross>
+        <contour id="rings" spacing="150" turn="left"><area fix="A" radius="500"/></contour>
+        <contour id="round" spacing="150" loops="2" direction="outward" turn="left"><area fix="A" radius="500"/></contour>
         <TF id="tf" fix="A"/><call id="c" procedure="p"/>
       </stage></mainPlan></flightPlan>"#;
 
@@ -299,19 +308,25 @@ mod tests {
         let profile = aircraft::Profile::default();
         let program = flight_plan::compile(flight_plan::read(SCANS).plan, &profile, &terrain::Flat(200.0));
         let program = program.unwrap();
-        let legs: [(&str, &[(&str, u64)]); 4] =
-            [("creeping", &[]), ("criss", &[]), ("tf", &[]), ("c.in", &[("c", 1)])];
+        let legs: [(&str, &[(&str, u64)]); 6] = [
+            ("creeping", &[]),
+            ("criss", &[]),
+            ("rings", &[]),
+            ("round", &[]),
+            ("tf", &[]),
+            ("c.in", &[("c", 1)]),
+        ];
         let places =
             legs.iter().map(|(leg, passes)| PlacePointer { stage: "s".into(), ..place(leg, passes) });
         let events: Vec<(f64, Event)> =
-            (0..4).zip(places).map(|(i, place)| (f64::from(i), Event::LegEntered { place })).collect();
+            (0..6).zip(places).map(|(i, place)| (f64::from(i), Event::LegEntered { place })).collect();
         let point = |i| TrackPoint { time_s: f64::from(i), position: HOME, altitude_amsl_m: 350.0 };
-        let track = track(&(0..4).map(point).collect::<Vec<_>>(), &events, &[program.flown()]);
+        let track = track(&(0..6).map(point).collect::<Vec<_>>(), &events, &[program.flown()]);
         let kinds: Vec<&str> = track.passages().iter().map(|p| p.kind).collect();
-        assert_eq!(kinds, ["creepingLine", "crissCross", "TF", "scan"]);
+        assert_eq!(kinds, ["creepingLine", "crissCross", "contour", "contour", "TF", "scan"]);
         let areas = areas(&program, &track, &events);
         let found: Vec<(&str, f64)> = areas.iter().map(|a| (a.label.as_str(), a.spacing_m.round())).collect();
-        assert_eq!(found, [("creeping", 200.0), ("criss", 300.0), ("c.in, c 1", 200.0)]);
+        assert_eq!(found, [("creeping", 200.0), ("criss", 300.0), ("rings", 150.0), ("c.in, c 1", 200.0)]);
     }
 
     #[test]

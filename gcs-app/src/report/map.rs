@@ -25,8 +25,8 @@ const PLACE_SIZE: f32 = 16.0;
 
 /// Side of the enlarged view of the scanned areas, pixels.
 const INSET: f32 = 300.0;
-/// Areas that fill more of the map than this need no enlarged view.
-const INSET_BELOW: f64 = 0.4;
+/// The enlarged view shows the areas so much larger than the map, or there is none.
+const ENLARGED: f64 = 1.4;
 
 /// The picture as PNG bytes.
 ///
@@ -70,13 +70,11 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
 /// The enlarged view of the scanned areas with the turns around them, where the map shows them too small.
 fn inset_view(record: &Record, map: &View) -> Option<View> {
     let track = record.main_track();
-    let scans = track.passages().iter().enumerate().filter(|(_, p)| p.is_scan());
-    let flown = scans.flat_map(|(i, _)| track.points().get(track.range(i)).unwrap_or_default());
+    let covering = track.passages().iter().enumerate().filter(|(_, p)| p.covers_an_area());
+    let flown = covering.flat_map(|(i, _)| track.points().get(track.range(i)).unwrap_or_default());
     let corners = record.areas.iter().flat_map(|a| a.outline.iter().copied());
     let view = View::around(corners.chain(flown.map(|p| p.position)), (0.0, 0.0, INSET, INSET))?;
-    let is_small =
-        f64::from(INSET) * view.metres_per_pixel <= f64::from(MAP_WIDTH) * map.metres_per_pixel * INSET_BELOW;
-    is_small.then_some(view)
+    (view.metres_per_pixel * ENLARGED <= map.metres_per_pixel).then_some(view)
 }
 
 fn inset(record: &Record, view: &View) -> anyhow::Result<Canvas> {

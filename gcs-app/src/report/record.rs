@@ -60,9 +60,9 @@ pub struct Passage {
 }
 
 impl Passage {
-    /// Of a leg that covers an area with straight tracks.
-    pub fn is_scan(&self) -> bool {
-        matches!(self.kind, "scan" | "creepingLine" | "crissCross")
+    /// Of a leg that covers an area (a contour does inwards).
+    pub fn covers_an_area(&self) -> bool {
+        matches!(self.kind, "scan" | "creepingLine" | "crissCross" | "contour")
     }
 }
 
