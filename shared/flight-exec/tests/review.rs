@@ -640,3 +640,31 @@ proptest! {
         }
     }
 }
+
+/// Loops along its bay and its hole, and round what they leave unseen: some of them are smaller than the aircraft's circle.
+#[test]
+fn a_contour_with_small_loops_can_be_flown() {
+    let corner = |(lat, lon): &(f64, f64)| format!(r#"<corner lat="{}" lon="{}"/>"#, lat + 1.2, lon - 8.2);
+    let ring = |corners: &[(f64, f64)]| corners.iter().map(corner).collect::<String>();
+    let outer = ring(&[
+        (35.132427, -75.980946),
+        (35.135694, -75.966108),
+        (35.130249, -75.967740),
+        (35.131244, -75.958978),
+        (35.123887, -75.956579),
+        (35.119688, -75.975653),
+    ]);
+    let hole = ring(&[
+        (35.128530, -75.973427),
+        (35.129580, -75.968658),
+        (35.126098, -75.967522),
+        (35.125048, -75.972290),
+    ]);
+    for turn in ["left", "right"] {
+        let contour = format!(
+            r#"<contour id="p" spacing="100" turn="{turn}"><area>{outer}<hole>{hole}</hole></area></contour>"#
+        );
+        let found = over_flat_ground(&rectangle("", &contour), Conditions::default());
+        assert!(!found.contains(&("gateway-refuses", "p".to_owned())), "{turn}: {found:?}");
+    }
+}
