@@ -2,7 +2,7 @@
 
 use crate::rig::{Rig, document, document_with, fix, program};
 use flight_exec::{Command, Event, Input, Refusal};
-use flight_plan::Cause;
+use flight_plan::{Cause, VariableValue};
 
 const BASE: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
 
@@ -287,4 +287,39 @@ fn on_the_way_back_the_loss_of_a_leg_too_near_to_be_taken_back_changes_no_direct
         let rest = if back_again { "a b c d e z" } else { "a b c e z" };
         assert_eq!(rig.legs(), format!("s a b c d e <l <e <d <c <b <a l {rest}"));
     }
+}
+
+/// What it was passed as on the way out is gone: the loop is begun anew there, in its own direction, and ends.
+#[test]
+fn a_leg_flown_back_that_was_in_another_loop_on_the_way_out_begins_that_one_anew() {
+    let legs = |b: &str| {
+        format!(
+            r#"<TF id="s" fix="A2"/><iterative id="l" form="reverse" count="2" turn="left"><TF id="a" fix="A3"/>{b}<TF id="c" fix="C3"/></iterative>
+               <TF id="z" fix="D4"/>"#
+        )
+    };
+    let inner = r#"<iterative id="inner" form="forward" count="1"><TF id="b" fix="B3"/></iterative>"#;
+    let mut rig = Rig::started(&legs(inner));
+    rig.fly_to("l");
+    rig.fly_to("b");
+    assert_eq!(rig.legs(), "s a b c <l <c <b");
+    rig.update(&program(&document(&legs(r#"<DF id="b" fix="B3"/>"#)))).unwrap();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "s a b c <l <c <b c z");
+}
+
+#[test]
+fn a_value_that_the_new_plan_does_not_allow_starts_afresh_and_that_is_told() {
+    let with = |most: u32| {
+        document_with(BASE, &format!(r#"<variable name="r" type="number" initial="10" max="{most}"/>"#), "")
+    };
+    let mut rig = Rig::flying(&with(1000));
+    rig.fly_to("a");
+    rig.command(Command::SetVariable { name: "r".into(), value: VariableValue::Number(500.0) }).unwrap();
+    rig.update(&program(&with(100))).unwrap();
+    let told = rig.events.iter().rev().find_map(|e| match e {
+        Event::VariableChanged { value, by, .. } => Some((value.clone(), by.to_string())),
+        _ => None,
+    });
+    assert_eq!(told, Some((VariableValue::Number(10.0), "plan".to_owned())));
 }
