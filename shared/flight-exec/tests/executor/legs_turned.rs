@@ -188,3 +188,26 @@ fn a_holding_at_the_fix_where_the_path_is_does_not_fly_there_once_more() {
         assert!(apart.fold(f64::INFINITY, f64::min) > 1.0, "{kind}: {:#?}", rig.flown);
     }
 }
+
+/// More tracks than are computed at once.
+#[test]
+fn a_long_scan_is_flown_back_as_it_was_flown_out() {
+    let scan = r#"<scan id="s" spacing="2" heading="0"><area fix="C4" radius="900"/></scan>"#;
+    let rig = check(
+        &format!(
+            r#"<iterative id="l" form="reverse" count="2"><TF id="a" fix="B1"/>{scan}</iterative><TF id="z" fix="A2"/>"#
+        ),
+        "a s <l <s <a l a s z",
+    );
+    let of_scan = passages(&rig, "s");
+    let [out, back, again] = &of_scan[..] else { panic!("{} passages", of_scan.len()) };
+    assert!(out.len() > 1200, "{}", out.len());
+    // the way back begins where the way out ended, and leads to where it came from
+    let back: Vec<_> = back.iter().rev().skip(1).chain(out.last()).copied().collect();
+    let farthest =
+        |a: &[LatLon], b: &[LatLon]| a.iter().zip(b).map(|(p, q)| p.distance_m(*q)).fold(0.0, f64::max);
+    assert_eq!(back.len(), out.len());
+    assert_eq!(again.len(), out.len());
+    assert!(farthest(&back, out) < 0.01, "{}", farthest(&back, out));
+    assert!(farthest(again, out) < 0.01, "{}", farthest(again, out));
+}
