@@ -149,3 +149,22 @@ fn a_decision_for_a_branch_that_an_update_takes_away_is_asked_for_again() {
         assert!(rig.legs().ends_with("r z"), "{default}: {}", rig.legs());
     }
 }
+
+/// The deadline of the second passing is before the first one: what passes the first does not open the second again.
+#[test]
+fn in_a_loop_shorter_than_the_deadline_each_passing_is_decided_once() {
+    let mut rig = Rig::started(
+        r#"<TF id="a" fix="A5"/><TF id="b" fix="F5"/>
+        <iterative id="l" form="forward" count="3"><TF id="p" fix="F4"/>
+          <intersection id="x" default="q" decideBefore="9000m">
+            <branch id="q" label="Q" next="u"/><branch id="r" label="R" next="v"/>
+          </intersection>
+          <TF id="u" fix="E4" next="w"/><TF id="v" fix="E3" next="w"/><TF id="w" fix="E5"/></iterative>
+        <TF id="z" fix="A4"/>"#,
+    );
+    rig.fly_to_the_end();
+    let of = |wanted: fn(&Event) -> bool| rig.events.iter().filter(|e| wanted(e)).count();
+    assert_eq!(rig.legs(), "a b p u w p u w p u w z");
+    assert_eq!(of(|e| matches!(e, Event::DecisionRequested(_))), 3);
+    assert_eq!(of(|e| matches!(e, Event::DecisionTaken { .. })), 3);
+}
