@@ -6,7 +6,7 @@ use super::memory::Recall;
 use super::path::Path;
 use super::step::{Around, Point, Step};
 use crate::ids::Spots;
-use crate::{Branch, Id, IterativeForm, Leg, LegKind, Stage, StageKind, Value};
+use crate::{Branch, Id, Leg, LegKind, Stage, StageKind};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -82,23 +82,16 @@ impl<'i, 'a> Trace<'i, 'a> {
             let number = self.steps.len();
             self.spots.leg(parent, index);
             arrival = self.leg(leg, around, entry, &mut jumps);
-            if let LegKind::Iterative { body, form, count, .. } = &leg.kind {
+            if let LegKind::Iterative { body, form, .. } = &leg.kind {
                 let inside = self.recall.around(around.inside(leg, *form));
+                // forth and back, too, is left at the end of the last leg
                 arrival = self.list(body, &inside, Some(number), entry);
-                if *form == IterativeForm::Reverse && !self.ends_at_its_end(count.as_ref()) {
-                    arrival = Arrival::default();
-                }
             }
         }
         if jumps {
             self.lists.push(legs);
         }
         arrival
-    }
-
-    /// So many passes forth and back end where the legs inside end, not where they begin.
-    fn ends_at_its_end(&self, count: Option<&Value<f64>>) -> bool {
-        count.and_then(|count| self.view.number(count)).is_some_and(|passes| passes % 2.0 == 1.0)
     }
 
     fn leg(&mut self, leg: &Arc<Leg>, around: &Arc<Around>, entry: Arrival, jumps: &mut bool) -> Arrival {
@@ -158,14 +151,15 @@ fn path_of(leg: &Leg, from: LatLon, to: LatLon) -> Option<Path> {
 mod tests {
     use crate::checks::testing::check_legs;
 
-    /// From A to B and, on two passes, back: C is not behind B then.
     #[test]
-    fn forth_and_back_ends_where_it_began() {
-        let passes = |count: u32| {
+    fn forth_and_back_ends_where_its_last_leg_does() {
+        let repeated = |how: &str| {
             format!(
-                r#"<IF id="a" fix="A"/><iterative id="i" form="reverse" count="{count}"><TF id="b" fix="B"/></iterative><TF id="c" fix="B"/>"#
+                r#"<IF id="a" fix="A"/><iterative id="i" form="reverse" {how}><TF id="b" fix="B"/></iterative><TF id="c" fix="B"/>"#
             )
         };
-        check_legs(&[(&passes(1), &["zero-length"]), (&passes(2), &[]), (&passes(3), &["zero-length"])]);
+        for how in [r#"count="1""#, r#"count="2""#, r#"count="3""#, r#"until="time > 100.0""#] {
+            check_legs(&[(&repeated(how), &["zero-length"])]);
+        }
     }
 }
