@@ -23,6 +23,7 @@ pub mod plausibility;
 mod powered;
 mod prepared;
 mod refused;
+mod stay_in;
 mod terrain_clearance;
 mod tracks;
 mod turns;

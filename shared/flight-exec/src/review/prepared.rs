@@ -1,17 +1,13 @@
 //! The plan's zones, ready to be held against a track.
 
 use super::Conditions;
+use super::stay_in::StayIn;
 use aircraft::Profile;
 use aircraft::power::demanded_power_w;
 use flight_plan::{AltitudeReference, Id, Program, Value, Zone, ZoneKind, ZoneShape, ZoneTime};
 use geometry::zone::{Band, Breach, Rule, Shape, Stretch, Zone as Ground, ZoneError};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
-
-/// Pieces of path shorter than this are not cut further when they lie in no zone to stay in, metres.
-const FINEST_M: f64 = 2.0;
-/// Where several zones are to be stayed in, it is looked for the outside in so many directions.
-const BEARINGS: u32 = 16;
 
 /// Zones, and when the flight is.
 pub(super) struct Zones {
@@ -31,10 +27,10 @@ pub(super) struct Prepared {
     pub kind: ZoneKind,
     /// Its limits above mean sea level and those above the ground: it is where both of them are.
     parts: Vec<(Datum, Ground)>,
-    /// The same without the margin.
-    bare: Vec<(Datum, Ground)>,
     /// The zone without its limits: what counts of those above the ground where nothing is known of it.
-    outline: Ground,
+    pub outline: Ground,
+    /// Its ground without limits and margin.
+    pub ground: Ground,
     active: Vec<ZoneTime>,
 }
 
@@ -99,9 +95,7 @@ impl Zones {
         let intrusion = |(zone, perhaps)| Some((zone, Prepared::intrusion(zone, &piece)?, perhaps));
         let mut found: Vec<_> = keep_out.filter_map(intrusion).collect();
         let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from.when).collect();
-        if !keep_in.is_empty() {
-            found.extend(outside_all(&keep_in, from, to, (self.margin_m, terrain)));
-        }
+        found.extend(StayIn { margin_m: self.margin_m, terrain }.left(&keep_in, from, to));
         found
     }
 
@@ -125,14 +119,14 @@ impl Zones {
 }
 
 /// A straight piece of track, with its altitudes above mean sea level and above the ground at its ends.
-struct Piece {
-    amsl: Stretch,
+pub(super) struct Piece {
+    pub amsl: Stretch,
     /// `None`: nothing is known of the ground.
     agl: Option<Stretch>,
 }
 
 impl Piece {
-    fn new(from: At, to: At, terrain: &dyn Terrain) -> Self {
+    pub fn new(from: At, to: At, terrain: &dyn Terrain) -> Self {
         let element = PathElement::Line { from: from.position, to: to.position };
         let height_m = |at: At| Some(at.altitude_amsl_m - terrain.elevation_m(at.position)?);
         Self {
@@ -151,66 +145,43 @@ impl Prepared {
     }
 
     /// Outside, by one of its limits.
-    fn excursion(&self, piece: &Piece) -> Option<Breach> {
+    pub fn excursion(&self, piece: &Piece) -> Option<Breach> {
         self.parts.iter().find_map(|part| self.breach(part, piece))
     }
 
-    fn breach(&self, (datum, zone): &(Datum, Ground), piece: &Piece) -> Option<Breach> {
+    /// Inside by all its limits: quicker than to find out how far outside.
+    pub fn holds(&self, piece: &Piece) -> bool {
+        self.parts.iter().all(|part| {
+            let (zone, stretch) = self.held_against(part, piece);
+            zone.is_kept_by(stretch)
+        })
+    }
+
+    /// How far the end of a piece is outside, by its limits alone, metres.
+    pub fn off_limits_m(&self, piece: &Piece) -> f64 {
+        let off_m = |part| {
+            let (zone, stretch) = self.held_against(part, piece);
+            zone.off_band_m(stretch.end_altitude_m())
+        };
+        self.parts.iter().map(off_m).fold(0.0, f64::max)
+    }
+
+    fn breach(&self, part: &(Datum, Ground), piece: &Piece) -> Option<Breach> {
+        let (zone, stretch) = self.held_against(part, piece);
+        zone.breach(stretch)
+    }
+
+    fn held_against<'p>(
+        &'p self,
+        (datum, zone): &'p (Datum, Ground),
+        piece: &'p Piece,
+    ) -> (&'p Ground, &'p Stretch) {
         match (datum, &piece.agl) {
-            (Datum::Amsl, _) => zone.breach(&piece.amsl),
-            (Datum::Agl, Some(agl)) => zone.breach(agl),
-            (Datum::Agl, None) => self.outline.breach(&piece.amsl),
+            (Datum::Amsl, _) => (zone, &piece.amsl),
+            (Datum::Agl, Some(agl)) => (zone, agl),
+            (Datum::Agl, None) => (&self.outline, &piece.amsl),
         }
     }
-
-    /// It is inside, however near to the edge.
-    fn contains(&self, at: &Piece) -> bool {
-        self.bare.iter().all(|part| self.breach(part, at).is_none())
-    }
-}
-
-/// Zones to stay in are one where they touch: within them all, nothing outside is nearer than the margin.
-fn is_surrounded(zones: &[(&Prepared, bool)], at: At, margin_m: f64, terrain: &dyn Terrain) -> bool {
-    let inside = |position: LatLon| {
-        let here = At { position, ..at };
-        let piece = Piece::new(here, here, terrain);
-        zones.iter().any(|(zone, _)| zone.contains(&piece))
-    };
-    let around =
-        (0..BEARINGS).map(|i| at.position.destination(f64::from(i) * 360.0 / f64::from(BEARINGS), margin_m));
-    inside(at.position) && around.into_iter().all(inside)
-}
-
-/// The part of a piece that lies in none of the zones to stay in: halved until each part lies in one or is very short.
-fn outside_all<'z>(
-    zones: &[(&'z Prepared, bool)],
-    from: At,
-    to: At,
-    (margin_m, terrain): (f64, &dyn Terrain),
-) -> Option<(&'z Prepared, Breach, bool)> {
-    let piece = Piece::new(from, to, terrain);
-    let mut nearest: Option<(&Prepared, Breach, bool)> = None;
-    for (zone, perhaps) in zones {
-        let breach = zone.excursion(&piece)?;
-        let off_m = |b: &Breach| b.horizontal_m + b.vertical_m;
-        if nearest.as_ref().is_none_or(|(_, best, _)| off_m(&breach) < off_m(best)) {
-            nearest = Some((zone, breach, *perhaps));
-        }
-    }
-    if zones.len() == 1 {
-        return nearest;
-    }
-    let middle = At {
-        position: PathElement::Line { from: from.position, to: to.position }
-            .point_at(0.5 * from.position.distance_m(to.position)),
-        altitude_amsl_m: 0.5 * (from.altitude_amsl_m + to.altitude_amsl_m),
-        when: from.when,
-    };
-    if crate::path::distance_m(from.position, to.position) < FINEST_M {
-        return nearest.filter(|_| !is_surrounded(zones, middle, margin_m, terrain));
-    }
-    let sight = (margin_m, terrain);
-    outside_all(zones, from, middle, sight).or_else(|| outside_all(zones, middle, to, sight))
 }
 
 fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneError> {
@@ -222,14 +193,11 @@ fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneErr
         ZoneKind::KeepIn => Rule::KeepIn,
         ZoneKind::KeepOut => Rule::KeepOut,
     };
-    let ground = |band, margin_m| Ground::new(&shape, band, rule, margin_m);
-    let parts_with = |margin_m| {
-        let part = |datum| Ok((datum, ground(limits(zone, datum, home_m), margin_m)?));
-        data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()
-    };
-    let (parts, bare) = (parts_with(margin_m)?, parts_with(0.0)?);
-    let (outline, active) = (ground(Band::ALL, margin_m)?, zone.active.clone());
-    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, bare, outline, active })
+    let new = |band, margin_m| Ground::new(&shape, band, rule, margin_m);
+    let part = |datum| Ok((datum, new(limits(zone, datum, home_m), margin_m)?));
+    let parts = data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()?;
+    let (outline, ground) = (new(Band::ALL, margin_m)?, new(Band::ALL, 0.0)?);
+    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, outline, ground, active: zone.active.clone() })
 }
 
 /// The data in which a zone has limits; without any: sea level.

@@ -48,8 +48,18 @@ impl Ball {
         Self { radius_m: self.radius_m + by_m, ..self }
     }
 
+    /// Earth-centred coordinates, metres.
+    pub fn middle_m(&self) -> [f64; 3] {
+        self.middle_m
+    }
+
     pub fn radius_m(&self) -> f64 {
         self.radius_m
+    }
+
+    /// Straight distance between the two, metres; negative if they overlap.
+    pub fn gap_m(&self, other: &Ball) -> f64 {
+        squared_distance_m2(self.middle_m, other.middle_m).sqrt() - self.radius_m - other.radius_m
     }
 
     /// Whether there may be a point in both; what is not a number may be anywhere.
@@ -62,7 +72,7 @@ impl Ball {
 }
 
 /// Coordinates in space of a position on the ellipsoid, metres.
-fn earth_centred(p: LatLon) -> [f64; 3] {
+pub(super) fn earth_centred(p: LatLon) -> [f64; 3] {
     let (sin_lat, cos_lat) = p.lat_deg.to_radians().sin_cos();
     let (sin_lon, cos_lon) = p.lon_deg.to_radians().sin_cos();
     let n_m = A_M / (1.0 - E2 * sin_lat * sin_lat).sqrt();

@@ -25,6 +25,11 @@ impl Circle {
         Ball::new(self.centre, self.radius_m)
     }
 
+    /// How far a position is outside, metres; 0 inside.
+    pub fn outside_m(&self, p: LatLon) -> f64 {
+        (self.centre.distance_m(p) - self.radius_m).max(0.0)
+    }
+
     /// The deepest point inside, the circle being larger by a margin.
     pub fn deepest(&self, element: &PathElement, margin_m: f64) -> Option<Worst> {
         let near = element.nearest(self.centre);

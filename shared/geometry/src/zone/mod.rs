@@ -10,6 +10,7 @@
 mod ball;
 mod circle;
 mod outline;
+mod plate;
 #[cfg(test)]
 mod tests;
 
@@ -154,6 +155,11 @@ impl Stretch {
         Self { element, start_altitude_m, end_altitude_m, ball: Ball::around(&element) }
     }
 
+    /// Altitude at its end, metres.
+    pub fn end_altitude_m(&self) -> f64 {
+        self.end_altitude_m
+    }
+
     /// Altitude after a share of the way, metres.
     fn altitude_m(&self, share: f64) -> f64 {
         self.start_altitude_m + share * (self.end_altitude_m - self.start_altitude_m)
@@ -207,8 +213,57 @@ impl Zone {
         }
     }
 
+    /// Whether a stretch keeps the rule: quicker than to find out how much it breaks it.
+    pub fn is_kept_by(&self, stretch: &Stretch) -> bool {
+        match self.rule {
+            Rule::KeepOut => self.intrusion(stretch).is_none(),
+            Rule::KeepIn => {
+                let ends = || [stretch.element.start(), stretch.element.end()];
+                let is_outside = || ends().into_iter().any(|end| self.outside_m(end) > 0.0);
+                let inside = self.side(stretch).unwrap_or_else(|| !is_outside());
+                inside && self.excursion(stretch).is_none()
+            }
+        }
+    }
+
+    /// Whether a stretch may be in the zone, or nearer than the margin: quick, and no more than a first look.
+    #[inline]
+    pub fn may_be_near(&self, stretch: &Stretch) -> bool {
+        self.ball.meets(&stretch.ball)
+            && match &self.ground {
+                Ground::Circle(_) => true,
+                Ground::Outline(outline) => outline.may_be_near(stretch, self.margin_m),
+            }
+    }
+
+    /// A lower bound of the distance between a stretch and the zone, margin included, metres; negative or 0 if they may meet.
+    pub fn gap_m(&self, stretch: &Stretch) -> f64 {
+        self.ball.gap_m(&stretch.ball)
+    }
+
+    /// How far a position is outside, whatever its altitude and the margin, metres; 0 inside.
+    pub fn outside_m(&self, position: LatLon) -> f64 {
+        match &self.ground {
+            Ground::Circle(circle) => circle.outside_m(position),
+            Ground::Outline(outline) => outline.outside_m(position),
+        }
+    }
+
+    /// How far an altitude is outside the band, metres; 0 inside.
+    pub fn off_band_m(&self, altitude_m: f64) -> f64 {
+        (-self.band.inside_m(altitude_m)).max(0.0)
+    }
+
+    /// The side of the edge, or of where the margin moves it, a stretch is certainly on: inside (true) or outside.
+    fn side(&self, stretch: &Stretch) -> Option<bool> {
+        match &self.ground {
+            Ground::Circle(_) => None,
+            Ground::Outline(outline) => outline.side(stretch, self.margin_m),
+        }
+    }
+
     fn intrusion(&self, stretch: &Stretch) -> Option<Breach> {
-        if !self.ball.meets(&stretch.ball) {
+        if !self.may_be_near(stretch) || self.side(stretch) == Some(false) {
             return None;
         }
         let (from, to) = stretch.shares_within(&self.band)?;
@@ -231,10 +286,11 @@ impl Zone {
 
     fn excursion(&self, stretch: &Stretch) -> Option<Breach> {
         let worst = match &self.ground {
+            _ if self.side(stretch) == Some(true) => None,
             Ground::Circle(circle) => circle.farthest(&stretch.element, self.margin_m),
-            Ground::Outline(outline) => outline.farthest(stretch, self.margin_m),
+            Ground::Outline(outline) => outline.farthest(&stretch.element, self.margin_m),
         };
-        let too_far = |altitude_m: f64| (-self.band.inside_m(altitude_m)).max(0.0);
+        let too_far = |altitude_m: f64| self.off_band_m(altitude_m);
         let length_m = stretch.element.length_m();
         let (along_m, horizontal_m) = match worst {
             Some(worst) => (worst.along_m, worst.wrong_m),

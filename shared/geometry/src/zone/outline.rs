@@ -1,6 +1,7 @@
 //! Polygons: in a frame around the zone, paths and edges are chords short enough to be straight there.
 
 use super::ball::Ball;
+use super::plate::Plate;
 use super::{Stretch, Worst, ZoneError};
 use crate::polygon::{PolygonError, distance_to_segment_m};
 use crate::{Flattening, LatLon, LocalFrame, PathElement, Polygon, Vec2};
@@ -21,6 +22,7 @@ pub(super) struct Outline {
     frame: LocalFrame,
     area: Polygon,
     edges: Vec<(Vec2, Vec2)>,
+    plate: Plate,
     /// Greatest distance of a corner from the frame's origin, metres.
     radius_m: f64,
 }
@@ -54,11 +56,17 @@ impl Outline {
         let area = Polygon::from_geo(&frame, &chords_of_ring(outer), &holes)?;
         let radius_m = area.outer().iter().map(|c| c.length()).fold(0.0, f64::max);
         let edges = area.edges().collect();
-        Ok(Self { frame, area, edges, radius_m })
+        let plate = Plate::around(frame.origin(), area.outer());
+        Ok(Self { frame, area, edges, plate, radius_m })
     }
 
     pub fn ball(&self) -> Ball {
         Ball::new(self.frame.origin(), self.radius_m)
+    }
+
+    /// Whether a stretch may be nearer than a margin.
+    pub fn may_be_near(&self, stretch: &Stretch, margin_m: f64) -> bool {
+        self.plate.may_be_near(&stretch.ball, margin_m)
     }
 
     /// The deepest point inside, or nearer to it than a margin.
@@ -68,11 +76,7 @@ impl Outline {
     }
 
     /// The farthest point outside, or nearer to the edge than a margin.
-    pub fn farthest(&self, stretch: &Stretch, margin_m: f64) -> Option<Worst> {
-        if self.surrounds(stretch, margin_m) {
-            return None;
-        }
-        let element = &stretch.element;
+    pub fn farthest(&self, element: &PathElement, margin_m: f64) -> Option<Worst> {
         let near = self.worst(&self.chords(element, self.frame.radius_m()), margin_m, false);
         let length_m = element.length_m();
         let ends = [(0.0, element.start()), (length_m, element.end())];
@@ -82,20 +86,27 @@ impl Outline {
         near.into_iter().chain(outside).reduce(Worst::or)
     }
 
-    /// Whether a stretch is certainly inside: its ball does not reach the edge.
-    fn surrounds(&self, stretch: &Stretch, margin_m: f64) -> bool {
+    /// Whether a stretch is certainly inside (true) or outside (false): its ball does not reach the edge.
+    pub fn side(&self, stretch: &Stretch, margin_m: f64) -> Option<bool> {
         let middle = match stretch.element {
             PathElement::Line { from, .. } => from,
             PathElement::Arc { centre, .. } => centre,
         };
         // a line's ball is around its middle: from an end it reaches twice as far
         let reach_m = 2.0 * stretch.ball.radius_m() + margin_m;
-        if reach_m > self.radius_m || self.frame.origin().distance_m(middle) > self.radius_m {
-            return false;
+        if reach_m > self.radius_m {
+            return None;
         }
         let middle = self.frame.to_local(middle);
         // frames stretch distances by less than a ten-thousandth
-        self.area.contains(middle) && self.area.distance_to_edge_m(middle) > 1.001 * reach_m
+        let is_clear =
+            middle.length() < self.frame.radius_m() && self.area.distance_to_edge_m(middle) > 1.001 * reach_m;
+        is_clear.then(|| self.area.contains(middle))
+    }
+
+    /// How far a position is outside, metres; 0 inside.
+    pub fn outside_m(&self, p: LatLon) -> f64 {
+        self.area.distance_outside_m(self.frame.to_local(p))
     }
 
     /// Distance from a position outside to the edge along geodesics, for where the frame does not reach.

@@ -198,6 +198,54 @@ fn far_corners_of_a_zone_and_far_ends_of_a_line_are_looked_at() {
     }
 }
 
+proptest! {
+    /// The quick answer is the exact one, and a position is outside if a path that stays there leaves the zone.
+    #[test]
+    fn whether_the_rule_is_kept_is_told_without_how_much_it_is_broken(
+        (bearing_deg, away_m, course_deg) in (0.0..360.0, 0.0..2500.0, 0.0..360.0),
+        length_m in prop_oneof![Just(0.0), 1.0..100.0, 100.0..4000.0],
+        altitudes_m in (-50.0..200.0, -50.0..200.0),
+        margin_m in prop_oneof![Just(0.0), 1.0..300.0],
+    ) {
+        let from = HERE.destination(bearing_deg, away_m);
+        let stretch = line(from, from.destination(course_deg, length_m), altitudes_m);
+        for rule in [Rule::KeepIn, Rule::KeepOut] {
+            let round = Zone::new(&Shape::Circle { centre: HERE, radius_m: 1500.0 }, LOW, rule, margin_m).unwrap();
+            for zone in [round, square(rule, margin_m)] {
+                prop_assert_eq!(zone.is_kept_by(&stretch), zone.breach(&stretch).is_none());
+                let outside_m = zone.outside_m(from);
+                let stays = line(from, from, (60.0, 60.0));
+                let off_m = zone.breach(&stays).map_or(0.0, |b| b.horizontal_m);
+                let expected_m = if rule == Rule::KeepIn { (off_m - margin_m).max(0.0) } else { outside_m };
+                prop_assert!((outside_m - expected_m).abs() < 0.01, "{} {}", outside_m, expected_m);
+                prop_assert!(zone.gap_m(&stays) <= (outside_m - margin_m).max(0.0));
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Wherever on the earth, and however long and narrow the zone: a path that comes into it is never taken to be far from it.
+    #[test]
+    fn what_comes_into_a_narrow_zone_is_near_it(
+        (lat, lon) in (-80.0..80.0, -180.0..180.0),
+        (length_m, width_m, heading_deg) in (1000.0..90_000.0, 20.0..2000.0, 0.0..360.0),
+        (share, aside, course_deg, way_m) in (0.0..1.0, -1.3..1.3, 0.0..360.0, 0.0..200_000.0),
+    ) {
+        let start = LatLon::new(lat, lon);
+        let side = |p: LatLon, aside: f64| p.destination(heading_deg + 90.0, aside * width_m / 2.0);
+        let end = start.destination(heading_deg, length_m);
+        let outer = vec![side(start, -1.0), side(start, 1.0), side(end, 1.0), side(end, -1.0)];
+        let zone = Zone::new(&Shape::Polygon { outer, holes: vec![] }, LOW, Rule::KeepOut, 30.0).unwrap();
+        let from = side(start.destination(heading_deg, share * length_m), aside);
+        let stretch = line(from, from.destination(course_deg, way_m), (60.0, 60.0));
+        let Ground::Outline(outline) = &zone.ground else { panic!("a circle") };
+        if outline.deepest(&stretch.element, zone.margin_m).is_some() {
+            prop_assert!(zone.may_be_near(&stretch) && zone.breach(&stretch).is_some());
+        }
+    }
+}
+
 #[test]
 fn nonsense_is_refused_and_does_not_panic() {
     let circle = |radius_m| Shape::Circle { centre: HERE, radius_m };
