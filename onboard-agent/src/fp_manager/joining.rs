@@ -11,6 +11,15 @@ use usal::contract::*;
 const FP_MANAGER: &str = "fp-manager";
 
 impl Manager {
+    /// What it joins with: the gateway knows by it whether it flies the flight that it gives the aircraft back for.
+    pub(super) fn presentation(&self) -> Join {
+        Join {
+            plan: self.executor.program().map(|p| p.hash().to_string()),
+            earlier: self.succession.earlier().to_vec(),
+            last_token: self.executor.last_token(),
+        }
+    }
+
     /// The answer to [`Effect::Join`]; `None`: none came.
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
         let answer = match self.liaison.joined(now, answer) {

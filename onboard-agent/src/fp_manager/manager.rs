@@ -7,6 +7,7 @@ use super::alarms::Alarms;
 use super::feeder::{Fate, Feeder};
 use super::journal::{Entry, Notes, Record, Reply};
 use super::liaison::Liaison;
+use super::succession::Succession;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
@@ -59,6 +60,7 @@ pub struct Manager {
     aircraft: Aircraft,
     pub(super) alarms: Alarms,
     pub(super) timeline: Timeline,
+    pub(super) succession: Succession,
     /// Highest token that the autopilot was seen steering to.
     pub(super) steered: Token,
     pub(super) last_request: u64,
@@ -86,6 +88,7 @@ impl Manager {
             aircraft: Aircraft::default(),
             alarms: Alarms::default(),
             timeline: Timeline::new(base),
+            succession: Succession::default(),
             steered: Token(0),
             last_request: 0,
             turns: 0,
@@ -190,6 +193,7 @@ impl Manager {
         if starts {
             self.liaison.want(GatewayRequest::Launch);
             self.alarms.new_flight();
+            self.succession.new_flight();
         } else if in_emergency && !self.is_in_emergency() {
             self.alarms.look_again();
         }
@@ -327,27 +331,11 @@ impl Manager {
         out.push(Effect::Event(event));
     }
 
-    /// Records what is remembered beside the executor, if it has changed.
-    fn note(&mut self, now: Time, out: &mut Vec<Effect>) {
-        let notes = Notes {
-            wanted: self.liaison.wanted().cloned(),
-            controlled: self.liaison.is_controlled(),
-            answered_alarms: self.alarms.answered().clone(),
-        };
-        if notes != self.noted {
-            self.noted = notes.clone();
-            self.record(now, Record::Notes(notes), out);
-        }
-    }
-
     /// Sends what is due: first the join, then waypoints, then what wants them to be there.
     pub(super) fn send(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.note(now, out);
         if self.liaison.should_join(now) {
-            out.push(Effect::Join(Join {
-                plan: self.executor.program().map(|p| p.hash().to_string()),
-                last_token: self.executor.last_token(),
-            }));
+            out.push(Effect::Join(self.presentation()));
         }
         if !self.liaison.is_joined() {
             return;

@@ -1,6 +1,6 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `hearing`, `feeder`, `liaison`, `aircraft`, `alarms`,
-//! `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a crash, and the shell
-//! that owns session, clock and disk.
+//! The FP Manager: flies the plan. Pure parts (`manager`, `hearing`, `joining`, `feeder`, `liaison`, `succession`,
+//! `aircraft`, `alarms`, `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a
+//! crash, and the shell that owns session, clock and disk.
 
 mod afterwards;
 mod aircraft;
@@ -19,6 +19,7 @@ mod recording;
 mod restart;
 mod runways;
 mod shell;
+mod succession;
 #[cfg(test)]
 mod tests;
 mod timeline;

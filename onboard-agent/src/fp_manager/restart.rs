@@ -1,9 +1,9 @@
 //! Pure but for the journal's storage: going on with the flight of an earlier process.
 
 use super::Config;
-use super::journal::{Chapter, Entry, Found, Log, Record, Saved, Storage};
+use super::journal::{Chapter, Entry, Found, Log, Notes, Record, Saved, Storage};
 use super::liaison::Liaison;
-use super::manager::Manager;
+use super::manager::{Effect, Manager};
 use super::{alarms::Alarms, compile, listed};
 use crate::clock::Time;
 use flight_exec::{Executor, Input};
@@ -131,6 +131,7 @@ fn restored<S: Storage>(
 fn remind(manager: &mut Manager) {
     manager.liaison = Liaison::restored(manager.noted.wanted.clone(), manager.noted.controlled);
     manager.alarms = Alarms::restored(manager.noted.answered_alarms.clone());
+    manager.succession = manager.noted.succession.clone();
 }
 
 /// One turn again; what it puts out was done, or will be put right by the join.
@@ -206,6 +207,23 @@ impl Manager {
             replies: self.replies.clone(),
         };
         (saved, plans.into_iter().flatten().cloned().collect())
+    }
+
+    /// Records what is remembered beside the executor, if it has changed.
+    pub(super) fn note(&mut self, now: Time, out: &mut Vec<Effect>) {
+        if let Some(program) = self.executor.program() {
+            self.succession.goes_on_with(program.hash());
+        }
+        let notes = Notes {
+            wanted: self.liaison.wanted().cloned(),
+            controlled: self.liaison.is_controlled(),
+            answered_alarms: self.alarms.answered().clone(),
+            succession: self.succession.clone(),
+        };
+        if notes != self.noted {
+            self.noted = notes.clone();
+            self.record(now, Record::Notes(notes), out);
+        }
     }
 
     /// Keeps count of what went into the executor.

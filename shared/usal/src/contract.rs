@@ -292,6 +292,10 @@ pub enum FeedAnswer {
 pub struct Join {
     /// Hash of the plan it flies.
     pub plan: Option<String>,
+    /// Hashes of the plans that it flew in this flight before an update, the oldest first: the gateway may not have heard
+    /// of the update.
+    #[serde(default)]
+    pub earlier: Vec<String>,
     /// Tokens it has handed out run up to here.
     pub last_token: Token,
 }

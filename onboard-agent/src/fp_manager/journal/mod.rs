@@ -4,8 +4,8 @@
 //! # What is recorded
 //!
 //! A **turn** is one call of the [`Manager`](super::Manager): the inputs of the executor it leads to, with the executor's time,
-//! what the FP Manager remembers beside it ([`Notes`]: what is wanted of the gateway, alarms answered), and answers
-//! to commands ([`Reply`]). A turn is written as one frame: after a restart all of it happened or none. A proposal's document
+//! what the FP Manager remembers beside it ([`Notes`]: what is wanted of the gateway, alarms answered, the plans of the
+//! flight), and answers to commands ([`Reply`]). A turn is written as one frame: after a restart all of it happened or none. A proposal's document
 //! is kept in a file of its own, under its hash, before the turn that names it: piece by piece between the turns of the
 //! flight, which does not wait for it.
 //!

@@ -1,5 +1,6 @@
 //! What the FP Manager itself has recorded.
 
+use crate::fp_manager::succession::Succession;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use usal::contract::GatewayRequest;
@@ -13,6 +14,9 @@ pub struct Notes {
     pub controlled: bool,
     /// Alarms of the gateway that were answered by an emergency plan, or found none.
     pub answered_alarms: BTreeSet<String>,
+    /// The plans of this flight.
+    #[serde(default)]
+    pub succession: Succession,
 }
 
 /// As [`::journal::Entry`].

@@ -9,8 +9,8 @@ use flight_exec::review::plausibility::Context;
 use usal::contract::{Action, Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
 
 impl Gateway {
-    /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the same
-    /// plan, knows its tokens, and the approach has not begun.
+    /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the plan of the flight or an
+    /// update of it, knows the flight's tokens, and the approach has not begun.
     pub(super) fn join(&mut self, now: Time, join: Join, out: &mut Vec<Output>) -> JoinAnswer {
         if let Err(reason) = self.may_join(&join) {
             return self.join_answer(false, reason);
@@ -42,8 +42,9 @@ impl Gateway {
     }
 
     fn knows_the_flight(&self, join: &Join) -> Result<(), String> {
-        let flown = self.fp_manager.plan.as_ref();
-        if join.plan.is_none() || flown.is_some_and(|p| Some(p) != join.plan.as_ref()) {
+        // an update may have been made while nothing was heard of it
+        let known = |plan| self.fp_manager.plan.as_ref().is_none_or(|heard| heard == plan);
+        if join.plan.is_none() || !join.plan.iter().chain(&join.earlier).any(known) {
             return Err(
                 "It does not fly the plan of this flight; restore that plan, or use the request `recover`."
                     .into(),

@@ -28,6 +28,8 @@ pub struct Gateway {
     awaits_waypoints: bool,
     /// Safe mode was commanded: no join ends it.
     commanded: bool,
+    /// Hash of the plan that the one that joined last flew. No heartbeat of it has ever come through.
+    plan: Option<String>,
 }
 
 impl Gateway {
@@ -49,6 +51,7 @@ impl Gateway {
             alarms: Vec::new(),
             awaits_waypoints: false,
             commanded: false,
+            plan: None,
         }
     }
 
@@ -77,9 +80,12 @@ impl Gateway {
 
     /// In Safe mode, whoever knows the flight gets the aircraft back: flying on, or to send waypoints first.
     pub fn join(&mut self, join: Join) -> JoinAnswer {
-        let knows = join.last_token >= self.highest && !self.commanded;
+        let knows = join.last_token >= self.highest && self.knows_plan(&join) && !self.commanded;
         let taken = matches!(self.state, GatewayState::Manual | GatewayState::SafeLand);
         let accepted = !taken && (!is_safe(self.state) || knows);
+        if accepted {
+            self.plan.clone_from(&join.plan);
+        }
         self.joins.push(join);
         if accepted && is_safe(self.state) {
             self.awaits_waypoints = self.buffer.is_empty();
@@ -93,6 +99,11 @@ impl Gateway {
             highest: self.highest,
             finished: self.finished(),
         }
+    }
+
+    fn knows_plan(&self, join: &Join) -> bool {
+        let known = |plan: &String| self.plan.as_ref().is_none_or(|known| known == plan);
+        join.plan.iter().chain(&join.earlier).any(known)
     }
 
     pub fn request(&mut self, request: &GatewayRequest) -> Result<(), String> {

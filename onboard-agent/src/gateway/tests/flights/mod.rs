@@ -146,7 +146,13 @@ impl Flight {
 
     /// It has given out waypoints up to this one.
     pub fn join_knowing(&mut self, plan: &str, last_token: u64) -> JoinAnswer {
-        let join = Join { plan: Some(plan.into()), last_token: Token(last_token) };
+        self.join_after(&[], plan, last_token)
+    }
+
+    /// It flew other plans before, in this flight.
+    pub fn join_after(&mut self, earlier: &[&str], plan: &str, last_token: u64) -> JoinAnswer {
+        let earlier = earlier.iter().map(|&plan| plan.into()).collect();
+        let join = Join { plan: Some(plan.into()), earlier, last_token: Token(last_token) };
         match self.station.ask(self.now, |id| Input::Join(id, join)) {
             Some(Answer::Join(answer)) => answer,
             other => panic!("{other:?}"),

@@ -113,6 +113,25 @@ fn fp_manager_that_does_not_know_the_flight_does_not_stop_the_return() {
 }
 
 #[test]
+fn fp_manager_back_with_an_update_that_the_gateway_has_not_heard_of_gets_the_aircraft_back() {
+    let mut flight = Flight::in_safe_return(24);
+    flight.restart_fp_manager("second update");
+    let last = flight.next - 1;
+    let refused = [(vec![], last), (vec!["another plan", "update"], last), (vec!["plan", "update"], 0)];
+    for (earlier, last_token) in refused {
+        let answer = flight.join_after(&earlier, "second update", last_token);
+        assert!(!answer.accepted && answer.reason.contains("recover"), "{earlier:?}: {answer:?}");
+        assert_eq!(flight.state(), GatewayState::SafeReturn, "{earlier:?}");
+    }
+    let answer = flight.join_after(&["plan", "update"], "second update", last);
+    assert!(answer.accepted, "{answer:?}");
+    flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
+    assert_eq!(flight.feed(None, zigzag(10, 12, 300.0)), FeedAnswer::Accepted);
+    flight.run_until(20.0, "Nav", |f| f.state() == GatewayState::Nav);
+    assert_eq!(flight.station.gateway().snapshot().plan.as_deref(), Some("second update"));
+}
+
+#[test]
 fn gateway_and_fp_manager_killed_the_next_gateway_knows_the_plan_of_the_flight() {
     let mut flight = Flight::on_zigzag(23, &[], 30, 300.0);
     flight.run(25.0);
