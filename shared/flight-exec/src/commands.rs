@@ -37,9 +37,13 @@ impl Executor {
         }
     }
 
+    /// No plan is being flown, or nothing came of its start: the arming was refused, or somebody held it.
+    pub(crate) fn may_start(&self) -> bool {
+        !self.is_flying() || self.check_taken_off().is_err()
+    }
+
     fn start(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
-        // it may be that nothing came of an earlier start: the arming was refused, or somebody held it
-        if self.is_flying() && self.check_taken_off().is_ok() {
+        if !self.may_start() {
             return Err(refusal(
                 "already-flying",
                 "a plan is being flown: hold, go to a leg, or commit another plan",

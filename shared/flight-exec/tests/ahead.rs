@@ -56,11 +56,7 @@ impl Flight {
         let executor = Executor::new(Config::default(), Arc::new(Ridge), Profile::default());
         let mut flight = Self { executor, seconds: 0, battery: 1.0 };
         flight.report(HOME, 300.0, true);
-        let program = compiled(document).unwrap_or_else(|why| panic!("{why}"));
-        let hash = program.hash().clone();
-        let (request, based_on, objections) = (RequestId(1), None, Vec::new());
-        flight.step(Input::Propose { request, program, based_on, objections });
-        flight.command(Command::Commit { hash, entry: None });
+        flight.commit(document);
         flight.command(Command::Start);
         while flight.executor.ahead().next().unwrap().leg.as_str() != leg {
             let next: Vec<_> = flight.executor.ahead().take(2).cloned().collect();
@@ -77,6 +73,16 @@ impl Flight {
 
     fn command(&mut self, command: Command) {
         self.step(Input::Command { request: RequestId(2), by: "operator".into(), command });
+    }
+
+    /// Proposes and commits.
+    fn commit(&mut self, document: &str) {
+        let program = compiled(document).unwrap_or_else(|why| panic!("{why}"));
+        let hash = program.hash().clone();
+        let (request, based_on, objections) = (RequestId(1), None, Vec::new());
+        self.step(Input::Propose { request, program, based_on, objections });
+        self.command(Command::Commit { hash: hash.clone(), entry: None });
+        assert_eq!(self.executor.program().map(|p| p.hash()), Some(&hash));
     }
 
     fn report(&mut self, position: LatLon, altitude_amsl_m: f64, on_ground: bool) {
@@ -109,6 +115,12 @@ impl Flight {
         errors(&review_command(&self.executor, "operator", &command, Conditions::default()))
     }
 
+    /// Errors that keep it from being started.
+    fn errors_of_starting(&self) -> Vec<(&'static str, String)> {
+        assert!(self.executor.changes_what_is_flown(&Command::Start));
+        errors(&review_command(&self.executor, "operator", &Command::Start, Conditions::default()))
+    }
+
     /// Errors that a command brings about which takes effect at once.
     fn errors_after(&mut self, command: Command) -> Vec<(&'static str, String)> {
         let before = self.executor.clone();
@@ -135,15 +147,22 @@ fn plan_that_came_in_flight_is_looked_at_whole_before_it_is_started() {
     assert!(!flight.executor.changes_what_is_flown(&Command::Start));
     let other = document(&legs("D3"), "");
     assert_eq!(flight.errors_of_plan(&other, Conditions::default()), [], "it is behind");
-    let program = compiled(&other).unwrap();
-    let hash = program.hash().clone();
-    let (request, based_on, objections) = (RequestId(3), None, Vec::new());
-    flight.step(Input::Propose { request, program, based_on, objections });
-    flight.command(Command::Commit { hash, entry: None });
+    flight.commit(&other);
+    assert!(!flight.executor.changes_what_is_flown(&Command::Start), "it is refused in the air");
     flight.step(Input::Landed);
-    assert!(flight.executor.changes_what_is_flown(&Command::Start));
-    let found = review_command(&flight.executor, "operator", &Command::Start, Conditions::default());
-    assert_eq!(first(errors(&found)), on("keep-out", "a"));
+    assert_eq!(first(flight.errors_of_starting()), on("keep-out", "a"));
+}
+
+/// A start of which nothing came can be given again, and that begins with the plan's own values, not with those it came to.
+#[test]
+fn plan_that_came_between_two_starts_is_looked_at_whole_before_the_second() {
+    let plan = document(SCAN, "");
+    let mut flight = Flight::on("to", &plan);
+    let [near, in_the_zone] = [fix("B2"), fix("D3")].map(|c| format!("{} {}", c.lat_deg, c.lon_deg));
+    let other = plan.replace(&near, &in_the_zone);
+    assert_eq!(flight.errors_of_plan(&other, Conditions::default()), NONE, "the value is carried over");
+    flight.commit(&other);
+    assert_eq!(first(flight.errors_of_starting()), on("keep-out", "s"));
 }
 
 fn errors(problems: &[Problem]) -> Vec<(&'static str, String)> {

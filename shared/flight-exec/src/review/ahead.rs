@@ -82,9 +82,9 @@ fn brought_about(present: &Executor, changed: &Executor, conditions: Conditions)
 
 impl Executor {
     /// A command that leads to where nobody has looked: in flight another plan, or a value that legs are laid out from; on the ground the
-    /// start of a plan that came in flight. It is for [`review_command`] before it is given.
+    /// start of a plan that came in flight, or after a start of which nothing came. It is for [`review_command`] before it is given.
     pub fn changes_what_is_flown(&self, command: &Command) -> bool {
-        let anew = *command == Command::Start && self.state.seen_ahead_only && !self.is_flying();
+        let anew = *command == Command::Start && self.state.seen_ahead_only && self.may_start();
         let otherwise = self.is_under_way()
             && match command {
                 Command::Commit { .. } => true,
