@@ -55,13 +55,11 @@ fn good_plans_have_no_problems_on_their_path() {
         let name = path.file_stem().unwrap().to_str().unwrap();
         let found: Vec<_> =
             program.warnings.iter().map(|p| (p.code, p.subject.as_ref().unwrap().as_str())).collect();
-        let expected = [("glide-out-of-reach", "return")];
-        assert_eq!(
-            found,
-            expected[..usize::from(OUT_OF_GLIDE.contains(&name))],
-            "{:?}",
-            shown(&program.warnings)
-        );
+        let out_of_glide = OUT_OF_GLIDE.contains(&name).then_some(("glide-out-of-reach", "return"));
+        // no tile of that coast is shipped
+        let unseen = (name == "coast-patrol").then_some(("not-reviewed", "d1"));
+        let expected: Vec<_> = unseen.into_iter().chain(out_of_glide).collect();
+        assert_eq!(found, expected, "{:?}", shown(&program.warnings));
         let (profile, conditions) = (Profile::default(), Conditions::default());
         let later = review_extremes(&program, &profile, &ground(), conditions, &[], &mut |_, _| true);
         assert_eq!(shown(&later), [""; 0], "{name}");
@@ -538,6 +536,8 @@ fn ground_of_which_nothing_is_known() {
     let found = |legs: &str| {
         let program = compile_document(&rectangle("", legs), &Profile::default(), edge.as_ref()).unwrap();
         let mut found = review(&Arc::new(program), &Profile::default(), &edge, Conditions::default());
+        let unseen = found.iter().filter(|p| p.message.starts_with("load the elevations"));
+        assert_eq!(unseen.count(), 1, "told once");
         found.retain(|p| p.code == "unknown-terrain");
         found.iter().map(|p| p.subject.clone().unwrap().to_string()).collect::<Vec<_>>()
     };
@@ -554,6 +554,36 @@ fn ground_of_which_nothing_is_known() {
     };
     let many: String = (0..1500).map(one).collect();
     assert!(found(&many).len() > 500);
+}
+
+/// Where no elevation is known, that is told; what is below the sea, or below a runway that is lower still, is in the ground all
+/// the same.
+#[test]
+fn below_unknown_ground() {
+    let nowhere: Arc<dyn Terrain> = Arc::new(Tiles::new());
+    let found = |runway_m: i32, leg: &str| {
+        let plan = String::from_utf8(rectangle("", leg)).unwrap();
+        let plan = plan.replace(r#"elevation="300""#, &format!(r#"elevation="{runway_m}""#));
+        let program = compile_document(plan.as_bytes(), &Profile::default(), nowhere.as_ref());
+        let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+        let found = review(&program, &Profile::default(), &nowhere, Conditions::default());
+        let told = found.iter().filter(|p| ["not-reviewed", "below-terrain"].contains(&p.code));
+        told.map(|p| (p.code, p.subject.clone().unwrap().to_string())).collect::<Vec<_>>()
+    };
+    let unseen = || ("not-reviewed", "b".to_owned());
+    let low = |leg: &str| vec![unseen(), ("below-terrain", leg.to_owned())];
+    let at = |altitude_m: i32| {
+        format!(
+            r#"<TF id="x" fix="B" altitude="{altitude_m}" altitudeReference="amsl"/><TF id="y" fix="D" altitude="500" altitudeReference="amsl"/>"#
+        )
+    };
+    assert_eq!(found(300, &at(150)), [unseen()]);
+    assert_eq!(found(300, &at(20)), [unseen()]);
+    assert_eq!(found(-400, &at(-20)), [unseen()], "beside the Dead Sea");
+    assert_eq!(found(300, &at(-20))[..2], low("x"));
+    // levels of which nobody knows before the flight how many there are
+    let contour = r#"<contour id="p" spacing="200" turn="left" levelStep="-110"><area fix="B" radius="1200"/></contour><DF id="y" fix="D" altitude="500" altitudeReference="amsl"/>"#;
+    assert_eq!(found(300, contour)[..2], low("p"));
 }
 
 /// A zone above ground that nobody knows is taken as high as the sky.

@@ -257,6 +257,12 @@ impl FlightPlan {
         let take_off = self.stages.iter().find(|s| s.kind == crate::StageKind::TakeOff)?;
         self.runway(take_off.runway.as_ref()?)
     }
+
+    /// What ground of which no elevation is known is not taken to lie below: the sea, or the lowest runway if that is lower
+    /// still, metres AMSL.
+    pub fn lowest_ground_amsl_m(&self) -> f64 {
+        self.runways.iter().map(|runway| runway.elevation_amsl_m).fold(0.0, f64::min)
+    }
 }
 
 fn collect<'a>(

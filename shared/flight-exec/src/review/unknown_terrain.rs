@@ -1,4 +1,5 @@
 //! `unknown-terrain`: an altitude counts from the ground, and nothing is known of it there: the aircraft would leave the leg.
+//! `not-reviewed`, once: nothing is known of the ground below a part of the path, so that nobody has looked how near it is.
 
 use super::View;
 use flight_plan::{Id, Problem};
@@ -8,4 +9,32 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let mut told: HashSet<&Id> = HashSet::new();
     let legs = view.flights.without_ground.iter().filter(|(leg, _)| told.insert(leg));
     problems.extend(legs.map(|(leg, what)| Problem::error("unknown-terrain", what.clone()).of(leg)));
+    problems.extend(unseen_ground(view));
+}
+
+/// Of take-off and landing nobody asks: they keep to the runway's elevation.
+fn unseen_ground(view: &View) -> Option<Problem> {
+    let (mut flown, mut unknown): (HashSet<&Id>, HashSet<&Id>) = Default::default();
+    let mut first = None;
+    let points =
+        view.flights.all().flat_map(|f| f.points.iter().filter_map(|p| Some((f.leg(p)?, p.position))));
+    for (leg, position) in points {
+        let steered = flown.contains(leg) || view.is_steered(leg);
+        if steered {
+            flown.insert(leg);
+        }
+        if steered && !unknown.contains(leg) && view.terrain.elevation_m(position).is_none() {
+            unknown.insert(leg);
+            first.get_or_insert((leg, position));
+        }
+    }
+    let (leg, at) = first?;
+    let message = format!(
+        "load the elevations around {:.2}, {:.2}, or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
+        at.lat_deg,
+        at.lon_deg,
+        unknown.len(),
+        flown.len()
+    );
+    Some(Problem::warning("not-reviewed", message).of(leg))
 }

@@ -122,7 +122,7 @@ fn beyond_m(view: &Inspection, step: &Step) -> Option<f64> {
 }
 
 /// An area that services change is nowhere for certain.
-fn extent(view: &Inspection, area: &Area) -> Option<(LatLon, f64)> {
+pub(super) fn extent(view: &Inspection, area: &Area) -> Option<(LatLon, f64)> {
     match area {
         Area::Circle { centre, radius_m } => Some((view.place(centre)?, view.number(radius_m)?)),
         Area::Polygon { corners, .. } => around(corners),

@@ -1,6 +1,7 @@
 //! `bad-levels`: altitudes of a contour that don't follow on each other, or lead into the ground or above the ceiling.
 
 use super::Inspection;
+use super::extent::extent;
 use super::remedy::changed;
 use super::step::Step;
 use crate::{AltitudeReference, Edit, Leg, LegKind, Pattern, Problem, Value};
@@ -50,13 +51,14 @@ fn wrong(
     let altitude = step.altitude()?;
     let (first_m, steps) = (view.number(&altitude.metres)?, count? - 1.0);
     let last_m = first_m + steps * step_m;
-    if altitude.reference == AltitudeReference::Agl && last_m <= 0.0 {
-        let fits = ((first_m / -step_m).ceil()).max(1.0);
+    if let Some(ground_m) = ground_m(view, step, altitude.reference).filter(|ground_m| last_m <= *ground_m) {
+        let fits = (((first_m - ground_m) / -step_m).ceil()).max(1.0);
         let message = format!(
             "begin higher, or fly {fits:.0} levels at most: the last one, {:.0} m below the first, leads into the ground",
             first_m - last_m
         );
-        return Some((message, levels.and_then(|_| with_levels(leg, fits))));
+        let begins_above = first_m > ground_m;
+        return Some((message, levels.filter(|_| begins_above).and_then(|_| with_levels(leg, fits))));
     }
     let ceiling_m = view.profile.ceiling_amsl_m;
     // above the ground or home it is at least that
@@ -66,6 +68,22 @@ fn wrong(
             format!("begin lower, or fly fewer levels: the last one is above the aircraft's ceiling of {ceiling_m:.0} m");
         (message, levels.filter(|_| fits >= 1.0).and_then(|_| with_levels(leg, fits)))
     })
+}
+
+/// Where the ground is in an altitude's reference, metres, if it can be said before the contour is laid out: over known ground the
+/// review sees how it lies below each loop, over unknown ground it is not below the sea and every runway.
+fn ground_m(view: &Inspection, step: &Step, reference: AltitudeReference) -> Option<f64> {
+    let LegKind::Pattern(Pattern::Contour { area, .. }) = &step.leg.kind else { return None };
+    let lowest_m = || {
+        let (centre, _) = extent(view, area)?;
+        let known = view.terrain.elevation_m(centre).is_some();
+        (!known).then(|| view.plan.lowest_ground_amsl_m())
+    };
+    match reference {
+        AltitudeReference::Agl => Some(0.0),
+        AltitudeReference::Amsl => lowest_m(),
+        AltitudeReference::Home => Some(lowest_m()? - view.home()?.elevation_amsl_m),
+    }
 }
 
 /// All at one altitude.
@@ -87,7 +105,8 @@ fn with_levels(leg: &Leg, n: f64) -> Option<Edit> {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, codes_over, fixed_legs, plan_with};
+    use terrain::Tiles;
 
     fn contour(attributes: &str) -> String {
         format!(
@@ -117,6 +136,20 @@ mod tests {
             (&above_ground(300, r#"levelStep="-149""#), &[]),
             (&above_ground(300, r#"levelStep="-150""#), bad),
         ]);
+    }
+
+    /// The runway's elevation is 300 m: nothing is known to lie lower than the sea.
+    #[test]
+    fn over_unknown_ground_levels_stay_above_the_sea() {
+        let above = |reference: &str, attributes: &str| {
+            let altitude = format!(r#"altitude="200" altitudeReference="{reference}" {attributes}"#);
+            codes_over(&plan_with(&contour(&altitude)), &Tiles::new()).contains(&"bad-levels")
+        };
+        assert!(!above("amsl", r#"levels="4" levelStep="-60""#));
+        assert!(above("amsl", r#"levels="5" levelStep="-60""#));
+        assert!(above("amsl", r#"levelStep="-100""#), "as many as there are loops");
+        assert!(!above("home", r#"levels="5" levelStep="-100""#), "it ends at 100 m AMSL");
+        assert!(above("home", r#"levels="6" levelStep="-100""#));
     }
 
     #[test]
