@@ -65,17 +65,27 @@ impl Recipe {
             grid: self.grid.map(|(place, _)| frame.to_local(place)),
             heading_deg,
             overshoot_m: self.overshoot_m,
-            entry: match self.entry {
-                ScanEntry::Nearest => Entry::Nearest(frame.to_local(from)),
-                ScanEntry::StartLeft => Entry::Corner(Corner::StartLeft),
-                ScanEntry::StartRight => Entry::Corner(Corner::StartRight),
-                ScanEntry::EndLeft => Entry::Corner(Corner::EndLeft),
-                ScanEntry::EndRight => Entry::Corner(Corner::EndRight),
-            },
+            entry: self.corner().map_or(Entry::Nearest(frame.to_local(from)), Entry::Corner),
             turn_radius_m: self.turn_radius_m,
         };
         let pattern = Pattern::new(&polygon, &parameters).map_err(geometric)?;
         Ok(LaidOut::new(pattern, frame))
+    }
+
+    /// The corner where it begins, as the tracks see it: those of a creeping line lead to the right of its heading.
+    fn corner(&self) -> Option<Corner> {
+        let [start_left, start_right, end_left, end_right] = if self.across {
+            [Corner::StartRight, Corner::EndRight, Corner::StartLeft, Corner::EndLeft]
+        } else {
+            [Corner::StartLeft, Corner::StartRight, Corner::EndLeft, Corner::EndRight]
+        };
+        match self.entry {
+            ScanEntry::Nearest => None,
+            ScanEntry::StartLeft => Some(start_left),
+            ScanEntry::StartRight => Some(start_right),
+            ScanEntry::EndLeft => Some(end_left),
+            ScanEntry::EndRight => Some(end_right),
+        }
     }
 
     /// The heading that gives these tracks, as the plan would give it.
