@@ -39,12 +39,21 @@ fn one(view: &Inspection, step: &Step, index: usize, action: &LegAction, problem
     }
 }
 
-/// A wait that is not at the end of a leg that is flown: an error on its way, and not done by a loop or a call.
+/// A wait that is not at the end of a leg that is flown: an error on its way, and not done by a leg that flies nothing itself.
 fn misplaced_wait(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem> {
-    if matches!(leg.kind, LegKind::Iterative { .. } | LegKind::Call(_)) {
-        let message = "wait on the last leg inside this one: a loop or a call has no end of its own to circle at, its wait is not done";
-        return Some(Problem::warning("wait-not-at-end", message).of(&leg.id));
-    }
+    let message = match leg.kind {
+        LegKind::Iterative { .. } | LegKind::Call(_) => {
+            "wait on the last leg inside this one: a loop or a call has no end of its own to circle at, its wait is not done"
+        }
+        LegKind::Intersection { .. } => {
+            "wait on the leg before: an intersection has no end of its own to circle at, its wait is not done"
+        }
+        _ => return wait_on_the_way(leg, index, action),
+    };
+    Some(Problem::warning("wait-not-at-end", message).of(&leg.id))
+}
+
+fn wait_on_the_way(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem> {
     let message = "wait at the end of the leg (`on=\"end\"`): an aircraft can't stop on its way";
     let problem = Problem::error("wait-not-at-end", message).of(&leg.id);
     (action.trigger != Trigger::End).then(|| problem.perhaps_fixed_by(at_the_end(leg, index)))
@@ -97,7 +106,7 @@ fn invocation_fault(service: &str, operation: &str, argument: &str) -> Option<St
 fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
     let leg = &step.leg;
     if matches!(leg.kind, LegKind::Intersection { .. }) {
-        return Some("move this action to a leg before or after: an intersection is not flown".into());
+        return never_at_once(view, trigger);
     }
     let along_m = match trigger {
         Trigger::Distance(x) | Trigger::Every(x) => view.number(x)?,
@@ -111,6 +120,17 @@ fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
             "let the action come earlier: the leg is {length_m:.0} m long, it would come after {along_m:.0} m"
         )
     })
+}
+
+/// Why no passage of a leg without a way of its own, which begins and ends in one moment, comes to a trigger.
+fn never_at_once(view: &Inspection, trigger: &Trigger) -> Option<String> {
+    let comes = match trigger {
+        Trigger::Start | Trigger::End => true,
+        Trigger::Distance(x) | Trigger::Time(x) => view.number(x)? <= 0.0,
+        Trigger::Every(_) | Trigger::Abeam(_) => false,
+    };
+    let message = "do it `on=\"start\"`, or on a leg before or after: an intersection has no way of its own";
+    (!comes).then(|| message.into())
 }
 
 /// Why no part of a straight track is abeam of a place. Not of the first leg inside a loop: each pass may come to it from elsewhere.
@@ -258,10 +278,22 @@ mod tests {
     }
 
     #[test]
-    fn an_intersection_is_not_flown() {
-        let fork = r#"<intersection id="i" default="x"><branch id="x"/><action on="start"><photo/></action></intersection>"#;
-        let plan = with("").replace(r#"<TF id="b""#, &format!(r#"{fork}<TF id="b""#));
-        assert_eq!(codes(&plan), ["action-never"]);
-        fixed(&plan, "action-never");
+    fn an_intersection_is_passed_at_once() {
+        let plan = |action: &str| {
+            let fork = format!(r#"<intersection id="i" default="x"><branch id="x"/>{action}</intersection>"#);
+            with("").replace(r#"<TF id="b""#, &format!(r#"{fork}<TF id="b""#))
+        };
+        let cases: [(&str, &[&str]); 6] = [
+            (r#"<action on="start"><photo/></action>"#, &[]),
+            (r#"<action on="end"><photo/></action>"#, &[]),
+            (r#"<action afterDistance="0"><photo/></action>"#, &[]),
+            (r#"<action afterTime="3"><photo/></action>"#, &["action-never"]),
+            (r#"<action on="abeam" fix="C"><photo/></action>"#, &["action-never"]),
+            (r#"<action on="end"><wait seconds="9"/></action>"#, &["wait-not-at-end"]),
+        ];
+        for (action, expected) in cases {
+            assert_eq!(codes(&plan(action)), expected, "{action}");
+        }
+        fixed(&plan(r#"<action afterTime="3"><photo/></action>"#), "action-never");
     }
 }
