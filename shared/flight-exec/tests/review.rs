@@ -103,6 +103,21 @@ fn a_plan_that_is_good_only_as_long_as_its_variables_stay_what_they_are() {
     assert_eq!(found(r#"min="0""#, ""), one("turn-too-tight", "when `r` is 0 m"));
 }
 
+/// The overlap alone makes the spacing bad when it is 1, the height alone when it is 0: both are told, and nothing more of both.
+#[test]
+fn each_extreme_that_makes_a_plan_bad_is_told() {
+    let scan = r#"<scan id="sweep" fieldOfView="60" overlap="= ov" height="= h"><area fix="D" radius="600"/></scan><DF id="on" fix="A"/>"#;
+    let variables = r#"<variables><variable name="ov" type="number" initial="0.3" max="1"/><variable name="h" type="number" initial="200" min="0"/></variables><zones>"#;
+    let document = String::from_utf8(rectangle("", scan)).unwrap().replace("<zones>", variables);
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let (profile, conditions) = (Profile::default(), Conditions::default());
+    let program = compile_document(document.as_bytes(), &profile, flat.as_ref()).unwrap();
+    let found = review_extremes(&program, &profile, &flat, conditions, &[], &mut |_, _| true);
+    let spacing = found.iter().filter(|p| p.code == "bad-spacing");
+    let when: Vec<_> = spacing.map(|p| p.message.split(": ").next().unwrap()).collect();
+    assert_eq!(when, ["when `ov` is 1", "when `h` is 0"]);
+}
+
 /// What comes after a wait is looked at as well.
 #[test]
 fn a_plan_with_a_wait_is_reviewed_to_its_end() {

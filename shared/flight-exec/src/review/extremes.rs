@@ -5,7 +5,7 @@
 //! compiled and reviewed like any other.
 
 use super::ahead::read_by_geometry;
-use super::{Conditions, once, review};
+use super::{Conditions, review};
 use aircraft::Profile;
 use flight_plan::{Problem, Program, Severity, Variable, VariableValue};
 use std::sync::Arc;
@@ -14,8 +14,8 @@ use terrain::Terrain;
 /// Most plans that are tried.
 pub const MOST_TRIALS: usize = 24;
 
-/// Every problem that the plan gets when its variables change, as a warning that says at which values; none that it has already
-/// (`found`: what the review said), and each once for a leg.
+/// Every problem that the plan gets when its variables change, as a warning that says at which values; for a leg none that it has
+/// already (`found`: what the review said), and with two values none that it has with one of them.
 ///
 /// `progress` is told how many of how many trials are done before each of them; it returns false to end the work.
 pub fn review_extremes(
@@ -28,16 +28,23 @@ pub fn review_extremes(
 ) -> Vec<Problem> {
     let variables = used(program);
     let trials = trials(&variables);
-    let known: Vec<Problem> = program.warnings.iter().chain(found).cloned().collect();
-    let mut found = Vec::new();
+    let nothing = Trial(Vec::new());
+    let known = program.warnings.iter().chain(found);
+    let mut told: Vec<(&Trial, Problem)> = known.map(|problem| (&nothing, problem.clone())).collect();
+    let known = told.len();
     for (done, trial) in trials.iter().enumerate() {
         if !progress(done, trials.len()) {
             break;
         }
-        found.extend(trial.problems(program, profile, terrain, conditions));
+        for problem in trial.problems(program, profile, terrain, conditions) {
+            let same = |old: &Problem| (old.code, &old.subject) == (problem.code, &problem.subject);
+            if !told.iter().any(|(part, old)| part.is_part_of(trial) && same(old)) {
+                told.push((trial, problem));
+            }
+        }
     }
-    found.extend(variables.get(MOST_TRIALS / 2..).unwrap_or_default().iter().map(|v| not_tried(v)));
-    once(found, &known)
+    let found = told.into_iter().skip(known).map(|(_, problem)| problem);
+    found.chain(variables.iter().skip(MOST_TRIALS / 2).map(|v| not_tried(v))).collect()
 }
 
 /// The numbers that some leg's place, size, altitude, speed or count depends on, in the plan's order.
@@ -67,6 +74,12 @@ fn trials<'a>(variables: &[&'a Variable]) -> Vec<Trial<'a>> {
 }
 
 impl Trial<'_> {
+    /// Another one has its values, too.
+    fn is_part_of(&self, other: &Self) -> bool {
+        let has = |(v, x): &(&Variable, f64)| other.0.iter().any(|(w, y)| w.name == v.name && x == y);
+        self.0.iter().all(has)
+    }
+
     fn problems(
         &self,
         program: &Program,
