@@ -118,6 +118,33 @@ fn each_extreme_that_makes_a_plan_bad_is_told() {
     assert_eq!(when, ["when `ov` is 1", "when `h` is 0"]);
 }
 
+/// The cruise speed is 25 m/s: around the rectangle there is no way against so much wind, whatever the energy.
+#[test]
+fn a_wind_that_is_too_strong_is_the_reason_that_is_told() {
+    let errors = |wind_mps: f64| {
+        let conditions = Conditions { wind: Wind::from_direction(270.0, wind_mps), ..Conditions::default() };
+        let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+        let program = compile_document(&rectangle("", ""), &Profile::default(), flat.as_ref()).unwrap();
+        let mut found = review(&Arc::new(program), &Profile::default(), &flat, conditions);
+        found.retain(Problem::is_error);
+        found
+    };
+    assert_eq!(errors(20.0), []);
+    let fly_faster = "wait for less wind, or fly at 28 m/s or more";
+    let wait = "wait for less wind, the aircraft flies 35 m/s at most";
+    for (wind_mps, advice) in [(26.0, fly_faster), (40.0, wait)] {
+        let found = errors(wind_mps);
+        let told = found.iter().find(|p| p.code == "wind-too-strong").unwrap();
+        assert_eq!(told.subject, Some(Id::new("c")), "the first one across the wind");
+        assert!(told.message.starts_with(advice), "{told}");
+        assert!(
+            !found.iter().any(|p| ["energy", "emergency-endless"].contains(&p.code)),
+            "{:?}",
+            shown(&found)
+        );
+    }
+}
+
 /// What comes after a wait is looked at as well.
 #[test]
 fn a_plan_with_a_wait_is_reviewed_to_its_end() {

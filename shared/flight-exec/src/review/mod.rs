@@ -31,6 +31,7 @@ mod unknown_terrain;
 mod unseen;
 mod waypoints;
 mod ways;
+mod wind;
 mod zones;
 
 pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_turn};
@@ -98,9 +99,10 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 15] = [
+const RULES: [Rule; 16] = [
     refused::check,
     unseen::check,
+    wind::check,
     zones::check,
     unknown_terrain::check,
     terrain_clearance::check,
@@ -147,7 +149,7 @@ impl<'a> View<'a> {
     fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         RULES.iter().for_each(|rule| rule(self, &mut problems));
-        once(problems, &self.program.warnings)
+        once(wind::without_what_follows(self, problems), &self.program.warnings)
     }
 }
 
