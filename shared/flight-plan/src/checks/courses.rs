@@ -120,10 +120,12 @@ fn not_intercepted(
     let flown_m = view.turn_radius_m(step.speed_mps + DESIGN_WIND_MPS);
     let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, flown_m));
     let joining = way.map(|way| way.joining);
-    let from =
-        format!("the path comes from {aside_m:.0} m beside the course and {before_m:.0} m before the fix");
+    let from = format!("the path comes from {aside_m:.0} m beside the course and {}", along(before_m));
     let problem = if matches!(joining, Some(Joining::Intercept { .. })) {
         return None;
+    } else if before_m < 0.0 {
+        let message = format!("come from before the fix, change the course or use DF: {from}");
+        Problem::error("course-not-intercepted", message)
     } else if before_m < needed_m {
         let message = format!(
             "come from farther back, change the course or use DF: {from}, the turn onto it needs {needed_m:.0} m"
@@ -153,13 +155,10 @@ fn never_intercepted(
     if most_m >= needed_m {
         return None;
     }
-    let from = if most_m > 0.0 {
-        format!("{most_m:.0} m before the fix at most")
-    } else {
-        format!("{:.0} m behind the fix at least", -most_m)
-    };
     let message = format!(
-        "come from farther back, change the course or use DF: the path comes from {from}, the turn onto it needs {needed_m:.0} m before it"
+        "come from farther back, change the course or use DF: the path comes from {} at {}, the turn onto it needs {needed_m:.0} m before it",
+        along(most_m),
+        if most_m < 0.0 { "least" } else { "most" }
     );
     let problem = Problem::error("course-not-intercepted", message).of(&step.leg.id);
     Some(problem.fixed_by(direct(&step.leg, to)))
@@ -176,6 +175,12 @@ fn seen_from(fix: LatLon, course_deg: f64, position: LatLon) -> (f64, f64) {
     let back = fix.inverse(position);
     let off_rad = normalise_180(back.bearing_start_deg - (course_deg + 180.0)).to_radians();
     (back.distance_m * off_rad.cos(), (back.distance_m * off_rad.sin()).abs())
+}
+
+/// In words, where on the way to a fix somebody is who has so many metres before it.
+fn along(before_m: f64) -> String {
+    let side = if before_m < 0.0 { "behind" } else { "before" };
+    format!("{:.0} m {side} the fix", before_m.abs())
 }
 
 /// The course on which the path comes to a step, where the document says so, degrees true.
@@ -200,7 +205,7 @@ fn direct(leg: &Leg, to: &PlanWaypoint) -> Edit {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document, fixed, fixed_legs, plan_with};
+    use crate::checks::testing::{check_legs, codes, document, fixed, fixed_legs, message_of, plan_with};
     use crate::{Problem, check, read};
     use aircraft::Profile;
     use terrain::Flat;
@@ -234,6 +239,17 @@ mod tests {
             (&cf(270), &["course-not-intercepted"]),
         ]);
         fixed_legs(&[(&cf(270), "course-not-intercepted")]);
+    }
+
+    /// From 2.7 km behind B, exactly against the course and nearly so.
+    #[test]
+    fn who_comes_from_behind_the_fix_is_told_that() {
+        for course in [270, 272] {
+            let legs = format!(r#"<IF id="a" fix="A"/><CF id="b" fix="B" course="{course}"/>"#);
+            let message = message_of(&legs, "course-not-intercepted");
+            assert!(message.starts_with("come from before the fix"), "{message}");
+            assert!(message.contains(" and 269") && message.ends_with(" m behind the fix"), "{message}");
+        }
     }
 
     /// The path comes to B from the west, where a turn has a radius of 137 m; C is 3.3 km north of B.
