@@ -359,6 +359,14 @@ fn what_the_gateway_would_refuse_is_not_laid_out_in_a_strong_wind() {
 }
 
 #[test]
+fn what_the_gateway_would_refuse_is_told_with_what_to_do() {
+    let document = std::fs::read(assets().join("plans/bad/path/gateway-refuses.xml")).unwrap();
+    let found = verdict(&document).unwrap_err();
+    let told = found.iter().find(|p| p.code == "gateway-refuses").unwrap();
+    assert!(told.message.starts_with("divide this leg"), "{told}");
+}
+
+#[test]
 fn a_turn_that_the_wind_carries_into_a_zone() {
     // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind
     let over = r#"<TF id="over" fix="A" flyOver="true"/><TF id="f" fix="B"/>"#;

@@ -15,9 +15,27 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
             let at = |back: usize| Some(&flown.waypoints.get(index.checked_sub(back)?)?.waypoint);
             let Some(waypoint) = at(0) else { continue };
             for fault in faults(&context, at(2).map(|w| w.position), at(1), waypoint) {
-                let message = format!("the gateway would refuse a waypoint of this leg: {}", fault.sentence);
+                let message = format!(
+                    "{}: the gateway would refuse a waypoint of it: {}",
+                    advice(fault.code),
+                    fault.sentence
+                );
                 problems.push(Problem::error("gateway-refuses", message).of(&waypoint.leg));
             }
         }
+    }
+}
+
+/// What to do about a fault of a waypoint, to the leg that it is made of.
+fn advice(code: &str) -> &'static str {
+    match code {
+        "too-far" => "divide this leg by a place on its way",
+        "altitude" => "give this leg another altitude",
+        "below-terrain" => "raise this leg",
+        "speed" => "give this leg another speed",
+        "loiter-radius" => "widen the circles of this leg",
+        "gradient" => "lengthen this leg, or climb or descend less on it",
+        "turn" => "lengthen this leg or the one before it, or widen the turn between them",
+        _ => "correct the places and numbers of this leg",
     }
 }
