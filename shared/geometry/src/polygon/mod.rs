@@ -43,7 +43,7 @@ impl Polygon {
     /// From positions, seen in a frame (see [`LocalFrame::around`]).
     ///
     /// # Errors
-    /// As [`Polygon::new`], and [`PolygonError::TooFar`] for a corner outside the frame's radius.
+    /// As [`Polygon::new`], and [`PolygonError::TooFar`] or [`PolygonError::NearPole`] for a corner outside the frame's radius.
     pub fn from_geo(
         frame: &LocalFrame,
         outer: &[LatLon],

@@ -65,6 +65,13 @@ fn positions_too_far_or_none() {
     let far = [near(0.0), near(120.0), HERE.destination(240.0, 150_000.0)];
     let refused = Polygon::from_geo(&frame, &far, &[]);
     assert!(matches!(refused, Err(PolygonError::TooFar { ring: 0, corner: 2, .. })));
+    // 11 km from the pole, frames are good for less than a kilometre
+    let polar = LatLon::new(89.9, 20.0);
+    let corners = [0.0, 120.0, 240.0].map(|b| polar.destination(b, 1500.0));
+    let refused = Polygon::from_geo(&LocalFrame::new(polar), &corners, &[]);
+    assert!(
+        matches!(refused, Err(PolygonError::NearPole { ring: 0, corner: 0, most_m, .. }) if most_m < 1000.0)
+    );
     let hole = vec![near(0.0), near(120.0), LatLon::new(91.0, 0.0)];
     let outer = [0.0, 120.0, 240.0].map(|b| HERE.destination(b, 9000.0));
     let refused = Polygon::from_geo(&frame, &outer, &[hole]);

@@ -1,6 +1,7 @@
 //! What makes rings a polygon, and who is to blame when they are none.
 
 use super::{MAX_CORNERS, crosses_odd, ring_edges};
+use crate::local::RADIUS_M;
 use crate::{LatLon, LocalFrame, Vec2};
 
 /// Why rings are no polygon. Rings count from 0 (the outer ring), then come the holes; corners and
@@ -29,7 +30,7 @@ pub enum PolygonError {
         /// The corner.
         corner: usize,
     },
-    /// Outside the local frame's radius.
+    /// Outside the local frame's radius, as large as it is away from the poles.
     #[error("corner {corner} of ring {ring} is {distance_m:.0} m from the middle: split the area")]
     TooFar {
         /// The ring.
@@ -38,6 +39,20 @@ pub enum PolygonError {
         corner: usize,
         /// How far.
         distance_m: f64,
+    },
+    /// Outside the local frame's radius, which is so small because a pole is near.
+    #[error(
+        "corner {corner} of ring {ring} is {distance_m:.0} m from the middle, and so near the pole areas reach {most_m:.0} m at most: make it smaller, or move it away from the pole"
+    )]
+    NearPole {
+        /// The ring.
+        ring: usize,
+        /// The corner.
+        corner: usize,
+        /// How far.
+        distance_m: f64,
+        /// How far it may be there.
+        most_m: f64,
     },
     /// A corner lies on the next one.
     #[error("corner {corner} of ring {ring} lies on the one after it: remove one of them")]
@@ -100,8 +115,12 @@ pub(super) fn local_corner(
     }
     // the frame's series mean nothing far away: ask whether it is near before using them
     let distance_m = frame.origin().distance_m(p);
-    if distance_m > frame.radius_m() {
+    let most_m = frame.radius_m();
+    if distance_m > RADIUS_M {
         return Err(PolygonError::TooFar { ring, corner, distance_m });
+    }
+    if distance_m > most_m {
+        return Err(PolygonError::NearPole { ring, corner, distance_m, most_m });
     }
     Ok(frame.to_local(p))
 }
