@@ -39,7 +39,7 @@ pub mod wind;
 pub use autopilot::{Action, Guidance, Guided, Target};
 pub use dynamics::{Aircraft, Demand, State};
 pub use power::{Battery, Engine};
-pub use profile::{Profile, ProfileError};
+pub use profile::{DESIGN_WIND_MPS, Profile, ProfileError};
 pub use wind::Wind;
 
 /// Standard gravity, m/s² (ISO 80000-3).

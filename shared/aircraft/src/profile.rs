@@ -3,6 +3,9 @@
 use crate::GRAVITY_MPS2;
 use serde::{Deserialize, Serialize};
 
+/// Wind for which turns that have to stay where they are laid out are planned while none is measured that is stronger, m/s.
+pub const DESIGN_WIND_MPS: f64 = 6.0;
+
 /// Performance of a fixed-wing aircraft. SI units; airspeeds are true airspeeds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {

@@ -40,7 +40,7 @@ impl Default for Config {
             least_waypoints: 5,
             arc_tolerance_m: 3.0,
             latency_s: 1.5,
-            design_wind_mps: 6.0,
+            design_wind_mps: aircraft::DESIGN_WIND_MPS,
             debounce_s: 1.0,
             review_s: 1.0,
             ask_ahead_s: 120.0,

@@ -8,9 +8,9 @@ use super::View;
 use super::alternates::turn_rad;
 use super::flown::{Flown, Point};
 use super::layout::LaidOut;
-use crate::config::Config;
 use crate::path::distance_and_course;
 use crate::world::turn_radius_m;
+use aircraft::DESIGN_WIND_MPS;
 use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -78,9 +78,8 @@ impl Track {
         let [before_at, at, to_at] = [before, from, to].map(|w| w.waypoint.position);
         let (aside_m, aside_deg) = distance_and_course(before_at, at);
         let (length_m, course_deg) = distance_and_course(at, to_at);
-        let design_mps = Config::default().design_wind_mps;
         let wind_mps = view.conditions.wind.speed_mps();
-        let turn_m = turn_radius_m(view.profile, to.waypoint.airspeed_mps, wind_mps, design_mps);
+        let turn_m = turn_radius_m(view.profile, to.waypoint.airspeed_mps, wind_mps, DESIGN_WIND_MPS);
         let track = Self { at, course_deg, aside_m, room_m: turn_m.max(overshoot_m) };
         let turns_round = (turn_rad(aside_deg, course_deg) - FRAC_PI_2).abs() < RIGHT_ANGLE_RAD;
         (turns_round && length_m > 2.0 * track.room_m).then_some(track)

@@ -8,6 +8,7 @@ use super::remedy::{normal_deg, with_kind};
 use super::step::Step;
 use crate::uses::SlotMut;
 use crate::{Edit, FlightPlan, Leg, LegKind, PlanWaypoint, Problem, Procedure, Thing, Value};
+use aircraft::DESIGN_WIND_MPS;
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 use geometry::intercept::{Joining, course_to_fix};
@@ -15,8 +16,6 @@ use std::sync::Arc;
 
 /// Attributes that are directions.
 const DIRECTIONS: [&str; 3] = ["course", "heading", "bearing"];
-/// Wind for which turns are laid out where none is measured, m/s: that of whoever flies the plan.
-const DESIGN_WIND_MPS: f64 = 6.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
