@@ -119,7 +119,7 @@ pub fn variables_at(program: &Program, events: &[(f64, Event)], time_s: f64) -> 
 
 fn outline(program: &Program, leg: &Id, variables: &Variables) -> Option<(Vec<LatLon>, f64)> {
     let (area, spacing) = covered(program, leg)?;
-    let env = Env { variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
+    let env = Env { variables, flight: FlightState::at_start(program.plan.home()) };
     Some((corners(program, area, &env)?, spacing_m(program, leg, spacing, &env)?))
 }
 

@@ -314,8 +314,10 @@ fn tracks_that_are_too_few_to_be_interleaved() {
         problems.into_iter().filter(|p| p.code == "tracks-too-close").collect::<Vec<_>>()
     };
     // the reason, and what its edit leaves over
+    let take_off = r#"<stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="home"/><stage id="s" "#;
     let found = |leg: &str, max_bank_deg: f64| {
-        let plan = flight_plan::read(rectangle("", leg)).plan;
+        let document = String::from_utf8(rectangle("", leg)).unwrap();
+        let plan = flight_plan::read(document.replace(r#"<stage id="s" "#, take_off)).plan;
         let left =
             |p: &Problem| p.fix.as_ref().map(|fix| reviewed(fix.apply(&plan).unwrap(), max_bank_deg).len());
         reviewed(plan.clone(), max_bank_deg).iter().map(|p| (p.message.clone(), left(p))).collect::<Vec<_>>()
@@ -332,16 +334,25 @@ fn tracks_that_are_too_few_to_be_interleaved() {
             r#"<corridor id="few" width="{width}" spacing="20"><route><point lat="36.325" lon="-84.19"/><point lat="36.335" lon="-84.19"/></route></corridor>"#
         )
     };
-    println!(
-        "{:#?}",
-        [45.0, 35.0, 30.0, 26.0].map(|bank| (
-            bank,
-            found(&scan(58.0, ""), bank),
-            found(&scan(900.0, ""), bank),
-            found(&corridor(58), bank),
-            found(&corridor(900), bank)
-        ))
-    );
+    // what an overshoot reads of the flight is as it is where that begins, on the runway
+    let none = r#"overshoot="= distance_to('A') > 100000.0 ? 5000.0 : 0.0""#;
+    for bank in [45.0, 35.0] {
+        assert_eq!(found(&scan(58.0, ""), bank), []);
+        assert_eq!(found(&corridor(58), bank), []);
+    }
+    for bank in [30.0, 26.0] {
+        for few in [scan(58.0, ""), scan(58.0, none)] {
+            let [(message, left)] = &found(&few, bank)[..] else { panic!("{bank}: {few}") };
+            assert!(
+                message.starts_with("give it an overshoot of ") && *left == Some(0),
+                "{message} {left:?}"
+            );
+        }
+        let [(message, left)] = &found(&corridor(58), bank)[..] else { panic!("{bank}") };
+        assert!(message.starts_with("make it wider") && left.is_none(), "{message}");
+        assert_eq!(found(&scan(900.0, ""), bank), []);
+        assert_eq!(found(&corridor(900), bank), []);
+    }
 }
 
 /// Climbs in holdings and on legs are laid out for the ground speed with that wind.

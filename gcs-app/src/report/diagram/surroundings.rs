@@ -48,7 +48,7 @@ impl Diagram<'_> {
 
     fn things(&self) -> Vec<Thing> {
         let variables = Variables::initial(&self.program.plan);
-        let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
+        let env = Env { variables: &variables, flight: FlightState::at_start(self.program.plan.home()) };
         let mut things: Vec<Thing> = Vec::new();
         for thing in self.legs().into_iter().filter_map(|leg| self.thing(leg, &env)) {
             // legs may share it
@@ -87,7 +87,7 @@ impl Diagram<'_> {
             draw_thing(canvas, view, labels, &thing);
         }
         let variables = Variables::initial(&self.program.plan);
-        let env = Env { variables: &variables, flight: FlightState::on_ground(LatLon::new(0.0, 0.0)) };
+        let env = Env { variables: &variables, flight: FlightState::at_start(self.program.plan.home()) };
         let mut drawn: Vec<LatLon> = Vec::new();
         for centre in self.legs().into_iter().filter_map(|leg| self.centre(leg, &env)) {
             if !drawn.contains(&centre) {

@@ -44,7 +44,6 @@ use flight_plan::{
     Variables,
 };
 use flights::Flights;
-use geometry::LatLon;
 use in_force::InForce;
 use prepared::Zones;
 use std::collections::HashSet;
@@ -165,9 +164,9 @@ impl View<'_> {
         self.stage_kind(leg).is_some_and(|kind| !performed.contains(&kind))
     }
 
-    /// A number of the plan where the flights begin, if it has a value there.
+    /// A number of the plan at its start, with the variables' values where the flights begin, if it has a value there.
     fn number(&self, value: &Value<f64>) -> Option<f64> {
-        let flight = FlightState::on_ground(LatLon::new(0.0, 0.0));
+        let flight = FlightState::at_start(self.program.plan.home());
         self.program.eval_number(value, &Env { variables: &self.variables, flight }).ok()
     }
 

@@ -172,11 +172,7 @@ impl<'a> Inspection<'a> {
     }
 
     fn env(&self) -> Env<'_> {
-        let home = self.home().map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
-        Env {
-            variables: &self.variables,
-            flight: FlightState { iteration: 1, ..FlightState::on_ground(home) },
-        }
+        Env { variables: &self.variables, flight: FlightState::at_start(self.home()) }
     }
 
     /// A number at the start, if it has a finite value then.

@@ -1,7 +1,7 @@
 //! Values of expressions.
 
 use super::{Expression, FlightName, Function, Node, Operator, Type};
-use crate::{Id, VariableValue, Variables};
+use crate::{Id, Runway, VariableValue, Variables};
 use geometry::{LatLon, LocalFrame, Polygon};
 use std::cmp::Ordering;
 
@@ -27,6 +27,12 @@ pub struct FlightState {
 }
 
 impl FlightState {
+    /// Before a plan's flight: on its [`home`](crate::FlightPlan::home), at 0, 0 without one, and in the first pass of whatever loop.
+    pub fn at_start(home: Option<&Runway>) -> Self {
+        let home = home.map_or(LatLon::new(0.0, 0.0), |runway| runway.threshold);
+        Self { iteration: 1, ..Self::on_ground(home) }
+    }
+
     /// Before the flight: standing at `position`, everything full.
     pub fn on_ground(position: LatLon) -> Self {
         Self {
