@@ -146,8 +146,8 @@ fn never_intercepted(
     to: &PlanWaypoint,
     course: &Value<f64>,
 ) -> Option<Problem> {
-    let (region, fix) = (step.start_within?, view.place(&to.place)?);
-    region.distances_m(fix)?;
+    let fix = view.place(&to.place)?;
+    let region = step.start_within.filter(|region| region.is_near(fix))?;
     let (before_m, aside_m) = seen_from(fix, view.number(course)?, region.centre);
     let (most_m, aside_m) = (before_m + region.reach_m(), (aside_m - region.reach_m()).max(0.0));
     let needed_m = turning_m(view.turn_radius_m(step.speed_mps), aside_m);

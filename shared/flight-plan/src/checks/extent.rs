@@ -30,6 +30,11 @@ impl Region {
         (metres + reach_m <= Self::MOST_M).then_some(((metres - reach_m).max(0.0), metres + reach_m))
     }
 
+    /// All of it is near enough to a place for something to be said of the two.
+    pub fn is_near(&self, place: LatLon) -> bool {
+        self.distances_m(place).is_some()
+    }
+
     /// Its radius with some room, metres.
     pub fn reach_m(&self) -> f64 {
         self.radius_m + ROOM_M

@@ -68,10 +68,12 @@ fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let Some(before) = view.before(step) else { return };
     let (Some(here), Some(there_deg)) = (step.directed(), before.course_end_deg()) else { return };
     let is_arc = |step: &Step| matches!(step.leg.kind, LegKind::Rf { .. });
-    let culprit = match () {
-        () if is_arc(step) => step,
-        () if is_arc(before) => before,
-        () => return,
+    let culprit = if is_arc(step) {
+        step
+    } else if is_arc(before) {
+        before
+    } else {
+        return;
     };
     let corner_deg = course_change_deg(there_deg, here.course_start_deg());
     if corner_deg > TANGENT_DEG {
