@@ -145,6 +145,7 @@ impl Prepared {
             planned: self.planned.clone(),
             authored: authored::paths(&self.program, &plans, &flown, &ending.events, turn_radius_m),
             places: assemble::places(&self.program.plan),
+            zones: self.program.plan.zones.clone(),
             areas: assemble::areas(&self.program, &flown, &ending.events),
             flown,
             happenings: ending.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),

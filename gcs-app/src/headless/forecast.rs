@@ -99,6 +99,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
             format!("plan {}", program.hash().get(..12).unwrap_or(program.hash())),
         ],
         places: assemble::places(&program.plan),
+        zones: program.plan.zones.clone(),
         areas: assemble::areas(program, &planned, &preview.events),
         planned,
         flown: Track::default(),

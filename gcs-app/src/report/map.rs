@@ -1,10 +1,12 @@
 //! `map.png`: planned and flown over the ground.
 
 use super::canvas::{Anchor, Canvas, Pen, Type};
-use super::record::{Area, Place, PlaceKind, Record, Track};
+use super::labels::Labels;
+use super::record::{Area, Place, PlaceKind, Record};
 use super::style::*;
-use super::{Findings, hillshade, panel};
-use geometry::{LatLon, LocalFrame, Vec2};
+use super::view::View;
+use super::{Findings, hillshade, panel, zones};
+use geometry::{LatLon, Vec2};
 
 const WIDTH: f32 = 1600.0;
 const HEIGHT: f32 = 1120.0;
@@ -12,8 +14,6 @@ const HEADER: f32 = 76.0;
 const PANEL: f32 = 372.0;
 const MAP_WIDTH: f32 = WIDTH - PANEL;
 const MAP_HEIGHT: f32 = HEIGHT - HEADER;
-/// Free space around what is shown, share of the map.
-const MARGIN: f64 = 0.07;
 /// Pixels of the map per pixel of the shaded ground.
 const SHADE_SCALE: f32 = 2.0;
 /// Minutes between the time marks on the track.
@@ -34,14 +34,14 @@ const ENLARGED: f64 = 1.4;
 /// Nothing to draw, or the encoder fails.
 pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
     let mut canvas = Canvas::new(WIDTH as u32, HEIGHT as u32, PAPER)?;
-    let tracks = record.planned.points().iter().chain(record.flown.points()).map(|p| p.position);
-    let shown = tracks.chain(record.areas.iter().flat_map(|a| a.outline.iter().copied()));
-    let view = View::around(shown, (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT))
+    let view = View::around(shown(record), (0.0, HEADER, MAP_WIDTH, MAP_HEIGHT))
         .ok_or_else(|| anyhow::anyhow!("the track is empty: nothing to draw"))?;
     let enlarged = inset_view(record, &view);
     let elsewhere = enlarged.as_ref().map(|inset| Frame::of(inset, &view));
     draw_ground(&mut canvas, record, &view);
-    draw_flight(&mut canvas, record, &view);
+    let mut labels = Labels::new(view.window());
+    labels.keep_corner_for_north();
+    draw_flight(&mut canvas, record, &view, &mut labels);
     draw_time_marks(&mut canvas, record, &view, elsewhere);
     draw_happenings(&mut canvas, record, &view, elsewhere);
     match elsewhere {
@@ -59,7 +59,18 @@ pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
     canvas.png()
 }
 
-fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View) {
+/// Everything that must be on the map.
+fn shown(record: &Record) -> impl Iterator<Item = LatLon> {
+    let tracks = record.planned.points().iter().chain(record.flown.points()).map(|p| p.position);
+    let areas = record.areas.iter().flat_map(|a| a.outline.iter().copied());
+    let flight: Vec<LatLon> = tracks.chain(areas).collect();
+    let zones = zones::near(&record.zones, &flight);
+    flight.into_iter().chain(zones)
+}
+
+fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View, labels: &mut Labels) {
+    labels.keep_clear(&view.line(record.main_track()));
+    zones::draw(canvas, view, labels, &record.zones, PAPER);
     for area in &record.areas {
         draw_area(canvas, view, area);
     }
@@ -80,7 +91,7 @@ fn inset_view(record: &Record, map: &View) -> Option<View> {
 fn inset(record: &Record, view: &View) -> anyhow::Result<Canvas> {
     let mut canvas = Canvas::new(INSET as u32, INSET as u32, PAPER)?;
     draw_ground(&mut canvas, record, view);
-    draw_flight(&mut canvas, record, view);
+    draw_flight(&mut canvas, record, view, &mut Labels::new(view.window()));
     draw_happenings(&mut canvas, record, view, None);
     label_areas(&mut canvas, record, view);
     Ok(canvas)
@@ -136,66 +147,8 @@ fn place_inset(canvas: &mut Canvas, inset: &Canvas) {
     canvas.outline(&[(x, y), (x + INSET, y), (x + INSET, y + INSET), (x, y + INSET)], Pen::solid(RULE, 1.5));
 }
 
-/// Which part of the world is where on the picture.
-pub(super) struct View {
-    frame: LocalFrame,
-    metres_per_pixel: f64,
-    /// Left, top, width, height, pixels.
-    window: (f32, f32, f32, f32),
-}
-
-impl View {
-    /// All of `shown` with a margin, in a window `(left, top, width, height)`; `None` if nothing is shown.
-    pub(super) fn around(shown: impl Iterator<Item = LatLon>, window: (f32, f32, f32, f32)) -> Option<Self> {
-        let shown: Vec<LatLon> = shown.collect();
-        let about = LocalFrame::new(*shown.first()?);
-        let local: Vec<Vec2> = shown.iter().map(|p| about.to_local(*p)).collect();
-        let range = |axis: fn(&Vec2) -> f64| {
-            local.iter().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
-        };
-        let ((west, east), (south, north)) = (range(|p| p.e), range(|p| p.n));
-        let across = (east - west) / f64::from(window.2);
-        let up = (north - south) / f64::from(window.3);
-        Some(Self {
-            frame: LocalFrame::new(about.to_geo(Vec2::new((west + east) / 2.0, (south + north) / 2.0))),
-            metres_per_pixel: across.max(up).max(0.2) / (1.0 - 2.0 * MARGIN),
-            window,
-        })
-    }
-
-    /// Where a position is, pixels.
-    pub(super) fn place(&self, p: LatLon) -> (f32, f32) {
-        let (left, top, width, height) = self.window;
-        let v = self.frame.to_local(p) * (1.0 / self.metres_per_pixel);
-        (left + width / 2.0 + v.e as f32, top + height / 2.0 - v.n as f32)
-    }
-
-    /// Left, top, width, height, pixels.
-    pub(super) fn window(&self) -> (f32, f32, f32, f32) {
-        self.window
-    }
-
-    /// Well inside the window.
-    pub(super) fn shows(&self, (x, y): (f32, f32)) -> bool {
-        let (left, top, width, height) = self.window;
-        (left + 4.0..left + width - 4.0).contains(&x) && (top + 4.0..top + height - 4.0).contains(&y)
-    }
-
-    /// A track as pixels, without points closer than one pixel.
-    fn line(&self, track: &Track) -> Vec<(f32, f32)> {
-        let mut line: Vec<(f32, f32)> = Vec::new();
-        for p in track.points() {
-            let (x, y) = self.place(p.position);
-            if line.last().is_none_or(|(a, b)| (x - a).hypot(y - b) >= 1.0) {
-                line.push((x, y));
-            }
-        }
-        line
-    }
-}
-
 fn draw_ground(canvas: &mut Canvas, record: &Record, view: &View) {
-    let (left, top, width, height) = view.window;
+    let (left, top, width, height) = view.window();
     let (columns, rows) = ((width / SHADE_SCALE) as u32, (height / SHADE_SCALE) as u32);
     let spacing_m = view.metres_per_pixel * f64::from(SHADE_SCALE);
     if let Some(ground) = hillshade::picture(record.terrain.as_ref(), &view.frame, spacing_m, columns, rows) {
@@ -203,18 +156,13 @@ fn draw_ground(canvas: &mut Canvas, record: &Record, view: &View) {
     }
 }
 
-fn outline(view: &View, area: &Area) -> Vec<(f32, f32)> {
-    area.outline.iter().map(|p| view.place(*p)).collect()
-}
-
 fn draw_area(canvas: &mut Canvas, view: &View, area: &Area) {
-    let points = outline(view, area);
+    let points = view.pixels(&area.outline);
     canvas.polygon(&points, AREA.faded(22));
     canvas.outline(&points, Pen::solid(PAPER.faded(200), 4.5));
     canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
     for hole in &area.holes {
-        let points: Vec<_> = hole.iter().map(|p| view.place(*p)).collect();
-        canvas.outline(&points, Pen::dashed(AREA, 2.4, [9.0, 5.0]));
+        canvas.outline(&view.pixels(hole), Pen::dashed(AREA, 2.4, [9.0, 5.0]));
     }
 }
 
@@ -224,7 +172,7 @@ fn label_areas(canvas: &mut Canvas, record: &Record, view: &View) {
     let mut taken: Vec<(f32, f32)> = Vec::new();
     let mut named: Vec<((f32, f32), f32)> = Vec::new();
     for area in &record.areas {
-        let points = outline(view, area);
+        let points = view.pixels(&area.outline);
         let Some((x, top)) = points.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
         let bottom = points.iter().fold(top, |y, p| y.max(p.1));
         if named.iter().any(|((nx, ny), nb)| (nx - x).abs() + (ny - top).abs() + (nb - bottom).abs() < 4.0) {
@@ -275,7 +223,8 @@ pub(super) fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
 
 /// Where the name of a place stands.
 fn name_of_place(view: &View, (x, y): (f32, f32)) -> ((f32, f32), Anchor) {
-    match x > view.window.0 + view.window.2 - 110.0 {
+    let (left, _, width, _) = view.window();
+    match x > left + width - 110.0 {
         true => ((x - 13.0, y), Anchor::Right),
         false => ((x + 13.0, y + 2.0), Anchor::Left),
     }

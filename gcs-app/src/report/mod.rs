@@ -2,7 +2,7 @@
 //!
 //! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
 //! `deviation`, `authored` and `coverage` measure, `tables` writes;
-//! `diagram` draws a plan's geometry for documents. Nothing here needs a display.
+//! `view`, `labels` and `zones` serve every picture of the ground; `diagram` draws a plan's geometry for documents. Nothing here needs a display.
 
 pub mod assemble;
 pub mod authored;
@@ -11,12 +11,15 @@ mod coverage;
 mod deviation;
 pub mod diagram;
 mod hillshade;
+mod labels;
 mod map;
 mod panel;
 mod profile;
 mod record;
 mod style;
 mod tables;
+mod view;
+mod zones;
 
 pub use coverage::Coverage;
 pub use deviation::{PassageReport, Statistics};

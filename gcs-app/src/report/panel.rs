@@ -4,7 +4,8 @@ use super::canvas::{Anchor, Canvas, Pen, Type};
 use super::map::numbered;
 use super::record::Record;
 use super::style::*;
-use super::{Findings, tables};
+use super::{Findings, tables, zones};
+use flight_plan::ZoneKind;
 
 const LINE: f32 = 24.0;
 const SIZE: f32 = 15.0;
@@ -98,6 +99,13 @@ fn legend(cursor: &mut Cursor, record: &Record) {
     }
     if !record.areas.is_empty() {
         cursor.sample(&[Pen::dashed(AREA, 2.4, [9.0, 5.0])], "area to be scanned");
+    }
+    for (kind, text) in
+        [(ZoneKind::KeepOut, "zone to keep out of"), (ZoneKind::KeepIn, "zone to stay inside")]
+    {
+        if record.zones.iter().any(|zone| zone.kind == kind) {
+            cursor.sample(&[zones::pen(kind)], text);
+        }
     }
     cursor.sample(&[Pen::solid(RUNWAY, 7.5), Pen::dashed(PAPER, 1.2, [6.0, 4.0])], "runway");
     if has_ground(record) {

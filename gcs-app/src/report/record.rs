@@ -1,6 +1,7 @@
 //! What a report is made from.
 
 use super::authored::AuthoredPath;
+use flight_plan::Zone;
 use geometry::LatLon;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -192,6 +193,8 @@ pub struct Record {
     pub authored: HashMap<PassageKey, AuthoredPath>,
     /// Fixes and runways.
     pub places: Vec<Place>,
+    /// Zones to keep out of and to stay inside.
+    pub zones: Vec<Zone>,
     /// Scanned areas.
     pub areas: Vec<Area>,
     /// What happened, in order.
@@ -233,6 +236,7 @@ pub(crate) mod tests {
                 },
                 Place { label: "COVE".into(), position: home.destination(0.0, 2500.0), kind: PlaceKind::Fix },
             ],
+            zones: Vec::new(),
             areas: vec![Area {
                 label: "fire, pass 1".into(),
                 outline: (0..36).map(|i| centre.destination(f64::from(i) * 10.0, 900.0)).collect(),

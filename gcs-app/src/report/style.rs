@@ -46,6 +46,10 @@ pub const PLANNED: Ink = rgb(0x3d8bfd);
 pub const FLOWN: Ink = rgb(0xb0124f);
 /// Scan areas.
 pub const AREA: Ink = rgb(0xe8590c);
+/// Zones to keep out of.
+pub const KEEP_OUT: Ink = rgb(0xc92a2a);
+/// Zones to stay inside.
+pub const KEEP_IN: Ink = rgb(0x2b8a3e);
 /// Runways.
 pub const RUNWAY: Ink = rgb(0x111827);
 /// Fixes.

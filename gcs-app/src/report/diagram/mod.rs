@@ -3,19 +3,18 @@
 //! Unlike the report's map it explains the geometry, not a flight: generated waypoints, areas with their holes, zones,
 //! routes, centres, the way back in another colour, and the altitude where it matters.
 
-mod labels;
 mod strip;
 mod surroundings;
 
 use super::canvas::{Anchor, Canvas, Pen, Type};
-use super::map::{View, arrow, draw_north, draw_place, draw_scale};
+use super::labels::Labels;
+use super::map::{arrow, draw_north, draw_place, draw_scale};
 use super::style::*;
-use super::{Place, assemble};
+use super::view::View;
+use super::{Place, assemble, zones};
 use flight_exec::preview::{FlownWaypoint, LegPassage, Preview};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
-use labels::Labels;
-use surroundings::Bounds;
 
 const WIDTH: f32 = 840.0;
 const HEIGHT: f32 = 540.0;
@@ -91,7 +90,7 @@ impl Diagram<'_> {
         let track = self.preview.track.iter().filter(|p| self.shows(p.passage)).map(|p| p.position);
         let waypoints = self.waypoints().map(|w| w.waypoint.position);
         let path: Vec<LatLon> = track.chain(waypoints).chain(self.outlines()).collect();
-        let zones = self.zones_near(Bounds::around(path.iter().copied()));
+        let zones = zones::near(&self.program.plan.zones, &path);
         path.into_iter().chain(zones)
     }
 
@@ -125,6 +124,7 @@ impl Diagram<'_> {
     fn draw(&self, canvas: &mut Canvas, view: &View) {
         let pieces = self.pieces(view);
         let mut labels = Labels::new(view.window());
+        labels.keep_corner_for_north();
         pieces.iter().for_each(|piece| labels.keep_clear(&piece.line));
         self.draw_surroundings(canvas, view, &mut labels);
         self.draw_path(canvas, &pieces);

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::headless::{Source, forecast};
+use crate::report::canvas::count;
 use aircraft::Wind;
 use flight_exec::preview::Scenario;
 use std::path::Path;
@@ -15,15 +16,6 @@ fn fragment(name: &str) -> (Arc<Program>, Preview) {
     let calm = Wind::default();
     let preview = forecast::fly(&program, &profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
     (program, preview)
-}
-
-/// Pixels of a colour in a picture.
-fn count(png: &[u8], ink: Ink) -> usize {
-    let picture = tiny_skia::Pixmap::decode_png(png).unwrap();
-    let same = |p: &&tiny_skia::PremultipliedColorU8| {
-        (p.red(), p.green(), p.blue()) == (ink.red, ink.green, ink.blue)
-    };
-    picture.pixels().iter().filter(same).count()
 }
 
 #[test]

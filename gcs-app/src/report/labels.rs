@@ -1,6 +1,6 @@
 //! Where names stand: beside what they name, off the path and off each other.
 
-use super::super::canvas::{Anchor, Canvas, Type};
+use super::canvas::{Anchor, Canvas, Type};
 
 /// Places already taken.
 pub struct Labels {
@@ -13,11 +13,15 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Nothing written yet.
+    /// Nothing written yet, in a window (left, top, width, height).
     pub fn new(window: (f32, f32, f32, f32)) -> Self {
-        // the north arrow
-        let corner = [window.0 + window.2 - 70.0, window.1, window.0 + window.2, window.1 + 76.0];
-        Self { window, clear: Vec::new(), taken: vec![corner] }
+        Self { window, clear: Vec::new(), taken: Vec::new() }
+    }
+
+    /// The right upper corner is the north arrow's.
+    pub fn keep_corner_for_north(&mut self) {
+        let (left, top, width, _) = self.window;
+        self.taken.push([left + width - 70.0, top, left + width, top + 76.0]);
     }
 
     /// A line that should not be written over.
@@ -58,6 +62,14 @@ impl Labels {
             places.extend([gap, -gap, gap * 1.6, -gap * 1.6].map(|gap| (ax + nx * gap, ay + ny * gap)));
         }
         self.write(canvas, &places, text, kind);
+    }
+
+    /// At one of a ring's edges.
+    pub fn at_ring(&mut self, canvas: &mut Canvas, points: &[(f32, f32)], text: &str, kind: Type) {
+        let edges = points.iter().zip(points.iter().cycle().skip(1));
+        let middles = edges.map(|(a, b)| ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0));
+        let beside = middles.flat_map(|(x, y)| [(x, y + 13.0), (x, y - 13.0), (x + 30.0, y), (x - 30.0, y)]);
+        self.write(canvas, &beside.collect::<Vec<_>>(), text, kind);
     }
 
     /// At the first of the places that covers least; nothing if all of them are outside.
