@@ -74,18 +74,23 @@ impl Labels {
 
     /// At the first of the places that covers least; nothing if all of them are outside.
     pub fn write(&mut self, canvas: &mut Canvas, places: &[(f32, f32)], text: &str, kind: Type) {
-        let half = canvas.text_width(text, kind.size) / 2.0 + 2.0;
-        let up = kind.size / 2.0 + 1.0;
-        let room = |(x, y): (f32, f32)| [x - half, y - up, x + half, y + up];
-        let best = places
-            .iter()
-            .copied()
-            .filter(|at| self.is_inside(room(*at)))
-            .min_by_key(|at| self.covers(room(*at)));
+        let inside = places.iter().copied().filter(|at| self.is_inside(room(canvas, *at, text, kind.size)));
+        let best = inside.min_by_key(|at| self.covers(room(canvas, *at, text, kind.size)));
         if let Some(at) = best {
-            self.taken.push(room(at));
-            canvas.text(at, Anchor::Middle, text, kind);
+            self.put(canvas, at, text, kind);
         }
+    }
+
+    /// There, or nowhere if it would cover another name.
+    pub fn where_free(&mut self, canvas: &mut Canvas, at: (f32, f32), text: &str, kind: Type) {
+        if self.names_below(room(canvas, at, text, kind.size)) == 0 {
+            self.put(canvas, at, text, kind);
+        }
+    }
+
+    fn put(&mut self, canvas: &mut Canvas, at: (f32, f32), text: &str, kind: Type) {
+        self.taken.push(room(canvas, at, text, kind.size));
+        canvas.text(at, Anchor::Middle, text, kind);
     }
 
     fn is_inside(&self, [left, top, right, bottom]: [f32; 4]) -> bool {
@@ -94,9 +99,39 @@ impl Labels {
     }
 
     /// How much would be covered: another name counts as much as a long piece of the path.
-    fn covers(&self, [left, top, right, bottom]: [f32; 4]) -> usize {
-        let others = self.taken.iter().filter(|t| left < t[2] && right > t[0] && top < t[3] && bottom > t[1]);
+    fn covers(&self, room: [f32; 4]) -> usize {
+        let [left, top, right, bottom] = room;
         let path = self.clear.iter().filter(|(x, y)| (left..right).contains(x) && (top..bottom).contains(y));
-        others.count() * 1000 + path.count()
+        self.names_below(room) * 1000 + path.count()
+    }
+
+    fn names_below(&self, [left, top, right, bottom]: [f32; 4]) -> usize {
+        let meets = |t: &&[f32; 4]| left < t[2] && right > t[0] && top < t[3] && bottom > t[1];
+        self.taken.iter().filter(meets).count()
+    }
+}
+
+/// What a text about its middle takes: left, top, right, bottom.
+fn room(canvas: &Canvas, (x, y): (f32, f32), text: &str, size: f32) -> [f32; 4] {
+    let (half, up) = (canvas.text_width(text, size) / 2.0 + 2.0, size / 2.0 + 1.0);
+    [x - half, y - up, x + half, y + up]
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::style::*;
+    use super::*;
+
+    #[test]
+    fn times_that_would_cover_each_other() {
+        let mut canvas = Canvas::new(400, 300, PAPER).unwrap();
+        let mut labels = Labels::new((0.0, 0.0, 400.0, 300.0));
+        for (at, written) in
+            [((100.0, 100.0), 1), ((130.0, 108.0), 1), ((100.0, 120.0), 2), ((170.0, 100.0), 3)]
+        {
+            labels.where_free(&mut canvas, at, "25 min", Type::plain(14.0, TEXT));
+            assert_eq!(labels.taken.len(), written, "{at:?}");
+        }
     }
 }

@@ -18,10 +18,6 @@ const MAP_HEIGHT: f32 = HEIGHT - HEADER;
 const SHADE_SCALE: f32 = 2.0;
 /// Minutes between the time marks on the track.
 const TIME_MARK_MIN: u32 = 5;
-/// Size of the times beside them, pixels.
-const TIME_SIZE: f32 = 14.0;
-/// Size of the names of places, pixels.
-const PLACE_SIZE: f32 = 16.0;
 
 /// Side of the enlarged view of the scanned areas, pixels.
 const INSET: f32 = 300.0;
@@ -42,7 +38,7 @@ pub fn png(record: &Record, findings: &Findings) -> anyhow::Result<Vec<u8>> {
     let mut labels = Labels::new(view.window());
     labels.keep_corner_for_north();
     draw_flight(&mut canvas, record, &view, &mut labels);
-    draw_time_marks(&mut canvas, record, &view, elsewhere);
+    draw_time_marks(&mut canvas, record, &view, &mut labels, elsewhere);
     draw_happenings(&mut canvas, record, &view, elsewhere);
     match elsewhere {
         Some(frame) => draw_frame(&mut canvas, frame),
@@ -75,7 +71,7 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View, labels: &mut L
         draw_area(canvas, view, area);
     }
     draw_tracks(canvas, record, view);
-    record.places.iter().for_each(|place| draw_place(canvas, view, place));
+    draw_places(canvas, view, labels, &record.places, PAPER);
 }
 
 /// The enlarged view of the scanned areas with the turns around them, where the map shows them too small.
@@ -97,7 +93,7 @@ fn inset(record: &Record, view: &View) -> anyhow::Result<Canvas> {
     Ok(canvas)
 }
 
-/// A part of the map: what it leaves to the enlarged view, where marks and names would cover everything; where a text stands.
+/// The part of the map that is left to the enlarged view: marks and names would cover everything there.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     left: f32,
@@ -113,19 +109,6 @@ impl Frame {
         let corner = |e: f64, n: f64| map.place(inset.frame.to_geo(Vec2::new(e, n)));
         let ((left, top), (right, bottom)) = (corner(-half_m, half_m), corner(half_m, -half_m));
         Self { left, top, right, bottom }
-    }
-
-    /// Of a text about its middle.
-    fn of_text(canvas: &Canvas, (x, y): (f32, f32), text: &str, size: f32) -> Self {
-        let (half, up) = (canvas.text_width(text, size) / 2.0 + 2.0, size * 0.6);
-        Self { left: x - half, top: y - up, right: x + half, bottom: y + up }
-    }
-
-    fn meets(self, other: Self) -> bool {
-        self.left < other.right
-            && other.left < self.right
-            && self.top < other.bottom
-            && other.top < self.bottom
     }
 
     fn contains(self, (x, y): (f32, f32)) -> bool {
@@ -199,16 +182,28 @@ fn draw_tracks(canvas: &mut Canvas, record: &Record, view: &View) {
     canvas.line(&view.line(&record.flown), Pen::solid(FLOWN, 1.9));
 }
 
-/// A fix or a runway, with its name.
-pub(super) fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
-    let (x, y) = view.place(place.position);
-    if !view.shows((x, y)) {
-        return;
+/// Fixes and runways within the window, on a picture of this colour. Names come last: no sign covers one.
+pub(super) fn draw_places(
+    canvas: &mut Canvas,
+    view: &View,
+    labels: &mut Labels,
+    places: &[Place],
+    paper: Ink,
+) {
+    let placed = places.iter().map(|place| (place, view.place(place.position)));
+    let shown: Vec<(&Place, (f32, f32))> = placed.filter(|(_, at)| view.shows(*at)).collect();
+    shown.iter().for_each(|(place, at)| draw_sign(canvas, view, place, *at));
+    for (place, at) in shown {
+        labels.beside(canvas, at, &place.label, Type::bold(16.0, FIX).on(paper));
     }
+}
+
+fn draw_sign(canvas: &mut Canvas, view: &View, place: &Place, (x, y): (f32, f32)) {
     match place.kind {
         PlaceKind::Fix => {
-            canvas.polygon(&[(x, y - 7.0), (x + 6.5, y + 4.5), (x - 6.5, y + 4.5)], PAPER);
-            canvas.outline(&[(x, y - 7.0), (x + 6.5, y + 4.5), (x - 6.5, y + 4.5)], Pen::solid(FIX, 1.8));
+            let corners = [(x, y - 7.0), (x + 6.5, y + 4.5), (x - 6.5, y + 4.5)];
+            canvas.polygon(&corners, PAPER);
+            canvas.outline(&corners, Pen::solid(FIX, 1.8));
         }
         PlaceKind::Runway { heading_deg, length_m } => {
             let end = view.place(place.position.destination(heading_deg, length_m));
@@ -217,36 +212,19 @@ pub(super) fn draw_place(canvas: &mut Canvas, view: &View, place: &Place) {
             canvas.line(&[(x, y), end], Pen::dashed(PAPER, 1.2, [6.0, 4.0]));
         }
     }
-    let (at, anchor) = name_of_place(view, (x, y));
-    canvas.text(at, anchor, &place.label, Type::bold(PLACE_SIZE, FIX).on(PAPER));
 }
 
-/// Where the name of a place stands.
-fn name_of_place(view: &View, (x, y): (f32, f32)) -> ((f32, f32), Anchor) {
-    let (left, _, width, _) = view.window();
-    match x > left + width - 110.0 {
-        true => ((x - 13.0, y), Anchor::Right),
-        false => ((x + 13.0, y + 2.0), Anchor::Left),
-    }
-}
-
-/// What the names of the places cover.
-fn names_of_places(canvas: &Canvas, record: &Record, view: &View) -> Vec<Frame> {
-    let frame = |place: &Place| {
-        let ((x, y), anchor) = name_of_place(view, view.place(place.position));
-        let half = canvas.text_width(&place.label, PLACE_SIZE) / 2.0;
-        let middle = if matches!(anchor, Anchor::Right) { x - half } else { x + half };
-        Frame::of_text(canvas, (middle, y), &place.label, PLACE_SIZE)
-    };
-    record.places.iter().map(frame).collect()
-}
-
-fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere: Option<Frame>) {
+fn draw_time_marks(
+    canvas: &mut Canvas,
+    record: &Record,
+    view: &View,
+    labels: &mut Labels,
+    elsewhere: Option<Frame>,
+) {
     let track = record.main_track();
     let Some(start) = track.points().first() else { return };
     let ink = if record.flown.points().is_empty() { PLANNED } else { FLOWN };
     let mut taken: Vec<(f32, f32)> = Vec::new();
-    let mut labels = names_of_places(canvas, record, view);
     let marks = (track.duration_s() / 60.0) as u32 / TIME_MARK_MIN;
     for minute in (1..=marks).map(|i| i * TIME_MARK_MIN) {
         let time_s = start.time_s + f64::from(minute) * 60.0;
@@ -264,14 +242,9 @@ fn draw_time_marks(canvas: &mut Canvas, record: &Record, view: &View, elsewhere:
         let (dx, dy) = ((x - ax) / length, (y - ay) / length);
         arrow(canvas, (x, y), (dx, dy), ink);
         let beside = (x - dy * 26.0, y + dx * 20.0);
+        // the arrow says enough where the time would cover another name
         let text = format!("{minute} min");
-        let label = Frame::of_text(canvas, beside, &text, TIME_SIZE);
-        // the arrow says enough where the time would cover another one, or the name of a place
-        if labels.iter().any(|other| label.meets(*other)) {
-            continue;
-        }
-        labels.push(label);
-        canvas.text(beside, Anchor::Middle, &text, Type::plain(TIME_SIZE, TEXT).on(PAPER));
+        labels.where_free(canvas, beside, &text, Type::plain(14.0, TEXT).on(PAPER));
     }
 }
 
@@ -357,12 +330,25 @@ mod tests {
         }
     }
 
+    /// A map with these places, all in the same spot.
+    fn map_with(places: &[(&str, PlaceKind)]) -> tiny_skia::Pixmap {
+        let mut record = crate::report::record::tests::record();
+        let position = record.planned.points()[0].position.destination(300.0, 3000.0);
+        let place =
+            |(label, kind): &(&str, PlaceKind)| Place { label: (*label).into(), position, kind: *kind };
+        record.places = places.iter().map(place).collect();
+        tiny_skia::Pixmap::decode_png(&png(&record, &Findings::default()).unwrap()).unwrap()
+    }
+
     #[test]
-    fn times_that_would_cover_each_other() {
-        let canvas = Canvas::new(400, 300, PAPER).unwrap();
-        let at = |x: f32, y: f32| Frame::of_text(&canvas, (x, y), "25 min", TIME_SIZE);
-        assert!(at(100.0, 100.0).meets(at(130.0, 108.0)) && at(130.0, 108.0).meets(at(100.0, 100.0)));
-        assert!(!at(100.0, 100.0).meets(at(100.0, 120.0)) && !at(100.0, 100.0).meets(at(170.0, 100.0)));
+    fn names_of_places_in_the_same_spot_are_both_read() {
+        let runway = PlaceKind::Runway { heading_deg: 52.0, length_m: 600.0 };
+        let [bare, fix, strip, both] = [("", ""), ("FIX", ""), ("", "STRIP"), ("FIX", "STRIP")]
+            .map(|(fix, strip)| map_with(&[(fix, PlaceKind::Fix), (strip, runway)]));
+        let written =
+            |map: &tiny_skia::Pixmap| map.pixels().iter().zip(bare.pixels()).filter(|(a, b)| a != b).count();
+        let (alone, together) = (written(&fix) + written(&strip), written(&both));
+        assert!(alone > 500 && together > alone * 9 / 10, "{alone} {together}");
     }
 
     #[test]

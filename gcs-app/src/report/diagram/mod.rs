@@ -8,10 +8,10 @@ mod surroundings;
 
 use super::canvas::{Anchor, Canvas, Pen, Type};
 use super::labels::Labels;
-use super::map::{arrow, draw_north, draw_place, draw_scale};
+use super::map::{arrow, draw_north, draw_places, draw_scale};
 use super::style::*;
 use super::view::View;
-use super::{Place, assemble, zones};
+use super::{assemble, zones};
 use flight_exec::preview::{FlownWaypoint, LegPassage, Preview};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
@@ -129,7 +129,7 @@ impl Diagram<'_> {
         self.draw_surroundings(canvas, view, &mut labels);
         self.draw_path(canvas, &pieces);
         self.draw_waypoints(canvas, view);
-        self.draw_places(canvas, view, &mut labels);
+        draw_places(canvas, view, &mut labels, &assemble::places(&self.program.plan), DIAGRAM_PAPER);
         self.label_legs(canvas, &pieces, &mut labels);
     }
 
@@ -174,16 +174,6 @@ impl Diagram<'_> {
             let at = view.place(waypoint.waypoint.position);
             canvas.disc(at, radius, TEXT);
             canvas.disc(at, radius - 1.4, DIAGRAM_PAPER);
-        }
-    }
-
-    fn draw_places(&self, canvas: &mut Canvas, view: &View, labels: &mut Labels) {
-        for place in assemble::places(&self.program.plan) {
-            let at = view.place(place.position);
-            if view.shows(at) {
-                draw_place(canvas, view, &Place { label: String::new(), ..place.clone() });
-                labels.beside(canvas, at, &place.label, Type::bold(16.0, FIX).on(DIAGRAM_PAPER));
-            }
         }
     }
 
