@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Pen, Type};
 use super::map::numbered;
 use super::record::Record;
 use super::style::*;
-use super::{Findings, tables, zones};
+use super::{Coverage, Findings, tables, zones};
 use flight_plan::ZoneKind;
 
 const LINE: f32 = 24.0;
@@ -132,9 +132,14 @@ fn summary(cursor: &mut Cursor, record: &Record, findings: &Findings) {
         }
     }
     for coverage in &findings.coverages {
-        cursor.row(&format!("seen of {}", coverage.label), &format!("{:.2} %", coverage.share * 100.0));
+        cursor.row(&seen_of(coverage), &format!("{:.2} %", coverage.share * 100.0));
     }
     cursor.y += 12.0;
+}
+
+/// The name of a row: an area may be flown over there and back.
+fn seen_of(coverage: &Coverage) -> String {
+    format!("seen of {}", coverage.passage)
 }
 
 /// Only what does not hold is spelled out here; the tables have all of it.
@@ -190,6 +195,19 @@ fn happenings(cursor: &mut Cursor, record: &Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_way_back_over_an_area_has_a_row_of_its_own() {
+        let mut record = crate::report::made_up_record();
+        record.areas.push(record.areas[0].clone());
+        record.areas[1].passage.reverse = true;
+        let mut back = record.flown.clone();
+        back.begin(record.areas[1].passage.clone(), "scan", "Fire watch".into());
+        record.flown.points().iter().for_each(|p| back.push(*p));
+        record.flown = back;
+        let names: Vec<String> = Findings::of(&record).coverages.iter().map(seen_of).collect();
+        assert_eq!(names, ["seen of sweep (patrol 1)", "seen of sweep (patrol 1) reversed"]);
+    }
 
     #[test]
     fn contours_are_where_the_ground_is_known() {
