@@ -44,6 +44,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     }
     let (bytes, notes) = match format {
         FileFormat::Legwork => {
+            written_whole(selection)?;
             let mut loaded = source.load()?;
             selection.prepare(&mut loaded)?;
             if loaded.reading.has_errors() {
@@ -64,6 +65,18 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     target.overwriting.write(&target.file, &bytes)?;
     tell(&source.file, &notes, target.json);
     Ok(ExitCode::from(u8::from(target.strict && !notes.is_empty())))
+}
+
+/// Our own format holds every way of a plan.
+fn written_whole(selection: &Selection) -> anyhow::Result<()> {
+    let option = match selection {
+        Selection { emergency: Some(_), .. } => "--emergency",
+        Selection { decide, .. } if !decide.is_empty() => "--decide",
+        _ => return Ok(()),
+    };
+    bail!(
+        "{option} chooses among the ways that are flown, and XML holds all of them: leave it out, or name another format"
+    )
 }
 
 fn tell(file: &Path, notes: &[Note], json: bool) {
@@ -121,5 +134,20 @@ mod tests {
         assert_eq!(convert(&source, &strict).unwrap(), format!("{:?}", ExitCode::from(1)));
         let nameless = convert(&source, &target(folder.path().join("a"))).unwrap_err();
         assert!(nameless.to_string().contains("--to"), "{nameless}");
+    }
+
+    #[test]
+    fn a_plan_is_written_whole() {
+        let (_plan, source) = source(SQUARE);
+        let folder = tempfile::tempdir().unwrap();
+        let pair = || vec![("ask".to_owned(), "on".to_owned())];
+        for (selection, option) in [
+            (Selection { emergency: Some("return".into()), ..Selection::default() }, "--emergency"),
+            (Selection { decide: pair(), ..Selection::default() }, "--decide"),
+        ] {
+            let there = folder.path().join("a.xml");
+            let error = run(&source, Air::default(), &selection, &target(there.clone())).unwrap_err();
+            assert!(error.to_string().contains(option) && !there.exists(), "{error}");
+        }
     }
 }

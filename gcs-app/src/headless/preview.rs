@@ -21,7 +21,8 @@ pub struct Target {
     #[arg(long, value_name = "PNG", conflicts_with = "out")]
     pub diagram: Option<PathBuf>,
     /// The stage that the diagram shows; otherwise all of them.
-    #[arg(long, value_name = "STAGE", requires = "diagram")]
+    // what a present option conflicts with is not required any more: `out` has to be forbidden, too
+    #[arg(long, value_name = "STAGE", requires = "diagram", conflicts_with = "out")]
     pub stage: Option<String>,
     /// The outcome as one JSON document instead of a line.
     #[arg(long)]
@@ -105,4 +106,23 @@ fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
         "landed": preview.landed,
         "legs": preview.legs,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        target: Target,
+    }
+
+    #[test]
+    fn a_stage_is_only_for_a_diagram() {
+        let accepted = |words: &[&str]| Line::try_parse_from(["preview"].iter().chain(words)).is_ok();
+        assert!(accepted(&["--stage", "s", "--diagram", "d.png"]) && accepted(&["--out", "o"]));
+        assert!(!accepted(&["--stage", "s"]) && !accepted(&["--stage", "s", "--out", "o"]));
+    }
 }
