@@ -1,12 +1,13 @@
 //! `legwork diff`: what changed between two plans, and where an aircraft would go.
 
+use super::output::DASH;
 use super::source::{Loaded, Source};
 use super::wind::Air;
 use super::{check, forecast, select};
 use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
 use flight_exec::preview::{Act, Scenario, Trigger, When};
-use flight_plan::{Change, Problem};
+use flight_plan::{Change, FlightPlan, Id, Problem};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -27,6 +28,9 @@ pub struct Moment {
 /// # Errors
 /// A file can't be read, or there is no such leg.
 pub fn run(old: &Source, new: &Path, moment: &Moment, air: Air, json: bool) -> anyhow::Result<ExitCode> {
+    if old.file.as_os_str() == DASH && new.as_os_str() == DASH {
+        bail!("standard input can be only one of the plans: name a file for the other");
+    }
     let new = Source { file: new.to_owned(), ..old.clone() };
     let (Some(before), Some(after)) = (readable(old)?, readable(&new)?) else { return Ok(ExitCode::from(1)) };
     let changes = flight_plan::diff::changes(&before.reading.plan, &after.reading.plan);
@@ -105,17 +109,32 @@ fn takeover(
     if !forbidden.is_empty() {
         return Ok(refused(new, forbidden));
     }
-    let at = When::Entering { leg: leg.clone(), iteration: pass };
+    let place = reached(&flown, &leg, pass)?;
+    let at = When::Entering { leg, iteration: pass };
     let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
-    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air.wind, &scenario)?;
+    // it ends where it gets there: whatever else ends it comes before
+    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air.wind, &scenario)
+        .map_err(|why| anyhow!("the old plan never comes to {place}: {why}"))?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");
     }
     // the first one put the old plan itself forward
     let last = preview.proposals.pop().filter(|_| preview.not_fired.is_empty());
-    let (_, report) = last.ok_or_else(|| anyhow!("the old plan never comes to leg `{leg}`"))?;
+    let (_, report) = last.ok_or_else(|| anyhow!("the old plan never comes to {place}"))?;
     Ok(Ok(report))
+}
+
+/// A leg and its pass, for people.
+///
+/// # Errors
+/// A pass of a leg that no loop is around.
+fn reached(flown: &FlightPlan, leg: &Id, pass: Option<u64>) -> anyhow::Result<String> {
+    let Some(pass) = pass else { return Ok(format!("leg `{leg}`")) };
+    if flown.leg(leg).is_none_or(|context| context.loops.is_empty()) {
+        bail!("`{leg}` is in no loop: leave --pass out");
+    }
+    Ok(format!("pass {pass} of leg `{leg}`"))
 }
 
 fn told(report: &ProposalReport) -> Vec<String> {
@@ -232,5 +251,29 @@ mod tests {
         let file = new.file.display().to_string();
         assert!(problems.iter().all(|p| p.starts_with(&file)), "{problems:?}");
         assert!(problems.iter().any(|p| p.contains("[keep-out]")), "{problems:?}");
+    }
+
+    #[test]
+    fn a_place_that_is_never_reached_is_named_with_its_pass() {
+        let stop = "<intersection id=\"ask\"><branch id=\"on\"/><branch id=\"by\" next=\"side3\"/></intersection><TF id=\"side2\"";
+        let waits = SQUARE.replace("<TF id=\"side2\"", stop);
+        let looped = SQUARE
+            .replace("<TF id=\"side2\"", "<iterative id=\"l\" form=\"forward\" count=\"2\"><TF id=\"side2\"")
+            .replace("<TF id=\"side4\"", "</iterative><TF id=\"side4\"");
+        for (plan, leg, pass, said) in [
+            (&looped, "side3", Some(7), "never comes to pass 7 of leg `side3`"),
+            (&looped, "side1", Some(2), "`side1` is in no loop: leave --pass out"),
+            (&waits, "side3", None, "never comes to leg `side3`: the energy is used up"),
+        ] {
+            let error = status(plan, SQUARE, &Moment { at: Some(leg.into()), pass }).unwrap_err();
+            assert!(error.to_string().contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn standard_input_is_one_plan() {
+        let input = Source { file: "-".into(), ..Source::default() };
+        let error = run(&input, Path::new("-"), &Moment::default(), Air::default(), true).unwrap_err();
+        assert!(error.to_string().contains("standard input"), "{error}");
     }
 }
