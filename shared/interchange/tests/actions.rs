@@ -128,8 +128,10 @@ fn pictures_of_a_survey_come_back() {
         let items = json["mission"]["items"].as_array().unwrap();
         let pattern = items.iter().find(|i| i["type"] == "ComplexItem").unwrap();
         assert_eq!(pattern["TransectStyleComplexItem"]["CameraCalc"]["AdjustedFootprintFrontal"], camera_m);
-        let found = read(Format::Plan, &file.bytes, &Assumptions::default()).unwrap().plan;
-        assert_eq!(found.stages[0].legs[0].actions, both);
+        let found = read(Format::Plan, &file.bytes, &Assumptions::default()).unwrap();
+        assert_eq!(found.plan.stages[0].legs[0].actions, both);
+        let in_turns = found.notes.iter().any(|n| n.message.contains("in the turns"));
+        assert_eq!(in_turns, camera_m > 0.0, "{:?}", found.notes);
     }
 }
 

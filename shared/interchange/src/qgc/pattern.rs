@@ -44,7 +44,7 @@ pub fn read(
         );
         Spacing::Metres(Value::Constant(assumptions.spacing_m))
     });
-    lost(item, transect, place, notes);
+    lost(item, transect, &camera, place, notes);
     let (kind, wish) = match corridor {
         true => (LegKind::Pattern(along(item, transect, &corners, spacing, place, notes)), "corridor"),
         false => (LegKind::Scan(survey(item, transect, corners, spacing, place, notes)), "survey"),
@@ -138,14 +138,9 @@ pub fn tell(leg: &Leg, notes: &mut Notes) {
 }
 
 /// Settings that have no counterpart.
-fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
+fn lost(item: &Json, transect: &Json, camera: &Camera, place: &str, notes: &mut Notes) {
     let cases = [
         (transect, "HoverAndCapture", "stopping for each picture is left out"),
-        (
-            transect,
-            "CameraTriggerInTurnAround",
-            "pictures are taken in the turns, too, as asked; switch them off in the leg's actions if need be",
-        ),
         (
             item,
             "flyAlternateTransects",
@@ -158,9 +153,20 @@ fn lost(item: &Json, transect: &Json, place: &str, notes: &mut Notes) {
             notes.again("pattern-setting", place, message);
         }
     }
-    if transect.get("CameraTriggerInTurnAround").and_then(Json::as_bool) == Some(false) {
-        let message = "pictures are taken in the turns, too: a series lasts as long as its leg";
-        notes.again("pattern-setting", place, message);
+    // without a trigger of its own, a pattern has no pictures in its turns either
+    let in_turns = camera.every_m.and_then(|_| transect.get("CameraTriggerInTurnAround")?.as_bool());
+    match in_turns {
+        Some(true) => notes.again(
+            "pattern-setting",
+            place,
+            "pictures are taken in the turns, too, as asked; switch them off in the leg's actions if need be",
+        ),
+        Some(false) => notes.again(
+            "pattern-setting",
+            place,
+            "pictures are taken in the turns, too: a series lasts as long as its leg",
+        ),
+        None => {}
     }
     let limited = |key: &&str| number(transect, key).is_some_and(|rate_mps| rate_mps > 0.0);
     if ["TerrainAdjustMaxClimbRate", "TerrainAdjustMaxDescentRate"].iter().any(limited) {
