@@ -6,15 +6,11 @@ use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use flight_exec::preview::Preview;
-use flight_exec::{Action, Waypoint};
 use flight_plan::Program;
-use interchange::{Export, Note};
+use interchange::{Export, Note, csv};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-
-const HEAD: &str =
-    "token,leg,latitude_deg,longitude_deg,altitude_amsl_m,airspeed_mps,action,fly_over,steered_to_from_s";
 
 /// Where and how the waypoints are written.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -22,10 +18,10 @@ pub struct Written {
     /// One JSON document instead of CSV.
     #[arg(long, conflicts_with = "to")]
     pub json: bool,
-    /// CSV (what comes without options, too).
+    /// CSV of all that is sent, with tokens and times (what comes without options, too).
     #[arg(long, conflicts_with_all = ["json", "to"])]
     pub csv: bool,
-    /// Another program's format: plan, waypoints, kml, kmz, geojson or gpx.
+    /// Another program's format: plan, waypoints, kml, kmz, geojson or gpx; csv is what `legwork convert` writes.
     #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]
     pub to: Option<FileFormat>,
     /// A file instead of standard output; its extension is the format.
@@ -143,31 +139,38 @@ fn document(preview: &Preview, selection: &Selection) -> serde_json::Value {
     serde_json::json!({"waypoints": selected})
 }
 
+/// One line for each waypoint as it is sent, those that are replaced before they are reached too.
 fn csv(preview: &Preview, selection: &Selection) -> String {
-    let mut text = format!("{HEAD}\n");
+    let mut text = format!("token,{},steered_to_from_s\n", csv::COLUMNS);
     for flown in preview.waypoints.iter().filter(|w| selection.takes(w.passage, preview)) {
         let w = &flown.waypoint;
-        text += &format!(
-            "{},{},{:.7},{:.7},{:.1},{:.1},{},{},{:.1}\n",
-            w.token.0,
-            w.leg,
-            w.position.lat_deg,
-            w.position.lon_deg,
-            w.altitude_amsl_m,
-            w.airspeed_mps,
-            action(w),
-            w.fly_over,
-            flown.from_s
-        );
+        text += &format!("{},{},{:.1}\n", w.token.0, csv::columns(w), flown.from_s);
     }
     text
 }
 
-fn action(waypoint: &Waypoint) -> &'static str {
-    match waypoint.action {
-        Action::TakeOff { .. } => "take-off",
-        Action::Fly => "fly",
-        Action::Loiter { .. } => "loiter",
-        Action::Land { .. } => "land",
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    /// A program that reads one of them finds its columns in the other.
+    #[test]
+    fn both_tables_have_the_same_columns_in_the_same_places() {
+        let (_file, source) = source(include_bytes!("../../../assets/plans/square.xml"));
+        let selection = Selection::default();
+        let Flown { program, preview, .. } =
+            fly(&source, Air::default(), &selection).unwrap().unwrap_or_else(|_| panic!("not flown"));
+        let export = Export { plan: program.flown(), steps: &selection.steps(&preview) };
+        let converted = interchange::write(interchange::Format::Csv, &export).unwrap().bytes;
+        let converted = String::from_utf8(converted).unwrap();
+        let expanded = csv(&preview, &selection);
+        let (converted, expanded) = (converted.lines(), expanded.lines());
+        for (row, (a, b)) in converted.zip(expanded).enumerate() {
+            let (a, b): (Vec<_>, Vec<_>) = (a.split(',').collect(), b.split(',').collect());
+            assert_eq!(a[1..8], b[1..8], "row {row}");
+            assert_eq!((a.len(), b.len()), (9, 9));
+        }
     }
 }

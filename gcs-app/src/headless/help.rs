@@ -11,7 +11,9 @@ macro_rules! with_examples {
             "  2  wrong usage, or a file that can't be read or written\n",
             "\nFormats:\n",
             "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written.\n",
-            "  They are found by content and name. `-` is standard input or output. Nothing is overwritten without --force."
+            "  Both kinds of csv begin with number or token, leg, position, altitude, airspeed, action, fly_over: `expand` lists what is\n",
+            "  sent, also what is replaced before it is reached, and when it is steered to; `convert` what is flown, by passage.\n",
+            "  Formats are found by content and name. `-` is standard input or output. Nothing is overwritten without --force."
         )
     };
 }

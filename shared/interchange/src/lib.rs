@@ -5,7 +5,7 @@
 //! become fixes, legs, scans and zones. Written are the waypoints that are flown, as the executor expands them, so that
 //! another program flies the same path.
 
-mod csv;
+pub mod csv;
 mod drawing;
 mod geojson;
 mod gpx;

@@ -423,6 +423,6 @@ fn csv_has_a_line_for_each_waypoint() {
     let steps = [step("w", 3, at, 500.0, 25.0, Action::Land { heading_deg: 0.0 })];
     let written = write(Format::Csv, &Export { plan: &plan(vec![]), steps: &steps }).unwrap();
     let text = String::from_utf8(written.bytes).unwrap();
-    assert_eq!(text.lines().nth(1), Some("1,w,3,36.330000000,-84.150000000,500.0000,25.000,land,false"));
+    assert_eq!(text.lines().nth(1), Some("1,w,36.330000000,-84.150000000,500.0000,25.000,land,false,3"));
     assert_eq!(text.lines().count(), 2);
 }
