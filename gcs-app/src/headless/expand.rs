@@ -117,7 +117,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
-            eprintln!("{}: {error}", source.file.display());
+            eprintln!("{}: {}", source.file.display(), forecast::why(&error));
             return Ok(Err(ExitCode::from(1)));
         }
     };

@@ -53,6 +53,14 @@ pub fn fly(
     result
 }
 
+/// Why a flight ahead of time came to no end; who gives the commands can choose for the plan.
+pub fn why(error: &PreviewError) -> String {
+    match error {
+        PreviewError::Waiting { .. } => format!("{error}, or choose a branch with --decide LEG=BRANCH"),
+        _ => error.to_string(),
+    }
+}
+
 /// On the runway, or before the first place of a plan that doesn't take off.
 fn start(program: &Program, terrain: &dyn Terrain) -> Start {
     let plan = program.flown();
@@ -107,5 +115,26 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         happenings,
         verdict: Vec::new(),
         terrain: loaded.terrain.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::headless::source::tests::source;
+
+    #[test]
+    fn who_waits_for_a_decision_learns_how_to_give_it() {
+        let ask = r#"<intersection id="ask"><branch id="on"/><branch id="by" next="side3"/></intersection><TF id="side2""#;
+        let square = include_str!("../../../assets/plans/square.xml").replace("<TF id=\"side2\"", ask);
+        let (_file, source) = source(square.as_bytes());
+        let loaded = source.load().unwrap();
+        let (program, profile) = loaded.compile().unwrap();
+        let calm = Wind::default();
+        let error =
+            fly(&Arc::new(program), &profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
+        assert!(why(&error).contains("--decide"), "{}", why(&error));
+        assert!(!error.to_string().contains("scenario"), "{error}");
     }
 }

@@ -58,7 +58,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
-            eprintln!("{}: {error}", source.file.display());
+            eprintln!("{}: {}", source.file.display(), forecast::why(&error));
             return Ok(ExitCode::from(1));
         }
     };

@@ -183,7 +183,7 @@ pub enum PreviewError {
     },
     /// It holds or waits, and nothing in the scenario would make it go on.
     #[error(
-        "after {seconds:.0} s the flight waits at leg `{leg}` and nobody goes on: give the intersection a default, or the scenario a command"
+        "after {seconds:.0} s the flight waits at leg `{leg}` and nobody goes on: give the intersection a default, or the holding an end"
     )]
     Waiting {
         /// When.
