@@ -3,12 +3,14 @@
 use super::source::Loaded;
 use super::{Source, foreign};
 use flight_exec::Conditions;
-use flight_plan::{FlightPlan, Problem};
+use flight_plan::{Edit, FlightPlan, Problem};
 use indicatif::{ProgressBar, ProgressStyle};
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
 
+/// So many remedies are told: each is a plan made anew and compared with the old one.
+const MOST_FIXES: usize = 100;
 /// How the progress is shown.
 const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values of variables";
 
@@ -90,10 +92,10 @@ pub fn status(problems: &[Problem]) -> ExitCode {
     ExitCode::from(u8::from(problems.iter().any(Problem::is_error)))
 }
 
-/// What a problem's remedy would do to the plan: a sentence, and its parts as data; null if there is none, or none that can be
-/// applied (to a leg that only a call makes).
-fn fix(plan: &FlightPlan, problem: &Problem) -> serde_json::Value {
-    let repaired = problem.fix.as_ref().and_then(|edit| edit.apply(plan).ok());
+/// What a remedy would do to the plan: a sentence, and its parts as data; null if it can't be applied (to a leg that only a call
+/// makes).
+fn fix(plan: &FlightPlan, edit: &Edit) -> serde_json::Value {
+    let repaired = edit.apply(plan).ok();
     let changes = repaired.map(|repaired| flight_plan::diff::changes(plan, &repaired)).unwrap_or_default();
     if changes.is_empty() {
         return serde_json::Value::Null;
@@ -103,9 +105,12 @@ fn fix(plan: &FlightPlan, problem: &Problem) -> serde_json::Value {
 }
 
 fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]) -> serde_json::Value {
+    let mut remedies = 0;
     let rows: Vec<_> = problems
         .iter()
         .map(|p| {
+            remedies += usize::from(p.fix.is_some());
+            let told = p.fix.as_ref().filter(|_| remedies <= MOST_FIXES);
             serde_json::json!({
                 "code": p.code,
                 "severity": p.severity,
@@ -113,12 +118,18 @@ fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]
                 "line": p.location.map(|l| l.line),
                 "column": p.location.map(|l| l.column),
                 "message": p.message,
-                "fix": fix(plan, p),
+                "fix": told.map(|edit| fix(plan, edit)),
             })
         })
         .collect();
     let good = !problems.iter().any(Problem::is_error);
-    serde_json::json!({"file": file.display().to_string(), "good": good, "problems": rows, "notes": notes})
+    serde_json::json!({
+        "file": file.display().to_string(),
+        "good": good,
+        "problems": rows,
+        "fixes_left_out": remedies.saturating_sub(MOST_FIXES),
+        "notes": notes,
+    })
 }
 
 #[cfg(test)]
@@ -126,6 +137,7 @@ mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::headless::source::tests::source;
+    use flight_plan::Value;
 
     #[test]
     fn a_bad_plan_has_status_1_and_places() {
@@ -152,5 +164,16 @@ mod tests {
         let said = fix["message"].as_str().unwrap();
         assert!(said.starts_with("leg ") && said.contains(" changed: count "), "{json:#}");
         assert_eq!(fix["changes"][0]["fate"], "changed");
+    }
+
+    /// Each one is a plan made anew and compared: a long list of them would take a minute.
+    #[test]
+    fn of_very_many_remedies_the_first_are_told_and_the_rest_counted() {
+        let plan = flight_plan::read(include_bytes!("../../../assets/plans/square.xml")).plan;
+        let fix = flight_plan::Edit::SetSpeed { of: "side1".into(), speed_mps: Some(Value::Constant(20.0)) };
+        let problem = Problem { fix: Some(fix.into()), ..Problem::warning("too-slow", "slow") };
+        let json = document(Path::new("a"), &plan, &vec![problem; 10_000], &[]);
+        let told = json["problems"].as_array().unwrap().iter().filter(|p| !p["fix"].is_null()).count();
+        assert_eq!((told, &json["fixes_left_out"]), (100, &9_900.into()));
     }
 }

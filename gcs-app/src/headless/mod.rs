@@ -32,6 +32,7 @@ pub enum Command {
     ///
     /// With --json each problem also has a `fix`: null, or what the remedy that the ground station offers would do, as a sentence
     /// (`message`) and part by part (`changes`, as `legwork diff --json` lists them).
+    /// Of the first hundred remedies; `fixes_left_out` counts the others.
     #[command(after_help = help::CHECK)]
     Check {
         /// The plan and its surroundings.
