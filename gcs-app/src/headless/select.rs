@@ -86,7 +86,7 @@ impl Selection {
             Some(name) => Ok(known_leg(plan, name)?),
             None => {
                 let first = plan.stages.iter().flat_map(|s| &s.legs).next();
-                first.map(|l| innermost(l).id.clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
+                first.map(|l| l.first_flown().id.clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
             }
         }
     }
@@ -105,11 +105,6 @@ impl Selection {
     }
 }
 
-/// Where a loop, or a call, is entered.
-fn innermost(leg: &flight_plan::Leg) -> &flight_plan::Leg {
-    leg.body().first().map_or(leg, |first| innermost(first))
-}
-
 /// The leg that begins what has this name: a leg, a loop, a call, or a stage. The plan is the one that is flown: its calls are
 /// the legs they stand for.
 ///
@@ -125,7 +120,7 @@ pub fn known_leg(plan: &FlightPlan, name: &str) -> anyhow::Result<Id> {
         },
         (None, None) => bail!("there is no leg `{name}` in the plan"),
     };
-    let leg = innermost(begun);
+    let leg = begun.first_flown();
     if matches!(leg.kind, LegKind::Intersection { .. }) {
         bail!("`{}` is passed without being flown: name the leg before or behind it", leg.id);
     }

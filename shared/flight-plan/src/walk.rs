@@ -88,6 +88,11 @@ impl Leg {
         }
     }
 
+    /// The leg that is flown first: itself or, of a loop or a call, the first one inside, however deep.
+    pub fn first_flown(&self) -> &Leg {
+        self.body().first().map_or(self, |first| first.first_flown())
+    }
+
     /// The legs inside it: the body of an iterative leg, else none.
     pub fn body(&self) -> &[Arc<Leg>] {
         match &self.kind {

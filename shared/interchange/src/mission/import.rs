@@ -125,7 +125,9 @@ impl Importer<'_> {
             Entry::Item(item) => self.item(item, ahead),
             Entry::Leg { leg, last, end, .. } => {
                 self.ready(number, (**leg).clone());
-                self.legs.iter_mut().next_back().into_iter().for_each(|l| l.last = (*last).max(number));
+                if let Some(made) = self.legs.last_mut() {
+                    made.last = (*last).max(number);
+                }
                 self.arrive(*end);
             }
             Entry::Landing { place, approach, land, relative, .. } => {
@@ -233,7 +235,7 @@ impl Importer<'_> {
             let message = "the loops inside are flown in each pass: an autopilot counts a jump once for the whole mission, and flies them in the first pass only";
             self.notes.push("nested-jump", &item.place, message);
         }
-        if jumps::first_flown(&made.leg).speed_mps != self.speed_mps.map(Value::Constant) {
+        if made.leg.first_flown().speed_mps != self.speed_mps.map(Value::Constant) {
             let message = "each pass begins at the speed of the first: an autopilot goes on at the speed that the pass before ended with";
             self.notes.push("speed-in-loop", &item.place, message);
         }

@@ -2,7 +2,7 @@
 
 use super::placed::{Placed, leg};
 use crate::names::Names;
-use flight_plan::{IterativeForm, Leg, LegKind, TurnDirection, Value};
+use flight_plan::{IterativeForm, LegKind, TurnDirection, Value};
 
 /// Deepest nest of loops.
 const MAX_DEPTH: usize = 8;
@@ -55,9 +55,4 @@ pub fn close(
     let id = names.take(&format!("loop{first}"), "loop");
     legs.push(Placed { leg: leg(id, kind), first, last: number, depth });
     Ok(())
-}
-
-/// The leg that a loop begins with, however deep.
-pub fn first_flown(leg: &Leg) -> &Leg {
-    leg.body().first().map_or(leg, |first| first_flown(first))
 }

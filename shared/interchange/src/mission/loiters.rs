@@ -3,14 +3,13 @@
 use super::commands as cmd;
 use super::import::Importer;
 use super::placed::{place, waypoint};
+use super::runways::SAME_M;
 use super::{Item, placed::Placed};
 use flight_plan::{Act, Altitude, Holding, HoldingLength, LegKind, TurnDirection, Value};
 use geometry::LatLon;
 
 /// Straight legs of the racetrack that stands for an endless circle, metres.
 const RACETRACK_M: f64 = 500.0;
-/// A loiter nearer than this to where the leg before ends is on the spot, metres: no track leads there.
-const SAME_M: f64 = 1.0;
 
 impl Importer<'_> {
     pub(super) fn loiter(&mut self, item: &Item) {
@@ -83,7 +82,7 @@ impl Importer<'_> {
         let before = self.legs.last();
         let stays = before.is_some() && self.last.is_some_and(|l| l.distance_m(position) < SAME_M);
         let level = altitude.is_none() || before.is_some_and(|l| l.leg.altitude == altitude);
-        if stays && level && before.is_some_and(waits) {
+        if stays && level && before.is_some_and(can_wait) {
             self.flush_at_end();
         } else if stays {
             self.hold_until_level(item, altitude, racetrack(position, turn, signed_m.abs()));
@@ -134,7 +133,7 @@ impl Importer<'_> {
 
     pub(super) fn delay(&mut self, item: &Item) {
         let seconds = item.param(1);
-        if seconds > 0.0 && self.legs.last().is_some_and(waits) {
+        if seconds > 0.0 && self.legs.last().is_some_and(can_wait) {
             self.wait(item, seconds);
         } else {
             self.not_carried(item);
@@ -150,8 +149,8 @@ impl Importer<'_> {
     }
 }
 
-/// A loop has no wait at its end.
-fn waits(before: &Placed) -> bool {
+/// A leg, not a loop, can wait at its end.
+fn can_wait(before: &Placed) -> bool {
     !matches!(before.leg.kind, LegKind::Iterative { .. })
 }
 

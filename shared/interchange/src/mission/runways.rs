@@ -6,7 +6,7 @@ use crate::synthetic::{Assumptions, runway};
 use flight_plan::{Id, Runway};
 use geometry::LatLon;
 
-/// Two points nearer than this are one runway, and give it no direction, metres.
+/// Two points nearer than this are one place, metres: one runway, which they give no direction; no track leads from one to the other.
 pub const SAME_M: f64 = 1.0;
 /// Directions nearer than this are the same, degrees.
 const SAME_DEG: f64 = 1.0;
