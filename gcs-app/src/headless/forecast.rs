@@ -95,17 +95,27 @@ pub fn track(preview: &Preview, plans: &[&FlightPlan]) -> Track {
     assemble::track(&points, &preview.events, plans)
 }
 
+/// Of how much of a track no elevation of the ground is known; `None`: it is known below all of it.
+fn unknown_ground(track: &Track, terrain: &dyn Terrain) -> Option<String> {
+    let points = track.points();
+    let unknown = points.iter().filter(|p| terrain.elevation_m(p.position).is_none()).count();
+    let percent = (100.0 * unknown as f64 / points.len().max(1) as f64).ceil();
+    (unknown > 0).then(|| format!("no elevation known below {percent:.0} % of it"))
+}
+
 /// A record of what would be flown.
 pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind) -> Record {
     let planned = track(preview, &[program.flown()]);
     let happenings: Vec<Happening> = preview.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect();
+    let mut notes = vec![
+        format!("preview for {}", program.plan.aircraft),
+        format!("wind {}", super::wind::shown(wind)),
+        format!("plan {}", program.hash().get(..12).unwrap_or(program.hash())),
+    ];
+    notes.extend(unknown_ground(&planned, loaded.terrain.as_ref()));
     Record {
         title: program.plan.name.clone(),
-        notes: vec![
-            format!("preview for {}", program.plan.aircraft),
-            format!("wind {}", super::wind::shown(wind)),
-            format!("plan {}", program.hash().get(..12).unwrap_or(program.hash())),
-        ],
+        notes,
         places: assemble::places(&program.plan),
         zones: program.plan.zones.clone(),
         areas: assemble::areas(program, &planned, &preview.events),
@@ -123,6 +133,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::headless::source::tests::source;
+    use terrain::{Flat, Tiles};
 
     #[test]
     fn who_waits_for_a_decision_learns_how_to_give_it() {
@@ -136,5 +147,13 @@ mod tests {
             fly(&Arc::new(program), &profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
         assert!(why(&error).contains("--decide"), "{}", why(&error));
         assert!(!error.to_string().contains("scenario"), "{error}");
+    }
+
+    #[test]
+    fn a_record_says_of_how_much_the_ground_is_not_known() {
+        let planned = crate::report::made_up_record().planned;
+        assert_eq!(unknown_ground(&planned, &Flat(300.0)), None);
+        let told = unknown_ground(&planned, &Tiles::new());
+        assert_eq!(told.as_deref(), Some("no elevation known below 100 % of it"));
     }
 }

@@ -231,7 +231,9 @@ fn draw_legend(canvas: &mut Canvas, record: &Record) {
     if flown {
         entries.push((FLOWN, 2.0, "flown"));
     }
-    entries.push((GROUND.faded(160), 9.0, "ground"));
+    if record.main_track().points().iter().any(|p| record.terrain.elevation_m(p.position).is_some()) {
+        entries.push((GROUND.faded(160), 9.0, "ground"));
+    }
     let mut x = RIGHT;
     for (ink, width, text) in entries.into_iter().rev() {
         let text_width = canvas.text((x, 57.0), Anchor::Right, text, Type::plain(15.0, TEXT));
