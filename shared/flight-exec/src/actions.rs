@@ -204,12 +204,6 @@ impl Executor {
         self.state.passages.retain(|p| !p.done.is_empty());
     }
 
-    /// Path length where the aircraft is, metres.
-    fn way_made_m(&self) -> f64 {
-        let front = self.state.handed.front().map(|h| h.end_m - self.to_current_m());
-        front.or(self.state.tail.as_ref().map(|t| t.path.distance_m)).unwrap_or(0.0)
-    }
-
     /// Begins to circle for a time, when the aircraft steers to such a waypoint. The leg's other actions at its end are done
     /// before.
     pub(crate) fn begin_wait(&mut self, handed: &Handed, out: &mut Vec<Output>) {

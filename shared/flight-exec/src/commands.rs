@@ -61,6 +61,7 @@ impl Executor {
         self.state.ahead = None;
         self.state.counts.clear();
         self.state.passages.clear();
+        self.state.handed.clear();
         self.state.tail = None;
         let cursor = Cursor::start(None, self.here(), self.state.last_passage);
         self.enter_phase(Phase::Flying, out);

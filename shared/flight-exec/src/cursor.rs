@@ -310,9 +310,9 @@ impl Cursor {
         self.expansion.as_ref().is_none_or(|e| e.count().is_none_or(|n| self.given >= n))
     }
 
-    /// Moves the end of the path to where the aircraft is: what follows is flown from there.
+    /// Moves the end of the path to where the aircraft is: what follows is flown from there, and what lay ahead is no way made.
     pub fn move_path_to(&mut self, here: PathState) {
-        self.path = PathState { distance_m: self.path.distance_m, time_s: self.path.time_s, ..here };
+        self.path = here;
         self.rejoined = None;
     }
 

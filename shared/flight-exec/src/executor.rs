@@ -2,6 +2,7 @@
 
 use crate::api::{Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
 use crate::config::Config;
+use crate::handed::Handed;
 use crate::path::{Level, Passing, PathState, distance_m};
 use crate::state::State;
 use crate::world::{Seen, World};
@@ -227,7 +228,7 @@ impl Executor {
         home.map_or(LatLon::new(0.0, 0.0), |r| r.threshold)
     }
 
-    /// The aircraft as the end of a path; before its first report, standing at home.
+    /// The aircraft as the end of the path that it has flown; before its first report, standing at home.
     pub fn here(&self) -> PathState {
         let runway = self.program.plan.home();
         let aircraft = self.state.aircraft.as_ref();
@@ -244,8 +245,8 @@ impl Executor {
             course_deg,
             predicted_amsl_m: altitude_m,
             commanded_amsl_m: altitude_m,
-            distance_m: self.state.tail.as_ref().map_or(0.0, |t| t.path.distance_m),
-            time_s: self.state.tail.as_ref().map_or(0.0, |t| t.path.time_s),
+            distance_m: self.way_made_m(),
+            time_s: self.time_made_s(),
         }
     }
 
@@ -255,6 +256,19 @@ impl Executor {
             (Some(front), Some(a)) => distance_m(a.position, front.waypoint.position),
             _ => 0.0,
         }
+    }
+
+    /// Path length where the aircraft is, metres.
+    pub(crate) fn way_made_m(&self) -> f64 {
+        let front = self.state.handed.front().map(|h| h.end_m - self.to_current_m());
+        front.or(self.state.tail.as_ref().map(|t| t.path.distance_m)).unwrap_or(0.0)
+    }
+
+    /// Flying time of the path where the aircraft is, seconds.
+    pub(crate) fn time_made_s(&self) -> f64 {
+        let speed = |h: &Handed| h.waypoint.airspeed_mps.max(1.0);
+        let front = self.state.handed.front().map(|h| h.end_s - self.to_current_m() / speed(h));
+        front.or(self.state.tail.as_ref().map(|t| t.path.time_s)).unwrap_or(0.0)
     }
 
     /// Path from the aircraft to a path length ahead, metres; never negative.

@@ -22,7 +22,7 @@ impl Executor {
         if self.is_muted() || self.state.onward != Onward::Open {
             return;
         }
-        let more = self.horizon(self.state.handed.len(), self.time_at_aircraft_s());
+        let more = self.horizon(self.state.handed.len(), self.time_made_s());
         let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
         let stretch = lay_out(tail, &self.world(), false, false, more);
         self.append(stretch, out);
@@ -37,15 +37,6 @@ impl Executor {
             let ahead = count + new;
             ahead < most && (ahead < least || cursor.path.time_s - from_s < horizon_s)
         }
-    }
-
-    /// Flying time of the path where the aircraft is, seconds.
-    fn time_at_aircraft_s(&self) -> f64 {
-        let speed = |h: &Handed| h.waypoint.airspeed_mps.max(1.0);
-        let front = self.state.handed.front();
-        let left_s = front.map_or(0.0, |h| self.to_current_m() / speed(h));
-        let end_s = front.map(|h| h.end_s).or(self.state.tail.as_ref().map(|t| t.path.time_s));
-        end_s.unwrap_or(0.0) - left_s
     }
 
     /// Takes a stretch over behind what is handed out, numbering its waypoints.
@@ -153,7 +144,7 @@ impl Executor {
     pub(crate) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
         let from = from.min(self.state.handed.len());
         let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
-        let more = self.horizon(from, self.time_at_aircraft_s());
+        let more = self.horizon(from, self.time_made_s());
         let at_least = old.len();
         let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);

@@ -148,3 +148,41 @@ fn each_act_says_in_words_what_it_is() {
         assert_eq!(act.to_string(), words);
     }
 }
+
+/// A loop with an action, on its leg `b`: 6 km long, 600 m of it flown, and 2.6 km of the loop.
+fn on_a_long_leg_of_a_loop(when: &str) -> (Rig, String) {
+    let legs = format!(
+        r#"<TF id="s" fix="A1"/><iterative id="l" form="forward" count="1">
+           <action {when}><invoke service="radio" operation="beacon"/></action>
+           <TF id="a" fix="A2"/><TF id="b" fix="A5"/><TF id="c" fix="B5"/></iterative><TF id="z" fix="C4"/>"#
+    );
+    let mut rig = Rig::started(&legs);
+    rig.fly_to("b");
+    rig.position = fix("A2").destination(0.0, 600.0);
+    rig.report();
+    (rig, legs)
+}
+
+/// The way that a skip, a go-to and an entry leave out is not flown: nothing is due on it, of the loop around it neither.
+#[test]
+fn no_action_of_a_loop_is_due_on_way_that_is_left_out() {
+    let skip = |rig: &mut Rig, _: &str| rig.command(Command::SkipLeg).unwrap();
+    let go_to = |rig: &mut Rig, _: &str| rig.command(Command::GoTo { leg: "c".into() }).unwrap();
+    let enter = |rig: &mut Rig, legs: &str| {
+        let new = program(&document_with(&legs.replace(r#"id="b""#, r#"id="bb""#), "", ""));
+        rig.propose(&new);
+        rig.command(Command::Commit { hash: new.hash().clone(), entry: Some("c".into()) }).unwrap();
+    };
+    let ways_out: [(&str, fn(&mut Rig, &str)); 3] = [("skip", skip), ("go-to", go_to), ("entry", enter)];
+    for (name, leave_out) in ways_out {
+        for when in [r#"every="500""#, r#"afterDistance="5000""#] {
+            let (mut rig, legs) = on_a_long_leg_of_a_loop(when);
+            let before = done(&rig).len();
+            leave_out(&mut rig, &legs);
+            rig.report();
+            rig.steer();
+            rig.report();
+            assert_eq!(done(&rig).len(), before, "{name} {when}");
+        }
+    }
+}
