@@ -155,7 +155,7 @@ impl Executor {
         if next.before.passage == next.passage {
             next.before.path = path;
         } else {
-            next.before.rejoined = Some(Box::new(path));
+            next.before = next.before.going_on_from(path);
         }
     }
 

@@ -64,8 +64,8 @@ pub struct Cursor {
     /// What the points of this passage were laid out from.
     #[serde(default)]
     pub origin: Option<Origin>,
-    /// The path where the hold was given on the way to the next point, if that is gone on with: the way and the climb to that point
-    /// begin there, though its leg is laid out from where the path comes from.
+    /// The path where the hold was given on the way to the next point, if that is gone on with, or where the way was led elsewhere: the
+    /// way and the climb to that point begin there, though its leg is laid out from where the path comes from.
     #[serde(default)]
     pub rejoined: Option<Box<PathState>>,
     /// The points of this passage (kept aside in a snapshot).
@@ -314,6 +314,11 @@ impl Cursor {
     pub fn move_path_to(&mut self, here: PathState) {
         self.path = here;
         self.rejoined = None;
+    }
+
+    /// The same, the way to its next point beginning at `here`, though its leg is laid out from where the path comes from.
+    pub fn going_on_from(&self, here: PathState) -> Self {
+        Self { rejoined: Some(Box::new(here)), ..self.clone() }
     }
 
     /// How often an intersection has been passed.

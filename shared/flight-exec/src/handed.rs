@@ -210,7 +210,12 @@ impl Handed {
             && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05
             && self.passage == other.passage
             && self.wait_s == other.wait_s
-            && distance_m(a.position, b.position) < SAME_M
+            && self.is_where(other)
+    }
+
+    /// It is at the same place as the other one.
+    pub fn is_where(&self, other: &Handed) -> bool {
+        distance_m(self.waypoint.position, other.waypoint.position) < SAME_M
     }
 
     /// Makes what happens before it final.

@@ -148,7 +148,12 @@ impl Executor {
         let at_least = old.len();
         let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
-        let stretch = lay_out(&cursor, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
+        let lay_out =
+            |from: &Cursor| lay_out(from, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
+        let mut stretch = lay_out(&cursor);
+        if from == 0 && self.is_led_elsewhere(&stretch) {
+            stretch = lay_out(&cursor.going_on_from(self.here()));
+        }
         let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
         let sent: Vec<Waypoint> = old.iter().take(same).map(|h| h.waypoint.clone()).collect();
         self.state.handed.truncate(from);
@@ -161,6 +166,13 @@ impl Executor {
             self.feed(cancel, from + same, out);
         }
         self.settle_phase(out);
+    }
+
+    /// The leg that has begun leads from here to another place than the one steered to: the way to it, and the climb, begin where the
+    /// aircraft is, so that the way made counts on.
+    fn is_led_elsewhere(&self, stretch: &Stretch) -> bool {
+        let first = stretch.handed.first().filter(|first| self.is_announced(first));
+        self.state.handed.front().zip(first).is_some_and(|(old, new)| !old.is_where(new))
     }
 
     /// Waypoints that stayed the same stay as they were sent, so that many small changes don't add up unseen; the others count on

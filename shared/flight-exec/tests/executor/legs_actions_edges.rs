@@ -186,3 +186,44 @@ fn no_action_of_a_loop_is_due_on_way_that_is_left_out() {
         }
     }
 }
+
+/// 3 km of the way to a place are flown when an update or a variable moves it: no metre is lost, and none counts twice.
+#[test]
+fn every_so_often_goes_on_when_the_leg_is_led_elsewhere() {
+    let variables = r#"<variable name="n" type="number" initial="0" min="-9000" max="9000"/>"#;
+    let at = fix("C3");
+    let legs = |lat_deg: f64, east_m: f64| {
+        let legs = format!(
+            r#"<TF id="s" fix="C1"/><DF id="a" at="= offset(lat_lon({lat_deg}, {}), 90.0, n + {east_m:.1})">
+               <action every="100"><photo/></action></DF><TF id="z" fix="F4"/>"#,
+            at.lon_deg
+        );
+        document_with(&legs, variables, "")
+    };
+    let update = |rig: &mut Rig| rig.update(&program(&legs(at.lat_deg - 0.018, 3000.0))).unwrap();
+    let set = |rig: &mut Rig| rig.set("n", 5000.0).unwrap();
+    let ways: [&dyn Fn(&mut Rig); 2] = [&update, &set];
+    for lead_elsewhere in ways {
+        let mut rig = Rig::flying(&legs(at.lat_deg, 0.0));
+        rig.fly_to("a");
+        rig.position = fix("C1").destination(0.0, 3000.0);
+        rig.report();
+        let before = done(&rig).len();
+        assert!(before >= 29, "{before}");
+        lead_elsewhere(&mut rig);
+        rig.now += Time::from_secs(2);
+        rig.report();
+        let flown_m = rig.executor.status().place.unwrap().distance_m;
+        assert!((flown_m - 3000.0).abs() < 10.0, "{flown_m}");
+        let left_m = |rig: &Rig| rig.position.distance_m(rig.buffer[0].position);
+        let way_m = left_m(&rig);
+        while left_m(&rig) > 50.0 {
+            let course_deg = rig.position.bearing_deg(rig.buffer[0].position);
+            rig.position = rig.position.destination(course_deg, 25.0);
+            rig.now += Time::from_secs(1);
+            rig.report();
+        }
+        let (done, due) = (done(&rig).len() - before, way_m / 100.0);
+        assert!((due - 2.0..due + 1.0).contains(&(done as f64)), "{done} on {way_m:.0} m");
+    }
+}
