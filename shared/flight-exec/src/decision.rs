@@ -78,15 +78,27 @@ impl Executor {
     /// The first open question, for the status.
     pub(crate) fn open_decision(&self) -> Option<DecisionRequest> {
         let open = self.pending().into_iter().find(|p| !self.is_decided(p));
-        let beyond = || {
-            let ahead = self.state.ahead.as_ref()?;
-            (!self.has_decision(&ahead.request.leg, ahead.crossing)).then(|| ahead.request.clone())
-        };
-        open.map_or_else(beyond, |open| self.request_for(&open))
+        open.map_or_else(|| Some(self.open_beyond()?.request.clone()), |open| self.request_for(&open))
     }
 
-    /// A decision is good for the passing of the intersection that is ahead, asked for or not; else for the next one, as long
-    /// as the way may still lead there.
+    /// The question about an intersection beyond what is handed out, if it is open.
+    fn open_beyond(&self) -> Option<&Ahead> {
+        self.state.ahead.as_ref().filter(|ahead| !self.has_decision(&ahead.request.leg, ahead.crossing))
+    }
+
+    /// The passing that a decision is meant for: the first that is asked about and not decided; where no question is open the one that
+    /// is ahead, asked for or not, decided or not. `None`: the next one beyond what is handed out.
+    fn passing_meant(&self, leg: &Id) -> Option<Pending> {
+        let mut ahead = self.pending();
+        ahead.retain(|p| p.leg == *leg);
+        let is_asked = |p: &Pending| self.state.requested.contains(&(p.leg.clone(), p.crossing));
+        let open = ahead.iter().position(|p| is_asked(p) && !self.is_decided(p));
+        let is_beyond = open.is_none() && self.open_beyond().is_some_and(|beyond| beyond.request.leg == *leg);
+        ahead.into_iter().nth(open.unwrap_or(0)).filter(|_| !is_beyond)
+    }
+
+    /// A decision answers the question that is open; else it is good for the passing that is ahead, or for the next one, as long as
+    /// the way may still lead there.
     pub(crate) fn decide(
         &mut self,
         leg: &Id,
@@ -95,7 +107,7 @@ impl Executor {
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
         self.check_branch(leg, branch)?;
-        let pending = self.pending().into_iter().find(|p| p.leg == *leg);
+        let pending = self.passing_meant(leg);
         let crossing = match &pending {
             Some(p) => p.crossing,
             None => {

@@ -168,3 +168,33 @@ fn in_a_loop_shorter_than_the_deadline_each_passing_is_decided_once() {
     assert_eq!(of(|e| matches!(e, Event::DecisionRequested(_))), 3);
     assert_eq!(of(|e| matches!(e, Event::DecisionTaken { .. })), 3);
 }
+
+/// A lap takes less time than a question is asked ahead: while the first passing is decided and still ahead, the second one is asked about,
+/// and an answer is to that question.
+#[test]
+fn the_question_that_is_open_is_the_one_that_is_answered() {
+    let mut rig = Rig::started(
+        r#"<TF id="a" fix="A2"/><iterative id="l" form="forward" count="4">
+          <orbit id="o" radius="250" turns="1" turn="left"><centre fix="A3"/></orbit>
+          <intersection id="x" default="again">
+            <branch id="again" label="Again"/><branch id="off" label="Off" next="u"/>
+          </intersection>
+          <orbit id="t" radius="250" turns="0.25" turn="left" next="w"><centre fix="A3"/></orbit><TF id="u" fix="C3"/>
+          <intersection id="w"><branch id="only" label="only"/></intersection></iterative><TF id="z" fix="C4"/>"#,
+    );
+    rig.fly_to("o");
+    let mut answers = 0;
+    while rig.leg() == "o" {
+        let open = rig.executor.status().decision.filter(|_| is_taken(&rig));
+        if open.is_some() {
+            let mut answered = rig.clone();
+            answered.command(Command::Decide { leg: "x".into(), branch: "off".into() }).unwrap();
+            answered.fly_to("u");
+            let pass = answered.executor.status().place.unwrap().iterations[0].iteration;
+            assert_eq!(pass, 2, "{open:?}");
+            answers += 1;
+        }
+        rig.fly_one();
+    }
+    assert!(answers > 2, "{answers}");
+}
