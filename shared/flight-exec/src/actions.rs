@@ -7,6 +7,7 @@ mod resolve;
 mod trigger;
 
 use crate::api::{Event, Output, ResolvedAct};
+use crate::choice::Choice;
 use crate::cursor::Mark;
 use crate::cursor::control::is_call;
 use crate::executor::Executor;
@@ -132,10 +133,21 @@ impl Executor {
         }
     }
 
-    /// The flight goes on elsewhere: only loops around that place go on, and nothing is done at the end of the others.
+    /// If a choice is one to leave a loop, that is over, except when it is entered anew.
+    pub(crate) fn end_the_loop_left_by(&mut self, choice: &Choice, out: &mut Vec<Output>) {
+        let Some(left) = choice.loop_left() else { return };
+        let around = self.state.handed.front().and_then(|h| loops_of(h).find(|(id, _)| *id == left));
+        let entered = around.map(|(_, activation)| activation);
+        self.end_passages(|p| p.leg == *left && Some(p.number) != entered, out);
+    }
+
+    /// The flight goes on elsewhere: only loops around that place go on, and those on the way there until they are left; nothing is done
+    /// at the end of the others.
     pub(crate) fn abandon_passages(&mut self) {
         let front = self.state.handed.front();
-        self.state.passages.retain(|passage| front.is_some_and(|h| passage.is_around(h)));
+        let leaves = |h: &Handed, leg: &Id| h.choices.iter().any(|c| c.loop_left() == Some(leg));
+        let goes_on = |p: &Passage| front.is_some_and(|h| p.is_around(h) || leaves(h, &p.leg));
+        self.state.passages.retain(goes_on);
         self.state.wait = None;
     }
 

@@ -71,6 +71,14 @@ impl Choice {
         }
     }
 
+    /// The loop that is left by it, if it is one to leave a loop.
+    pub fn loop_left(&self) -> Option<&Id> {
+        match self {
+            Choice::Loop { leg, again: false, .. } => Some(leg),
+            _ => None,
+        }
+    }
+
     /// The same way on: who decided doesn't matter.
     pub fn leads_as(&self, other: &Choice) -> bool {
         match (self, other) {

@@ -188,7 +188,9 @@ impl Executor {
         }
         // skipped before it was entered, it is passed all the same, and what led to it with it
         let choices = self.state.handed.front_mut().map(|h| std::mem::take(&mut h.choices));
-        self.tell_choices(choices.unwrap_or_default(), out);
+        let choices = choices.unwrap_or_default();
+        choices.iter().for_each(|choice| self.end_the_loop_left_by(choice, out));
+        self.tell_choices(choices, out);
         self.jump(cursor, out);
         Ok(())
     }

@@ -58,15 +58,15 @@ impl Executor {
     /// Ends what is over for certain when so many of the choices before the current waypoint are made: first the leg flown last, but a
     /// holding is over by its own choice, and a loop by that to leave it.
     fn end_what_is_over_after(&mut self, made: usize, out: &mut Vec<Output>) {
-        let Some(front) = self.state.handed.front().cloned() else { return };
+        let Some(front) = self.state.handed.front() else { return };
         let holds = matches!(front.choices.first(), Some(Choice::Hold { .. }));
-        let last = made.checked_sub(1).and_then(|i| front.choices.get(i));
-        if made == usize::from(holds) {
-            let over = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
-            over.iter().for_each(|(passage, leg)| self.end_passages(|p| p.is(leg, *passage), out));
+        let last = made.checked_sub(1).and_then(|i| front.choices.get(i)).cloned();
+        let flown = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
+        if let Some((passage, leg)) = flown.filter(|_| made == usize::from(holds)) {
+            self.end_passages(|p| p.is(&leg, passage), out);
         }
-        if let Some(Choice::Loop { leg, again: false, .. }) = last {
-            self.end_passages(|p| p.leg == *leg && !p.is_around(&front), out);
+        if let Some(choice) = last {
+            self.end_the_loop_left_by(&choice, out);
         }
     }
 

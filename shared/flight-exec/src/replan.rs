@@ -215,7 +215,7 @@ impl Executor {
         let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
         self.abandon_passages();
-        // until another leg is entered, a loop that has just been left may be gone back to: by a count, or a condition
+        // until another leg is entered, a loop on the way out may be gone back to: by a count, or a condition
         if let Some(mut front) = self.state.handed.pop_front() {
             self.begin_anew_what_was_left(&mut front.before, &around);
             self.state.handed.push_front(front);
@@ -224,8 +224,8 @@ impl Executor {
         self.settle_phase(out);
     }
 
-    /// A loop with actions that was left by a skip, and no other leg entered since: what comes is another activation of it. A count that
-    /// was set before, or on the way to the loop, is that of the loop as it is entered now.
+    /// A loop whose actions are not followed was left, or is entered here: what comes is another activation of it. A count that was set
+    /// before, or on the way to the loop, is that of the loop as it is entered now.
     fn begin_anew_what_was_left(&mut self, cursor: &mut Cursor, around: &[Id]) {
         for (frame, id) in cursor.loops.iter_mut().zip(around) {
             let acts = self.program.leg(id).is_some_and(|leg| !leg.actions.is_empty());

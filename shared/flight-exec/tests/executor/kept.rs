@@ -268,9 +268,9 @@ fn a_wait_at_the_end_of_a_pattern_lasts_though_the_pattern_would_be_another_one_
     assert_eq!((rig.legs().as_str(), waits(&rig)), ("a s z", 1));
 }
 
-/// What is done after some seconds in a loop is done once each time that the loop is flown.
+/// Until the leg behind it is entered it is not left: what is done once in a loop is not done anew.
 #[test]
-fn a_loop_gone_back_to_on_the_way_out_of_it_is_another_activation() {
+fn a_loop_gone_back_to_on_the_way_out_of_it_is_the_same_activation() {
     let photo = r#"<action afterTime="5"><photo/></action>"#;
     let looped = format!(
         r#"<iterative id="l" form="forward" count="= n">{photo}<TF id="b" fix="B2"/><TF id="c" fix="B3"/></iterative>"#
@@ -281,9 +281,7 @@ fn a_loop_gone_back_to_on_the_way_out_of_it_is_another_activation() {
     rig.command(Command::SkipLeg).unwrap();
     rig.set("n", 2.0).unwrap();
     rig.fly_to_the_end();
-    let passages: Vec<u64> = rig.acts.iter().map(|(_, passage, _)| *passage).collect();
-    assert_eq!((rig.legs().as_str(), rig.acts.len()), ("b c b c z", 2));
-    assert_ne!(passages[0], passages[1], "left by the skip");
+    assert_eq!((rig.legs().as_str(), rig.acts.len()), ("b c b c z", 1));
 }
 
 /// Nobody has entered the loop: gone to in another way, not past a leg that is left out, it is the same one for who has set its count.

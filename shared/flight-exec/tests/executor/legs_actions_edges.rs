@@ -227,3 +227,28 @@ fn every_so_often_goes_on_when_the_leg_is_led_elsewhere() {
         assert!((due - 2.0..due + 1.0).contains(&(done as f64)), "{done} on {way_m:.0} m");
     }
 }
+
+/// It is left by its own choice, in its last pass as in the others: only what is done at the end of the leg skipped is not done.
+#[test]
+fn what_a_loop_does_at_its_end_is_done_though_its_last_leg_is_skipped() {
+    let variables = r#"<variable name="n" type="number" initial="0" min="0" max="1000"/>"#;
+    let legs = r#"<TF id="s" fix="A1"/><iterative id="o" form="forward" count="2">
+          <iterative id="l" form="forward" count="1"><action on="end"><set variable="n" to="= n + 1.0"/></action>
+            <TF id="a" fix="A2"/><TF id="b" fix="A4"><action on="end"><photo/></action></TF></iterative></iterative>
+        <TF id="y" fix="C4"/><TF id="z" fix="C3"/>"#;
+    // the second time the leg behind the loop is skipped as well, before it is entered
+    for skips in [1, 2] {
+        let mut rig = Rig::flying(&document_with(legs, variables, ""));
+        rig.fly_to("b");
+        rig.command(Command::SkipLeg).unwrap();
+        rig.fly_to("a");
+        rig.fly_to("b");
+        (0..skips).for_each(|_| rig.command(Command::SkipLeg).unwrap());
+        rig.fly_to_the_end();
+        let of_l = |e: &&Event| matches!(e, Event::IterationFinished { leg, .. } if leg.as_str() == "l");
+        assert_eq!(rig.events.iter().filter(of_l).count(), 2, "{skips}");
+        let n = rig.executor.variables().get(&"n".into());
+        assert_eq!(n, Some(&flight_plan::VariableValue::Number(2.0)), "{skips}");
+        assert!(!done(&rig).contains(&"b:photo".into()), "{skips}");
+    }
+}
