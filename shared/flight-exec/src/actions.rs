@@ -48,6 +48,8 @@ pub(crate) struct Done {
 pub(crate) struct Wait {
     pub passage: u64,
     /// By the executor's clock.
+    pub begun_s: f64,
+    /// Likewise.
     pub due_s: f64,
 }
 
@@ -225,9 +227,23 @@ impl Executor {
                 executor.act_at_the_end(passage, out);
             }
         });
-        self.state.wait = Some(Wait { passage: handed.passage, due_s: self.state.clock_s + seconds });
+        let begun_s = self.state.clock_s;
+        self.state.wait = Some(Wait { passage: handed.passage, begun_s, due_s: begun_s + seconds });
         let (leg, passage) = (handed.place.leg.clone(), handed.passage);
         out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
+    }
+
+    /// Seconds that the place steered to is circled.
+    pub(crate) fn wait_at_front_s(&self) -> Option<f64> {
+        self.state.handed.front()?.wait_s
+    }
+
+    /// A new plan makes another wait of the one being flown, which `was_s` seconds long before: it counts from where it began.
+    pub(crate) fn wait_anew(&mut self, was_s: Option<f64>) {
+        let new_s = self.wait_at_front_s().filter(|new_s| was_s.is_some_and(|was_s| was_s != *new_s));
+        if let Some((wait, seconds)) = self.state.wait.as_mut().zip(new_s) {
+            wait.due_s = wait.begun_s + seconds;
+        }
     }
 
     fn is_waiting_at(&self, passage: u64) -> bool {

@@ -99,7 +99,9 @@ impl Executor {
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
         }
+        let wait_s = self.wait_at_front_s();
         self.replan_with(kept.len(), onward, false, out);
+        self.wait_anew(wait_s);
     }
 
     /// The cursors behind choices that are final when their waypoints are steered to.

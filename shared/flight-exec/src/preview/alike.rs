@@ -136,7 +136,9 @@ impl<'a> Offset<'a> {
     }
 
     fn waits(&self, one: &Wait, other: &Wait) -> bool {
-        self.passage(one.passage, other.passage) && self.instant(one.due_s, other.due_s)
+        self.passage(one.passage, other.passage)
+            && self.instant(one.begun_s, other.begun_s)
+            && self.instant(one.due_s, other.due_s)
     }
 
     fn passages(&self, one: &Passage, other: &Passage) -> bool {

@@ -1,7 +1,7 @@
 //! What a new plan may change about the leg being flown, and around it.
 
 use crate::rig::{Rig, document, document_with, fix, program};
-use flight_exec::{Command, Event, Input, Refusal};
+use flight_exec::{Command, Event, Input, Refusal, Time};
 use flight_plan::{Cause, VariableValue};
 
 const BASE: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
@@ -322,4 +322,36 @@ fn a_value_that_the_new_plan_does_not_allow_starts_afresh_and_that_is_told() {
         _ => None,
     });
     assert_eq!(told, Some((VariableValue::Number(10.0), "plan".to_owned())));
+}
+
+/// It counts from where it began; one that the new plan has made shorter than what is circled already is over. What a variable makes of
+/// it is for the next time.
+#[test]
+fn a_wait_being_flown_is_as_long_as_the_new_plan_makes_it() {
+    let variables = r#"<variable name="n" type="number" initial="60" min="0" max="900"/>"#;
+    let plan = |seconds: &str| {
+        let legs = format!(
+            r#"<TF id="a" fix="A2"/><TF id="b" fix="A5"><action on="end"><wait seconds="{seconds}"/></action></TF>
+               <TF id="z" fix="C4"/>"#
+        );
+        document_with(&legs, variables, "")
+    };
+    let left_s = |rig: &Rig| rig.executor.status().wait_left_s.map(f64::round);
+    for (seconds, expected_s) in [("300", Some(290.0)), ("20", Some(10.0)), ("5", None)] {
+        let mut rig = Rig::flying(&plan("= n"));
+        rig.fly_to("b");
+        while rig.executor.status().wait_left_s.is_none() {
+            rig.fly_one();
+        }
+        rig.now += Time::from_secs(10);
+        rig.set("n", 100.0).unwrap();
+        assert_eq!(left_s(&rig), Some(50.0));
+        rig.update(&program(&plan(seconds))).unwrap();
+        rig.steer();
+        assert_eq!(left_s(&rig), expected_s, "{seconds} s");
+        rig.now += Time::from_secs_f64(expected_s.unwrap_or(0.0));
+        rig.report();
+        rig.steer();
+        assert_eq!(rig.leg(), "z", "{seconds} s");
+    }
 }
