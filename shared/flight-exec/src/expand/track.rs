@@ -105,8 +105,9 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
         // from where the altitude was reached along the track to its fix, and back to where it was come from
         LegKind::Fa { from: fix, .. } => {
             let fix = waypoint(fix, world)?;
-            let apart = crate::path::distance_m(fix.position, back.position) > SAME_PLACE_M;
-            Expansion::Points(connection.into_iter().chain(apart.then_some(fix)).chain([back]).collect())
+            let apart = |from: LatLon| crate::path::distance_m(fix.position, from) > SAME_PLACE_M;
+            let passed = apart(end.position) && apart(back.position);
+            Expansion::Points(connection.into_iter().chain(passed.then_some(fix)).chain([back]).collect())
         }
         LegKind::Rf { centre, turn, .. } => {
             let tolerance_m = world.config.arc_tolerance_m;

@@ -118,11 +118,23 @@ fn an_altitude_that_is_never_reached_is_given_up_in_the_end() {
 #[test]
 fn backwards_a_track_until_an_altitude_leads_over_its_fix() {
     let legs = r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="2"><TF id="a" fix="B1"/>
-        <FA id="f" fix="B2" course="80" altitude="620" altitudeReference="amsl"/></iterative><TF id="z" fix="A3"/>"#;
+        <FA id="f" fix="B2" course="80" altitude="1500" altitudeReference="amsl"/></iterative><TF id="z" fix="A3"/>"#;
     let rig = check(legs, "s a f <l <f <a l a f z");
-    let back = &passages(&rig, "f")[1];
+    let [out, back, ..] = &passages(&rig, "f")[..] else { panic!("{:?}", rig.legs()) };
+    assert!(out.len() > 1, "it goes on behind its fix: {out:?}");
     assert_eq!(back.len(), 2);
     assert!(back[0].distance_m(fix("B2")) < 0.1 && back[1].distance_m(fix("B1")) < 0.1);
+}
+
+/// The way back to its fix is none.
+#[test]
+fn backwards_a_track_whose_altitude_was_reached_at_its_fix_leads_on_from_there() {
+    let legs = r#"<TF id="s" fix="A1"/><iterative id="l" form="reverse" count="2"><TF id="a" fix="B1"/>
+        <FA id="f" fix="B2" course="80" altitude="500" altitudeReference="amsl"/><TF id="t" fix="C3"/></iterative>
+        <TF id="z" fix="A3"/>"#;
+    let rig = check(legs, "s a f t <l <t <f <a l a f t z");
+    let back = &passages(&rig, "f")[1];
+    assert!(back.len() == 1 && back[0].distance_m(fix("B1")) < 0.1, "{back:?}");
 }
 
 const GO: &str =
