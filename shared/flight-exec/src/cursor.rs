@@ -59,14 +59,11 @@ pub struct Cursor {
     pub given: u64,
     /// Of what is left by a choice: the points given when it was read last, and whether it leaves. What was chosen there is not
     /// chosen once more when the path is laid out anew from behind it.
-    #[serde(default)]
     pub left_or_not: Option<(u64, bool)>,
     /// What the points of this passage were laid out from.
-    #[serde(default)]
     pub origin: Option<Origin>,
     /// The path where the hold was given on the way to the next point, if that is gone on with, or where the way was led elsewhere: the
     /// way and the climb to that point begin there, though its leg is laid out from where the path comes from.
-    #[serde(default)]
     pub rejoined: Option<Box<PathState>>,
     /// The points of this passage (kept aside in a snapshot).
     #[serde(skip)]
@@ -74,7 +71,6 @@ pub struct Cursor {
     /// How often each intersection was passed.
     pub crossings: Vec<(Id, u64)>,
     /// Those that are not listed any more were passed at most so often.
-    #[serde(default)]
     pub uncounted: u64,
 }
 

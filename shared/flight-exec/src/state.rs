@@ -17,7 +17,6 @@ pub(crate) struct State {
     pub phase: Phase,
     pub variables: Variables,
     /// Those written since the last flight.
-    #[serde(default)]
     pub written: Vec<Id>,
     pub handed: VecDeque<Handed>,
     /// Where the path goes on after the last waypoint handed out.
@@ -35,10 +34,8 @@ pub(crate) struct State {
     pub decisions: Vec<Decision>,
     pub requested: Vec<(Id, u64)>,
     /// Those of them that came into sight after their deadline.
-    #[serde(default)]
     pub late: Vec<(Id, u64)>,
     /// A question about an intersection beyond what is handed out.
-    #[serde(default)]
     pub ahead: Option<Ahead>,
     pub counts: Vec<LoopCount>,
     /// See [`crate::world::World::released`].
@@ -57,7 +54,6 @@ pub(crate) struct State {
     pub aircraft: Option<AircraftState>,
     pub revision: u64,
     /// The active plan came in flight: only what was ahead then has been looked at.
-    #[serde(default)]
     pub seen_ahead_only: bool,
     /// Seconds of the executor's own clock: goes on from a snapshot.
     pub clock_s: f64,

@@ -15,7 +15,6 @@ pub struct Racetrack {
     /// One lap; ends at the fix.
     pub lap: Vec<Point>,
     /// Laps flown before, of one whose place it has taken.
-    #[serde(default)]
     pub flown: u64,
     /// It ends at the first crossing (HF); else its laps are endless and the cursor leaves it (HA).
     pub once: bool,

@@ -35,7 +35,6 @@ pub struct Point {
     /// Its own altitude, when it is not the leg's.
     pub level: Option<Level>,
     /// Its own airspeed, when it is not the leg's, m/s.
-    #[serde(default)]
     pub airspeed_mps: Option<f64>,
 }
 

@@ -35,7 +35,6 @@ struct Sweep {
     /// The pattern begins near here.
     entry: LatLon,
     /// It follows on another sweep of the same area: the way from `entry` stays inside as well.
-    #[serde(default)]
     follows: bool,
     /// Track that is flown first; then those after it, then those before it, backwards.
     first: u64,

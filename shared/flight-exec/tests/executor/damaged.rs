@@ -16,13 +16,29 @@ fn snapshot() -> (Rig, Value) {
     (rig, value)
 }
 
+fn part<'a>(value: &'a mut Value, name: &str) -> &'a mut Value {
+    let fields = value.as_map_mut().unwrap();
+    &mut fields.iter_mut().find(|(key, _)| key.as_text() == Some(name)).unwrap().1
+}
+
 /// The list of that name, or of that name within another part.
 fn list<'a>(snapshot: &'a mut Value, name: &str) -> &'a mut Vec<Value> {
-    let part = |value: &'a mut Value, name: &str| -> &'a mut Value {
-        let fields = value.as_map_mut().unwrap();
-        &mut fields.iter_mut().find(|(key, _)| key.as_text() == Some(name)).unwrap().1
-    };
     name.split('.').fold(snapshot, part).as_array_mut().unwrap()
+}
+
+/// What it doesn't say is not made up.
+#[test]
+fn a_snapshot_whose_state_says_less_is_not_read() {
+    let (_, whole) = snapshot();
+    assert!(whole.deserialized::<Snapshot>().is_ok());
+    for name in ["written", "late", "seen_ahead_only", "counts"] {
+        let mut value = whole.clone();
+        let state = part(&mut value, "state").as_map_mut().unwrap();
+        let said = state.len();
+        state.retain(|(key, _)| key.as_text() != Some(name));
+        assert_eq!(state.len(), said - 1, "{name}");
+        assert!(value.deserialized::<Snapshot>().is_err(), "{name}");
+    }
 }
 
 #[test]
