@@ -4,6 +4,7 @@
 //! before each waypoint it hands out, and goes back to it when something beyond must change.
 
 pub(crate) mod control;
+mod corner;
 mod emit;
 mod enter;
 mod notes;
@@ -19,18 +20,12 @@ use crate::expand::{Expansion, Point};
 use crate::path::{Level, Passing, PathState};
 use crate::world::World;
 use flight_plan::{Id, Leg, Stage};
-use geometry::geodesy::normalise_180;
-use geometry::{LatLon, Vec2};
+use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// So many steps without a single waypoint: a loop that flies nothing.
 const MOST_SILENT_STEPS: usize = 2000;
-
-/// A fly-by of a sharper turn than 127° begins more than two radii before its corner: in a pattern such a corner is crossed. Its cosine.
-const SHARP_COS: f64 = -0.601_815;
-/// On the sphere.
-const METRES_A_DEGREE: f64 = 111_195.0;
 
 /// A place in the program and the end of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -246,19 +241,10 @@ impl Cursor {
         Some(Point { fly_over: point.fly_over || (expansion.may_turn_sharply(number) && sharp()), ..point })
     }
 
-    /// Where the path turns so sharply a turn ahead of time would leave out far too much, or there is no room for it on the ways before
-    /// and after. In the plane: a degree more or less is nothing.
+    /// A corner of a pattern that is not flown by (see [`corner`]).
     fn is_to_be_crossed(&self, at: LatLon, next: LatLon, world: &World) -> bool {
         let from = self.rejoined.as_ref().map_or(self.path.last.position, |path| path.last.position);
-        let shrunk = at.lat_deg.to_radians().cos();
-        let way = |a: LatLon, b: LatLon| {
-            Vec2::new(normalise_180(b.lon_deg - a.lon_deg) * shrunk, b.lat_deg - a.lat_deg) * METRES_A_DEGREE
-        };
-        let (before, after) = (way(from, at), way(at, next));
-        let (before_m, after_m) = (before.length(), after.length());
-        let cos = before.dot(after) / (before_m * after_m);
-        let need_m = world.profile.turn_radius_m(self.airspeed_mps) * ((1.0 - cos) / (1.0 + cos)).sqrt();
-        cos < SHARP_COS || need_m > before_m + after_m
+        corner::is_to_be_crossed([from, at, next], world.profile.turn_radius_m(self.airspeed_mps))
     }
 
     /// It is left at this crossing: as was chosen here before, else by a choice.
