@@ -100,7 +100,7 @@ fn unknown_ground(track: &Track, terrain: &dyn Terrain) -> Option<String> {
     let points = track.points();
     let unknown = points.iter().filter(|p| terrain.elevation_m(p.position).is_none()).count();
     let percent = (100.0 * unknown as f64 / points.len().max(1) as f64).ceil();
-    (unknown > 0).then(|| format!("no elevation known below {percent:.0} % of it"))
+    (unknown > 0).then(|| format!("no elevation known below {percent:.0} % of the path"))
 }
 
 /// A record of what would be flown.
@@ -154,6 +154,6 @@ mod tests {
         let planned = crate::report::made_up_record().planned;
         assert_eq!(unknown_ground(&planned, &Flat(300.0)), None);
         let told = unknown_ground(&planned, &Tiles::new());
-        assert_eq!(told.as_deref(), Some("no elevation known below 100 % of it"));
+        assert_eq!(told.as_deref(), Some("no elevation known below 100 % of the path"));
     }
 }
