@@ -44,6 +44,8 @@ pub struct Desk(Option<Proposal>);
 struct Proposal {
     asked: Asked,
     since: Instant,
+    /// It was looked at for a flight under way: what lies ahead of that.
+    in_flight: bool,
     step: Step,
 }
 
@@ -62,16 +64,19 @@ impl Desk {
             let reason = "another proposal is being looked at: propose again in a moment";
             return asked.answer(Err(Refusal { code: "busy".into(), reason: reason.into() }));
         }
-        let (xml, config) = (asked.request.xml.clone(), config.clone());
+        let (xml, config, in_flight) = (asked.request.xml.clone(), config.clone(), sight.flight.is_some());
         let work = tokio::task::spawn_blocking(move || look(&xml, &config, &sight));
-        self.0 = Some(Proposal { asked, since: Instant::now(), step: Step::Looking(work) });
+        self.0 = Some(Proposal { asked, since: Instant::now(), in_flight, step: Step::Looking(work) });
     }
 
-    /// A proposal that has been looked at and is kept; never, if there is none. May be cancelled.
-    pub async fn next(&mut self, journal: &mut Option<Keeper>) -> (Asked, Outcome) {
+    /// A proposal that has been looked at and is kept, and whether that was done for a flight under way; never, if there is none. May be
+    /// cancelled.
+    pub async fn next(&mut self, journal: &mut Option<Keeper>) -> (Asked, bool, Outcome) {
         loop {
             match self.0.take_if(|proposal| matches!(proposal.step, Step::Done(_))) {
-                Some(Proposal { asked, step: Step::Done(outcome), .. }) => return (asked, outcome),
+                Some(Proposal { asked, in_flight, step: Step::Done(outcome), .. }) => {
+                    return (asked, in_flight, outcome);
+                }
                 _ => self.advance(journal).await,
             }
         }
@@ -96,6 +101,18 @@ impl Desk {
     pub fn holds_time_until(&self) -> Option<Instant> {
         self.0.as_ref().map(|proposal| proposal.since + LOCKSTEP_PATIENCE)
     }
+}
+
+/// What was looked at for a flight under way is good for that one: once it is over, nobody has looked at all of the plan.
+///
+/// # Errors
+/// The flight is over.
+pub fn good_for_now(in_flight: bool, executor: &Executor) -> Result<(), Refusal> {
+    if in_flight && !executor.is_under_way() {
+        let reason = "the flight that this plan was looked at for is over: propose it again";
+        return Err(Refusal { code: "flight-over".into(), reason: reason.into() });
+    }
+    Ok(())
 }
 
 fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
@@ -134,4 +151,55 @@ fn outcome(looked: Looked) -> Result<Fit, Refusal> {
 
 pub(super) fn broken(error: &tokio::task::JoinError) -> Problem {
     Problem::error("not-reviewed", format!("the review of the path failed; please report it: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use aircraft::Profile;
+    use flight_exec::{AircraftState, Command, Input, RequestId, Time};
+    use terrain::Flat;
+
+    const PLAN: &[u8] = include_bytes!("../../../assets/plans/square.xml");
+
+    fn flying() -> Executor {
+        let (profile, ground) = (Profile::default(), Arc::new(Flat(300.0)));
+        let program = flight_plan::compile(flight_plan::read(PLAN).plan, &profile, ground.as_ref()).unwrap();
+        let (hash, home) = (program.hash().clone(), program.plan.home().unwrap().threshold);
+        let mut executor = Executor::new(flight_exec::Config::default(), ground, profile);
+        let command = |command| Input::Command { request: RequestId(2), by: "test".into(), command };
+        let aircraft = AircraftState {
+            position: home,
+            altitude_amsl_m: 300.0,
+            track_deg: 0.0,
+            ground_speed_mps: 0.0,
+            airspeed_mps: 0.0,
+            wind_east_mps: 0.0,
+            wind_north_mps: 0.0,
+            battery: 1.0,
+            fuel: None,
+            on_ground: true,
+        };
+        let program = Arc::new(program);
+        for input in [
+            Input::Propose { request: RequestId(1), program, based_on: None, objections: Vec::new() },
+            command(Command::Commit { hash, entry: None }),
+            command(Command::Start),
+            Input::Aircraft(aircraft),
+        ] {
+            executor.step(Time::ZERO, input, &mut Vec::new());
+        }
+        executor
+    }
+
+    /// A landing ends the flight while the plan is looked at, or while its document is kept.
+    #[test]
+    fn a_plan_looked_at_for_a_flight_that_is_over_is_not_put_forward() {
+        let mut executor = flying();
+        let refused = |in_flight, executor: &Executor| good_for_now(in_flight, executor).is_err();
+        assert!(!refused(true, &executor) && !refused(false, &executor));
+        executor.step(Time::ZERO, Input::Landed, &mut Vec::new());
+        assert!(refused(true, &executor) && !refused(false, &executor));
+    }
 }

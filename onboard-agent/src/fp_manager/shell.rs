@@ -6,7 +6,7 @@ use super::journal::Keeper;
 use super::looks::{Asked, Looks, Verdict};
 use super::manager::{Effect, Manager, OPERATOR};
 use super::pending::{Answered, Pending};
-use super::proposals::{Desk, Sight, looked_at};
+use super::proposals::{Desk, Sight, good_for_now, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
 use crate::clock::{Clock, Time};
@@ -155,7 +155,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             occurrence = ears.events.recv() => {
                 shell.occurred(occurrence.context("the network session was closed")?).await;
             }
-            (incoming, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, looked).await,
+            (incoming, in_flight, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, in_flight, looked).await,
             problems = shell.looks.next() => shell.looked_ahead(problems).await,
             events = shell.afterwards.next() => shell.tell(events).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
@@ -351,8 +351,11 @@ impl Shell {
     async fn looked(
         &mut self,
         incoming: Incoming<Propose, ProposalReport>,
+        in_flight: bool,
         looked: Result<Arc<Program>, Refusal>,
     ) {
+        let looked =
+            looked.and_then(|program| good_for_now(in_flight, self.manager.executor()).map(|()| program));
         let answer = self.propose(looked, incoming.request.seen_revision).await;
         incoming.answer(answer);
     }

@@ -233,15 +233,16 @@ impl Executor {
         out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
     }
 
-    /// Seconds that the place steered to is circled.
-    pub(crate) fn wait_at_front_s(&self) -> Option<f64> {
-        self.state.handed.front()?.wait_s
-    }
-
-    /// A new plan makes another wait of the one being flown, which `was_s` seconds long before: it counts from where it began.
-    pub(crate) fn wait_anew(&mut self, was_s: Option<f64>) {
-        let new_s = self.wait_at_front_s().filter(|new_s| was_s.is_some_and(|was_s| was_s != *new_s));
-        if let Some((wait, seconds)) = self.state.wait.as_mut().zip(new_s) {
+    /// A new plan that says something else about the wait being flown makes it longer or shorter, counted from where it began. One
+    /// that says the same changes nothing, whatever its expression gives by now.
+    pub(crate) fn wait_anew(&mut self, before: &Program) {
+        let Some(front) = self.state.handed.front() else { return };
+        let waits = |program: &Program| {
+            let actions = program.leg(&front.place.leg).map_or(&[][..], |leg| &leg.actions);
+            Vec::from_iter(actions.iter().filter(|action| is_wait(&action.act)).cloned())
+        };
+        let other = front.wait_s.filter(|_| waits(before) != waits(&self.program));
+        if let Some((wait, seconds)) = self.state.wait.as_mut().zip(other) {
             wait.due_s = wait.begun_s + seconds;
         }
     }

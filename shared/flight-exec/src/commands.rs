@@ -153,7 +153,7 @@ impl Executor {
         (path.commanded_amsl_m, path.predicted_amsl_m) = (altitude_amsl_m, altitude_amsl_m);
         (path.distance_m, path.time_s) = (rejoin.end_m, rejoin.end_s);
         if next.before.passage == next.passage {
-            next.before.path = path;
+            (next.before.path, next.before.rejoined) = (path, None);
         } else {
             next.before = next.before.going_on_from(path);
         }

@@ -243,7 +243,7 @@ impl Cursor {
 
     /// A corner of a pattern that is not flown by (see [`corner`]).
     fn is_to_be_crossed(&self, at: LatLon, next: LatLon, world: &World) -> bool {
-        let from = self.rejoined.as_ref().map_or(self.path.last.position, |path| path.last.position);
+        let from = self.end_of_path().last.position;
         corner::is_to_be_crossed([from, at, next], world.profile.turn_radius_m(self.airspeed_mps))
     }
 
@@ -301,6 +301,11 @@ impl Cursor {
     /// The same, the way to its next point beginning at `here`, though its leg is laid out from where the path comes from.
     pub fn going_on_from(&self, here: PathState) -> Self {
         Self { rejoined: Some(Box::new(here)), ..self.clone() }
+    }
+
+    /// Where the way to its next point begins.
+    pub fn end_of_path(&self) -> &PathState {
+        self.rejoined.as_deref().unwrap_or(&self.path)
     }
 
     /// How often an intersection has been passed.

@@ -258,17 +258,33 @@ impl Executor {
         }
     }
 
-    /// Path length where the aircraft is, metres.
+    /// Path length where the aircraft is, metres; never less than where the way to the current waypoint begins, however far the
+    /// aircraft was brought away from it.
     pub(crate) fn way_made_m(&self) -> f64 {
-        let front = self.state.handed.front().map(|h| h.end_m - self.to_current_m());
-        front.or(self.state.tail.as_ref().map(|t| t.path.distance_m)).unwrap_or(0.0)
+        let on_the_way = |h: &Handed| {
+            let begun_m = h.before.end_of_path().distance_m;
+            (h.end_m - self.to_be_flown_m()).max(begun_m)
+        };
+        let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().distance_m);
+        self.state.handed.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
     }
 
-    /// Flying time of the path where the aircraft is, seconds.
+    /// Flying time of the path where the aircraft is, seconds; likewise.
     pub(crate) fn time_made_s(&self) -> f64 {
-        let speed = |h: &Handed| h.waypoint.airspeed_mps.max(1.0);
-        let front = self.state.handed.front().map(|h| h.end_s - self.to_current_m() / speed(h));
-        front.or(self.state.tail.as_ref().map(|t| t.path.time_s)).unwrap_or(0.0)
+        let on_the_way = |h: &Handed| {
+            let left_s = self.to_be_flown_m() / h.waypoint.airspeed_mps.max(1.0);
+            (h.end_s - left_s).max(h.before.end_of_path().time_s)
+        };
+        let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().time_s);
+        self.state.handed.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
+    }
+
+    /// From where the path is left or gone on with to the waypoint steered to, metres: in a hold that is where it was given, wherever
+    /// the aircraft has drifted since.
+    fn to_be_flown_m(&self) -> f64 {
+        let held_at = self.state.held_at.filter(|_| self.state.phase == Phase::Holding);
+        let front = self.state.handed.front();
+        front.zip(held_at).map_or_else(|| self.to_current_m(), |(h, at)| distance_m(at, h.waypoint.position))
     }
 
     /// Path from the aircraft to a path length ahead, metres; never negative.

@@ -197,6 +197,9 @@ impl Executor {
             // the bookmark may be older than the values of now; those that make no such leg were told when they were written
             cursor.refresh_leg(&self.world()).ok();
         }
+        // what was flown of the way to the first of them counts on
+        let on_the_way = index == 0 && self.state.aircraft.is_some();
+        let cursor = if on_the_way { cursor.going_on_from(self.here()) } else { cursor };
         self.state.handed.truncate(index);
         self.state.tail = Some(cursor);
         self.state.onward = Onward::Open;
@@ -215,7 +218,7 @@ impl Executor {
     /// Where the flight is in the plan.
     pub(crate) fn place(&self) -> Option<PlacePointer> {
         let front = self.state.handed.front()?;
-        let way_m = front.end_m - self.to_current_m() - front.leg_start_m;
+        let way_m = self.way_made_m() - front.leg_start_m;
         Some(PlacePointer { distance_m: way_m.max(0.0), ..front.place.clone() })
     }
 }

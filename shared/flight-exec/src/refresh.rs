@@ -4,6 +4,7 @@ use crate::api::Output;
 use crate::cursor::{Cursor, Step, Trouble};
 use crate::executor::Executor;
 use crate::handed::Handed;
+use crate::path::Passing;
 use crate::world::World;
 use flight_plan::Id;
 
@@ -35,6 +36,30 @@ impl Executor {
         Some((trouble, index + of_leg.count()))
     }
 
+    /// Brings the leg that a bookmark is in to the values of now (see [`Cursor::refresh_leg`]). If nothing is kept before it, it is
+    /// joined from where the aircraft is, as far as it can be: not from the waypoint behind.
+    pub(crate) fn refreshed(&self, keep: usize, cursor: &mut Cursor) -> Result<bool, Trouble> {
+        let from_here = self.brought_here(keep, cursor);
+        let changed = cursor.refresh_leg(&self.world())?;
+        let joined =
+            |mut here: Cursor| here.refresh_leg(&self.world()).is_ok_and(|other| other).then_some(here);
+        if let Some(here) = from_here.filter(|_| changed).and_then(joined) {
+            *cursor = here;
+        }
+        Ok(changed)
+    }
+
+    /// The bookmark before the current waypoint with the end of its path where the aircraft is, on the way of its leg.
+    fn brought_here(&self, keep: usize, cursor: &Cursor) -> Option<Cursor> {
+        let front = self.state.handed.front().filter(|front| self.is_announced(front))?;
+        let on_the_way = keep == 0 && front.passage == cursor.passage && !self.is_muted();
+        let mut brought = cursor.clone();
+        let mut here = self.here();
+        here.last = Passing { position: here.last.position, ..cursor.path.last };
+        brought.move_path_to(here);
+        (on_the_way && self.state.aircraft.is_some()).then_some(brought)
+    }
+
     /// The variables have changed: lays out the leg being flown anew, and everything beyond it.
     ///
     /// The current waypoint of a pattern stays, and those nearer than the stopping distance; values that make no such leg
@@ -60,7 +85,7 @@ impl Executor {
         if keep == 0 && self.is_over(&cursor) {
             return self.replan(out);
         }
-        match cursor.refresh_leg(&self.world()) {
+        match self.refreshed(keep, &mut cursor) {
             Ok(false) if over => self.replan_with(keep, cursor, false, out),
             Ok(true) => {
                 for handed in self.state.handed.iter_mut().take(keep) {

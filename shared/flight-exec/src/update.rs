@@ -73,7 +73,8 @@ impl Executor {
 
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
     fn go_on_in(&mut self, program: Arc<Program>, bookmarks: &[Cursor], keep: usize, out: &mut Vec<Output>) {
-        let same = self.program == program;
+        let before = self.program.clone();
+        let same = before == program;
         self.activate(program, out);
         // as it was laid out goes on what can't be laid out any more
         let left_out = bookmarks.get(keep).and_then(|at| self.would_leave_out_the_leg_begun(keep, at));
@@ -95,13 +96,12 @@ impl Executor {
         self.follow_what_acts_now();
         self.forget_counts_of_loops_left(bookmarks.first());
         let Some(mut onward) = onward.first().cloned() else { return };
-        let refreshed = if same { Ok(false) } else { onward.refresh_leg(&self.world()) };
+        let refreshed = if same { Ok(false) } else { self.refreshed(kept.len(), &mut onward) };
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
         }
-        let wait_s = self.wait_at_front_s();
         self.replan_with(kept.len(), onward, false, out);
-        self.wait_anew(wait_s);
+        self.wait_anew(&before);
     }
 
     /// The cursors behind choices that are final when their waypoints are steered to.

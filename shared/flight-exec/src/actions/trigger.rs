@@ -29,13 +29,13 @@ pub(crate) struct Moment {
 
 impl Moment {
     fn new(handed: &Handed, at: LatLon, way_m: f64, complete: bool) -> Self {
-        let piece = Piece { from: handed.before.path.last.position, to: handed.waypoint.position };
+        let piece = Piece { from: handed.before.end_of_path().last.position, to: handed.waypoint.position };
         Self { way_m, piece, at, complete }
     }
 
     /// At the beginning of a passage.
     pub fn begun(handed: &Handed) -> Self {
-        Self::new(handed, handed.before.path.last.position, handed.leg_start_m, false)
+        Self::new(handed, handed.before.end_of_path().last.position, handed.leg_start_m, false)
     }
 
     /// At a waypoint.
@@ -45,7 +45,7 @@ impl Moment {
 
     /// So far before the waypoint it steers to, metres.
     pub fn on_the_way(handed: &Handed, aircraft: Option<LatLon>, left_m: f64) -> Self {
-        let begin = handed.before.path.last.position;
+        let begin = handed.before.end_of_path().last.position;
         Self::new(handed, aircraft.unwrap_or(begin), handed.end_m - left_m, false)
     }
 }

@@ -178,6 +178,7 @@ impl<'a> Offset<'a> {
             && one.crossings == other.crossings
             && self.paths(&one.path, &other.path)
             && self.paths(&one.leg_start, &other.leg_start)
+            && pair(&one.rejoined, &other.rejoined, |a, b| self.paths(a, b))
             && expansion
             && all(one.loops.iter(), other.loops.iter(), frames)
     }

@@ -496,3 +496,23 @@ fn a_count_ends_with_the_loop_that_an_update_makes_a_leg() {
     rig.command(Command::GoTo { leg: "c".into() }).unwrap();
     assert_eq!(rig.executor.status().place.unwrap().iterations[0].of, Some(3));
 }
+
+/// It says nothing else about the wait: what its expression gives by now is not asked.
+#[test]
+fn a_wait_until_a_time_stays_as_long_under_an_update_of_something_else() {
+    let plan = |last: &str| {
+        let wait = r#"<action on="end"><wait seconds="= 4000.0 - time"/></action>"#;
+        document(&format!(r#"<TF id="a" fix="B1">{wait}</TF><TF id="b" fix="C4"/><TF id="z" fix="{last}"/>"#))
+    };
+    let mut rig = Rig::flying(&plan("A3"));
+    rig.fly_to("a");
+    rig.fly_one();
+    for _ in 0..100 {
+        rig.now += Time::from_secs(10);
+        rig.report();
+    }
+    let left_s = rig.executor.status().wait_left_s;
+    assert!(left_s.is_some_and(|s| s > 1000.0), "{left_s:?}");
+    rig.update(&program(&plan("D3"))).unwrap();
+    assert_eq!(rig.executor.status().wait_left_s, left_s);
+}

@@ -2,7 +2,7 @@
 
 use crate::legs_actions::{at, done, two_legs};
 use crate::rig::{Rig, document_with, fix, program};
-use flight_exec::{Command, Event, ResolvedAct, Time};
+use flight_exec::{Command, Event, Input, ResolvedAct, Time};
 
 const VARIABLES: &str = r#"<variable name="n" type="number" initial="100" min="0" max="9000"/>"#;
 
@@ -251,4 +251,57 @@ fn what_a_loop_does_at_its_end_is_done_though_its_last_leg_is_skipped() {
         assert_eq!(n, Some(&flight_plan::VariableValue::Number(2.0)), "{skips}");
         assert!(!done(&rig).contains(&"b:photo".into()), "{skips}");
     }
+}
+
+/// Two kilometres into a leg of a loop that takes a photo on every one; the way made by then.
+fn on_the_second_leg_of_a_loop() -> (Rig, f64) {
+    let mut rig = Rig::started(
+        r#"<TF id="a" fix="B1"/><iterative id="l" form="forward" count="3"><action every="1000"><photo/></action><TF id="b" fix="B4"/>
+           <TF id="c" fix="D4"/><TF id="d" fix="D1"/></iterative><TF id="z" fix="A3"/>"#,
+    );
+    rig.fly_to("c");
+    ahead(&mut rig, 2000.0);
+    let way_m = rig.executor.here().distance_m;
+    (rig, way_m)
+}
+
+/// So much nearer to the waypoint steered to, metres; negative: away from it.
+fn ahead(rig: &mut Rig, way_m: f64) {
+    let course_deg = rig.position.bearing_deg(rig.buffer[0].position);
+    rig.position = rig.position.destination(course_deg, way_m);
+    rig.now += Time::from_secs_f64(way_m.abs() / 25.0);
+    rig.report();
+}
+
+/// Way that is drifted while somebody else steers is none: neither is it made up for, nor taken back.
+#[test]
+fn a_drift_in_a_hold_is_no_way_made() {
+    let (mut rig, before_m) = on_the_second_leg_of_a_loop();
+    let photos = rig.acts.len();
+    rig.command(Command::Hold).unwrap();
+    for drift_m in [-8000.0, 1500.0] {
+        ahead(&mut rig, drift_m);
+        assert!((rig.executor.here().distance_m - before_m).abs() < 1.0, "{drift_m}");
+    }
+    rig.command(Command::GoTo { leg: "d".into() }).unwrap();
+    rig.command(Command::Resume).unwrap();
+    rig.steer();
+    for _ in 0..30 {
+        ahead(&mut rig, 100.0);
+    }
+    assert_eq!(rig.acts.len(), photos + 3);
+}
+
+#[test]
+fn what_was_flown_towards_a_waypoint_that_is_refused_counts_on() {
+    let (mut rig, before_m) = on_the_second_leg_of_a_loop();
+    let first = rig.buffer[0].token;
+    rig.step(Input::Rejected { first, reason: "no".into() });
+    assert!((rig.executor.here().distance_m - before_m).abs() < 1.0);
+    rig.buffer.clear();
+    rig.command(Command::Resume).unwrap();
+    rig.steer();
+    assert!((rig.executor.here().distance_m - before_m).abs() < 1.0);
+    let place = rig.executor.status().place.unwrap();
+    assert!((place.distance_m - 2000.0).abs() < 1.0, "{place:?}");
 }

@@ -1,7 +1,7 @@
 //! Courses to and from fixes, and holdings that are left by a condition, a command or a number of laps.
 
 use crate::rig::{GROUND_M, Rig, check, document_with, fix};
-use flight_exec::{Command, Event};
+use flight_exec::{Command, Event, Time};
 use flight_plan::VariableValue;
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -217,4 +217,37 @@ fn a_condition_without_a_value_is_told_and_does_not_hold() {
         .collect();
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].0 == "h" && told[0].1.contains("division by zero"), "{told:?}");
+}
+
+/// Six kilometres of its twelve are flown when the fix moves aside by twenty metres: it is intercepted ahead.
+#[test]
+fn a_course_that_moves_on_the_way_is_joined_from_where_the_aircraft_is() {
+    for (name, fix_at) in [
+        ("behind a turn", fix("C1").destination(45.0, 1500.0).destination(90.0, 12_000.0)),
+        ("straight in", fix("C1").destination(90.0, 12_000.0)),
+    ] {
+        let variables = r#"<variable name="n" type="number" initial="0" min="-100" max="100"/>"#;
+        let legs = format!(
+            r#"<TF id="a" fix="B1"/><TF id="s" fix="C1"/>
+            <CF id="c" at="= offset(lat_lon({}, {}), 0.0, n)" course="90"/><TF id="z" fix="A3"/>"#,
+            fix_at.lat_deg, fix_at.lon_deg
+        );
+        let mut rig = Rig::flying(&document_with(&legs, variables, ""));
+        rig.fly_to("c");
+        while rig.position.distance_m(rig.buffer[0].position) < 7000.0 {
+            assert!(rig.fly_one(), "{name}");
+        }
+        let course_deg = rig.position.bearing_deg(rig.buffer[0].position);
+        rig.position = rig.position.destination(course_deg, 6000.0);
+        rig.now += Time::from_secs(240);
+        rig.report();
+        let before_m = rig.executor.here().distance_m;
+        rig.set("n", 20.0).unwrap();
+        rig.now += Time::from_secs(30);
+        rig.report();
+        rig.steer();
+        let off_deg = normalise_180(rig.position.bearing_deg(rig.buffer[0].position) - course_deg);
+        assert!(off_deg.abs() < 60.0, "{name}: {off_deg}° off");
+        assert!((rig.executor.here().distance_m - before_m).abs() < 1.0, "{name}");
+    }
 }
