@@ -1,7 +1,7 @@
 //! `wind-too-strong`: on a part of the path the aircraft does not come forward, or is carried off the track.
 //!
-//! Told once: the remedy is another wind or another airspeed, not another leg. That the energy does not last then, or that an emergency
-//! plan does not end, is the wind's doing and not told. In flight it is the other way round: nobody can wait for less wind there, so it is
+//! Told once: the remedy is another wind or another airspeed, not another leg. That the energy does not last then, that an emergency
+//! plan does not end or is out of reach, is the wind's doing and not told. In flight it is the other way round: nobody can wait for less wind there, so it is
 //! a warning, and a change is judged by what follows from it.
 
 use super::View;
@@ -12,7 +12,15 @@ use flight_plan::{Id, Problem};
 /// What is wrong.
 const CODE: &str = "wind-too-strong";
 /// What follows from it.
-const FOLLOWS: [&str; 5] = ["energy", "open-ended", "low-reserve", "endless-flight", "emergency-endless"];
+const FOLLOWS: [&str; 7] = [
+    "energy",
+    "open-ended",
+    "low-reserve",
+    "endless-flight",
+    "emergency-endless",
+    "alternate-out-of-reach",
+    "glide-out-of-reach",
+];
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let Some((leg, airspeed_mps)) = first_held_up(view) else { return };
