@@ -7,7 +7,8 @@
 use super::ahead::read_by_geometry;
 use super::{Conditions, review};
 use aircraft::Profile;
-use flight_plan::{Problem, Program, Severity, Variable, VariableValue};
+use flight_plan::{Id, Problem, Program, Severity, Variable, VariableValue};
+use std::collections::HashMap;
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -29,22 +30,26 @@ pub fn review_extremes(
     let variables = used(program);
     let trials = trials(&variables);
     let nothing = Trial(Vec::new());
-    let known = program.warnings.iter().chain(found);
-    let mut told: Vec<(&Trial, Problem)> = known.map(|problem| (&nothing, problem.clone())).collect();
-    let known = told.len();
+    // at which values each problem of a leg was told
+    let mut told: HashMap<(&str, Option<Id>), Vec<&Trial>> = HashMap::new();
+    for known in program.warnings.iter().chain(found) {
+        told.insert((known.code, known.subject.clone()), vec![&nothing]);
+    }
+    let mut new = Vec::new();
     for (done, trial) in trials.iter().enumerate() {
         if !progress(done, trials.len()) {
             break;
         }
         for problem in trial.problems(program, profile, terrain, conditions) {
-            let same = |old: &Problem| (old.code, &old.subject) == (problem.code, &problem.subject);
-            if !told.iter().any(|(part, old)| part.is_part_of(trial) && same(old)) {
-                told.push((trial, problem));
+            let at = told.entry((problem.code, problem.subject.clone())).or_default();
+            if !at.iter().any(|part| part.is_part_of(trial)) {
+                at.push(trial);
+                new.push(problem);
             }
         }
     }
-    let found = told.into_iter().skip(known).map(|(_, problem)| problem);
-    found.chain(variables.iter().skip(MOST_TRIALS / 2).map(|v| not_tried(v))).collect()
+    new.extend(variables.iter().skip(MOST_TRIALS / 2).map(|v| not_tried(v)));
+    new
 }
 
 /// The numbers that some leg's place, size, altitude, speed or count depends on, in the plan's order.
