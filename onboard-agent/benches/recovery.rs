@@ -5,7 +5,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use flight_exec::{AircraftState, Executor, Input};
-use onboard_agent::fp_manager::journal::{Clerk, Entry, Folder, Job, Limits, Log, Record, encode};
+use onboard_agent::fp_manager::journal::{Entry, Folder, Job, Limits, Log, Record, Writer, encode};
 use onboard_agent::fp_manager::{Config, Manager};
 use std::net::TcpListener;
 use std::path::Path;
@@ -61,16 +61,16 @@ fn turn(n: u64) -> Vec<Entry> {
 fn cost(folder: &Path) {
     for (what, sync, count) in [("appended", false, 20_000), ("synced", true, 300)] {
         let limits = Limits { turns: u32::MAX, bytes: u64::MAX, bytes_max: u64::MAX, plans: 8 };
-        let mut clerk = Clerk::new(Log::open(Folder::new(folder.into()), limits).0, None);
+        let mut writer = Writer::new(Log::open(Folder::new(folder.into()), limits).0, None);
         let config = Config::new("bench", "");
         let executor = Executor::new(config.executor, config.terrain, config.profile);
         let saved = Manager::new(executor, Duration::ZERO).saved().0;
-        clerk.perform(Duration::ZERO, vec![Job::State(Box::new(saved), Vec::new())]);
+        writer.perform(Duration::ZERO, vec![Job::State(Box::new(saved), Vec::new())]);
         let (start, mut bytes) = (Instant::now(), 0);
         for n in 0..count {
             let payload = encode(&turn(n)).unwrap();
             bytes += payload.len();
-            clerk.perform(Duration::ZERO, vec![Job::Turn { payload, sync }]);
+            writer.perform(Duration::ZERO, vec![Job::Turn { payload, sync }]);
         }
         let each_us = start.elapsed().as_secs_f64() * 1e6 / count as f64;
         println!("{what}: {each_us:.1} us an input of {} bytes", bytes as u64 / count);

@@ -1,8 +1,8 @@
 //! Command line of `onboard-agent`.
 
 use clap::Parser;
-use onboard_agent::alone::Taken;
 use onboard_agent::config::{Cli, Options, Task};
+use onboard_agent::single_instance::AlreadyRunning;
 use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown, supervisor};
 use std::process::ExitCode;
 use tracing_subscriber::EnvFilter;
@@ -66,7 +66,7 @@ fn describe() -> ExitCode {
 fn status(outcome: anyhow::Result<()>) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.is::<Taken>() => failed(STARTED_WRONGLY, &error),
+        Err(error) if error.is::<AlreadyRunning>() => failed(STARTED_WRONGLY, &error),
         Err(error) => failed(FAILED, &error),
     }
 }

@@ -7,7 +7,7 @@ use super::Shared;
 use super::preview::Forecaster;
 use aircraft::Profile;
 use flight_exec::review::{Conditions, review, review_extremes};
-use flight_plan::{FlightPlan, Memory, Problem, Program};
+use flight_plan::{FlightPlan, IncrementalCache, Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -151,7 +151,7 @@ struct Bench {
     terrain: Arc<dyn Terrain>,
     /// For which aircraft.
     aircraft: Option<String>,
-    memory: Memory,
+    memory: IncrementalCache,
     forecaster: Forecaster,
     last: Shared,
 }
@@ -160,7 +160,7 @@ impl Bench {
     fn new(terrain: Arc<dyn Terrain>) -> Self {
         let profile = Profile::default();
         Self {
-            memory: Memory::new(profile.clone(), terrain.clone()),
+            memory: IncrementalCache::new(profile.clone(), terrain.clone()),
             forecaster: Forecaster::new(profile, terrain.clone()),
             terrain,
             aircraft: None,
@@ -203,7 +203,7 @@ impl Bench {
         let plan = &question.plan;
         if self.aircraft.as_ref() != Some(&plan.aircraft) {
             let profile = profile_of(plan);
-            self.memory = Memory::new(profile.clone(), self.terrain.clone());
+            self.memory = IncrementalCache::new(profile.clone(), self.terrain.clone());
             self.forecaster = Forecaster::new(profile, self.terrain.clone());
             self.aircraft = Some(plan.aircraft.clone());
         }

@@ -238,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Aboard it would be refused, and the file with the problem is named.
+    /// ActivePlan it would be refused, and the file with the problem is named.
     #[test]
     fn an_update_into_a_zone_is_refused() {
         let zone =

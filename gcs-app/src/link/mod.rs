@@ -3,7 +3,7 @@
 
 mod session;
 
-use crate::state::{Aboard, Level, Ticket};
+use crate::state::{ActivePlan, Level, Ticket};
 use flight_exec::{Command as PlanCommand, ProposalReport, Status};
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -48,11 +48,11 @@ pub enum Call {
 
 /// What the link has to tell.
 #[derive(Debug)]
-pub enum News {
+pub enum LinkEvent {
     /// The session changed.
     Link(LinkState),
     /// Something was heard of the vehicle.
-    Heard(Heard),
+    Telemetry(Telemetry),
     /// A question was answered, or was not in time.
     Answer {
         /// Of the question.
@@ -70,13 +70,13 @@ pub enum Reply {
     /// What a proposal would do.
     Proposal(Box<ProposalReport>),
     /// The active plan, if there is one.
-    Plan(Option<Aboard>),
+    Plan(Option<ActivePlan>),
 }
 
 /// What services tell of the vehicle.
 #[derive(Debug)]
 #[expect(missing_docs, reason = "each is the contract's variable or event of that name")]
-pub enum Heard {
+pub enum Telemetry {
     Position(Stamped<Position>),
     Attitude(Stamped<Attitude>),
     Air(Stamped<Air>),
@@ -126,7 +126,7 @@ impl LinkState {
     }
 }
 
-/// News that wait for the window at most; values that come faster than they are drawn are left out,
+/// LinkEvent that wait for the window at most; values that come faster than they are drawn are left out,
 /// answers and events wait.
 const BACKLOG: usize = 4096;
 
@@ -134,16 +134,16 @@ const BACKLOG: usize = 4096;
 #[derive(Debug)]
 pub struct Link {
     orders: mpsc::UnboundedSender<Order>,
-    news: mpsc::Receiver<News>,
+    news: mpsc::Receiver<LinkEvent>,
 }
 
 /// The far end: the session's, or a test's.
 #[derive(Debug)]
-pub struct FarEnd {
+pub struct Endpoint {
     /// What is asked.
     pub orders: mpsc::UnboundedReceiver<Order>,
     /// What there is to tell.
-    pub news: mpsc::Sender<News>,
+    pub news: mpsc::Sender<LinkEvent>,
 }
 
 /// Called when there is news to draw.
@@ -151,16 +151,16 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl Link {
     /// A link and its far end, without a session.
-    pub fn pair() -> (Self, FarEnd) {
+    pub fn pair() -> (Self, Endpoint) {
         let (order_sender, orders) = mpsc::unbounded_channel();
         let (news, news_receiver) = mpsc::channel(BACKLOG);
-        (Self { orders: order_sender, news: news_receiver }, FarEnd { orders, news })
+        (Self { orders: order_sender, news: news_receiver }, Endpoint { orders, news })
     }
 
     /// A link whose sessions live on a thread of their own, until the link is dropped.
     pub fn spawn(wake: Wake) -> std::io::Result<Self> {
-        let (link, far_end) = Self::pair();
-        std::thread::Builder::new().name("link".into()).spawn(move || session::serve(far_end, wake))?;
+        let (link, endpoint) = Self::pair();
+        std::thread::Builder::new().name("link".into()).spawn(move || session::serve(endpoint, wake))?;
         Ok(link)
     }
 
@@ -170,7 +170,7 @@ impl Link {
     }
 
     /// The next news, if there are any.
-    pub fn news(&mut self) -> Option<News> {
+    pub fn news(&mut self) -> Option<LinkEvent> {
         self.news.try_recv().ok()
     }
 }

@@ -1,7 +1,7 @@
 //! The thread behind the link: it owns the runtime and the session, and turns both into channels.
 
-use super::{Call, FarEnd, Heard, LinkState, News, Order, Reply, Wake};
-use crate::state::{Aboard, Ticket};
+use super::{Call, Endpoint, LinkEvent, LinkState, Order, Reply, Telemetry, Wake};
+use crate::state::{ActivePlan, Ticket};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -15,10 +15,10 @@ const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
 const PLAN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Serves orders until the window's end of the link is gone.
-pub fn serve(far_end: FarEnd, wake: Wake) {
+pub fn serve(endpoint: Endpoint, wake: Wake) {
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
     match runtime {
-        Ok(runtime) => runtime.block_on(orders(far_end, wake)),
+        Ok(runtime) => runtime.block_on(orders(endpoint, wake)),
         Err(error) => tracing::error!(%error, "no threads for the link; the window works without a vehicle"),
     }
 }
@@ -26,20 +26,20 @@ pub fn serve(far_end: FarEnd, wake: Wake) {
 /// Where news go.
 #[derive(Clone)]
 struct Outlet {
-    news: mpsc::Sender<News>,
+    news: mpsc::Sender<LinkEvent>,
     wake: Wake,
 }
 
 impl Outlet {
     /// Waits for room: answers and events are never lost.
-    async fn tell(&self, news: News) {
+    async fn tell(&self, news: LinkEvent) {
         // the window may be gone: nobody to tell
         let _ = self.news.send(news).await;
         (self.wake)();
     }
     /// A value; the next one is newer anyway.
-    fn value(&self, heard: Heard) {
-        let _ = self.news.try_send(News::Heard(heard));
+    fn value(&self, heard: Telemetry) {
+        let _ = self.news.try_send(LinkEvent::Telemetry(heard));
         (self.wake)();
     }
 }
@@ -50,22 +50,22 @@ struct Open {
     tasks: tokio::task::JoinSet<()>,
 }
 
-async fn orders(mut far_end: FarEnd, wake: Wake) {
-    let outlet = Outlet { news: far_end.news, wake };
+async fn orders(mut endpoint: Endpoint, wake: Wake) {
+    let outlet = Outlet { news: endpoint.news, wake };
     let mut open: Option<Open> = None;
-    while let Some(order) = far_end.orders.recv().await {
+    while let Some(order) = endpoint.orders.recv().await {
         match order {
             Order::Connect { endpoint, vehicle } => {
                 open = None;
-                outlet.tell(News::Link(LinkState::Connecting(endpoint.clone()))).await;
+                outlet.tell(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
                 match connect(&endpoint, &vehicle, &outlet).await {
                     Ok(session) => open = Some(session),
-                    Err(error) => outlet.tell(News::Link(LinkState::Failed(error.to_string()))).await,
+                    Err(error) => outlet.tell(LinkEvent::Link(LinkState::Failed(error.to_string()))).await,
                 }
             }
             Order::Disconnect => {
                 open = None;
-                outlet.tell(News::Link(LinkState::Off)).await;
+                outlet.tell(LinkEvent::Link(LinkState::Off)).await;
             }
             Order::Call { ticket, call } => match &mut open {
                 Some(open) => {
@@ -76,7 +76,7 @@ async fn orders(mut far_end: FarEnd, wake: Wake) {
                 }
                 None => {
                     let result = Err("there is no link: connect first".to_owned());
-                    outlet.tell(News::Answer { ticket, result }).await;
+                    outlet.tell(LinkEvent::Answer { ticket, result }).await;
                 }
             },
         }
@@ -86,17 +86,17 @@ async fn orders(mut far_end: FarEnd, wake: Wake) {
 async fn connect(endpoint: &str, vehicle: &str, outlet: &Outlet) -> Result<Open, usal::SessionError> {
     let session = Session::open(usal::Config::client(vehicle, endpoint)).await?;
     let mut open = Open { session, tasks: tokio::task::JoinSet::new() };
-    open.follow(gateway::POSITION, Heard::Position, outlet)?;
-    open.follow(gateway::ATTITUDE, Heard::Attitude, outlet)?;
-    open.follow(gateway::AIR, Heard::Air, outlet)?;
-    open.follow(gateway::GPS, Heard::Gps, outlet)?;
-    open.follow(gateway::ENGINE, Heard::Engine, outlet)?;
-    open.follow(gateway::POWER, Heard::Power, outlet)?;
-    open.follow(gateway::NAVIGATION, Heard::Navigation, outlet)?;
-    open.follow(gateway::STATE, Heard::Gateway, outlet)?;
-    open.follow(fp_manager::STATUS, |status| Heard::Status(Box::new(status)), outlet)?;
-    open.follow(fp_manager::AHEAD, Heard::Ahead, outlet)?;
-    open.follow(fp_manager::VARIABLES, Heard::Variables, outlet)?;
+    open.follow(gateway::POSITION, Telemetry::Position, outlet)?;
+    open.follow(gateway::ATTITUDE, Telemetry::Attitude, outlet)?;
+    open.follow(gateway::AIR, Telemetry::Air, outlet)?;
+    open.follow(gateway::GPS, Telemetry::Gps, outlet)?;
+    open.follow(gateway::ENGINE, Telemetry::Engine, outlet)?;
+    open.follow(gateway::POWER, Telemetry::Power, outlet)?;
+    open.follow(gateway::NAVIGATION, Telemetry::Navigation, outlet)?;
+    open.follow(gateway::STATE, Telemetry::Gateway, outlet)?;
+    open.follow(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status)), outlet)?;
+    open.follow(fp_manager::AHEAD, Telemetry::Ahead, outlet)?;
+    open.follow(fp_manager::VARIABLES, Telemetry::Variables, outlet)?;
     open.listen(outlet)?;
     open.watch(endpoint, outlet)?;
     Ok(open)
@@ -106,7 +106,7 @@ impl Open {
     fn follow<T>(
         &mut self,
         variable: Variable<T>,
-        heard: fn(Stamped<T>) -> Heard,
+        heard: fn(Stamped<T>) -> Telemetry,
         outlet: &Outlet,
     ) -> Result<(), usal::SessionError>
     where
@@ -129,14 +129,14 @@ impl Open {
         self.tasks.spawn(async move {
             while let Some(occurrence) = plan_events.recv().await {
                 if let Occurrence::Event { event, .. } = occurrence {
-                    plan_outlet.tell(News::Heard(Heard::PlanEvent(event))).await;
+                    plan_outlet.tell(LinkEvent::Telemetry(Telemetry::PlanEvent(event))).await;
                 }
             }
         });
         self.tasks.spawn(async move {
             while let Some(occurrence) = gateway_events.recv().await {
                 if let Occurrence::Event { event, .. } = occurrence {
-                    gateway_outlet.tell(News::Heard(Heard::GatewayEvent(event.value))).await;
+                    gateway_outlet.tell(LinkEvent::Telemetry(Telemetry::GatewayEvent(event.value))).await;
                 }
             }
         });
@@ -152,7 +152,7 @@ impl Open {
             while let Some(alive) = services {
                 let there = [GATEWAY, FP_MANAGER].iter().any(|s| alive.contains(*s));
                 let state = if there { LinkState::Connected } else { LinkState::Connecting };
-                outlet.tell(News::Link(state(endpoint.clone()))).await;
+                outlet.tell(LinkEvent::Link(state(endpoint.clone()))).await;
                 services = presence.changed().await;
             }
         });
@@ -165,7 +165,7 @@ async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) 
         CallError::Refused(refusal) => refusal.reason,
         other => other.to_string(),
     });
-    outlet.tell(News::Answer { ticket, result }).await;
+    outlet.tell(LinkEvent::Answer { ticket, result }).await;
 }
 
 /// What may have to be looked at first is not answered at once.
@@ -190,7 +190,7 @@ async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
         }
         Call::PlanAboard => {
             let document = session.call(fp_manager::PLAN_DOCUMENT, &Empty {}, PLAN_TIMEOUT).await?;
-            Ok(Reply::Plan(document.info.hash.map(|hash| Aboard {
+            Ok(Reply::Plan(document.info.hash.map(|hash| ActivePlan {
                 hash: hash.into(),
                 plan: Arc::new(flight_plan::read(document.xml.as_bytes()).plan),
             })))

@@ -190,8 +190,8 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
     };
     if status.plan.as_deref() == Some(hash) {
         return match status.phase {
-            Phase::Idle => ("aboard", Standing::Aboard),
-            Phase::Finished => ("flown", Standing::Aboard),
+            Phase::Idle => ("aboard", Standing::ActivePlan),
+            Phase::Finished => ("flown", Standing::ActivePlan),
             _ => ("active", Standing::Active),
         };
     }
@@ -209,7 +209,7 @@ pub enum Standing {
     /// Checked aboard, not committed.
     Proposed,
     /// Stored aboard.
-    Aboard,
+    ActivePlan,
     /// Being flown.
     Active,
 }
@@ -229,7 +229,7 @@ fn standing_look(standing: Standing, p: &Palette) -> (&'static str, Color32) {
     match standing {
         Standing::Draft => ("◇", p.text),
         Standing::Proposed => ("◈", p.accent),
-        Standing::Aboard => ("◆", p.accent),
+        Standing::ActivePlan => ("◆", p.accent),
         Standing::Active => ("◆", p.good),
     }
 }

@@ -298,7 +298,7 @@ fn show_variable(ui: &mut Ui, scene: &Scene<'_>, variable: &Variable, queue: &mu
     let Some(aboard) = &scene.vehicle.variables else { return };
     let Some(live) = aboard.value.variables.iter().find(|v| v.name == variable.name) else { return };
     ui.separator();
-    super::group_title(ui, "Aboard");
+    super::group_title(ui, "ActivePlan");
     let shown = crate::state::log::variable(&live.value);
     super::value_with_age(ui, "Value", &shown, super::age_of(&scene.vehicle.variables, scene.now_s));
     let id = egui::Id::unique(("set aboard", &variable.name));

@@ -16,7 +16,7 @@ pub struct Aged<T> {
 }
 
 impl<T> Aged<T> {
-    /// Heard now.
+    /// Telemetry now.
     pub fn new(stamped: Stamped<T>, now_s: f64) -> Self {
         Self { value: stamped.value, time_s: stamped.time_s, validity_s: stamped.validity_s, heard_s: now_s }
     }

@@ -1,4 +1,4 @@
-//! What is known of the vehicle, and how old it is. News go in, panels read; nothing here draws,
+//! What is known of the vehicle, and how old it is. LinkEvent go in, panels read; nothing here draws,
 //! waits or sends.
 
 mod aged;
@@ -11,7 +11,7 @@ pub use log::{Level, Line, Log};
 pub use requests::{Outcome, READ_ABOARD, Request, Requests, Ticket};
 pub use trail::Trail;
 
-use crate::link::{Heard, LinkState, News, Reply};
+use crate::link::{LinkEvent, LinkState, Reply, Telemetry};
 use flight_exec::{Phase, Status};
 use flight_plan::{FlightPlan, Id};
 use std::sync::Arc;
@@ -50,7 +50,7 @@ pub struct Vehicle {
     /// Values of the plan's variables.
     pub variables: Option<Aged<PlanVariables>>,
     /// The active plan.
-    pub aboard: Option<Aboard>,
+    pub aboard: Option<ActivePlan>,
     /// What the last proposal would do, until committed or dropped.
     pub proposal: Option<Proposal>,
     /// Where it has been.
@@ -63,7 +63,7 @@ pub struct Vehicle {
 
 /// A plan the FP Manager flies.
 #[derive(Debug, Clone)]
-pub struct Aboard {
+pub struct ActivePlan {
     /// Its hash.
     pub hash: Arc<str>,
     /// The plan.
@@ -88,14 +88,14 @@ macro_rules! remember {
 
 impl Vehicle {
     /// Takes news in. Returns whether the plan aboard should be asked for.
-    pub fn hear(&mut self, news: News, now_s: f64) -> bool {
+    pub fn hear(&mut self, news: LinkEvent, now_s: f64) -> bool {
         match news {
-            News::Link(link) => self.link_changed(link, now_s),
-            News::Heard(heard) => {
+            LinkEvent::Link(link) => self.link_changed(link, now_s),
+            LinkEvent::Telemetry(heard) => {
                 self.heard_s = Some(now_s);
                 self.take(heard, now_s);
             }
-            News::Answer { ticket, result } => self.answered(ticket, result, now_s),
+            LinkEvent::Answer { ticket, result } => self.answered(ticket, result, now_s),
         }
         self.lacks_plan_aboard()
     }
@@ -107,24 +107,24 @@ impl Vehicle {
         self.link = link;
     }
 
-    fn take(&mut self, heard: Heard, now_s: f64) {
+    fn take(&mut self, heard: Telemetry, now_s: f64) {
         match heard {
-            Heard::Position(p) => {
+            Telemetry::Position(p) => {
                 self.trail.add(p.value.position, p.time_s);
                 remember!(self.position, p, now_s);
             }
-            Heard::Attitude(v) => remember!(self.attitude, v, now_s),
-            Heard::Air(v) => remember!(self.air, v, now_s),
-            Heard::Gps(v) => remember!(self.gps, v, now_s),
-            Heard::Engine(v) => remember!(self.engine, v, now_s),
-            Heard::Power(v) => remember!(self.power, v, now_s),
-            Heard::Navigation(v) => remember!(self.navigation, v, now_s),
-            Heard::Gateway(v) => remember!(self.gateway, v, now_s),
-            Heard::Status(v) => remember!(self.status, *v, now_s),
-            Heard::Ahead(v) => remember!(self.ahead, v, now_s),
-            Heard::Variables(v) => remember!(self.variables, v, now_s),
-            Heard::PlanEvent(event) => self.plan_event(event, now_s),
-            Heard::GatewayEvent(event) => self.gateway_event(&event, now_s),
+            Telemetry::Attitude(v) => remember!(self.attitude, v, now_s),
+            Telemetry::Air(v) => remember!(self.air, v, now_s),
+            Telemetry::Gps(v) => remember!(self.gps, v, now_s),
+            Telemetry::Engine(v) => remember!(self.engine, v, now_s),
+            Telemetry::Power(v) => remember!(self.power, v, now_s),
+            Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
+            Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
+            Telemetry::Status(v) => remember!(self.status, *v, now_s),
+            Telemetry::Ahead(v) => remember!(self.ahead, v, now_s),
+            Telemetry::Variables(v) => remember!(self.variables, v, now_s),
+            Telemetry::PlanEvent(event) => self.plan_event(event, now_s),
+            Telemetry::GatewayEvent(event) => self.gateway_event(&event, now_s),
         }
     }
 

@@ -4,7 +4,7 @@ use super::vehicle::{decision, place, status};
 use super::{SQUARE, Window};
 use egui::Key;
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
-use gcs_app::link::{Call, LinkState, News, Order, Reply};
+use gcs_app::link::{Call, LinkEvent, LinkState, Order, Reply};
 use gcs_app::state::Outcome;
 use usal::contract::{Alarm, Severity};
 
@@ -59,7 +59,7 @@ fn connecting_asks_the_link_and_shows_what_came_of_it() {
     window.click("Connect");
     let order = window.far.orders.try_recv().unwrap();
     assert_eq!(order, Order::Connect { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() });
-    window.tell(News::Link(LinkState::Failed("nobody listens there".into())));
+    window.tell(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
     assert!(window.shows("No link"));
     window.connect();
     assert!(window.shows("Link 0."));
@@ -270,7 +270,10 @@ fn a_flood_of_news_never_stops_the_drawing() {
     for _ in 0..4000 {
         let value = status(Phase::Flying);
         let stamped = usal::contract::Stamped { time_s: 1.0, validity_s: 2.0, value };
-        let _ = window.far.news.try_send(News::Heard(gcs_app::link::Heard::Status(Box::new(stamped))));
+        let _ = window
+            .far
+            .news
+            .try_send(LinkEvent::Telemetry(gcs_app::link::Telemetry::Status(Box::new(stamped))));
     }
     window.steps(2);
     assert!(window.far.news.capacity() > 4000, "all of it was taken in at once");

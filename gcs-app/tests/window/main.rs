@@ -13,7 +13,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gcs_app::app::App;
 use gcs_app::assets;
 use gcs_app::document::Document;
-use gcs_app::link::{FarEnd, Link};
+use gcs_app::link::{Endpoint, Link};
 use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
@@ -21,7 +21,7 @@ const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
 /// A window with its far end.
 struct Window {
     harness: Harness<'static, App>,
-    far: FarEnd,
+    far: Endpoint,
 }
 
 impl Window {

@@ -2,7 +2,7 @@
 
 use super::Window;
 use flight_exec::{BranchOption, DecisionRequest, Phase, PlacePointer, Status};
-use gcs_app::link::{Call, Heard, LinkState, News, Order, Reply};
+use gcs_app::link::{Call, LinkEvent, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
 use usal::contract::{Attitude, GatewayState, GatewayStatus, Position, Stamped};
@@ -50,22 +50,22 @@ pub fn decision(default: Option<&str>) -> DecisionRequest {
 }
 
 impl Window {
-    pub fn tell(&mut self, news: News) {
+    pub fn tell(&mut self, news: LinkEvent) {
         self.far.news.try_send(news).unwrap();
         self.steps(2);
     }
 
-    pub fn hear(&mut self, heard: Heard) {
-        self.tell(News::Heard(heard));
+    pub fn hear(&mut self, heard: Telemetry) {
+        self.tell(LinkEvent::Telemetry(heard));
     }
 
     pub fn hear_status(&mut self, value: Status) {
-        self.hear(Heard::Status(Box::new(Stamped { time_s: 1.0, validity_s: 2.0, value })));
+        self.hear(Telemetry::Status(Box::new(Stamped { time_s: 1.0, validity_s: 2.0, value })));
     }
 
     /// Connected to a vehicle that stands on the runway.
     pub fn connect(&mut self) {
-        self.tell(News::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+        self.tell(LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
         self.hear_position(true);
         self.hear_status(status(Phase::Idle));
     }
@@ -82,7 +82,7 @@ impl Window {
             ground_speed_mps: 25.0,
             on_ground,
         };
-        self.hear(Heard::Position(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.hear(Telemetry::Position(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
     pub fn hear_attitude(&mut self) {
@@ -94,7 +94,7 @@ impl Window {
             pitch_rate_dps: 0.0,
             yaw_rate_dps: 0.0,
         };
-        self.hear(Heard::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.hear(Telemetry::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
     pub fn hear_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
@@ -108,7 +108,7 @@ impl Window {
             safe_return_in_s: None,
             alarms,
         };
-        self.hear(Heard::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.hear(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
     /// The next question that was asked, if there is one.
@@ -121,6 +121,6 @@ impl Window {
     }
 
     pub fn answer(&mut self, ticket: Ticket, result: Result<Reply, String>) {
-        self.tell(News::Answer { ticket, result });
+        self.tell(LinkEvent::Answer { ticket, result });
     }
 }

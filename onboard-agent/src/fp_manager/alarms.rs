@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// Looks at a list and answers what it asks for.
+    /// CommandReview at a list and answers what it asks for.
     fn answered(alarms: &mut Alarms, list: &[Alarm]) -> Vec<Cause> {
         alarms.look_again();
         let calls = alarms.listed(list);

@@ -15,14 +15,14 @@ impl Manager {
     pub(super) fn presentation(&self) -> Join {
         Join {
             plan: self.executor.program().map(|p| p.hash().to_string()),
-            earlier: self.succession.earlier().to_vec(),
+            earlier: self.plan_history.earlier().to_vec(),
             last_token: self.executor.last_token(),
         }
     }
 
     /// The answer to [`Effect::Join`]; `None`: none came.
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>, out: &mut Vec<Effect>) {
-        let answer = match self.liaison.joined(now, answer) {
+        let answer = match self.gateway_session.joined(now, answer) {
             Ok(answer) => answer,
             Err(None) => return,
             Err(Some(reason)) => {
@@ -41,7 +41,7 @@ impl Manager {
         if let Some(current) = answer.current {
             self.progress(now, current, out);
         }
-        let controlled = self.liaison.take_controlled();
+        let controlled = self.gateway_session.take_controlled();
         let flying =
             matches!(self.executor.status_phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding);
         if flying && lost {
@@ -64,8 +64,8 @@ impl Manager {
             // before the take-off it is the gateway that has lost them
             w.token <= answer.highest && (answer.finished || !matches!(w.action, Action::TakeOff { .. }))
         });
-        if self.liaison.is_on_ground() && answer.last.is_none() && taken {
-            self.liaison.unwant(GatewayRequest::Launch);
+        if self.gateway_session.is_on_ground() && answer.last.is_none() && taken {
+            self.gateway_session.unwant(GatewayRequest::Launch);
             let flown = answer.finished;
             self.step(now, if flown { Input::Progress { current: None } } else { Input::Landed }, out);
             self.step(now, Input::GatewayControls(false), out);
@@ -76,7 +76,7 @@ impl Manager {
             self.step(now, Input::GatewayControls(false), out);
             if self.executor.status_phase() == Phase::Holding {
                 // given back, the gateway flies on with what it has
-                self.liaison.want(GatewayRequest::Hold);
+                self.gateway_session.want(GatewayRequest::Hold);
             }
         }
     }
@@ -99,7 +99,7 @@ impl Manager {
         let held = self.order(now, Command::Hold, FP_MANAGER, out);
         if held.is_err() {
             // it held before
-            self.liaison.want(GatewayRequest::Hold);
+            self.gateway_session.want(GatewayRequest::Hold);
         }
     }
 
@@ -107,7 +107,7 @@ impl Manager {
     pub(super) fn want_runways(&mut self) {
         let runways = self.executor.program().map(|p| safe_runways(&p.plan)).unwrap_or_default();
         if !runways.is_empty() {
-            self.liaison.want_runways(runways);
+            self.gateway_session.want_runways(runways);
         }
     }
 }

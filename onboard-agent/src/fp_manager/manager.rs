@@ -5,9 +5,9 @@
 use super::aircraft::Aircraft;
 use super::alarms::Alarms;
 use super::feeder::{Fate, Feeder};
-use super::journal::{Entry, Notes, Record, Reply};
-use super::liaison::Liaison;
-use super::succession::Succession;
+use super::gateway_session::GatewaySession;
+use super::journal::{Entry, ManagerState, Record, Reply};
+use super::plan_history::PlanHistory;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
@@ -56,11 +56,11 @@ const REPLY_ID_MAX: usize = 128;
 pub struct Manager {
     pub(super) executor: Executor,
     pub(super) feeder: Feeder,
-    pub(super) liaison: Liaison,
+    pub(super) gateway_session: GatewaySession,
     aircraft: Aircraft,
     pub(super) alarms: Alarms,
     pub(super) timeline: Timeline,
-    pub(super) succession: Succession,
+    pub(super) plan_history: PlanHistory,
     /// Highest token that the autopilot was seen steering to.
     pub(super) steered: Token,
     pub(super) last_request: u64,
@@ -69,7 +69,7 @@ pub struct Manager {
     /// The time of day when it was told last, seconds since 1970.
     day: Option<(Time, i64)>,
     /// As recorded last.
-    pub(super) noted: Notes,
+    pub(super) noted: ManagerState,
     pub(super) replies: VecDeque<Reply>,
     /// It goes on with a flight of an earlier process and has not joined since.
     pub(super) returning: bool,
@@ -84,16 +84,16 @@ impl Manager {
         Self {
             executor,
             feeder: Feeder::default(),
-            liaison: Liaison::default(),
+            gateway_session: GatewaySession::default(),
             aircraft: Aircraft::default(),
             alarms: Alarms::default(),
             timeline: Timeline::new(base),
-            succession: Succession::default(),
+            plan_history: PlanHistory::default(),
             steered: Token(0),
             last_request: 0,
             turns: 0,
             day: None,
-            noted: Notes::default(),
+            noted: ManagerState::default(),
             replies: VecDeque::new(),
             returning: false,
             without_past: None,
@@ -107,7 +107,7 @@ impl Manager {
 
     /// The gateway takes our waypoints.
     pub fn is_joined(&self) -> bool {
-        self.liaison.is_joined()
+        self.gateway_session.is_joined()
     }
 
     /// The wind as it is measured (calm, as long as nothing is known), and the time of day.
@@ -191,9 +191,9 @@ impl Manager {
         let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
-            self.liaison.want(GatewayRequest::Launch);
+            self.gateway_session.want(GatewayRequest::Launch);
             self.alarms.new_flight();
-            self.succession.new_flight();
+            self.plan_history.new_flight();
         } else if in_emergency && !self.is_in_emergency() {
             self.alarms.look_again();
         }
@@ -239,13 +239,13 @@ impl Manager {
         match self.feeder.answered(now, answer) {
             Fate::Taken => {}
             Fate::Later(why) => tracing::debug!(why, "the gateway takes waypoints later"),
-            Fate::Unknown => self.liaison.lost(),
+            Fate::Unknown => self.gateway_session.lost(),
             Fate::Refused(first, reason) => {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
                 self.step(now, Input::Rejected { first, reason }, out);
                 if self.is_in_emergency() {
                     // its plan can't be flown: whoever takes no waypoints has to bring the aircraft home
-                    self.liaison.want(GatewayRequest::Safe);
+                    self.gateway_session.want(GatewayRequest::Safe);
                 }
             }
         }
@@ -264,7 +264,7 @@ impl Manager {
         answer: Result<(), String>,
         out: &mut Vec<Effect>,
     ) {
-        if let Some(reason) = self.liaison.requested(now, request, answer) {
+        if let Some(reason) = self.gateway_session.requested(now, request, answer) {
             out.push(Effect::Event(PlanEvent::NotGranted { request: request.name().into(), reason }));
         }
         self.send(now, out);
@@ -306,8 +306,8 @@ impl Manager {
                 Output::Feed { cancel_after, waypoints } => {
                     self.feeder.push(Feed { cancel_after, waypoints })
                 }
-                Output::Hold => self.liaison.want(GatewayRequest::Hold),
-                Output::Safe => self.liaison.want(GatewayRequest::Safe),
+                Output::Hold => self.gateway_session.want(GatewayRequest::Hold),
+                Output::Safe => self.gateway_session.want(GatewayRequest::Safe),
                 Output::Event(event) => self.happened(event, out),
                 Output::Answer { result, .. } => answer = Some(result),
                 Output::Act { leg, passage, act } => out.extend(invocation(leg, passage, act)),
@@ -323,7 +323,7 @@ impl Manager {
 
     fn happened(&mut self, event: PlanEvent, out: &mut Vec<Effect>) {
         if let PlanEvent::PhaseChanged { phase: Phase::Flying | Phase::AwaitingDecision } = event {
-            self.liaison.flies_on();
+            self.gateway_session.flies_on();
         }
         if matches!(event, PlanEvent::PlanActivated { .. }) {
             self.want_runways();
@@ -334,16 +334,16 @@ impl Manager {
     /// Sends what is due: first the join, then waypoints, then what wants them to be there.
     pub(super) fn send(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.note(now, out);
-        if self.liaison.should_join(now) {
+        if self.gateway_session.should_join(now) {
             out.push(Effect::Join(self.presentation()));
         }
-        if !self.liaison.is_joined() {
+        if !self.gateway_session.is_joined() {
             return;
         }
         if let Some(feed) = self.feeder.send(now) {
             out.push(Effect::Feed(feed));
         }
-        if let Some(request) = self.liaison.request(now, self.feeder.is_idle()) {
+        if let Some(request) = self.gateway_session.request(now, self.feeder.is_idle()) {
             out.push(Effect::Request(request));
         }
     }

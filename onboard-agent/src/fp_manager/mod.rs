@@ -1,25 +1,25 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `hearing`, `joining`, `feeder`, `liaison`, `succession`,
+//! The FP Manager: flies the plan. Pure parts (`manager`, `gateway_events`, `joining`, `feeder`, `gateway_session`, `plan_history`,
 //! `aircraft`, `alarms`, `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a
 //! crash, and the shell that owns session, clock and disk.
 
-mod afterwards;
 mod aircraft;
 mod alarms;
+mod background_review;
+mod command_review;
 mod feeder;
-mod hearing;
+mod gateway_events;
+mod gateway_session;
 mod joining;
 pub mod journal;
-mod liaison;
-mod looks;
 mod manager;
 mod pending;
+mod plan_history;
 mod proposals;
 mod publish;
 mod recording;
 mod restart;
 mod runways;
 mod shell;
-mod succession;
 #[cfg(test)]
 mod tests;
 mod timeline;

@@ -1,7 +1,7 @@
 //! A plan put forward: checked, compiled and its path reviewed on a thread of its own, its document kept on the disk,
 //! while the flight goes on. In flight that is the path ahead, from where the aircraft is.
 
-use super::journal::Keeper;
+use super::journal::JournalHandle;
 use super::{Config, listed};
 use flight_exec::{Conditions, Executor, compile_and_review, compile_and_review_ahead};
 use flight_plan::{Problem, Program};
@@ -37,9 +37,9 @@ pub struct Sight {
 type Looked = Result<Fit, Vec<Problem>>;
 type Outcome = Result<Arc<Program>, Refusal>;
 
-/// The proposal that is on the desk, if there is one.
+/// The proposal that is being reviewed, if there is one.
 #[derive(Default)]
-pub struct Desk(Option<Proposal>);
+pub struct ProposalReview(Option<Proposal>);
 
 struct Proposal {
     asked: Asked,
@@ -57,8 +57,8 @@ enum Step {
     Done(Outcome),
 }
 
-impl Desk {
-    /// Begins to look at a proposal; one that comes while another is on the desk is refused.
+impl ProposalReview {
+    /// Begins to look at a proposal; one that comes while another is being reviewed is refused.
     pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
@@ -71,7 +71,7 @@ impl Desk {
 
     /// A proposal that has been looked at and is kept, and whether that was done for a flight under way; never, if there is none. May be
     /// cancelled.
-    pub async fn next(&mut self, journal: &mut Option<Keeper>) -> (Asked, bool, Outcome) {
+    pub async fn next(&mut self, journal: &mut Option<JournalHandle>) -> (Asked, bool, Outcome) {
         loop {
             match self.0.take_if(|proposal| matches!(proposal.step, Step::Done(_))) {
                 Some(Proposal { asked, in_flight, step: Step::Done(outcome), .. }) => {
@@ -82,7 +82,7 @@ impl Desk {
         }
     }
 
-    async fn advance(&mut self, journal: &mut Option<Keeper>) {
+    async fn advance(&mut self, journal: &mut Option<JournalHandle>) {
         let Some(proposal) = &mut self.0 else { return std::future::pending().await };
         proposal.step = match &mut proposal.step {
             Step::Looking(work) => match outcome(work.await.unwrap_or_else(|e| Err(vec![broken(&e)]))) {
@@ -115,7 +115,7 @@ pub fn good_for_now(in_flight: bool, executor: &Executor) -> Result<(), Refusal>
     Ok(())
 }
 
-fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
+fn kept(fit: Fit, journal: &mut Option<JournalHandle>) -> Step {
     let Fit { program, xml } = fit;
     match journal {
         Some(journal) => {
@@ -126,7 +126,7 @@ fn kept(fit: Fit, journal: &mut Option<Keeper>) -> Step {
     }
 }
 
-/// Looks at a document, here and now.
+/// CommandReview at a document, here and now.
 ///
 /// # Errors
 /// Its problems.

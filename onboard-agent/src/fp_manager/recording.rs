@@ -1,7 +1,7 @@
 //! Shell: what the loop does with the journal.
 
 use super::Config;
-use super::journal::{Clerk, Folder, Job, Keeper, Limits, Log, encode};
+use super::journal::{Folder, Job, JournalHandle, Limits, Log, Writer, encode};
 use super::manager::{Effect, Manager};
 use super::restart::{Restart, restart};
 use super::shell::Shell;
@@ -9,7 +9,7 @@ use crate::clock::Time;
 use flight_exec::Executor;
 
 /// The journal, and the flight it leads up to.
-pub(super) fn open(config: &Config) -> anyhow::Result<(Option<Keeper>, Restart)> {
+pub(super) fn open(config: &Config) -> anyhow::Result<(Option<JournalHandle>, Restart)> {
     let base = if config.simulated { Time::ZERO } else { time_since_boot() };
     let Some(folder) = config.state_dir.clone() else {
         let executor = Executor::new(config.executor.clone(), config.terrain.clone(), config.profile.clone());
@@ -18,7 +18,7 @@ pub(super) fn open(config: &Config) -> anyhow::Result<(Option<Keeper>, Restart)>
     };
     let (mut log, found) = Log::open(Folder::new(folder), Limits::default());
     let past = restart(&mut log, found.as_deref().unwrap_or_default(), config, base);
-    let mut journal = Keeper::start(Clerk::new(log, found.as_ref().err()))?;
+    let mut journal = JournalHandle::start(Writer::new(log, found.as_ref().err()))?;
     let (saved, plans) = past.manager.saved();
     journal.give(Job::State(Box::new(saved), plans));
     Ok((Some(journal), past))

@@ -1,8 +1,8 @@
 //! Pure but for the journal's storage: going on with the flight of an earlier process.
 
 use super::Config;
-use super::journal::{Chapter, Entry, Found, Log, Notes, Record, Saved, Storage};
-use super::liaison::Liaison;
+use super::gateway_session::GatewaySession;
+use super::journal::{Chapter, Entry, Found, Log, ManagerState, Record, Saved, Storage};
 use super::manager::{Effect, Manager};
 use super::{alarms::Alarms, compile, listed};
 use crate::clock::Time;
@@ -129,9 +129,10 @@ fn restored<S: Storage>(
 
 /// Has the parts know again what the notes say.
 fn remind(manager: &mut Manager) {
-    manager.liaison = Liaison::restored(manager.noted.wanted.clone(), manager.noted.controlled);
+    manager.gateway_session =
+        GatewaySession::restored(manager.noted.wanted.clone(), manager.noted.controlled);
     manager.alarms = Alarms::restored(manager.noted.answered_alarms.clone());
-    manager.succession = manager.noted.succession.clone();
+    manager.plan_history = manager.noted.plan_history.clone();
 }
 
 /// One turn again; what it puts out was done, or will be put right by the join.
@@ -212,13 +213,13 @@ impl Manager {
     /// Records what is remembered beside the executor, if it has changed.
     pub(super) fn note(&mut self, now: Time, out: &mut Vec<Effect>) {
         if let Some(program) = self.executor.program() {
-            self.succession.goes_on_with(program.hash());
+            self.plan_history.goes_on_with(program.hash());
         }
-        let notes = Notes {
-            wanted: self.liaison.wanted().cloned(),
-            controlled: self.liaison.is_controlled(),
+        let notes = ManagerState {
+            wanted: self.gateway_session.wanted().cloned(),
+            controlled: self.gateway_session.is_controlled(),
             answered_alarms: self.alarms.answered().clone(),
-            succession: self.succession.clone(),
+            plan_history: self.plan_history.clone(),
         };
         if notes != self.noted {
             self.noted = notes.clone();

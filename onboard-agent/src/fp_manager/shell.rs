@@ -1,16 +1,16 @@
 //! Shell: the one loop that owns the session, the clock and the disk.
 
 use super::Config;
-use super::afterwards::Afterwards;
-use super::journal::Keeper;
-use super::looks::{Asked, Looks, Verdict};
+use super::background_review::BackgroundReview;
+use super::command_review::{Asked, CommandReview, Verdict};
+use super::journal::JournalHandle;
 use super::manager::{Effect, Manager, OPERATOR};
 use super::pending::{Answered, Pending};
-use super::proposals::{Desk, Sight, good_for_now, looked_at};
+use super::proposals::{ProposalReview, Sight, good_for_now, looked_at};
 use super::publish::{self, Publishers};
 use super::recording::open;
 use crate::clock::{Clock, Time};
-use crate::{Shutdown, alone};
+use crate::{Shutdown, single_instance};
 use anyhow::Context;
 use flight_plan::{Problem, Program};
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl Services {
 }
 
 /// What we hear of the gateway.
-struct Ears {
+struct Subscriptions {
     position: VariableSubscriber<Position>,
     air: VariableSubscriber<Air>,
     power: VariableSubscriber<Power>,
@@ -81,7 +81,7 @@ struct Ears {
     gateway_there: bool,
 }
 
-impl Ears {
+impl Subscriptions {
     fn new(session: &Session) -> anyhow::Result<Self> {
         Ok(Self {
             position: session.follow(gateway::POSITION)?,
@@ -103,12 +103,12 @@ pub(super) struct Shell {
     session: Session,
     pub(super) clock: Clock,
     pub(super) manager: Manager,
-    pub(super) journal: Option<Keeper>,
+    pub(super) journal: Option<JournalHandle>,
     pub(super) publishers: Publishers,
     pending: Pending,
-    desk: Desk,
-    looks: Looks,
-    afterwards: Afterwards,
+    proposal_review: ProposalReview,
+    command_review: CommandReview,
+    background_review: BackgroundReview,
 }
 
 /// Runs the FP Manager until `shutdown`.
@@ -116,7 +116,7 @@ pub(super) struct Shell {
 /// # Errors
 /// The session or the state directory can't be had, or the plan it was started with can't be flown.
 pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
-    let _lock = alone::lock(config.state_dir.as_deref(), FP_MANAGER).await?;
+    let _lock = single_instance::lock(config.state_dir.as_deref(), FP_MANAGER).await?;
     let client = usal::Config::client(&config.vehicle, &config.connect);
     let session = Session::open(client).await.context("the FP Manager's network session")?;
     let outcome = run_in(&session, config, &mut shutdown).await;
@@ -125,9 +125,9 @@ pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
 }
 
 async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> anyhow::Result<()> {
-    alone::expect_nobody(session, FP_MANAGER).await?;
+    single_instance::expect_nobody(session, FP_MANAGER).await?;
     let (journal, past) = open(&config)?;
-    let mut ears = Ears::new(session)?;
+    let mut subscriptions = Subscriptions::new(session)?;
     let mut services = Services::new(session)?;
     let clock = match config.simulated {
         true => Clock::simulated(Participant::join(session, FP_MANAGER)?),
@@ -137,9 +137,20 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let session = session.clone();
     let pending = Pending::default();
     let manager = past.manager;
-    let (desk, looks, afterwards) = (Desk::default(), Looks::default(), Afterwards::default());
-    let mut shell =
-        Shell { config, session, clock, manager, journal, publishers, pending, desk, looks, afterwards };
+    let (proposal_review, command_review, background_review) =
+        (ProposalReview::default(), CommandReview::default(), BackgroundReview::default());
+    let mut shell = Shell {
+        config,
+        session,
+        clock,
+        manager,
+        journal,
+        publishers,
+        pending,
+        proposal_review,
+        command_review,
+        background_review,
+    };
     let troubles = past.troubles.into_iter();
     shell.tell(troubles.map(|reason| PlanEvent::NotJournalled { reason }).collect()).await;
     shell.load_plan().await?;
@@ -149,15 +160,15 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
             () = shutdown.requested() => break,
             beat = next_beat(&mut shell.clock, held_until) => {
                 anyhow::ensure!(beat.is_some(), "the network session was closed");
-                shell.beat(&mut ears).await;
+                shell.beat(&mut subscriptions).await;
             }
             answered = shell.pending.next() => shell.answered(answered).await,
-            occurrence = ears.events.recv() => {
+            occurrence = subscriptions.events.recv() => {
                 shell.occurred(occurrence.context("the network session was closed")?).await;
             }
-            (incoming, in_flight, looked) = shell.desk.next(&mut shell.journal) => shell.looked(incoming, in_flight, looked).await,
-            problems = shell.looks.next() => shell.looked_ahead(problems).await,
-            events = shell.afterwards.next() => shell.tell(events).await,
+            (incoming, in_flight, looked) = shell.proposal_review.next(&mut shell.journal) => shell.looked(incoming, in_flight, looked).await,
+            problems = shell.command_review.next() => shell.looked_ahead(problems).await,
+            events = shell.background_review.next() => shell.tell(events).await,
             call = services.next() => shell.call(call.context("the network session was closed")?).await,
         }
     }
@@ -195,17 +206,20 @@ impl Shell {
 
     /// In lockstep, time stands until then, while something is looked at.
     fn held_until(&self) -> Option<Instant> {
-        let held =
-            [self.desk.holds_time_until(), self.looks.holds_time_until(), self.afterwards.holds_time_until()];
+        let held = [
+            self.proposal_review.holds_time_until(),
+            self.command_review.holds_time_until(),
+            self.background_review.holds_time_until(),
+        ];
         held.into_iter().flatten().min()
     }
 
     /// Everything due at a beat of the clock.
-    async fn beat(&mut self, ears: &mut Ears) {
-        while let Some(occurrence) = ears.events.try_recv() {
+    async fn beat(&mut self, subscriptions: &mut Subscriptions) {
+        while let Some(occurrence) = subscriptions.events.try_recv() {
             self.occurred(occurrence).await;
         }
-        self.listen(ears).await;
+        self.listen(subscriptions).await;
         let now = self.clock.now();
         let mut effects = Vec::new();
         self.manager.tick(now, &mut effects);
@@ -232,24 +246,24 @@ impl Shell {
     }
 
     /// Fresh variables of the gateway.
-    async fn listen(&mut self, ears: &mut Ears) {
+    async fn listen(&mut self, subscriptions: &mut Subscriptions) {
         let now = self.clock.now();
         let mut effects = Vec::new();
         let aircraft = self.manager.aircraft();
-        ears.position.take_new().iter().for_each(|r| aircraft.position(r.stamped.value));
-        ears.air.take_new().iter().for_each(|r| aircraft.air(r.stamped.value));
-        ears.power.take_new().iter().for_each(|r| aircraft.power(r.stamped.value));
-        let unix_s = ears.gps.take_new().and_then(|r| r.stamped.value.unix_s);
+        subscriptions.position.take_new().iter().for_each(|r| aircraft.position(r.stamped.value));
+        subscriptions.air.take_new().iter().for_each(|r| aircraft.air(r.stamped.value));
+        subscriptions.power.take_new().iter().for_each(|r| aircraft.power(r.stamped.value));
+        let unix_s = subscriptions.gps.take_new().and_then(|r| r.stamped.value.unix_s);
         unix_s.into_iter().for_each(|unix_s| self.manager.time_of_day(now, unix_s));
-        let there = ears.presence.is_alive(GATEWAY);
-        if there && !ears.gateway_there {
+        let there = subscriptions.presence.is_alive(GATEWAY);
+        if there && !subscriptions.gateway_there {
             self.manager.gateway_appeared(now, &mut effects);
         }
-        ears.gateway_there = there;
-        if let Some(received) = ears.state.take_new() {
+        subscriptions.gateway_there = there;
+        if let Some(received) = subscriptions.state.take_new() {
             self.manager.gateway_status(now, &received.stamped.value, &mut effects);
         }
-        if let Some(received) = ears.navigation.take_new() {
+        if let Some(received) = subscriptions.navigation.take_new() {
             self.manager.navigation(now, &received.stamped.value, &mut effects);
         }
         self.perform(effects).await;
@@ -305,7 +319,7 @@ impl Shell {
             return incoming.answer(Err(refusal("stale-revision", reason)));
         }
         let sight = self.sight();
-        self.desk.take(incoming, &self.config, sight);
+        self.proposal_review.take(incoming, &self.config, sight);
     }
 
     /// What a plan put forward now is looked at for.
@@ -316,8 +330,8 @@ impl Shell {
 
     /// What leads to where nobody has looked is looked at first.
     async fn asked(&mut self, asked: Asked) {
-        if self.looks.concern(&asked, &self.manager) {
-            self.looks.take(asked);
+        if self.command_review.concern(&asked, &self.manager) {
+            self.command_review.take(asked);
             return self.look_on().await;
         }
         self.give(asked).await;
@@ -331,7 +345,7 @@ impl Shell {
 
     /// The command that was the first to wait has been looked at.
     async fn looked_ahead(&mut self, problems: Vec<Problem>) {
-        match self.looks.decide(&problems, &self.manager) {
+        match self.command_review.decide(&problems, &self.manager) {
             Some(Verdict::Give(asked)) => self.give(asked).await,
             Some(Verdict::Refuse(asked, refusal)) => (asked.reply)(Err(refusal)),
             Some(Verdict::Again) | None => {}
@@ -342,7 +356,7 @@ impl Shell {
 
     /// Goes on with what waits for a look.
     async fn look_on(&mut self) {
-        while let Some(asked) = self.looks.begin(&self.manager, self.clock.now()) {
+        while let Some(asked) = self.command_review.begin(&self.manager, self.clock.now()) {
             self.give(asked).await;
         }
     }
@@ -379,7 +393,7 @@ impl Shell {
         if let (Ok(()), Some(before)) = (&answer, before) {
             let after = self.manager.executor().clone();
             let conditions = self.manager.conditions(self.clock.now());
-            self.afterwards.look(move || flight_exec::review_turn(&before, &after, conditions));
+            self.background_review.look(move || flight_exec::review_turn(&before, &after, conditions));
         }
         self.perform(effects).await;
         answer

@@ -7,7 +7,7 @@ use super::order::Time;
 use super::publish::Publishers;
 use super::station::Station;
 use super::store::Store;
-use crate::{Shutdown, alone};
+use crate::{Shutdown, single_instance};
 use anyhow::Context;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use std::sync::Arc;
@@ -109,7 +109,7 @@ struct Shell {
 /// # Errors
 /// If the session or the link's own socket can't be had.
 pub async fn run(config: Config, mut shutdown: Shutdown) -> anyhow::Result<()> {
-    let _lock = alone::lock(config.state_dir.as_deref(), topics::GATEWAY).await?;
+    let _lock = single_instance::lock(config.state_dir.as_deref(), topics::GATEWAY).await?;
     let hub = usal::Config::hub(&config.vehicle, &config.listen);
     let session = Session::open(hub).await.context("the gateway's network session")?;
     let outcome = run_in(&session, config, &mut shutdown).await;

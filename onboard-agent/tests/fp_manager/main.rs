@@ -5,7 +5,7 @@ mod ahead;
 mod fake_gateway;
 
 use fake_gateway::{DEADLINE, FakeGateway, free_endpoint, until, within};
-use onboard_agent::alone::Taken;
+use onboard_agent::single_instance::AlreadyRunning;
 use onboard_agent::{Trigger, fp_manager, shutdown};
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -467,7 +467,7 @@ async fn second_manager_of_a_vehicle_or_a_state_directory_does_not_start() {
     let flight = Flight::new(Some(directory.path())).await;
     let elsewhere = fp_manager::Config { state_dir: None, ..flight.config.clone() };
     let refused = within(fp_manager::run(elsewhere, shutdown().1)).await.unwrap_err();
-    assert!(refused.is::<Taken>() && refused.to_string().contains("uav1"), "{refused:#}");
+    assert!(refused.is::<AlreadyRunning>() && refused.to_string().contains("uav1"), "{refused:#}");
     let endpoint = free_endpoint();
     let Manager::Process(mut second) =
         Manager::start(&fp_manager::Config { connect: endpoint, ..flight.config.clone() })

@@ -5,7 +5,7 @@
 use aircraft::{Profile, Wind};
 use divan::Bencher;
 use flight_exec::preview::{Options, Rehearsal, Scenario, Start, preview};
-use flight_plan::{Edit, FlightPlan, Memory, compile, compile_again};
+use flight_plan::{Edit, FlightPlan, IncrementalCache, compile, compile_again};
 use geometry::LatLon;
 use std::sync::Arc;
 use terrain::{Flat, Terrain};
@@ -78,7 +78,7 @@ fn whole_preview(bencher: Bencher, legs: usize) {
 #[divan::bench(args = LEGS, sample_count = 100, sample_size = 1)]
 fn preview_after_one_edit(bencher: Bencher, legs: usize) {
     let bench = Bench::new(legs);
-    let mut memory = Memory::new(bench.profile.clone(), bench.terrain.clone());
+    let mut memory = IncrementalCache::new(bench.profile.clone(), bench.terrain.clone());
     let mut compiled = |plan: FlightPlan| Arc::new(compile_again(plan, &mut memory).unwrap());
     let programs = [compiled(bench.moved(1)), compiled(bench.moved(2))];
     let mut rehearsal = bench.rehearsal();
@@ -95,7 +95,7 @@ fn preview_after_one_edit(bencher: Bencher, legs: usize) {
 #[divan::bench(args = LEGS, sample_count = 100, sample_size = 1)]
 fn edit_to_preview_waypoints(bencher: Bencher, legs: usize) {
     let bench = Bench::new(legs);
-    let mut memory = Memory::new(bench.profile.clone(), bench.terrain.clone());
+    let mut memory = IncrementalCache::new(bench.profile.clone(), bench.terrain.clone());
     let mut rehearsal = bench.rehearsal();
     let mut turn = 0;
     let mut edit = || {

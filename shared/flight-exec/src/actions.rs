@@ -8,10 +8,10 @@ mod trigger;
 
 use crate::api::{Event, Output, ResolvedAct};
 use crate::choice::Choice;
-use crate::cursor::Mark;
+use crate::cursor::SilentLeg;
 use crate::cursor::control::is_call;
 use crate::executor::Executor;
-use crate::handed::Handed;
+use crate::issued::IssuedWaypoint;
 use flight_plan::{Act, Id, Leg, LegKind, Program, Trigger};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -55,34 +55,39 @@ pub(crate) struct Wait {
 
 impl Executor {
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
-    pub(crate) fn change_passage(&mut self, handed: &Handed, mut marks: Vec<Mark>, out: &mut Vec<Output>) {
-        self.retain_new(&mut marks);
-        self.end_passages(|p| !p.is_around(handed), out);
+    pub(crate) fn change_passage(
+        &mut self,
+        issued: &IssuedWaypoint,
+        mut silent_legs: Vec<SilentLeg>,
+        out: &mut Vec<Output>,
+    ) {
+        self.retain_new(&mut silent_legs);
+        self.end_passages(|p| !p.is_around(issued), out);
         for passage in &mut self.state.passages {
-            passage.iteration = iteration_of(&self.program, &passage.leg, handed);
+            passage.iteration = iteration_of(&self.program, &passage.leg, issued);
         }
-        self.pass_silently(marks, handed, out);
-        out.push(Output::Event(Event::LegEntered { place: handed.place.clone() }));
-        for (leg, number) in self.flown_at(handed) {
-            self.begin_passage(&leg, number, handed, out);
+        self.pass_silently(silent_legs, issued, out);
+        out.push(Output::Event(Event::LegEntered { place: issued.place.clone() }));
+        for (leg, number) in self.flown_at(issued) {
+            self.begin_passage(&leg, number, issued, out);
         }
     }
 
     /// Of a passage that has begun it may turn out, laid out anew, that nothing of it is left: it is not passed once more.
-    pub(crate) fn retain_new(&self, marks: &mut Vec<Mark>) {
-        let is_followed = |m: &Mark| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
-        marks.retain(|mark| !is_followed(mark));
+    pub(crate) fn retain_new(&self, silent_legs: &mut Vec<SilentLeg>) {
+        let is_followed = |m: &SilentLeg| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
+        silent_legs.retain(|mark| !is_followed(mark));
     }
 
     /// What is flown on the way to a waypoint, with the numbers of its passages: the loops around it, outermost first, and its leg.
-    fn flown_at(&self, handed: &Handed) -> Vec<(Id, u64)> {
-        let own = Some((&handed.place.leg, handed.passage)).filter(|(leg, _)| !self.is_control_leg(leg));
-        loops_of(handed).chain(own).map(|(leg, number)| (leg.clone(), number)).collect()
+    fn flown_at(&self, issued: &IssuedWaypoint) -> Vec<(Id, u64)> {
+        let own = Some((&issued.place.leg, issued.passage)).filter(|(leg, _)| !self.is_control_leg(leg));
+        loops_of(issued).chain(own).map(|(leg, number)| (leg.clone(), number)).collect()
     }
 
     /// In a new plan, what is being flown may have actions for the first time: what lies behind is not repeated.
     pub(crate) fn follow_what_acts_now(&mut self) {
-        let front = self.state.handed.front().filter(|front| self.is_announced(front));
+        let front = self.state.issued.front().filter(|front| self.is_announced(front));
         let Some(front) = front.cloned() else { return };
         let behind_m = (self.way_made_m() - front.leg_start_m).max(0.0);
         for (leg, number) in self.flown_at(&front) {
@@ -92,9 +97,14 @@ impl Executor {
     }
 
     /// Legs passed before a waypoint without one of their own.
-    pub(crate) fn pass_silently(&mut self, marks: Vec<Mark>, handed: &Handed, out: &mut Vec<Output>) {
-        for mark in marks {
-            self.begin_passage(&mark.leg, mark.passage, handed, out);
+    pub(crate) fn pass_silently(
+        &mut self,
+        silent_legs: Vec<SilentLeg>,
+        issued: &IssuedWaypoint,
+        out: &mut Vec<Output>,
+    ) {
+        for mark in silent_legs {
+            self.begin_passage(&mark.leg, mark.passage, issued, out);
             self.end_passages(|p| p.is(&mark.leg, mark.passage), out);
         }
     }
@@ -104,22 +114,22 @@ impl Executor {
         self.program.leg(id).is_none_or(is_control)
     }
 
-    fn begin_passage(&mut self, leg: &Id, number: u64, handed: &Handed, out: &mut Vec<Output>) {
-        let Some(mut passage) = self.passage(leg, number, handed, 0.0) else { return };
+    fn begin_passage(&mut self, leg: &Id, number: u64, issued: &IssuedWaypoint, out: &mut Vec<Output>) {
+        let Some(mut passage) = self.passage(leg, number, issued, 0.0) else { return };
         self.state.acted_s = self.state.clock_s;
-        self.act_on(&mut passage, &Moment::begun(handed), out);
+        self.act_on(&mut passage, &Moment::begun(issued), out);
         self.state.passages.push(passage);
     }
 
     /// A passage to be followed, if it has actions and is not followed yet; nothing is repeated of the way up to `up_to_m`, metres.
-    fn passage(&self, leg: &Id, number: u64, handed: &Handed, up_to_m: f64) -> Option<Passage> {
+    fn passage(&self, leg: &Id, number: u64, issued: &IssuedWaypoint, up_to_m: f64) -> Option<Passage> {
         let actions = self.program.leg(leg).map_or(0, |l| l.actions.len());
         let is_new = actions > 0 && !self.state.passages.iter().any(|p| p.is(leg, number));
         is_new.then(|| Passage {
             leg: leg.clone(),
             number,
-            iteration: iteration_of(&self.program, leg, handed),
-            began_m: handed.leg_start_m,
+            iteration: iteration_of(&self.program, leg, issued),
+            began_m: issued.leg_start_m,
             flown_s: 0.0,
             done: vec![Done { up_to_m, ..Done::default() }; actions],
         })
@@ -138,7 +148,7 @@ impl Executor {
     /// If a choice is one to leave a loop, that is over, except when it is entered anew.
     pub(crate) fn end_the_loop_left_by(&mut self, choice: &Choice, out: &mut Vec<Output>) {
         let Some(left) = choice.loop_left() else { return };
-        let around = self.state.handed.front().and_then(|h| loops_of(h).find(|(id, _)| *id == left));
+        let around = self.state.issued.front().and_then(|h| loops_of(h).find(|(id, _)| *id == left));
         let entered = around.map(|(_, activation)| activation);
         self.end_passages(|p| p.leg == *left && Some(p.number) != entered, out);
     }
@@ -146,15 +156,15 @@ impl Executor {
     /// The flight goes on elsewhere: only loops around that place go on, and those on the way there until they are left; nothing is done
     /// at the end of the others.
     pub(crate) fn abandon_passages(&mut self) {
-        let front = self.state.handed.front();
-        let leaves = |h: &Handed, leg: &Id| h.choices.iter().any(|c| c.loop_left() == Some(leg));
+        let front = self.state.issued.front();
+        let leaves = |h: &IssuedWaypoint, leg: &Id| h.choices.iter().any(|c| c.loop_left() == Some(leg));
         let goes_on = |p: &Passage| front.is_some_and(|h| p.is_around(h) || leaves(h, &p.leg));
         self.state.passages.retain(goes_on);
         self.state.wait = None;
     }
 
     /// A waypoint has been reached: everything up to it is due.
-    pub(crate) fn act_up_to(&mut self, flown: &Handed, out: &mut Vec<Output>) {
+    pub(crate) fn act_up_to(&mut self, flown: &IssuedWaypoint, out: &mut Vec<Output>) {
         self.act_on_all(&Moment::reached(flown), out);
     }
 
@@ -169,7 +179,7 @@ impl Executor {
             passage.flown_s += since_s;
         }
         let aircraft = self.state.aircraft.as_ref().map(|a| a.position);
-        let moment = self.state.handed.front().map(|h| Moment::on_the_way(h, aircraft, self.to_current_m()));
+        let moment = self.state.issued.front().map(|h| Moment::on_the_way(h, aircraft, self.to_current_m()));
         if let Some(moment) = moment {
             self.act_on_all(&moment, out);
         }
@@ -220,23 +230,23 @@ impl Executor {
 
     /// Begins to circle for a time, when the aircraft steers to such a waypoint. The leg's other actions at its end are done
     /// before.
-    pub(crate) fn begin_wait(&mut self, handed: &Handed, out: &mut Vec<Output>) {
-        let Some(seconds) = handed.wait_s.filter(|_| !self.is_waiting_at(handed.passage)) else { return };
+    pub(crate) fn begin_wait(&mut self, issued: &IssuedWaypoint, out: &mut Vec<Output>) {
+        let Some(seconds) = issued.wait_s.filter(|_| !self.is_waiting_at(issued.passage)) else { return };
         self.for_passages(|executor, passage| {
-            if passage.is(&handed.place.leg, handed.passage) {
+            if passage.is(&issued.place.leg, issued.passage) {
                 executor.act_at_the_end(passage, out);
             }
         });
         let begun_s = self.state.clock_s;
-        self.state.wait = Some(Wait { passage: handed.passage, begun_s, due_s: begun_s + seconds });
-        let (leg, passage) = (handed.place.leg.clone(), handed.passage);
+        self.state.wait = Some(Wait { passage: issued.passage, begun_s, due_s: begun_s + seconds });
+        let (leg, passage) = (issued.place.leg.clone(), issued.passage);
         out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
     }
 
     /// A new plan that says something else about the wait being flown makes it longer or shorter, counted from where it began. One
     /// that says the same changes nothing, whatever its expression gives by now.
     pub(crate) fn wait_anew(&mut self, before: &Program) {
-        let Some(front) = self.state.handed.front() else { return };
+        let Some(front) = self.state.issued.front() else { return };
         let waits = |program: &Program| {
             let actions = program.leg(&front.place.leg).map_or(&[][..], |leg| &leg.actions);
             Vec::from_iter(actions.iter().filter(|action| is_wait(&action.act)).cloned())
@@ -265,23 +275,23 @@ impl Passage {
     }
 
     /// It is that of a loop around a waypoint.
-    pub(crate) fn is_around(&self, handed: &Handed) -> bool {
-        loops_of(handed).any(|l| l == (&self.leg, self.number))
+    pub(crate) fn is_around(&self, issued: &IssuedWaypoint) -> bool {
+        loops_of(issued).any(|l| l == (&self.leg, self.number))
     }
 }
 
 /// The pass that a leg's actions see at a waypoint: a loop's own, else that of the innermost loop. A call is no loop.
-fn iteration_of(program: &Program, leg: &Id, handed: &Handed) -> u64 {
+fn iteration_of(program: &Program, leg: &Id, issued: &IssuedWaypoint) -> u64 {
     let called = |id: &Id| program.leg(id).is_some_and(is_call);
-    let around = || handed.place.iterations.iter().filter(|i| !called(&i.leg));
+    let around = || issued.place.iterations.iter().filter(|i| !called(&i.leg));
     let own = around().find(|i| i.leg == *leg);
     own.or_else(|| around().next_back()).map_or(0, |i| i.iteration)
 }
 
 /// Activations of the loops around a waypoint, outermost first.
-fn loops_of(handed: &Handed) -> impl Iterator<Item = (&Id, u64)> {
-    let loops = handed.place.iterations.iter().map(|i| &i.leg);
-    loops.zip(handed.activations.iter().copied())
+fn loops_of(issued: &IssuedWaypoint) -> impl Iterator<Item = (&Id, u64)> {
+    let loops = issued.place.iterations.iter().map(|i| &i.leg);
+    loops.zip(issued.activations.iter().copied())
 }
 
 /// What became of each of a leg's actions; `unknown` of one that it hadn't in the old plan.

@@ -59,7 +59,7 @@ pub enum Input {
     /// Fresh state of the aircraft.
     Aircraft(AircraftState),
     /// The aircraft is now steering to `current`; everything before it has been flown.
-    /// `None`: everything handed out has been flown.
+    /// `None`: everything issued has been flown.
     Progress {
         /// The waypoint steered to.
         current: Option<Token>,

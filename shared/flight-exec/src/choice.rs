@@ -1,4 +1,4 @@
-//! Choices that the cursor makes on its way: provisional when a waypoint is handed out ahead, final when the aircraft gets there.
+//! Choices that the cursor makes on its way: provisional when a waypoint is issued ahead, final when the aircraft gets there.
 
 use flight_plan::Id;
 use serde::{Deserialize, Serialize};

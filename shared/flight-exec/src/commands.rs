@@ -2,9 +2,9 @@
 
 use crate::api::{Action, Command, Event, Output, Phase, Refusal};
 use crate::cursor::control::is_call;
-use crate::cursor::{Cursor, Doing};
+use crate::cursor::{Cursor, CursorPhase};
 use crate::executor::{Executor, refusal};
-use crate::handed::{Handed, Onward};
+use crate::issued::{Continuation, IssuedWaypoint};
 use crate::world::LoopCount;
 use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue, Variables};
 
@@ -61,7 +61,7 @@ impl Executor {
         self.state.ahead = None;
         self.state.counts.clear();
         self.state.passages.clear();
-        self.state.handed.clear();
+        self.state.issued.clear();
         self.state.tail = None;
         let cursor = Cursor::start(None, self.here(), self.state.last_passage);
         self.enter_phase(Phase::Flying, out);
@@ -104,13 +104,13 @@ impl Executor {
         }
         self.enter_phase(Phase::Flying, out);
         if let Some(rejoin) = self.rejoin() {
-            self.state.handed.push_front(rejoin);
+            self.state.issued.push_front(rejoin);
             self.lead_the_path_there();
         }
         self.state.held_at = None;
-        if self.state.handed.is_empty() {
+        if self.state.issued.is_empty() {
             // what flew nothing may do so by now
-            self.state.onward = Onward::Open;
+            self.state.continuation = Continuation::Open;
         }
         self.refeed(out);
         if self.state.phase == Phase::Holding {
@@ -122,8 +122,8 @@ impl Executor {
     }
 
     /// A waypoint where the hold was given, so that the leg is gone on with there and not cut.
-    fn rejoin(&self) -> Option<Handed> {
-        let front = self.state.handed.front().filter(|h| !h.is_loiter())?;
+    fn rejoin(&self) -> Option<IssuedWaypoint> {
+        let front = self.state.issued.front().filter(|h| !h.is_loiter())?;
         let held_at = self.state.held_at?;
         let left_m = crate::path::distance_m(held_at, front.waypoint.position);
         let stop_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
@@ -144,7 +144,7 @@ impl Executor {
     /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft, and one
     /// that had not begun there, from wherever it is joined, is climbed to from there.
     fn lead_the_path_there(&mut self) {
-        let mut ahead = self.state.handed.iter_mut();
+        let mut ahead = self.state.issued.iter_mut();
         let (Some(rejoin), Some(next)) = (ahead.next(), ahead.next()) else { return };
         let (position, altitude_amsl_m) = (rejoin.waypoint.position, rejoin.waypoint.altitude_amsl_m);
         let mut path = next.before.path;
@@ -171,14 +171,14 @@ impl Executor {
             self.replan(out);
             return Ok(());
         }
-        let Some(front) = self.state.handed.front() else {
+        let Some(front) = self.state.issued.front() else {
             return Err(refusal("nothing-to-skip", "no leg is being flown: wait for the next one"));
         };
         if front.waits_for_decision() {
             return Err(refusal("decision-needed", "it waits for a decision: decide, or go to a leg"));
         }
         // after a resume the leg's first waypoint is the place where the hold was given
-        let of_leg = self.state.handed.iter().take_while(|h| h.passage == front.passage).count();
+        let of_leg = self.state.issued.iter().take_while(|h| h.passage == front.passage).count();
         let mut cursor = self.bookmark(of_leg);
         cursor.abandon_leg(front.passage);
         cursor.move_path_to(self.here_at_level_of(&cursor));
@@ -187,7 +187,7 @@ impl Executor {
             return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
         }
         // skipped before it was entered, it is passed all the same, and what led to it with it
-        let choices = self.state.handed.front_mut().map(|h| std::mem::take(&mut h.choices));
+        let choices = self.state.issued.front_mut().map(|h| std::mem::take(&mut h.choices));
         let choices = choices.unwrap_or_default();
         choices.iter().for_each(|choice| self.end_the_loop_left_by(choice, out));
         self.tell_choices(choices, out);
@@ -197,7 +197,7 @@ impl Executor {
 
     /// The passage being flown, if it is a holding until released that was not released yet.
     fn holding_to_release(&self) -> Option<u64> {
-        let front = self.state.handed.front().filter(|h| self.state.released != Some(h.passage))?;
+        let front = self.state.issued.front().filter(|h| self.state.released != Some(h.passage))?;
         let leg = self.program.leg(&front.place.leg)?;
         matches!(leg.kind, LegKind::Hm { .. }).then_some(front.passage)
     }
@@ -211,9 +211,9 @@ impl Executor {
 
     /// On the ground there is nothing to be flown but the take-off.
     pub(crate) fn check_taken_off(&self) -> Result<(), Refusal> {
-        let takes_off = |h: &Handed| matches!(h.waypoint.action, Action::TakeOff { .. });
+        let takes_off = |h: &IssuedWaypoint| matches!(h.waypoint.action, Action::TakeOff { .. });
         let on_ground = self.state.aircraft.as_ref().is_none_or(|a| a.on_ground);
-        if on_ground && self.state.handed.front().is_some_and(takes_off) {
+        if on_ground && self.state.issued.front().is_some_and(takes_off) {
             let reason = "the aircraft has not taken off yet: wait until it is in the air";
             return Err(refusal("on-ground", reason));
         }
@@ -257,7 +257,7 @@ impl Executor {
     /// The cursor behind the waypoint steered to; before it, and before the choices that would lead to it, while its leg isn't entered:
     /// what nobody was told of has not happened.
     pub(crate) fn place_reached(&self) -> Cursor {
-        let entered = self.state.handed.front().is_none_or(|front| self.is_announced(front));
+        let entered = self.state.issued.front().is_none_or(|front| self.is_announced(front));
         self.bookmark(usize::from(entered))
     }
 
@@ -278,7 +278,7 @@ impl Executor {
         // waypoints too near to be laid out anew tell it as well
         for near in 0..self.alterable_from() {
             if self.activation_at(near, &leg) == Some(activation) {
-                self.state.handed.iter_mut().skip(near).take(1).for_each(|h| h.tell_count(&leg, count));
+                self.state.issued.iter_mut().skip(near).take(1).for_each(|h| h.tell_count(&leg, count));
             }
         }
         self.state.counts.push(LoopCount { leg, activation: Some(activation), count });
@@ -286,7 +286,7 @@ impl Executor {
         Ok(())
     }
 
-    /// Which activation of a loop a waypoint handed out belongs to.
+    /// Which activation of a loop a waypoint issued belongs to.
     fn activation_at(&self, index: usize, leg: &Id) -> Option<u64> {
         // the bookmark behind the waypoint is still in its leg
         let behind = self.bookmark(index + 1);
@@ -361,9 +361,9 @@ impl Cursor {
     pub(crate) fn abandon_leg(&mut self, passage: u64) {
         self.expansion = None;
         self.given = 0;
-        let goes_on = self.doing == Doing::Arriving && self.passage < passage;
-        if goes_on || self.doing == Doing::Waiting {
-            self.doing = Doing::Flying;
+        let goes_on = self.doing == CursorPhase::Arriving && self.passage < passage;
+        if goes_on || self.doing == CursorPhase::Waiting {
+            self.doing = CursorPhase::Flying;
         }
     }
 }

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Config {
-    /// Most waypoints handed out ahead of the aircraft.
+    /// Most waypoints issued ahead of the aircraft.
     pub horizon_waypoints: usize,
-    /// Seconds of flight handed out ahead, if that takes fewer waypoints (at least 60).
+    /// Seconds of flight issued ahead, if that takes fewer waypoints (at least 60).
     pub horizon_s: f64,
     /// Fewest waypoints ahead, however long their legs are: the gateway wants three in its buffer.
     pub least_waypoints: usize,

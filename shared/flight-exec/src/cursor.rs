@@ -7,17 +7,17 @@ pub(crate) mod control;
 mod corner;
 mod emit;
 mod enter;
-mod notes;
+mod log;
 mod place;
 mod refresh;
 mod trail;
 
-pub use notes::{Mark, Notes, Trouble};
+pub use log::{CursorLog, LayoutError, SilentLeg};
 pub use trail::{Trail, Visit};
 
 use crate::api::Action;
 use crate::expand::{Expansion, Point};
-use crate::path::{Level, Passing, PathState};
+use crate::path::{Level, PathEnd, PathState};
 use crate::world::World;
 use flight_plan::{Id, Leg, Stage};
 use geometry::LatLon;
@@ -39,7 +39,7 @@ pub struct Cursor {
     /// The leg's index in the innermost list.
     pub index: usize,
     /// What it is doing there.
-    pub doing: Doing,
+    pub doing: CursorPhase,
     /// The end of the path.
     pub path: PathState,
     /// The end of the path when this passage began.
@@ -80,7 +80,7 @@ pub struct Origin {
 
 /// What a cursor is doing at its leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Doing {
+pub enum CursorPhase {
     /// About to begin it.
     Arriving,
     /// Giving out its points.
@@ -116,7 +116,7 @@ pub struct LoopFrame {
     #[serde(skip)]
     pub patterns: rpds::HashTrieMapSync<usize, Arc<Expansion>>,
     /// Where the path was when the loop was entered.
-    pub entered: Passing,
+    pub entered: PathEnd,
     /// Number of the last passage before this activation: tells activations of the loop apart.
     pub activation: u64,
 }
@@ -137,7 +137,7 @@ pub struct Emission {
     /// Circled for so many seconds, then left by itself (a loiter without it waits for a decision).
     pub wait_s: Option<f64>,
     /// What happened since the waypoint before it.
-    pub notes: Notes,
+    pub notes: CursorLog,
     /// If something did: the cursor after it.
     pub sealed: Option<Box<Cursor>>,
 }
@@ -150,14 +150,14 @@ pub enum Step {
     /// Nothing: the plan is over.
     Ended {
         /// What happened since the last waypoint.
-        notes: Notes,
+        notes: CursorLog,
     },
     /// Nothing: it circles, for a decision or a time.
     Waiting,
     /// Nothing: a loop flies no waypoint at all, or a thousand legs one after the other.
     Stalled {
         /// What happened since the last waypoint.
-        notes: Notes,
+        notes: CursorLog,
     },
 }
 
@@ -169,7 +169,7 @@ impl Cursor {
             stage: 0,
             loops: Vec::new(),
             index: 0,
-            doing: Doing::Arriving,
+            doing: CursorPhase::Arriving,
             path,
             leg_start: path,
             level: path.last.level,
@@ -187,7 +187,7 @@ impl Cursor {
 
     /// The next waypoint.
     pub fn next(&mut self, world: &World) -> Step {
-        let mut notes = Notes::default();
+        let mut notes = CursorLog::default();
         for _ in 0..MOST_SILENT_STEPS {
             if let Some((point, amsl_m)) = self.point_over_known_ground(world, &mut notes) {
                 let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
@@ -196,14 +196,14 @@ impl Cursor {
                 return Step::Waypoint(emission);
             }
             match self.doing {
-                Doing::Ended => return Step::Ended { notes },
-                Doing::Waiting => return Step::Waiting,
-                Doing::Arriving => self.arrive(world, &mut notes),
-                Doing::Flying | Doing::Leaving => match self.wait_due(world, &mut notes) {
+                CursorPhase::Ended => return Step::Ended { notes },
+                CursorPhase::Waiting => return Step::Waiting,
+                CursorPhase::Arriving => self.arrive(world, &mut notes),
+                CursorPhase::Flying | CursorPhase::Leaving => match self.wait_due(world, &mut notes) {
                     Some(seconds) => return self.wait(seconds, notes, world),
                     None => self.leave(world, &mut notes),
                 },
-                Doing::Turning => self.doing = Doing::Arriving,
+                CursorPhase::Turning => self.doing = CursorPhase::Arriving,
             }
         }
         Step::Stalled { notes }
@@ -211,19 +211,19 @@ impl Cursor {
 
     /// The next point and its altitude, metres AMSL; where the ground is not known from which that counts, the leg is left instead:
     /// the altitude is not guessed.
-    fn point_over_known_ground(&mut self, world: &World, notes: &mut Notes) -> Option<(Point, f64)> {
+    fn point_over_known_ground(&mut self, world: &World, notes: &mut CursorLog) -> Option<(Point, f64)> {
         let point = self.peek_point(world, notes)?;
         let amsl_m = world.amsl_m(point.level.unwrap_or(self.level), point.position);
         if amsl_m.is_none() {
-            notes.troubles.push(Trouble::unknown_ground(self.place(world).leg, point.position));
+            notes.errors.push(LayoutError::unknown_ground(self.place(world).leg, point.position));
             self.expansion = None;
         }
         Some((point, amsl_m?))
     }
 
     /// The expansion's next point, if there is one; an open-ended one is left here when its choice says so.
-    fn peek_point(&mut self, world: &World, notes: &mut Notes) -> Option<Point> {
-        if self.doing != Doing::Flying && self.doing != Doing::Turning {
+    fn peek_point(&mut self, world: &World, notes: &mut CursorLog) -> Option<Point> {
+        if self.doing != CursorPhase::Flying && self.doing != CursorPhase::Turning {
             return None;
         }
         if let Some(lap) = self.expansion.as_ref()?.crossing(self.given)
@@ -248,7 +248,7 @@ impl Cursor {
     }
 
     /// It is left at this crossing: as was chosen here before, else by a choice.
-    fn leaves(&mut self, lap: u64, world: &World, notes: &mut Notes) -> bool {
+    fn leaves(&mut self, lap: u64, world: &World, notes: &mut CursorLog) -> bool {
         if let Some((_, leaves)) = self.left_or_not.filter(|(given, _)| *given == self.given) {
             return leaves;
         }

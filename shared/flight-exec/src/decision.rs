@@ -81,13 +81,13 @@ impl Executor {
         open.map_or_else(|| Some(self.open_beyond()?.request.clone()), |open| self.request_for(&open))
     }
 
-    /// The question about an intersection beyond what is handed out, if it is open.
+    /// The question about an intersection beyond what is issued, if it is open.
     fn open_beyond(&self) -> Option<&Ahead> {
         self.state.ahead.as_ref().filter(|ahead| !self.has_decision(&ahead.request.leg, ahead.crossing))
     }
 
     /// The passing that a decision is meant for: the first that is asked about and not decided; where no question is open the one that
-    /// is ahead, asked for or not, decided or not. `None`: the next one beyond what is handed out.
+    /// is ahead, asked for or not, decided or not. `None`: the next one beyond what is issued.
     fn passing_meant(&self, leg: &Id) -> Option<Pending> {
         let mut ahead = self.pending();
         ahead.retain(|p| p.leg == *leg);
@@ -132,10 +132,10 @@ impl Executor {
 
     /// The turn into the branch that is laid out has begun, or nearly so. One that is waited at is never too close.
     fn is_too_close(&self, pending: &Pending) -> bool {
-        let Some(handed) = self.state.handed.get(pending.index).filter(|_| pending.branch.is_some()) else {
+        let Some(issued) = self.state.issued.get(pending.index).filter(|_| pending.branch.is_some()) else {
             return false;
         };
-        let left_m = self.path_left_m(handed.before.path.distance_m);
+        let left_m = self.path_left_m(issued.before.path.distance_m);
         pending.index < self.alterable_from() || left_m <= self.stopping_distance_m()
     }
 
@@ -193,8 +193,8 @@ impl Executor {
     }
 
     fn pending(&self) -> Vec<Pending> {
-        let handed = self.state.handed.iter().enumerate();
-        handed
+        let issued = self.state.issued.iter().enumerate();
+        issued
             .flat_map(|(index, h)| h.choices.iter().map(move |c| (index, c)))
             .filter_map(|(index, choice)| match choice {
                 Choice::Branch { leg, crossing, branch, by } => Some(Pending {
@@ -210,7 +210,7 @@ impl Executor {
     }
 
     fn request_for(&self, pending: &Pending) -> Option<DecisionRequest> {
-        let before = &self.state.handed.get(pending.index)?.before;
+        let before = &self.state.issued.get(pending.index)?.before;
         self.request(&pending.leg, pending.crossing, before, self.left_for(pending)?)
     }
 
@@ -243,9 +243,9 @@ impl Executor {
         let key = (pending.leg.clone(), pending.crossing);
         let late = self.state.late.contains(&key);
         let lead = if late { DecideBefore::Distance(self.stopping_distance_m()) } else { decide_before };
-        let handed = self.state.handed.get(pending.index)?;
+        let issued = self.state.issued.get(pending.index)?;
         let way =
-            Way { metres: self.path_left_m(handed.before.path.distance_m), ..self.way_along(pending.index) };
+            Way { metres: self.path_left_m(issued.before.path.distance_m), ..self.way_along(pending.index) };
         Some(way.until_due(lead))
     }
 
@@ -268,7 +268,7 @@ impl Executor {
     /// The way may still lead to an intersection.
     fn check_ahead(&self, leg: &Id) -> Result<(), Refusal> {
         let program = self.flying_program()?;
-        let now = self.state.handed.front().and_then(|h| program.path(&h.place.leg));
+        let now = self.state.issued.front().and_then(|h| program.path(&h.place.leg));
         if now.zip(program.path(leg)).is_none_or(|(now, target)| may_lead(&program, &now, &target)) {
             return Ok(());
         }

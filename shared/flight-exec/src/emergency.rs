@@ -59,7 +59,7 @@ impl Executor {
             let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
             return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
         }
-        Ok(in_force(&program, leg, cause).and_then(|plan| index_of(&plan.id)))
+        Ok(emergency_coverage(&program, leg, cause).and_then(|plan| index_of(&plan.id)))
     }
 
     fn switch_to(&mut self, index: usize, emergency: Emergency, out: &mut Vec<Output>) {
@@ -99,12 +99,12 @@ impl Executor {
         Ok(())
     }
 
-    /// Leg (or stage) of the main plan that is being flown; where nothing is handed out, or only what an earlier plan had, the
+    /// Leg (or stage) of the main plan that is being flown; where nothing is issued, or only what an earlier plan had, the
     /// one that comes next.
     fn main_leg(&self) -> Option<Id> {
         let world = self.world();
         let tail = self.state.tail.as_ref().map(|t| t.place(&world).leg);
-        let legs = self.state.handed.iter().map(|h| h.place.leg.clone()).chain(tail);
+        let legs = self.state.issued.iter().map(|h| h.place.leg.clone()).chain(tail);
         legs.into_iter().find(|leg| world.program.path(leg).is_some())
     }
 
@@ -114,12 +114,12 @@ impl Executor {
             Some(running) => running.from_leg.clone(),
             None => self.main_leg(),
         };
-        Some(in_force(&self.program, leg.as_ref(), Cause::Operator)?.id.clone())
+        Some(emergency_coverage(&self.program, leg.as_ref(), Cause::Operator)?.id.clone())
     }
 }
 
 /// The plan that answers a cause on a leg (or stage); on none that the plan has, the one that the document names for all.
-fn in_force<'p>(program: &'p Program, leg: Option<&Id>, cause: Cause) -> Option<&'p EmergencyPlan> {
+fn emergency_coverage<'p>(program: &'p Program, leg: Option<&Id>, cause: Cause) -> Option<&'p EmergencyPlan> {
     match leg.filter(|leg| program.path(leg).is_some()) {
         Some(leg) => program.emergency_for(leg, cause),
         None => program.flown().emergency_plan(program.plan.emergency.plan_for(cause)?),

@@ -2,10 +2,10 @@
 
 use crate::api::{Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
 use crate::config::Config;
-use crate::handed::Handed;
-use crate::path::{Level, Passing, PathState, distance_m};
+use crate::issued::IssuedWaypoint;
+use crate::path::{Level, PathEnd, PathState, distance_m};
 use crate::state::State;
-use crate::world::{Seen, World};
+use crate::world::{ReadSet, World};
 use aircraft::Profile;
 use flight_plan::{AltitudeReference, FlightState, Program, Variables};
 use geometry::LatLon;
@@ -23,8 +23,8 @@ pub struct Executor {
     pub(crate) proposed: Option<Arc<Program>>,
     pub(crate) state: State,
     pub(crate) last_step: Option<Time>,
-    /// What has been read of the plan, for who wants to know (see [`Seen`]).
-    pub(crate) seen: Option<Seen>,
+    /// What has been read of the plan, for who wants to know (see [`ReadSet`]).
+    pub(crate) seen: Option<ReadSet>,
 }
 
 /// A refusal.
@@ -100,9 +100,9 @@ impl Executor {
         &self.state.variables
     }
 
-    /// Waypoints handed out and not flown yet, the current one first.
+    /// Waypoints issued and not flown yet, the current one first.
     pub fn ahead(&self) -> impl Iterator<Item = &crate::api::Waypoint> {
-        self.state.handed.iter().map(|h| &h.waypoint)
+        self.state.issued.iter().map(|h| &h.waypoint)
     }
 
     /// Highest token used so far.
@@ -148,7 +148,7 @@ impl Executor {
         let reviews = self.state.review_due_s <= by_now_s;
         if reviews {
             self.state.review_due_s = self.state.clock_s + self.config.review_s;
-            self.review(out);
+            self.reevaluate_choices(out);
         }
         self.fill(out);
         self.attend_decisions(out);
@@ -236,7 +236,7 @@ impl Executor {
         let altitude_m = aircraft.map_or(elevation_m, |a| a.altitude_amsl_m);
         let course_deg = aircraft.map_or(runway.map_or(0.0, |r| r.heading_deg), |a| a.track_deg);
         PathState {
-            last: Passing {
+            last: PathEnd {
                 position: aircraft.map_or_else(|| self.home(), |a| a.position),
                 level: Level { metres: altitude_m, reference: AltitudeReference::Amsl },
                 airspeed_mps: self.profile.cruise_airspeed_mps,
@@ -252,7 +252,7 @@ impl Executor {
 
     /// From the aircraft to the waypoint it steers to, metres.
     pub(crate) fn to_current_m(&self) -> f64 {
-        match (self.state.handed.front(), &self.state.aircraft) {
+        match (self.state.issued.front(), &self.state.aircraft) {
             (Some(front), Some(a)) => distance_m(a.position, front.waypoint.position),
             _ => 0.0,
         }
@@ -261,39 +261,39 @@ impl Executor {
     /// Path length where the aircraft is, metres; never less than where the way to the current waypoint begins, however far the
     /// aircraft was brought away from it.
     pub(crate) fn way_made_m(&self) -> f64 {
-        let on_the_way = |h: &Handed| {
+        let on_the_way = |h: &IssuedWaypoint| {
             let begun_m = h.before.end_of_path().distance_m;
             (h.end_m - self.to_be_flown_m()).max(begun_m)
         };
         let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().distance_m);
-        self.state.handed.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
+        self.state.issued.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
     }
 
     /// Flying time of the path where the aircraft is, seconds; likewise.
     pub(crate) fn time_made_s(&self) -> f64 {
-        let on_the_way = |h: &Handed| {
+        let on_the_way = |h: &IssuedWaypoint| {
             let left_s = self.to_be_flown_m() / h.waypoint.airspeed_mps.max(1.0);
             (h.end_s - left_s).max(h.before.end_of_path().time_s)
         };
         let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().time_s);
-        self.state.handed.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
+        self.state.issued.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
     }
 
     /// From where the path is left or gone on with to the waypoint steered to, metres: in a hold that is where it was given, wherever
     /// the aircraft has drifted since.
     fn to_be_flown_m(&self) -> f64 {
         let held_at = self.state.held_at.filter(|_| self.state.phase == Phase::Holding);
-        let front = self.state.handed.front();
+        let front = self.state.issued.front();
         front.zip(held_at).map_or_else(|| self.to_current_m(), |(h, at)| distance_m(at, h.waypoint.position))
     }
 
     /// Path from the aircraft to a path length ahead, metres; never negative.
     pub(crate) fn path_left_m(&self, at_m: f64) -> f64 {
-        let beyond = self.state.handed.front().filter(|front| at_m > front.before.path.distance_m);
+        let beyond = self.state.issued.front().filter(|front| at_m > front.before.path.distance_m);
         beyond.map_or(0.0, |front| (self.to_current_m() + at_m - front.end_m).max(0.0))
     }
 
     fn has_provisional_choices(&self) -> bool {
-        self.state.tail_has_choices || self.state.handed.iter().any(|h| !h.choices.is_empty())
+        self.state.tail_has_choices || self.state.issued.iter().any(|h| !h.choices.is_empty())
     }
 }

@@ -19,7 +19,7 @@ pub mod decision;
 mod emergency;
 mod executor;
 pub mod expand;
-mod handed;
+mod issued;
 pub mod path;
 pub mod preview;
 mod progress;

@@ -21,7 +21,7 @@ pub struct Level {
 
 /// A point that the path passes: what belongs to the waypoint and not to the leg.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Passing {
+pub struct PathEnd {
     /// Where.
     pub position: LatLon,
     /// How high.
@@ -36,7 +36,7 @@ pub struct Passing {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PathState {
     /// The last point.
-    pub last: Passing,
+    pub last: PathEnd,
     /// Direction of travel there, degrees true.
     pub course_deg: f64,
     /// Altitude the aircraft can have there, given its climb, metres AMSL.

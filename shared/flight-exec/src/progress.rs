@@ -2,10 +2,10 @@
 
 use crate::api::{Event, Output, Phase, PlacePointer, Token};
 use crate::choice::Choice;
-use crate::cursor::{Mark, Step};
+use crate::cursor::{SilentLeg, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
-use crate::handed::{Handed, Onward};
+use crate::issued::{Continuation, IssuedWaypoint};
 use crate::world::World;
 
 impl Executor {
@@ -16,7 +16,7 @@ impl Executor {
         }
         match current {
             Some(token) => {
-                let index = self.state.handed.iter().position(|h| h.waypoint.token == token);
+                let index = self.state.issued.iter().position(|h| h.waypoint.token == token);
                 if let Some(index) = index {
                     // the next look at conditions counts from here: what comes does not depend on when the last one was
                     self.state.review_due_s = self.state.clock_s;
@@ -30,7 +30,7 @@ impl Executor {
 
     /// Drops waypoints that have been flown; what they led to is announced in order.
     fn fly_past(&mut self, count: usize, out: &mut Vec<Output>) {
-        let flown: Vec<Handed> = self.state.handed.drain(..count).collect();
+        let flown: Vec<IssuedWaypoint> = self.state.issued.drain(..count).collect();
         for mut flown in flown {
             self.announce(&mut flown, out);
             self.act_up_to(&flown, out);
@@ -41,16 +41,16 @@ impl Executor {
     /// a leg or loop counts for those behind it.
     fn arrive_at_current(&mut self, out: &mut Vec<Output>) {
         let mut made = 0;
-        while self.state.handed.front().is_some_and(|front| made < front.choices.len()) {
+        while self.state.issued.front().is_some_and(|front| made < front.choices.len()) {
             self.end_what_is_over_after(made, out);
             if self.front_choices_changed(made) {
                 self.replan_from(0, true, out);
             }
             made += 1;
         }
-        if let Some(mut front) = self.state.handed.pop_front() {
+        if let Some(mut front) = self.state.issued.pop_front() {
             self.announce(&mut front, out);
-            self.state.handed.push_front(front);
+            self.state.issued.push_front(front);
         }
         self.settle_phase(out);
     }
@@ -58,7 +58,7 @@ impl Executor {
     /// Ends what is over for certain when so many of the choices before the current waypoint are made: first the leg flown last, but a
     /// holding is over by its own choice, and a loop by that to leave it.
     fn end_what_is_over_after(&mut self, made: usize, out: &mut Vec<Output>) {
-        let Some(front) = self.state.handed.front() else { return };
+        let Some(front) = self.state.issued.front() else { return };
         let holds = matches!(front.choices.first(), Some(Choice::Hold { .. }));
         let last = made.checked_sub(1).and_then(|i| front.choices.get(i)).cloned();
         let flown = self.state.announced.clone().filter(|(passage, _)| *passage != front.passage);
@@ -72,18 +72,18 @@ impl Executor {
 
     /// Behind the first so many, which are made.
     fn front_choices_changed(&self, made: usize) -> bool {
-        let front = self.state.handed.front().filter(|front| !front.pinned);
+        let front = self.state.issued.front().filter(|front| !front.pinned);
         let world = World { arriving: true, ..self.world() };
         front.and_then(|front| first_changed(front, &world)).is_some_and(|first| first >= made)
     }
 
     /// Makes the choices before a waypoint final and tells about them and about the leg it begins.
-    fn announce(&mut self, handed: &mut Handed, out: &mut Vec<Output>) {
-        let (choices, marks) =
-            if handed.waits_for_decision() { handed.seal_before_wait() } else { handed.seal() };
+    fn announce(&mut self, issued: &mut IssuedWaypoint, out: &mut Vec<Output>) {
+        let (choices, silent_legs) =
+            if issued.waits_for_decision() { issued.seal_before_wait() } else { issued.seal() };
         self.tell_choices(choices, out);
-        self.announce_leg(handed, marks, out);
-        self.begin_wait(handed, out);
+        self.announce_leg(issued, silent_legs, out);
+        self.begin_wait(issued, out);
     }
 
     /// Choices that are final: arrivals, and decisions that nobody has taken before.
@@ -108,25 +108,31 @@ impl Executor {
         }
     }
 
-    fn announce_leg(&mut self, handed: &Handed, mut marks: Vec<Mark>, out: &mut Vec<Output>) {
-        let passage = Some((handed.passage, handed.place.leg.clone()));
+    fn announce_leg(
+        &mut self,
+        issued: &IssuedWaypoint,
+        mut silent_legs: Vec<SilentLeg>,
+        out: &mut Vec<Output>,
+    ) {
+        let passage = Some((issued.passage, issued.place.leg.clone()));
         if self.state.announced != passage {
             // laid out anew it may turn out that nothing is left of what was flown last
             let flown = std::mem::replace(&mut self.state.announced, passage);
-            marks.retain(|mark| flown.as_ref().is_none_or(|(n, leg)| *n != mark.passage || *leg != mark.leg));
-            self.change_passage(handed, marks, out);
+            silent_legs
+                .retain(|mark| flown.as_ref().is_none_or(|(n, leg)| *n != mark.passage || *leg != mark.leg));
+            self.change_passage(issued, silent_legs, out);
         }
     }
 
     /// The leg of a waypoint has been entered.
-    pub(crate) fn is_announced(&self, handed: &Handed) -> bool {
+    pub(crate) fn is_announced(&self, issued: &IssuedWaypoint) -> bool {
         let announced = self.state.announced.as_ref();
-        announced.is_some_and(|(passage, leg)| *passage == handed.passage && *leg == handed.place.leg)
+        announced.is_some_and(|(passage, leg)| *passage == issued.passage && *leg == issued.place.leg)
     }
 
     fn everything_flown(&mut self, out: &mut Vec<Output>) {
-        let last = self.state.handed.back().filter(|h| h.waypoint.end_of_plan).cloned();
-        let count = self.state.handed.len();
+        let last = self.state.issued.back().filter(|h| h.waypoint.end_of_plan).cloned();
+        let count = self.state.issued.len();
         self.fly_past(count, out);
         if let Some(last) = last {
             self.announce_end(&last, out);
@@ -137,7 +143,7 @@ impl Executor {
     /// The aircraft was brought down by somebody else: what is ahead is not flown, and nothing of it happens.
     pub(crate) fn landed(&mut self, out: &mut Vec<Output>) {
         if self.is_flying() {
-            self.state.handed.clear();
+            self.state.issued.clear();
             self.state.tail = None;
             self.state.ahead = None;
             self.state.held_at = None;
@@ -155,20 +161,20 @@ impl Executor {
     }
 
     /// Loops that ended together with the plan, decisions that led to its end, and actions there.
-    fn announce_end(&mut self, last: &Handed, out: &mut Vec<Output>) {
+    fn announce_end(&mut self, last: &IssuedWaypoint, out: &mut Vec<Output>) {
         let Step::Ended { notes } = self.bookmark(0).next(&self.world()) else { return };
-        let mut marks = notes.marks;
-        self.retain_new(&mut marks);
+        let mut silent_legs = notes.silent_legs;
+        self.retain_new(&mut silent_legs);
         self.end_passages(|_| true, out);
-        self.pass_silently(marks, last, out);
+        self.pass_silently(silent_legs, last, out);
         self.tell_choices(notes.choices, out);
     }
 
     /// Reads the conditions of choices ahead again, and changes the way where they have changed.
-    pub(crate) fn review(&mut self, out: &mut Vec<Output>) {
+    pub(crate) fn reevaluate_choices(&mut self, out: &mut Vec<Output>) {
         let world = self.world();
         let from = self.alterable_from();
-        let ahead = self.state.handed.iter().enumerate().skip(from);
+        let ahead = self.state.issued.iter().enumerate().skip(from);
         let changed = ahead.filter(|(_, h)| !h.choices.is_empty()).find(|(_, h)| choices_changed(h, &world));
         let changed = changed.map(|(index, _)| index).or_else(|| self.end_changed(&world, from));
         if let Some(index) = changed {
@@ -178,20 +184,20 @@ impl Executor {
 
     /// The plan was to end after the last waypoint and now goes on: that waypoint has to lose its mark.
     fn end_changed(&self, world: &World, from: usize) -> Option<usize> {
-        let last = self.state.handed.len().checked_sub(1).filter(|i| *i >= from)?;
+        let last = self.state.issued.len().checked_sub(1).filter(|i| *i >= from)?;
         let mut tail = self.state.tail.clone()?;
-        let ends = self.state.onward == Onward::Ended && self.state.tail_has_choices;
+        let ends = self.state.continuation == Continuation::Ended && self.state.tail_has_choices;
         (ends && !matches!(tail.next(world), Step::Ended { .. })).then_some(last)
     }
 
     /// A batch was refused: the aircraft holds rather than to run dry.
     pub(crate) fn rejected(&mut self, first: Token, reason: String, out: &mut Vec<Output>) {
-        let index = self.state.handed.iter().position(|h| h.waypoint.token >= first);
-        let leg = index.and_then(|i| self.state.handed.get(i)).map(|h| h.place.leg.clone());
+        let index = self.state.issued.iter().position(|h| h.waypoint.token >= first);
+        let leg = index.and_then(|i| self.state.issued.get(i)).map(|h| h.place.leg.clone());
         out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
         let Some(index) = index else { return };
         let mut cursor = self.bookmark(index);
-        let of_leg = self.state.handed.get(index).is_some_and(|first| first.passage == cursor.passage);
+        let of_leg = self.state.issued.get(index).is_some_and(|first| first.passage == cursor.passage);
         // the leg at whose end it circles is over, as in a refresh
         if of_leg && self.state.wait.is_none() {
             // the bookmark may be older than the values of now; those that make no such leg were told when they were written
@@ -200,9 +206,9 @@ impl Executor {
         // what was flown of the way to the first of them counts on
         let on_the_way = index == 0 && self.state.aircraft.is_some();
         let cursor = if on_the_way { cursor.going_on_from(self.here()) } else { cursor };
-        self.state.handed.truncate(index);
+        self.state.issued.truncate(index);
         self.state.tail = Some(cursor);
-        self.state.onward = Onward::Open;
+        self.state.continuation = Continuation::Open;
         self.hold(out);
     }
 
@@ -217,25 +223,25 @@ impl Executor {
 
     /// Where the flight is in the plan.
     pub(crate) fn place(&self) -> Option<PlacePointer> {
-        let front = self.state.handed.front()?;
+        let front = self.state.issued.front()?;
         let way_m = self.way_made_m() - front.leg_start_m;
         Some(PlacePointer { distance_m: way_m.max(0.0), ..front.place.clone() })
     }
 }
 
 /// The choices that led to a waypoint would be others in this world.
-fn choices_changed(handed: &Handed, world: &World) -> bool {
-    first_changed(handed, world).is_some()
+fn choices_changed(issued: &IssuedWaypoint, world: &World) -> bool {
+    first_changed(issued, world).is_some()
 }
 
 /// The number of the first choice, from 0, that led to a waypoint and would be another one in this world.
-fn first_changed(handed: &Handed, world: &World) -> Option<usize> {
-    let mut cursor = handed.before.clone();
+fn first_changed(issued: &IssuedWaypoint, world: &World) -> Option<usize> {
+    let mut cursor = issued.before.clone();
     let now = match cursor.next(world) {
         Step::Waypoint(emission) => emission.notes.choices,
         Step::Ended { notes } => notes.choices,
-        Step::Waiting | Step::Stalled { .. } => return Some(handed.choices.len()),
+        Step::Waiting | Step::Stalled { .. } => return Some(issued.choices.len()),
     };
-    let alike = now.iter().zip(&handed.choices).take_while(|(a, b)| a.leads_as(b)).count();
-    (alike < now.len().max(handed.choices.len())).then_some(alike)
+    let alike = now.iter().zip(&issued.choices).take_while(|(a, b)| a.leads_as(b)).count();
+    (alike < now.len().max(issued.choices.len())).then_some(alike)
 }

@@ -76,7 +76,7 @@ impl Executor {
         let legs = program.stages(section).iter().flat_map(|stage| &stage.legs).take(MOST_ENTRIES);
         let tried = legs.filter_map(|leg| {
             let after = self.outcome(program, Some(&leg.id)).ok()?;
-            let position = after.state.handed.front()?.waypoint.position;
+            let position = after.state.issued.front()?.waypoint.position;
             let in_m = after.to_current_m();
             Some(EntryReport { leg: leg.id.clone(), position, in_m, in_s: in_m / self.ground_speed_mps() })
         });
@@ -90,7 +90,7 @@ impl Executor {
 
     fn tell_outcome(&self, after: &Executor, report: &mut ProposalReport) {
         let speed_mps = self.ground_speed_mps();
-        let next = after.state.handed.front();
+        let next = after.state.issued.front();
         report.next_leg = next.map(|h| h.place.leg.clone());
         report.next_position = next.map(|h| h.waypoint.position);
         report.next_in_m = next.map(|_| after.to_current_m());
@@ -101,10 +101,10 @@ impl Executor {
 
     /// How much of the present path would still be flown.
     fn differs_in_m(&self, after: &Executor) -> Option<f64> {
-        let token = |e: &Executor, i: usize| e.state.handed.get(i).map(|h| h.waypoint.token);
-        let both = self.state.handed.len().max(after.state.handed.len());
+        let token = |e: &Executor, i: usize| e.state.issued.get(i).map(|h| h.waypoint.token);
+        let both = self.state.issued.len().max(after.state.issued.len());
         let first = (0..both).find(|i| token(self, *i) != token(after, *i))?;
-        let kept = first.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        let kept = first.checked_sub(1).and_then(|i| self.state.issued.get(i));
         Some(kept.map_or(0.0, |h| self.path_left_m(h.end_m)))
     }
 }

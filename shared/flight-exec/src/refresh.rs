@@ -1,10 +1,10 @@
 //! Variables have changed: the leg being flown, and everything beyond it, with the values of now.
 
 use crate::api::Output;
-use crate::cursor::{Cursor, Step, Trouble};
+use crate::cursor::{Cursor, LayoutError, Step};
 use crate::executor::Executor;
-use crate::handed::Handed;
-use crate::path::Passing;
+use crate::issued::IssuedWaypoint;
+use crate::path::PathEnd;
 use crate::world::World;
 use flight_plan::Id;
 
@@ -14,7 +14,7 @@ impl Executor {
     fn is_over(&self, cursor: &Cursor) -> bool {
         let entered = || self.state.announced.as_ref().is_some_and(|(passage, _)| *passage == cursor.passage);
         let points = || cursor.expansion.as_ref().and_then(|e| e.count());
-        match self.state.handed.front() {
+        match self.state.issued.front() {
             Some(front) => front.passage != cursor.passage && entered(),
             None => points().is_some_and(|all| cursor.given >= all),
         }
@@ -26,19 +26,19 @@ impl Executor {
         &self,
         index: usize,
         before: &Cursor,
-    ) -> Option<(Trouble, usize)> {
-        let first = self.state.handed.get(index).filter(|first| self.is_announced(first))?;
+    ) -> Option<(LayoutError, usize)> {
+        let first = self.state.issued.get(index).filter(|first| self.is_announced(first))?;
         let before = Some(before).filter(|before| before.passage != first.passage)?;
         let trouble = before.clone().trouble_with(&first.place.leg, &self.world())?;
         // whether it is circled at its end is the present plan's business
-        let is_of_it = |h: &&Handed| h.passage == first.passage && !h.is_loiter();
-        let of_leg = self.state.handed.iter().skip(index).take_while(is_of_it);
+        let is_of_it = |h: &&IssuedWaypoint| h.passage == first.passage && !h.is_loiter();
+        let of_leg = self.state.issued.iter().skip(index).take_while(is_of_it);
         Some((trouble, index + of_leg.count()))
     }
 
     /// Brings the leg that a bookmark is in to the values of now (see [`Cursor::refresh_leg`]). If nothing is kept before it, it is
     /// joined from where the aircraft is, as far as it can be: not from the waypoint behind.
-    pub(crate) fn refreshed(&self, keep: usize, cursor: &mut Cursor) -> Result<bool, Trouble> {
+    pub(crate) fn refreshed(&self, keep: usize, cursor: &mut Cursor) -> Result<bool, LayoutError> {
         let from_here = self.brought_here(keep, cursor);
         let changed = cursor.refresh_leg(&self.world())?;
         let joined =
@@ -51,11 +51,11 @@ impl Executor {
 
     /// The bookmark before the current waypoint with the end of its path where the aircraft is, on the way of its leg.
     fn brought_here(&self, keep: usize, cursor: &Cursor) -> Option<Cursor> {
-        let front = self.state.handed.front().filter(|front| self.is_announced(front))?;
+        let front = self.state.issued.front().filter(|front| self.is_announced(front))?;
         let on_the_way = keep == 0 && front.passage == cursor.passage && !self.is_muted();
         let mut brought = cursor.clone();
         let mut here = self.here();
-        here.last = Passing { position: here.last.position, ..cursor.path.last };
+        here.last = PathEnd { position: here.last.position, ..cursor.path.last };
         brought.move_path_to(here);
         (on_the_way && self.state.aircraft.is_some()).then_some(brought)
     }
@@ -72,7 +72,7 @@ impl Executor {
             return self.replan(out);
         }
         let near = self.alterable_from();
-        let after_current = near.max(1).min(self.state.handed.len());
+        let after_current = near.max(1).min(self.state.issued.len());
         let keep = if self.bookmark(after_current).is_in_a_pattern() { after_current } else { near };
         // a pattern that is over is not to be flown once more
         let begun = self.at_the_leg_begun(keep, &self.world());
@@ -88,8 +88,8 @@ impl Executor {
         match self.refreshed(keep, &mut cursor) {
             Ok(false) if over => self.replan_with(keep, cursor, false, out),
             Ok(true) => {
-                for handed in self.state.handed.iter_mut().take(keep) {
-                    handed.pinned = true;
+                for issued in self.state.issued.iter_mut().take(keep) {
+                    issued.pinned = true;
                 }
                 self.replan_with(keep, cursor, false, out);
             }
@@ -104,10 +104,10 @@ impl Executor {
 
 impl Cursor {
     /// Why a leg is passed over on the way to the next waypoint, if it is.
-    fn trouble_with(mut self, leg: &Id, world: &World) -> Option<Trouble> {
+    fn trouble_with(mut self, leg: &Id, world: &World) -> Option<LayoutError> {
         let Step::Waypoint(emission) = self.next(world) else { return None };
         let passed = self.leg(world).is_none_or(|now| now.id != *leg);
-        let of_leg = |trouble: &Trouble| matches!(trouble, Trouble::Leg { leg: of, .. } if of == leg);
-        emission.notes.troubles.into_iter().find(of_leg).filter(|_| passed)
+        let of_leg = |trouble: &LayoutError| matches!(trouble, LayoutError::Leg { leg: of, .. } if of == leg);
+        emission.notes.errors.into_iter().find(of_leg).filter(|_| passed)
     }
 }

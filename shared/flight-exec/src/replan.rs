@@ -1,28 +1,28 @@
 //! Handing out: topping the horizon up, and laying the path out anew when something has changed.
 
 use crate::api::{Action, Event, Output, Phase, Token, Waypoint};
-use crate::cursor::{Cursor, Trouble};
+use crate::cursor::{Cursor, LayoutError};
 use crate::executor::Executor;
-use crate::handed::{Handed, Onward, Stretch, lay_out};
+use crate::issued::{Continuation, IssuedWaypoint, Stretch, lay_out};
 use flight_plan::Id;
 
-/// Most troubles remembered so that they are told once.
+/// Most errors remembered so that they are told once.
 const MOST_TOLD: usize = 16;
 
 impl Executor {
     /// Tops the horizon up.
     pub(crate) fn fill(&mut self, out: &mut Vec<Output>) {
-        let first = self.state.handed.len();
+        let first = self.state.issued.len();
         self.lengthen(out);
         self.feed(None, first, out);
     }
 
     /// Lays out what is missing to the horizon, without feeding it.
     fn lengthen(&mut self, out: &mut Vec<Output>) {
-        if self.is_muted() || self.state.onward != Onward::Open {
+        if self.is_muted() || self.state.continuation != Continuation::Open {
             return;
         }
-        let more = self.horizon(self.state.handed.len(), self.time_made_s());
+        let more = self.horizon(self.state.issued.len(), self.time_made_s());
         let Some(tail) = self.state.tail.as_ref().filter(|t| more(0, t)) else { return };
         let stretch = lay_out(tail, &self.world(), false, false, more);
         self.append(stretch, out);
@@ -39,40 +39,40 @@ impl Executor {
         }
     }
 
-    /// Takes a stretch over behind what is handed out, numbering its waypoints.
+    /// Takes a stretch over behind what is issued, numbering its waypoints.
     fn append(&mut self, stretch: Stretch, out: &mut Vec<Output>) {
-        if let Some(last) = self.state.handed.back_mut().filter(|_| !stretch.handed.is_empty()) {
+        if let Some(last) = self.state.issued.back_mut().filter(|_| !stretch.issued.is_empty()) {
             last.waypoint.end_of_plan = false;
         }
-        for mut handed in stretch.handed {
+        for mut issued in stretch.issued {
             self.state.last_token += 1;
-            handed.waypoint.token = Token(self.state.last_token);
-            self.state.last_passage = self.state.last_passage.max(handed.passage);
-            self.state.handed.push_back(handed);
+            issued.waypoint.token = Token(self.state.last_token);
+            self.state.last_passage = self.state.last_passage.max(issued.passage);
+            self.state.issued.push_back(issued);
         }
         self.state.tail = Some(stretch.tail);
-        self.state.onward = stretch.onward;
+        self.state.continuation = stretch.continuation;
         self.state.tail_has_choices = !stretch.tail_notes.is_empty();
-        for trouble in stretch.troubles {
+        for trouble in stretch.errors {
             self.tell_trouble(trouble, out);
         }
-        if stretch.onward == Onward::Stalled {
+        if stretch.continuation == Continuation::Stalled {
             self.stalled(out);
         }
     }
 
     /// Tells what doesn't work, once as long as nothing is done about it.
-    pub(crate) fn tell_trouble(&mut self, trouble: Trouble, out: &mut Vec<Output>) {
+    pub(crate) fn tell_trouble(&mut self, trouble: LayoutError, out: &mut Vec<Output>) {
         if self.state.told.contains(&trouble) {
             return;
         }
         self.state.told.truncate(MOST_TOLD - 1);
         self.state.told.insert(0, trouble.clone());
         out.push(Output::Event(match trouble {
-            Trouble::Leg { leg, reason } | Trouble::Ground { leg, reason } => {
+            LayoutError::Leg { leg, reason } | LayoutError::Ground { leg, reason } => {
                 Event::PatternRefused { leg, reason }
             }
-            Trouble::Expression { leg, reason } => Event::ExpressionFailed { leg, reason },
+            LayoutError::Expression { leg, reason } => Event::ExpressionFailed { leg, reason },
         }));
     }
 
@@ -81,14 +81,14 @@ impl Executor {
         let leg = self.state.tail.as_ref().and_then(|t| t.loop_ids(&self.world()).pop());
         let reason = "this loop flies no waypoint; change its body by a plan update, or go to another leg";
         let leg = leg.unwrap_or_else(|| Id::new("plan"));
-        self.tell_trouble(Trouble::Leg { leg, reason: reason.into() }, out);
-        if self.state.handed.is_empty() {
+        self.tell_trouble(LayoutError::Leg { leg, reason: reason.into() }, out);
+        if self.state.issued.is_empty() {
             self.hold(out);
         }
     }
 
     fn feed(&self, cancel_after: Option<Token>, first: usize, out: &mut Vec<Output>) {
-        let waypoints: Vec<_> = self.state.handed.iter().skip(first).map(|h| h.waypoint.clone()).collect();
+        let waypoints: Vec<_> = self.state.issued.iter().skip(first).map(|h| h.waypoint.clone()).collect();
         if !self.is_muted() && (cancel_after.is_some() || !waypoints.is_empty()) {
             out.push(Output::Feed { cancel_after, waypoints });
         }
@@ -97,7 +97,7 @@ impl Executor {
     /// How many of the waypoints ahead can't be altered: those nearer than the stopping distance (turn and
     /// latency), and those whose pattern has been regenerated behind them.
     pub(crate) fn alterable_from(&self) -> usize {
-        let pinned = self.state.handed.iter().rposition(|h| h.pinned).map_or(0, |i| i + 1);
+        let pinned = self.state.issued.iter().rposition(|h| h.pinned).map_or(0, |i| i + 1);
         pinned.max(self.kept_by_distance())
     }
 
@@ -109,7 +109,7 @@ impl Executor {
     }
 
     fn kept_by_distance(&self) -> usize {
-        let Some(front) = self.state.handed.front().filter(|h| !h.is_loiter()) else { return 0 };
+        let Some(front) = self.state.issued.front().filter(|h| !h.is_loiter()) else { return 0 };
         if !matches!(front.waypoint.action, Action::Fly) {
             return 1;
         }
@@ -119,8 +119,8 @@ impl Executor {
         let stop_m = self.stopping_distance_m();
         let to_front_m = self.to_current_m();
         // a circle can be left wherever it is
-        let near = |h: &&Handed| !h.is_loiter() && to_front_m + h.end_m - front.end_m <= stop_m;
-        self.state.handed.iter().take_while(near).count()
+        let near = |h: &&IssuedWaypoint| !h.is_loiter() && to_front_m + h.end_m - front.end_m <= stop_m;
+        self.state.issued.iter().take_while(near).count()
     }
 
     /// Lays the path out anew behind what can't be altered, and feeds what differs.
@@ -135,18 +135,18 @@ impl Executor {
 
     /// The cursor before waypoint number `index`, or behind the last one; before the start the one that starts.
     pub(crate) fn bookmark(&self, index: usize) -> Cursor {
-        let laid_out = self.state.handed.get(index).map(|h| &h.before).or(self.state.tail.as_ref());
+        let laid_out = self.state.issued.get(index).map(|h| &h.before).or(self.state.tail.as_ref());
         laid_out.cloned().unwrap_or_else(|| Cursor::start(None, self.here(), self.state.last_passage))
     }
 
     /// Replaces the waypoints from number `from` on by what `cursor` gives. Waypoints that come out the same keep their
     /// numbers; one transaction cancels and appends the rest.
     pub(crate) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
-        let from = from.min(self.state.handed.len());
-        let old: Vec<Handed> = self.state.handed.iter().skip(from).cloned().collect();
+        let from = from.min(self.state.issued.len());
+        let old: Vec<IssuedWaypoint> = self.state.issued.iter().skip(from).cloned().collect();
         let more = self.horizon(from, self.time_made_s());
         let at_least = old.len();
-        let kept = from.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        let kept = from.checked_sub(1).and_then(|i| self.state.issued.get(i));
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
         let lay_out =
             |from: &Cursor| lay_out(from, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
@@ -154,11 +154,11 @@ impl Executor {
         if from == 0 && self.is_led_elsewhere(&stretch) {
             stretch = lay_out(&cursor.going_on_from(self.here()));
         }
-        let same = old.iter().zip(&stretch.handed).take_while(|(a, b)| a.is_same_as(b)).count();
+        let same = old.iter().zip(&stretch.issued).take_while(|(a, b)| a.is_same_as(b)).count();
         let sent: Vec<Waypoint> = old.iter().take(same).map(|h| h.waypoint.clone()).collect();
-        self.state.handed.truncate(from);
+        self.state.issued.truncate(from);
         let before = self.state.last_token;
-        let appended = stretch.handed.len() - same;
+        let appended = stretch.issued.len() - same;
         self.append(stretch, out);
         self.keep_sent(from, sent, before);
         let cancel = (old.len() > same).then(|| self.last_token_before(from + same));
@@ -171,27 +171,27 @@ impl Executor {
     /// The leg that has begun leads from here to another place than the one steered to: the way to it, and the climb, begin where the
     /// aircraft is, so that the way made counts on.
     fn is_led_elsewhere(&self, stretch: &Stretch) -> bool {
-        let first = stretch.handed.first().filter(|first| self.is_announced(first));
-        self.state.handed.front().zip(first).is_some_and(|(old, new)| !old.is_where(new))
+        let first = stretch.issued.first().filter(|first| self.is_announced(first));
+        self.state.issued.front().zip(first).is_some_and(|(old, new)| !old.is_where(new))
     }
 
     /// Waypoints that stayed the same stay as they were sent, so that many small changes don't add up unseen; the others count on
     /// from `before`.
     fn keep_sent(&mut self, from: usize, sent: Vec<Waypoint>, before: u64) {
-        let appended = self.state.handed.len().saturating_sub(from + sent.len());
+        let appended = self.state.issued.len().saturating_sub(from + sent.len());
         self.state.last_token = before + appended as u64;
         let numbers = (before + 1..).map(Token);
-        for (handed, token) in self.state.handed.iter_mut().skip(from + sent.len()).zip(numbers) {
-            handed.waypoint.token = token;
+        for (issued, token) in self.state.issued.iter_mut().skip(from + sent.len()).zip(numbers) {
+            issued.waypoint.token = token;
         }
-        for (handed, waypoint) in self.state.handed.iter_mut().skip(from).zip(sent) {
-            handed.waypoint = waypoint;
+        for (issued, waypoint) in self.state.issued.iter_mut().skip(from).zip(sent) {
+            issued.waypoint = waypoint;
         }
     }
 
     /// The token after which everything is cancelled, to replace waypoints from `index` on.
     fn last_token_before(&self, index: usize) -> Token {
-        let kept = index.checked_sub(1).and_then(|i| self.state.handed.get(i));
+        let kept = index.checked_sub(1).and_then(|i| self.state.issued.get(i));
         kept.map_or(Token(0), |h| h.waypoint.token)
     }
 
@@ -205,7 +205,7 @@ impl Executor {
         if cursor.section.is_none() {
             self.state.emergency = None;
         }
-        self.state.handed.clear();
+        self.state.issued.clear();
         self.state.ahead = None;
         self.state.held_at = None;
         self.forget_defaults();
@@ -216,9 +216,9 @@ impl Executor {
         self.append(stretch, out);
         self.abandon_passages();
         // until another leg is entered, a loop on the way out may be gone back to: by a count, or a condition
-        if let Some(mut front) = self.state.handed.pop_front() {
+        if let Some(mut front) = self.state.issued.pop_front() {
             self.begin_anew_what_was_left(&mut front.before, &around);
-            self.state.handed.push_front(front);
+            self.state.issued.push_front(front);
         }
         self.feed(Some(Token(0)), 0, out);
         self.settle_phase(out);
@@ -240,9 +240,9 @@ impl Executor {
 
     /// Sends everything ahead once more, with new numbers: the gateway may have lost it.
     pub(crate) fn refeed(&mut self, out: &mut Vec<Output>) {
-        for handed in &mut self.state.handed {
+        for issued in &mut self.state.issued {
             self.state.last_token += 1;
-            handed.waypoint.token = Token(self.state.last_token);
+            issued.waypoint.token = Token(self.state.last_token);
         }
         // nothing is left ahead where all of it was refused: the way on belongs to the same transaction
         self.lengthen(out);
@@ -252,10 +252,10 @@ impl Executor {
 
     /// Waiting for a decision or not, or for a time, whatever it steers to.
     pub(crate) fn settle_phase(&mut self, out: &mut Vec<Output>) {
-        let front = self.state.handed.front();
+        let front = self.state.issued.front();
         self.state.wait =
             self.state.wait.filter(|w| front.is_none_or(|h| h.is_loiter() && w.passage == h.passage));
-        let waits = self.state.handed.front().is_some_and(Handed::waits_for_decision);
+        let waits = self.state.issued.front().is_some_and(IssuedWaypoint::waits_for_decision);
         match self.state.phase {
             Phase::Flying if waits => self.enter_phase(Phase::AwaitingDecision, out),
             Phase::AwaitingDecision if !waits => self.enter_phase(Phase::Flying, out),

@@ -47,7 +47,7 @@ impl Executor {
     pub fn snapshot(&self) -> Snapshot {
         let mut shared = Shared::default();
         let of_bookmarks = bookmarks(&self.state).map(|c| shared.take(c)).collect();
-        let sealed = self.state.handed.iter().map(|h| h.sealed.clone()).collect();
+        let sealed = self.state.issued.iter().map(|h| h.sealed.clone()).collect();
         let plan = self.program().map(|p| p.hash().clone());
         Snapshot { plan, state: self.state.clone(), shared, of_bookmarks, sealed }
     }
@@ -84,11 +84,11 @@ impl Executor {
 
 fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
     let Snapshot { mut state, shared, of_bookmarks, sealed, .. } = snapshot;
-    if state.handed.len() != sealed.len() {
+    if state.issued.len() != sealed.len() {
         return Err(RestoreError::Damaged);
     }
-    for (handed, sealed) in state.handed.iter_mut().zip(sealed) {
-        handed.sealed = sealed;
+    for (issued, sealed) in state.issued.iter_mut().zip(sealed) {
+        issued.sealed = sealed;
     }
     if bookmarks(&state).count() != of_bookmarks.len() {
         return Err(RestoreError::Damaged);
@@ -100,12 +100,12 @@ fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
 }
 
 fn bookmarks(state: &State) -> impl Iterator<Item = &Cursor> {
-    let handed = state.handed.iter().flat_map(|h| [Some(&h.before), h.sealed.as_deref()]);
-    handed.flatten().chain(&state.tail)
+    let issued = state.issued.iter().flat_map(|h| [Some(&h.before), h.sealed.as_deref()]);
+    issued.flatten().chain(&state.tail)
 }
 
 /// Every bookmark, and the place where the path goes on.
 pub(crate) fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
-    let handed = state.handed.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
-    handed.flatten().chain(&mut state.tail)
+    let issued = state.issued.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
+    issued.flatten().chain(&mut state.tail)
 }

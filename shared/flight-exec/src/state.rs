@@ -2,9 +2,9 @@
 
 use crate::actions::{Passage, Wait};
 use crate::api::{AircraftState, Phase};
-use crate::cursor::{Cursor, Trouble};
+use crate::cursor::{Cursor, LayoutError};
 use crate::decision::{Ahead, Decision};
-use crate::handed::{Handed, Onward};
+use crate::issued::{Continuation, IssuedWaypoint};
 use crate::world::LoopCount;
 use flight_plan::{Cause, Id, Variables};
 use geometry::LatLon;
@@ -18,10 +18,10 @@ pub(crate) struct State {
     pub variables: Variables,
     /// Those written since the last flight.
     pub written: Vec<Id>,
-    pub handed: VecDeque<Handed>,
-    /// Where the path goes on after the last waypoint handed out.
+    pub issued: VecDeque<IssuedWaypoint>,
+    /// Where the path goes on after the last waypoint issued.
     pub tail: Option<Cursor>,
-    pub onward: Onward,
+    pub continuation: Continuation,
     /// True if choices were made after the last waypoint.
     pub tail_has_choices: bool,
     /// Highest token used so far.
@@ -35,7 +35,7 @@ pub(crate) struct State {
     pub requested: Vec<(Id, u64)>,
     /// Those of them that came into sight after their deadline.
     pub late: Vec<(Id, u64)>,
-    /// A question about an intersection beyond what is handed out.
+    /// A question about an intersection beyond what is issued.
     pub ahead: Option<Ahead>,
     pub counts: Vec<LoopCount>,
     /// See [`crate::world::World::released`].
@@ -62,7 +62,7 @@ pub(crate) struct State {
     pub last_refresh_s: Option<f64>,
     pub review_due_s: f64,
     /// What didn't work lately, the latest first, so that it is told once.
-    pub told: Vec<Trouble>,
+    pub told: Vec<LayoutError>,
 }
 
 /// The emergency being flown.
@@ -80,9 +80,9 @@ impl Default for State {
             phase: Phase::Idle,
             variables: Variables::default(),
             written: Vec::new(),
-            handed: VecDeque::new(),
+            issued: VecDeque::new(),
             tail: None,
-            onward: Onward::Open,
+            continuation: Continuation::Open,
             tail_has_choices: false,
             last_token: 0,
             last_passage: 0,

@@ -2,9 +2,9 @@
 
 use crate::actions::is_control;
 use crate::api::{Event, Output, Phase, Refusal};
-use crate::cursor::{Cursor, Doing, LoopFrame, Trail, Visit};
+use crate::cursor::{Cursor, CursorPhase, LoopFrame, Trail, Visit};
 use crate::executor::{Executor, refusal};
-use crate::handed::Handed;
+use crate::issued::IssuedWaypoint;
 use crate::world::World;
 use flight_plan::{Id, Leg, LegPath, Program, Variable};
 use std::collections::HashMap;
@@ -24,7 +24,7 @@ impl Executor {
         })?;
         if !self.is_flying() {
             self.activate(proposed, out);
-            self.state.handed.clear();
+            self.state.issued.clear();
             self.state.tail = None;
             self.enter_phase(Phase::Idle, out);
             return Ok(());
@@ -82,39 +82,39 @@ impl Executor {
         if let Some((trouble, _)) = left_out {
             self.tell_trouble(trouble, out);
         }
-        let (kept, onward) = bookmarks.split_at(keep.min(bookmarks.len()));
+        let (kept, continuation) = bookmarks.split_at(keep.min(bookmarks.len()));
         let world = self.world();
         let places: Vec<_> =
             bookmarks.iter().skip(1).map(|at| (at.place(&world), at.activations())).collect();
-        for ((handed, bookmark), (place, activations)) in self.state.handed.iter_mut().zip(kept).zip(places) {
-            handed.before = bookmark.clone();
-            handed.pinned = true;
-            if place.leg == handed.place.leg {
-                (handed.place, handed.activations) = (place, activations);
+        for ((issued, bookmark), (place, activations)) in self.state.issued.iter_mut().zip(kept).zip(places) {
+            issued.before = bookmark.clone();
+            issued.pinned = true;
+            if place.leg == issued.place.leg {
+                (issued.place, issued.activations) = (place, activations);
             }
         }
         self.follow_what_acts_now();
         self.forget_counts_of_loops_left(bookmarks.first());
-        let Some(mut onward) = onward.first().cloned() else { return };
-        let refreshed = if same { Ok(false) } else { self.refreshed(kept.len(), &mut onward) };
+        let Some(mut continuation) = continuation.first().cloned() else { return };
+        let refreshed = if same { Ok(false) } else { self.refreshed(kept.len(), &mut continuation) };
         if let Err(trouble) = refreshed {
             self.tell_trouble(trouble, out);
         }
-        self.replan_with(kept.len(), onward, false, out);
+        self.replan_with(kept.len(), continuation, false, out);
         self.wait_anew(&before);
     }
 
     /// The cursors behind choices that are final when their waypoints are steered to.
     fn seal_in_the_new_plan(&mut self, sealed: Vec<Option<Cursor>>) {
-        for (handed, cursor) in self.state.handed.iter_mut().zip(sealed) {
-            handed.sealed = cursor.map(Box::new);
+        for (issued, cursor) in self.state.issued.iter_mut().zip(sealed) {
+            issued.sealed = cursor.map(Box::new);
         }
     }
 
     /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left. On the way to a leg the
     /// loops around the one before it are still there.
     fn forget_counts_of_loops_left(&mut self, before: Option<&Cursor>) {
-        let Some(front) = self.state.handed.front() else { return };
+        let Some(front) = self.state.issued.front() else { return };
         let path = self.program.path(&front.place.leg);
         let chain = path.iter().flat_map(|path| self.program.chain(path));
         let around = chain.filter(|leg| leg.as_loop().is_some()).map(|leg| leg.id.clone());
@@ -126,7 +126,7 @@ impl Executor {
 
     fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
         let world = self.world();
-        let current = self.state.handed.front().map(|h| &h.place.leg);
+        let current = self.state.issued.front().map(|h| &h.place.leg);
         let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
         if let Some(current) = current.filter(|path| self.is_of_the_plan_flown(path, new)) {
             let keep = self.alterable_from();
@@ -134,14 +134,14 @@ impl Executor {
             let translate = |i: usize| {
                 let begun = self.at_the_leg_begun(i, &world);
                 let kept = i.checked_sub(1).filter(|_| begun.is_none());
-                let kept = kept.and_then(|i| self.state.handed.get(i));
+                let kept = kept.and_then(|i| self.state.issued.get(i));
                 let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
                 translated(&bookmark, kept, &current, entered, new, &world)
             };
-            let bookmarks = (0..=self.state.handed.len()).map(translate).collect();
-            let sealed = self.state.handed.iter().map(|handed| {
-                let sealed = handed.sealed.as_deref()?;
-                Some(translated(sealed, Some(handed), &current, entered, new, &world))
+            let bookmarks = (0..=self.state.issued.len()).map(translate).collect();
+            let sealed = self.state.issued.iter().map(|issued| {
+                let sealed = issued.sealed.as_deref()?;
+                Some(translated(sealed, Some(issued), &current, entered, new, &world))
             });
             let sealed = sealed.collect();
             return Ok(Carried::On { bookmarks, sealed, keep });
@@ -181,7 +181,7 @@ impl Executor {
     /// resume it comes behind the place where the hold was given): that waypoint's bookmark is at the end of the leg before it, and a leg that a new
     /// plan puts in between belongs to the past.
     pub(crate) fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
-        let first = self.state.handed.get(index)?;
+        let first = self.state.issued.get(index)?;
         let before = Some(self.bookmark(index)).filter(|c| c.passage != first.passage)?;
         let mut begun = before.clone();
         self.is_announced(first).then(|| begun.next(world))?;
@@ -193,8 +193,8 @@ impl Executor {
         }
         (begun.path, begun.rejoined) = (before.path, before.rejoined.clone());
         begun.given = 0;
-        if begun.doing != Doing::Turning {
-            begun.doing = Doing::Arriving;
+        if begun.doing != CursorPhase::Turning {
+            begun.doing = CursorPhase::Arriving;
             begun.expansion = None;
             begun.passage = first.passage.saturating_sub(1);
         }
@@ -231,7 +231,7 @@ enum Carried {
 /// a leg that had been taken away and is there again, it is the beginning of that one, on the passage of the waypoint.
 fn translated(
     cursor: &Cursor,
-    kept: Option<&Handed>,
+    kept: Option<&IssuedWaypoint>,
     current: &LegPath,
     entered: u64,
     new: &Program,
@@ -245,17 +245,17 @@ fn translated(
         placed
     };
     let same_plan = |path: &LegPath| path.emergency_plan == current.emergency_plan;
-    let brought_back = kept.filter(|handed| world.program.path(&handed.place.leg).is_none());
+    let brought_back = kept.filter(|issued| world.program.path(&issued.place.leg).is_none());
     let brought_back =
-        brought_back.and_then(|handed| Some((handed, new.path(&handed.place.leg).filter(same_plan)?)));
+        brought_back.and_then(|issued| Some((issued, new.path(&issued.place.leg).filter(same_plan)?)));
     // on the way back, what it is to fly is no longer known
-    if let Some((handed, target)) = brought_back.filter(|_| !cursor.is_reverse()) {
-        let passage = handed.passage.saturating_sub(1);
+    if let Some((issued, target)) = brought_back.filter(|_| !cursor.is_reverse()) {
+        let passage = issued.passage.saturating_sub(1);
         return Cursor { passage, ..placed_at(&target, Stand::Before) };
     }
-    let kept_leg = kept.map(|handed| &handed.place.leg);
+    let kept_leg = kept.map(|issued| &issued.place.leg);
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
-        let unfinished = cursor.doing == Doing::Flying && !cursor.at_the_end_of_its_leg();
+        let unfinished = cursor.doing == CursorPhase::Flying && !cursor.at_the_end_of_its_leg();
         let other_form = cursor.leg(world).filter(|_| unfinished && kept_leg.is_some());
         let other_form = other_form.filter(|leg| new.leg(&leg.id).is_some_and(|leg| !is_control(leg)));
         if let Some(target) = other_form.and_then(|leg| new.path(&leg.id)).filter(same_plan) {
@@ -291,7 +291,7 @@ enum Stand {
 /// Where the new plan has the leg (or stage) that a cursor is at; on the full turn of a loop, the beginning of that loop's body.
 fn same_place(cursor: &Cursor, known: &[Id], new: &Program, world: &World) -> Option<LegPath> {
     let same_kind = |id: &&Id| kind_of(world.program, id) == kind_of(new, id);
-    if let Some(turned) = known.last().filter(|_| cursor.doing == Doing::Turning) {
+    if let Some(turned) = known.last().filter(|_| cursor.doing == CursorPhase::Turning) {
         let mut path = new.path(Some(turned).filter(same_kind)?)?;
         path.indices.push(0);
         return Some(path);

@@ -45,9 +45,9 @@ pub struct LoopCount {
 
 /// Stages and legs that cursors came to: what the path laid out so far depends on, taken or only looked at.
 #[derive(Debug, Clone, Default)]
-pub struct Seen(RefCell<Vec<Id>>);
+pub struct ReadSet(RefCell<Vec<Id>>);
 
-impl Seen {
+impl ReadSet {
     /// Takes one down.
     pub fn note(&self, id: &Id) {
         self.0.borrow_mut().push(id.clone());
@@ -87,7 +87,7 @@ pub struct World<'a> {
     /// A look ahead from inside an expansion: no further one.
     pub looking_ahead: bool,
     /// Takes down what is read, if somebody wants to know.
-    pub seen: Option<&'a Seen>,
+    pub seen: Option<&'a ReadSet>,
 }
 
 impl World<'_> {

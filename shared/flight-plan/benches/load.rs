@@ -95,7 +95,7 @@ fn edit_one_of_10_000_legs(bencher: Bencher) {
 fn edit_and_compile_10_000_legs_again(bencher: Bencher) {
     let mut plan = flight_plan::read(document(EDITED_LEGS)).plan;
     let ground = Arc::new(Flat(300.0));
-    let (mut memory, mut lat_deg) = (flight_plan::Memory::new(Profile::default(), ground), 36.41);
+    let (mut memory, mut lat_deg) = (flight_plan::IncrementalCache::new(Profile::default(), ground), 36.41);
     bencher.bench_local(|| {
         lat_deg += 0.00001;
         let edit = Edit::MoveWaypoint { leg: "leg-5000".into(), to: LatLon::new(lat_deg, -84.21) };

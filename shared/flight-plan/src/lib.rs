@@ -15,7 +15,7 @@ pub mod variables;
 pub mod walk;
 pub mod xml;
 
-pub use checks::{Memory, check, check_again};
+pub use checks::{IncrementalCache, check, check_again};
 pub use diff::{Change, Difference, Fate};
 pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};

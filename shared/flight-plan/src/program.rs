@@ -1,6 +1,6 @@
 //! A checked plan, ready for the executor.
 
-use crate::checks::{Checked, Expressions, Memory, checked, checked_again};
+use crate::checks::{Checked, Expressions, IncrementalCache, checked, checked_again};
 use crate::expression::{Env, EvalError, Expression};
 use crate::ids::Ids;
 use crate::{
@@ -63,7 +63,10 @@ pub fn compile(
 ///
 /// # Errors
 /// As [`compile`].
-pub fn compile_again(plan: impl Into<Arc<FlightPlan>>, memory: &mut Memory) -> Result<Program, Vec<Problem>> {
+pub fn compile_again(
+    plan: impl Into<Arc<FlightPlan>>,
+    memory: &mut IncrementalCache,
+) -> Result<Program, Vec<Problem>> {
     let plan = plan.into();
     let checked = checked_again(&plan, memory);
     Program::of(plan, checked)

@@ -3,7 +3,7 @@
 
 use aircraft::Profile;
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, FlightPlan, Id, Leg, Memory, Problem, Program, Spot, Value,
+    Altitude, AltitudeReference, Edit, FlightPlan, Id, IncrementalCache, Leg, Problem, Program, Spot, Value,
     VariableValue, check, check_again, compile, compile_again, read,
 };
 use geometry::LatLon;
@@ -153,7 +153,7 @@ fn seen(program: &Program) -> impl PartialEq + std::fmt::Debug + use<> {
 fn expect_the_same(
     plan: &Arc<FlightPlan>,
     ground: &dyn Terrain,
-    memories: &mut [Memory; 2],
+    memories: &mut [IncrementalCache; 2],
 ) -> Result<(), TestCaseError> {
     let profile = Profile::default();
     let [checks, compiles] = memories;
@@ -176,7 +176,7 @@ proptest! {
         base in 0..12_usize, edits in vec((choice(), 0..9_u8), 1..8),
     ) {
         let ground: Arc<dyn Terrain> = Arc::new(Flat(300.0));
-        let mut memories = [(); 2].map(|()| Memory::new(Profile::default(), ground.clone()));
+        let mut memories = [(); 2].map(|()| IncrementalCache::new(Profile::default(), ground.clone()));
         let mut history = vec![Arc::new(plans().swap_remove(base))];
         expect_the_same(&history[0], ground.as_ref(), &mut memories)?;
         for (choice, how) in edits {
@@ -207,7 +207,7 @@ impl Terrain for Counting {
 #[test]
 fn an_edit_of_one_leg_costs_what_a_few_legs_cost() {
     let ground = Arc::new(Counting(AtomicUsize::new(0)));
-    let mut memory = Memory::new(Profile::default(), ground.clone());
+    let mut memory = IncrementalCache::new(Profile::default(), ground.clone());
     let mut looks = |plan: &FlightPlan| {
         ground.0.store(0, Ordering::Relaxed);
         check_again(plan, &mut memory);

@@ -4,7 +4,7 @@
 //! # What is recorded
 //!
 //! A **turn** is one call of the [`Manager`](super::Manager): the inputs of the executor it leads to, with the executor's time,
-//! what the FP Manager remembers beside it ([`Notes`]: what is wanted of the gateway, alarms answered, the plans of the
+//! what the FP Manager remembers beside it ([`ManagerState`]: what is wanted of the gateway, alarms answered, the plans of the
 //! flight), and answers to commands ([`Reply`]). A turn is written as one frame: after a restart all of it happened or none. A proposal's document
 //! is kept in a file of its own, under its hash, before the turn that names it: piece by piece between the turns of the
 //! flight, which does not wait for it.
@@ -50,19 +50,19 @@
 //! Whatever is missing, the gateway knows the highest token it was given: if that is beyond the journal's, the place is an old
 //! one, and the FP Manager holds and says so instead of flying a part of the plan twice.
 
-mod clerk;
+mod entries;
 #[cfg(test)]
 pub mod faulty;
-mod keeper;
+mod handle;
 mod log;
-mod notes;
 mod storage;
 #[cfg(test)]
 mod tests;
+mod writer;
 
 pub use ::journal::{Reply, encode};
-pub use clerk::{Clerk, Job, Report};
-pub use keeper::Keeper;
+pub use entries::{Chapter, Entry, ManagerState, Record, Saved};
+pub use handle::JournalHandle;
 pub use log::{Found, Limits, Log};
-pub use notes::{Chapter, Entry, Notes, Record, Saved};
 pub use storage::{Folder, Storage};
+pub use writer::{Job, Report, Writer};

@@ -38,16 +38,16 @@ fn state() -> Job {
     Job::State(Box::new(saved()), Vec::new())
 }
 
-fn clerk(disk: &Faulty) -> Clerk<Faulty> {
-    Clerk::new(Log::open(disk.clone(), LIMITS).0, None)
+fn writer(disk: &Faulty) -> Writer<Faulty> {
+    Writer::new(Log::open(disk.clone(), LIMITS).0, None)
 }
 
-/// A clerk with a state and turns 1 to `turns`, all on the disk.
-fn clerk_with(disk: &Faulty, turns: u64) -> Clerk<Faulty> {
-    let mut clerk = clerk(disk);
+/// A writer with a state and turns 1 to `turns`, all on the disk.
+fn clerk_with(disk: &Faulty, turns: u64) -> Writer<Faulty> {
+    let mut writer = writer(disk);
     let jobs = std::iter::once(state()).chain((1..=turns).map(|n| job(n, true)));
-    clerk.perform(Time::ZERO, jobs.collect());
-    clerk
+    writer.perform(Time::ZERO, jobs.collect());
+    writer
 }
 
 /// The turns that a restart finds, and whether it knows that something is missing.
@@ -62,8 +62,8 @@ fn found(disk: &Faulty) -> (Vec<u64>, bool) {
 fn what_was_synced_survives_a_loss_of_power_the_rest_may() {
     for seed in 0..50 {
         let disk = Faulty::default();
-        let mut clerk = clerk_with(&disk, 3);
-        clerk.perform(Time::ZERO, (4..=6).map(|n| job(n, false)).collect());
+        let mut writer = clerk_with(&disk, 3);
+        writer.perform(Time::ZERO, (4..=6).map(|n| job(n, false)).collect());
         disk.reboot(Death::PowerLoss, &mut Random(seed));
         let (turns, incomplete) = found(&disk);
         assert!(turns.len() >= 3 && turns == (1..=turns.len() as u64).collect::<Vec<_>>(), "{turns:?}");
@@ -74,12 +74,12 @@ fn what_was_synced_survives_a_loss_of_power_the_rest_may() {
 #[test]
 fn what_leads_to_nothing_is_synced_within_a_second() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 1);
-    clerk.perform(Time::from_millis(2000), vec![job(2, false)]);
-    let due = clerk.due().expect("a sync");
+    let mut writer = clerk_with(&disk, 1);
+    writer.perform(Time::from_millis(2000), vec![job(2, false)]);
+    let due = writer.due().expect("a sync");
     assert!(due <= Time::from_millis(3000), "{due:?}");
-    clerk.perform(due, Vec::new());
-    assert_eq!(clerk.due(), None);
+    writer.perform(due, Vec::new());
+    assert_eq!(writer.due(), None);
     disk.reboot(Death::PowerLoss, &mut Random(1));
     assert_eq!(found(&disk).0, [1, 2]);
 }
@@ -87,19 +87,19 @@ fn what_leads_to_nothing_is_synced_within_a_second() {
 /// A fault comes and goes: it is told, the flight goes on, and a new state brings the journal back.
 fn fault_comes_and_goes(strike: impl Fn(&Faulty), advice: &str) {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 2);
+    let mut writer = clerk_with(&disk, 2);
     strike(&disk);
-    clerk.perform(Time::from_secs(1), vec![job(3, true)]);
-    let trouble = clerk.report(Time::from_secs(1)).trouble.expect("it is told");
+    writer.perform(Time::from_secs(1), vec![job(3, true)]);
+    let trouble = writer.report(Time::from_secs(1)).trouble.expect("it is told");
     assert!(trouble.contains(advice), "{trouble}");
-    assert!(!clerk.report(Time::from_secs(1)).wants_state, "not again at once");
-    assert!(clerk.report(Time::from_secs(2)).wants_state, "again after a while");
-    clerk.perform(Time::from_secs(2), vec![state(), job(4, true)]);
-    assert!(clerk.report(Time::from_secs(2)).trouble.is_some(), "it lasts");
+    assert!(!writer.report(Time::from_secs(1)).wants_state, "not again at once");
+    assert!(writer.report(Time::from_secs(2)).wants_state, "again after a while");
+    writer.perform(Time::from_secs(2), vec![state(), job(4, true)]);
+    assert!(writer.report(Time::from_secs(2)).trouble.is_some(), "it lasts");
     assert_eq!(found(&disk).0[..2], [1, 2], "what was recorded before is still there");
     disk.repair();
-    clerk.perform(Time::from_secs(4), vec![state(), job(5, true)]);
-    assert_eq!(clerk.report(Time::from_secs(4)), Report::default());
+    writer.perform(Time::from_secs(4), vec![state(), job(5, true)]);
+    assert_eq!(writer.report(Time::from_secs(4)), Report::default());
     disk.reboot(Death::PowerLoss, &mut Random(7));
     assert_eq!(found(&disk), (vec![5], false));
 }
@@ -137,9 +137,9 @@ fn names_cannot_be_synced() {
 #[test]
 fn killed_after_the_names_could_not_be_synced_it_is_known_that_something_is_missing() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 2);
+    let mut writer = clerk_with(&disk, 2);
     disk.fail(Operation::SyncNames, ErrorKind::Other);
-    clerk.perform(Time::from_secs(1), vec![state(), job(3, true)]);
+    writer.perform(Time::from_secs(1), vec![state(), job(3, true)]);
     disk.reboot(Death::Kill, &mut Random(1));
     assert_eq!(found(&disk), (vec![], true), "{:?}", disk.names_now());
 }
@@ -147,33 +147,33 @@ fn killed_after_the_names_could_not_be_synced_it_is_known_that_something_is_miss
 #[test]
 fn no_room_for_a_new_segment_the_old_one_goes_on_up_to_its_greatest_length() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 11);
-    assert!(clerk.report(Time::ZERO + Time::from_secs(1)).wants_state);
+    let mut writer = clerk_with(&disk, 11);
+    assert!(writer.report(Time::ZERO + Time::from_secs(1)).wants_state);
     disk.fail(Operation::Create, ErrorKind::StorageFull);
-    clerk.perform(Time::from_secs(1), vec![state(), job(12, true)]);
-    assert_eq!(clerk.report(Time::from_secs(1)).trouble, None);
+    writer.perform(Time::from_secs(1), vec![state(), job(12, true)]);
+    assert_eq!(writer.report(Time::from_secs(1)).trouble, None);
     assert_eq!(found(&disk).0.len(), 12);
-    clerk.perform(Time::from_secs(2), (13..500).map(|n| job(n, true)).collect());
-    assert!(clerk.report(Time::from_secs(2)).trouble.is_some());
+    writer.perform(Time::from_secs(2), (13..500).map(|n| job(n, true)).collect());
+    assert!(writer.report(Time::from_secs(2)).trouble.is_some());
     assert!(disk.size() < 2 * LIMITS.bytes_max as usize, "{} bytes", disk.size());
 }
 
 #[test]
 fn segment_that_failed_in_flight_is_known_as_incomplete() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 2);
+    let mut writer = clerk_with(&disk, 2);
     disk.limit(disk.size());
-    clerk.perform(Time::from_secs(1), vec![job(3, true)]);
+    writer.perform(Time::from_secs(1), vec![job(3, true)]);
     assert_eq!(found(&disk), (vec![1, 2], true));
 }
 
 #[test]
 fn turns_lost_before_a_disk_that_does_not_keep_up_are_never_skipped_over() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 2);
-    clerk.overrun(Time::from_secs(1));
-    clerk.perform(Time::from_secs(1), vec![job(9, true)]);
-    assert!(clerk.report(Time::from_secs(1)).trouble.is_some());
+    let mut writer = clerk_with(&disk, 2);
+    writer.overrun(Time::from_secs(1));
+    writer.perform(Time::from_secs(1), vec![job(9, true)]);
+    assert!(writer.report(Time::from_secs(1)).trouble.is_some());
     assert_eq!(found(&disk), (vec![1, 2], true));
 }
 
@@ -192,8 +192,8 @@ fn damage_in_the_middle_stops_the_replay_there() {
 #[test]
 fn state_damaged_the_segment_before_leads_up_to_it() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 4);
-    clerk.perform(Time::from_secs(1), vec![state(), job(5, true)]);
+    let mut writer = clerk_with(&disk, 4);
+    writer.perform(Time::from_secs(1), vec![state(), job(5, true)]);
     disk.damage("segment-00000002.journal", |bytes| bytes[frame::HEADER_BYTES + 40] ^= 1);
     assert_eq!(found(&disk).0, [1, 2, 3, 4]);
     let (mut log, found) = Log::open(disk.clone(), LIMITS);
@@ -206,13 +206,13 @@ fn state_damaged_the_segment_before_leads_up_to_it() {
 #[test]
 fn old_segments_go_when_the_state_is_on_the_disk_and_not_before() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 1);
+    let mut writer = clerk_with(&disk, 1);
     for second in 1..5 {
-        clerk.perform(Time::from_secs(second), vec![state()]);
+        writer.perform(Time::from_secs(second), vec![state()]);
     }
     assert_eq!(disk.names_now(), ["segment-00000004.journal", "segment-00000005.journal"]);
     disk.fail(Operation::SyncNames, ErrorKind::Other);
-    clerk.perform(Time::from_secs(9), vec![state()]);
+    writer.perform(Time::from_secs(9), vec![state()]);
     assert_eq!(disk.names_now().len(), 3, "{:?}", disk.names_now());
 }
 
@@ -224,7 +224,7 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
         let program = Arc::new(compile(xml.as_bytes(), &config).unwrap());
         let mut state = saved();
         state.proposed = Some(program.hash().clone());
-        clerk(&disk).perform(Time::ZERO, vec![Job::State(Box::new(state), vec![program.clone()])]);
+        writer(&disk).perform(Time::ZERO, vec![Job::State(Box::new(state), vec![program.clone()])]);
         disk.damage(&format!("plan-{}.xml", program.hash()), |bytes| *bytes = change.to_vec());
         let (mut log, found) = Log::open(disk.clone(), LIMITS);
         let past = restart(&mut log, &found.unwrap(), &config, Time::ZERO);
@@ -236,11 +236,11 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
 #[test]
 fn turn_that_cannot_be_replayed_stops_the_replay_before_it() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 2);
+    let mut writer = clerk_with(&disk, 2);
     let missing =
         Record::Propose { request: RequestId(1), plan: "0123".into(), based_on: None, forbidden: false };
     let payload = encode(&vec![Entry { at: Time::from_secs(3), what: missing }]).unwrap();
-    clerk.perform(Time::ZERO, vec![Job::Turn { payload, sync: true }, job(4, true)]);
+    writer.perform(Time::ZERO, vec![Job::Turn { payload, sync: true }, job(4, true)]);
     let (mut log, found) = Log::open(disk.clone(), LIMITS);
     let past = restart(&mut log, &found.unwrap(), &config(), Time::ZERO);
     assert_eq!(past.manager.executor().last_token(), Token(2));
@@ -285,7 +285,8 @@ impl Storage for Stuck {
 #[tokio::test]
 async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
     let lock = Arc::new(std::sync::Mutex::new(()));
-    let mut keeper = Keeper::start(Clerk::new(Log::open(Stuck(lock.clone()), LIMITS).0, None)).unwrap();
+    let mut keeper =
+        JournalHandle::start(Writer::new(Log::open(Stuck(lock.clone()), LIMITS).0, None)).unwrap();
     assert_eq!(keeper.news(), None);
     let held = lock.lock();
     keeper.give(state());
@@ -310,16 +311,16 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
 #[test]
 fn document_of_a_proposal_is_kept_between_the_turns_of_the_flight() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 0);
+    let mut writer = clerk_with(&disk, 0);
     let xml: Vec<u8> = (0..2_000_000_u32).map(|n| n as u8).collect();
-    clerk.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: xml.clone() }]);
+    writer.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: xml.clone() }]);
     let mut turns = 0;
-    while clerk.is_writing() {
+    while writer.is_writing() {
         turns += 1;
-        clerk.perform(Time::ZERO, vec![job(turns, true)]);
+        writer.perform(Time::ZERO, vec![job(turns, true)]);
         assert_eq!(found(&disk).0.len() as u64, turns, "the turn does not wait");
         let before = disk.size();
-        clerk.write_piece();
+        writer.write_piece();
         assert!(disk.size() - before <= 1 << 18, "a piece is small");
     }
     assert!(turns >= 8, "{turns}");
@@ -330,26 +331,26 @@ fn document_of_a_proposal_is_kept_between_the_turns_of_the_flight() {
 #[test]
 fn document_that_cannot_be_kept_beforehand_does_not_stop_the_recording() {
     let disk = Faulty::default();
-    let mut clerk = clerk_with(&disk, 1);
+    let mut writer = clerk_with(&disk, 1);
     disk.fail(Operation::Create, ErrorKind::StorageFull);
-    clerk.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: vec![1; 9] }]);
-    clerk.write_piece();
-    assert!(!clerk.is_writing());
-    clerk.perform(Time::ZERO, vec![job(2, true)]);
-    assert_eq!((clerk.report(Time::ZERO).trouble, found(&disk).0), (None, vec![1, 2]));
+    writer.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: vec![1; 9] }]);
+    writer.write_piece();
+    assert!(!writer.is_writing());
+    writer.perform(Time::ZERO, vec![job(2, true)]);
+    assert_eq!((writer.report(Time::ZERO).trouble, found(&disk).0), (None, vec![1, 2]));
 }
 
 #[test]
 fn plans_that_were_only_proposed_do_not_pile_up() {
     let xml = include_str!("../../../../assets/plans/square.xml");
     let (disk, config) = (Faulty::default(), config());
-    let mut clerk = clerk_with(&disk, 0);
+    let mut writer = clerk_with(&disk, 0);
     for n in 0..20 {
         let other = xml.replace("Square circuit", &format!("Circuit {n}"));
         let program = Arc::new(compile(other.as_bytes(), &config).unwrap());
-        clerk.perform(Time::from_secs(n), vec![Job::Plan(program)]);
-        if clerk.report(Time::from_secs(n)).wants_state {
-            clerk.perform(Time::from_secs(n), vec![state()]);
+        writer.perform(Time::from_secs(n), vec![Job::Plan(program)]);
+        if writer.report(Time::from_secs(n)).wants_state {
+            writer.perform(Time::from_secs(n), vec![state()]);
         }
     }
     let plans = disk.names_now().iter().filter(|name| name.starts_with("plan")).count();
@@ -363,11 +364,11 @@ proptest! {
     fn garbage_in_place_of_a_state_or_a_turn_is_no_panic(garbage in proptest::collection::vec(any::<u8>(), 0..100)) {
         let mut bytes = frame::header(1).to_vec();
         frame::append(1, 0, &garbage, &mut bytes).unwrap();
-        prop_assert!(::journal::read::<Notes>(&bytes).is_err());
+        prop_assert!(::journal::read::<ManagerState>(&bytes).is_err());
         let mut bytes = frame::header(1).to_vec();
         frame::append(1, 0, &encode(&saved()).unwrap(), &mut bytes).unwrap();
         frame::append(1, 1, &garbage, &mut bytes).unwrap();
-        let chapter = ::journal::read::<Notes>(&bytes).unwrap();
+        let chapter = ::journal::read::<ManagerState>(&bytes).unwrap();
         prop_assert!(chapter.turns.len() + usize::from(chapter.incomplete) == 1);
     }
 }
@@ -376,9 +377,9 @@ proptest! {
 fn real_folder_keeps_what_was_written() {
     let directory = tempfile::tempdir().unwrap();
     let folder = || Folder::new(directory.path().join("made/when/needed"));
-    let mut clerk = Clerk::new(Log::open(folder(), LIMITS).0, None);
-    clerk.perform(Time::ZERO, vec![state(), job(1, true), job(2, false), state(), job(3, false)]);
-    assert_eq!(clerk.report(Time::ZERO).trouble, None);
+    let mut writer = Writer::new(Log::open(folder(), LIMITS).0, None);
+    writer.perform(Time::ZERO, vec![state(), job(1, true), job(2, false), state(), job(3, false)]);
+    assert_eq!(writer.report(Time::ZERO).trouble, None);
     let (mut log, found) = Log::open(folder(), LIMITS);
     let found = found.unwrap();
     let turns: Vec<usize> = found.iter().map(|f| log.chapter(f).unwrap().turns.len()).collect();

@@ -119,7 +119,7 @@ impl Watch {
 
 /// What the alarms are told beside telemetry.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Conduct {
+pub struct AlarmInputs {
     /// Since when the autopilot has not done as told.
     pub disobeys_since: Option<Time>,
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
@@ -143,8 +143,8 @@ impl Alarms {
         self.raised.iter().map(|w| w.alarm()).collect()
     }
 
-    /// Looks at everything once; events go to `out`.
-    pub fn update(&mut self, now: Time, t: &Telemetry, conduct: Conduct, out: &mut Vec<GatewayEvent>) {
+    /// CommandReview at everything once; events go to `out`.
+    pub fn update(&mut self, now: Time, t: &Telemetry, conduct: AlarmInputs, out: &mut Vec<GatewayEvent>) {
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
             let wrong = is_wrong(watch, now, t, conduct, raised);
@@ -178,7 +178,7 @@ impl Alarms {
     }
 }
 
-fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: Conduct, raised: bool) -> bool {
+fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: AlarmInputs, raised: bool) -> bool {
     let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
     match watch {
         Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
@@ -231,7 +231,7 @@ mod tests {
             }
             reports.iter().for_each(|r| telemetry.take(now, r));
             let mut out = vec![];
-            alarms.update(now, &telemetry, Conduct::default(), &mut out);
+            alarms.update(now, &telemetry, AlarmInputs::default(), &mut out);
             events.extend(out.into_iter().map(|e| (tenth - 100, name(e))));
         }
         assert_eq!(alarms.raised(), vec![]);

@@ -21,7 +21,7 @@ pub use telemetry::{Telemetry, Timed};
 
 use super::order::{Mode, Order, OrderId, Report, Time};
 use super::window::Window;
-use alarms::{Alarms, Conduct};
+use alarms::{AlarmInputs, Alarms};
 use control::Control;
 use geometry::LatLon;
 use states::{Trigger, is_flying, is_safe};
@@ -167,7 +167,7 @@ impl Gateway {
         self.control.current_seq = Some(seq);
         let ends = self.window.chain().last().is_some_and(|w| w.end_of_plan);
         self.window.reported(seq);
-        self.ended |= ends && self.window.at_guard();
+        self.ended |= ends && self.window.at_end_loiter();
         if !self.window.is_astray(seq) || !self.is_in_auto() {
             self.astray_since = None;
             return;
@@ -204,7 +204,7 @@ impl Gateway {
     }
 
     fn watch(&mut self, now: Time, out: &mut Vec<Output>) {
-        let conduct = Conduct {
+        let conduct = AlarmInputs {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
@@ -264,7 +264,7 @@ impl Gateway {
         }
         let Some(waypoint) = self.window.current() else {
             // adopted, and nothing is known of what it flies: Safe mode will see to it
-            let unknown = self.state == GatewayState::Stop && self.window.at_guard();
+            let unknown = self.state == GatewayState::Stop && self.window.at_end_loiter();
             return unknown.then_some((Trigger::Cruising, "met in flight"));
         };
         let seen = match waypoint.action {
@@ -315,7 +315,7 @@ impl Gateway {
             // our own waypoints are nobody else's business
             Some(w) if w.token == Token(0) => return,
             Some(w) => Some(w.token),
-            None if self.window.at_guard() && !is_safe(self.state) => None,
+            None if self.window.at_end_loiter() && !is_safe(self.state) => None,
             None => return,
         };
         if self.told == Some(current) || (self.told.is_none() && current.is_none()) {

@@ -119,9 +119,9 @@ impl Gateway {
         self.state != GatewayState::TakeOff || high || self.is_dry()
     }
 
-    /// The guard is circled although the plan did not end.
+    /// The end loiter is circled although the plan did not end.
     fn is_dry(&self) -> bool {
-        self.window.at_guard() && !self.ended && self.control.intent == Intent::Fly && self.is_in_auto()
+        self.window.at_end_loiter() && !self.ended && self.control.intent == Intent::Fly && self.is_in_auto()
     }
 
     /// Safe.Hold, if the state allows it.

@@ -7,8 +7,8 @@
 mod codec;
 mod commands;
 mod items;
+mod partial_write;
 mod rto;
-mod salvo;
 mod streams;
 mod telemetry;
 #[cfg(test)]
@@ -21,8 +21,8 @@ use super::order::{Item, Order, OrderId, Report, Time};
 use commands::{Commands, Ended, Shown, Wish};
 use mavlink::MavHeader;
 use mavlink::dialects::ardupilotmega::*;
+use partial_write::PartialWrite;
 use rto::Rto;
-use salvo::Salvo;
 use std::collections::VecDeque;
 use std::time::Duration;
 use streams::Streams;
@@ -55,7 +55,7 @@ pub struct Driver {
     /// Messages of other systems, and such without sense.
     pub ignored: u64,
     transfer: Option<(OrderId, Transfer)>,
-    salvo: Option<(OrderId, Salvo)>,
+    partial_write: Option<(OrderId, PartialWrite)>,
     waiting: VecDeque<(OrderId, Order)>,
     link: Rto,
     commands: Commands,
@@ -139,8 +139,11 @@ impl Driver {
     /// When `tick` is due.
     pub fn deadline(&self) -> Time {
         let transfer = self.transfer.as_ref().and_then(|(_, t)| t.deadline());
-        let salvo = self.salvo.as_ref().and_then(|(_, s)| s.deadline());
-        [transfer, salvo, self.commands.deadline()].into_iter().flatten().fold(self.beat_at, Time::min)
+        let partial_write = self.partial_write.as_ref().and_then(|(_, s)| s.deadline());
+        [transfer, partial_write, self.commands.deadline()]
+            .into_iter()
+            .flatten()
+            .fold(self.beat_at, Time::min)
     }
 
     /// Time passed.
@@ -157,15 +160,15 @@ impl Driver {
             let outcome = transfer.tick(now, peer, &mut self.out);
             self.finish(outcome);
         }
-        if let Some((_, salvo)) = &mut self.salvo {
-            let failed = salvo.tick(now, peer, &mut self.out);
+        if let Some((_, partial_write)) = &mut self.partial_write {
+            let failed = partial_write.tick(now, peer, &mut self.out);
             self.finish_salvo(failed);
         }
         self.next_transfer(now, peer);
     }
 
     fn next_transfer(&mut self, now: Time, peer: Peer) {
-        if self.transfer.is_some() || self.salvo.is_some() {
+        if self.transfer.is_some() || self.partial_write.is_some() {
             return;
         }
         let Some((id, order)) = self.waiting.pop_front() else { return };
@@ -181,14 +184,14 @@ impl Driver {
 
     fn begin_salvo(&mut self, now: Time, id: OrderId, start: u16, items: Vec<Item>, peer: Peer) {
         let rto = std::mem::take(&mut self.link);
-        self.salvo = Some((id, Salvo::begin(now, start, items, rto, peer, &mut self.out)));
+        self.partial_write = Some((id, PartialWrite::begin(now, start, items, rto, peer, &mut self.out)));
     }
 
-    /// Ends the salvo if it is complete or failed.
+    /// Ends the partial write if it is complete or failed.
     fn finish_salvo(&mut self, failed: Option<String>) {
-        let over = |(_, s): &mut (OrderId, Salvo)| failed.is_some() || s.is_complete();
-        let Some((id, salvo)) = self.salvo.take_if(over) else { return };
-        self.link = salvo.into_rto();
+        let over = |(_, s): &mut (OrderId, PartialWrite)| failed.is_some() || s.is_complete();
+        let Some((id, partial_write)) = self.partial_write.take_if(over) else { return };
+        self.link = partial_write.into_rto();
         self.reports.push(match failed {
             None => Report::Done(id),
             Some(why) => Report::Failed(id, why),
@@ -246,7 +249,7 @@ impl Driver {
     // ArduPilot asks by the deprecated message, and has to be answered
     #[expect(deprecated)]
     fn receive_mission(&mut self, now: Time, peer: Peer, message: &MavMessage) {
-        if self.salvo.is_some() {
+        if self.partial_write.is_some() {
             return self.receive_salvo(now, message);
         }
         let Some((_, transfer)) = &mut self.transfer else {
@@ -274,12 +277,12 @@ impl Driver {
     }
 
     fn receive_salvo(&mut self, now: Time, message: &MavMessage) {
-        let Some((_, salvo)) = &mut self.salvo else { return };
+        let Some((_, partial_write)) = &mut self.partial_write else { return };
         let plan = mission_type();
         let failed = match message {
-            MavMessage::MISSION_ACK(a) if a.mission_type == plan => salvo.acked(a.mavtype),
+            MavMessage::MISSION_ACK(a) if a.mission_type == plan => partial_write.acked(a.mavtype),
             MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => {
-                salvo.item(now, i);
+                partial_write.item(now, i);
                 None
             }
             _ => return self.readings.take(now, message, &mut self.reports, &mut self.ignored),

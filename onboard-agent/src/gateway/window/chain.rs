@@ -16,7 +16,7 @@ pub struct Chain {
     /// The first entry was cancelled while the aircraft steered to it: it is left as soon as the
     /// autopilot can be made to jump to the entry after it.
     left_behind: bool,
-    /// The entry before `first`, for the guard's place.
+    /// The entry before `first`, for the end loiter's place.
     passed: Option<Item>,
 }
 
@@ -31,7 +31,7 @@ impl Chain {
         self.first
     }
 
-    /// Position behind the last waypoint: the guard's.
+    /// Position behind the last waypoint: the end loiter's.
     pub fn end(&self) -> u64 {
         self.first + self.entries.len() as u64
     }

@@ -5,14 +5,14 @@
 //! *position* counts up for ever; its slot is `2 + position mod RING`.
 //!
 //! What is wanted is a **chain**: the waypoint being steered to, those after it, and behind the last
-//! one a **guard**, a loiter that never ends. The window compares the chain with what it knows to be
+//! one a **end loiter**, a loiter that never ends. The window compares the chain with what it knows to be
 //! on board and makes one write at a time, always the one that keeps the aircraft safe whatever
 //! happens next:
 //!
-//! 1. what differs first is not a guard: put a guard there (entries are written in order, so this is
+//! 1. what differs first is not a end loiter: put a end loiter there (entries are written in order, so this is
 //!    atomic). What lies beyond can't be reached any more, and may follow in the same write;
-//! 2. it is a guard: bring what lies *behind* it in order, up to the new guard;
-//! 3. that is in order: replace the guard by the waypoint (one entry, so atomic).
+//! 2. it is a end loiter: bring what lies *behind* it in order, up to the new end loiter;
+//! 3. that is in order: replace the end loiter by the waypoint (one entry, so atomic).
 //!
 //! So the aircraft never steers to a cancelled waypoint that it was not already steering to, and a
 //! link that dies at any instant leaves a chain that ends in a loiter. A write of unknown outcome
@@ -24,7 +24,7 @@ mod ring;
 mod tests;
 
 pub use chain::{CAPACITY, Chain};
-pub use ring::{JUMP_SLOT, LAST_SLOT, RING, guard_after, matches, slot};
+pub use ring::{JUMP_SLOT, LAST_SLOT, RING, end_loiter_after, matches, slot};
 
 use super::order::{Item, ItemKind, Order};
 use ring::{Slots, initial_list};
@@ -55,7 +55,7 @@ pub struct Window {
     installed: bool,
     /// The current entry was confirmed since the ring was uploaded.
     entered: bool,
-    /// How far the chain is to be on board: position of the guard.
+    /// How far the chain is to be on board: position of the end loiter.
     end: u64,
     pending: Option<Pending>,
     /// What the autopilot had in the entry when it began to steer to it; `None`: not certain.
@@ -90,12 +90,12 @@ impl Window {
         self.installed
     }
 
-    /// The aircraft circles the guard: everything that was fed has been flown.
-    pub fn at_guard(&self) -> bool {
+    /// The aircraft circles the end loiter: everything that was fed has been flown.
+    pub fn at_end_loiter(&self) -> bool {
         self.entered && self.chain.is_empty()
     }
 
-    /// The waypoint being steered to; `None` at the guard, and while it is not certain.
+    /// The waypoint being steered to; `None` at the end loiter, and while it is not certain.
     pub fn current(&self) -> Option<&Waypoint> {
         self.chain.active().filter(|w| self.loaded.is_some_and(|l| matches(&l, &ring::item(w))))
     }
@@ -130,7 +130,7 @@ impl Window {
         let circling = matches!(self.loaded, Some(Item { kind: ItemKind::Loiter { .. }, .. }));
         if self.entered && self.must_reload() && !circling {
             let first = self.chain.first();
-            let item = self.loaded.unwrap_or_else(|| self.guard(first));
+            let item = self.loaded.unwrap_or_else(|| self.end_loiter(first));
             self.chain.begin_with_foreign(&item);
         }
     }
@@ -167,30 +167,30 @@ impl Window {
         self.loaded = None;
     }
 
-    /// A position of the chain (or its guard) by slot.
+    /// A position of the chain (or its end loiter) by slot.
     fn position_of(&self, seq: u16) -> Option<u64> {
         let first = self.chain.first();
-        (first..=self.guard_on_board()).find(|p| slot(*p) == seq)
+        (first..=self.end_loiter_on_board()).find(|p| slot(*p) == seq)
     }
 
-    /// The first guard on board from the active position on.
-    fn guard_on_board(&self) -> u64 {
+    /// The first end loiter on board from the active position on.
+    fn end_loiter_on_board(&self) -> u64 {
         let first = self.chain.first();
-        (first..first + RING - 1).find(|p| self.board.is_guard(*p)).unwrap_or(first + AHEAD)
+        (first..first + RING - 1).find(|p| self.board.is_end_loiter(*p)).unwrap_or(first + AHEAD)
     }
 
     /// What is wanted at a position.
     fn wanted(&self, position: u64) -> Item {
         match self.chain.at(position) {
             Some(waypoint) if position < self.end => ring::item(waypoint),
-            _ => self.guard(position),
+            _ => self.end_loiter(position),
         }
     }
 
-    fn guard(&self, position: u64) -> Item {
+    fn end_loiter(&self, position: u64) -> Item {
         match self.chain.before(position) {
-            Some(item) => guard_after(&item),
-            None => guard_after(&self.board.get(position).unwrap_or(self.board.home)),
+            Some(item) => end_loiter_after(&item),
+            None => end_loiter_after(&self.board.get(position).unwrap_or(self.board.home)),
         }
     }
 
@@ -258,7 +258,7 @@ impl Window {
         let urgent = self.chain.jump().is_some() || position == self.chain.first();
         let end = if urgent { self.end.min(position + 3) } else { self.end };
         self.end = end;
-        if !self.board.is_guard(position) {
+        if !self.board.is_end_loiter(position) {
             return self.cut(position, end);
         }
         let behind = (position + 1..=end).find(|p| !self.board.holds(*p, &self.wanted(*p)));
@@ -272,13 +272,13 @@ impl Window {
         }
     }
 
-    /// A guard, and behind it (which is written after it, and out of reach once it is there) what comes
+    /// A end loiter, and behind it (which is written after it, and out of reach once it is there) what comes
     /// after the waypoint that will replace it.
     fn cut(&mut self, position: u64, end: u64) -> Order {
         let stop = end.min(position + AT_ONCE - 1).min(ring::last_before_wrap(position));
-        let guard = self.guard(position);
+        let end_loiter = self.end_loiter(position);
         let behind = (position + 1..=stop).map(|p| self.wanted(p));
-        let items = std::iter::once(guard).chain(behind).collect();
+        let items = std::iter::once(end_loiter).chain(behind).collect();
         self.write(position, items)
     }
 

@@ -38,7 +38,7 @@ pub fn item(waypoint: &Waypoint) -> Item {
 }
 
 /// The loiter that follows an item.
-pub fn guard_after(item: &Item) -> Item {
+pub fn end_loiter_after(item: &Item) -> Item {
     Item { kind: ItemKind::Loiter { radius_m: 0.0 }, ..*item }
 }
 
@@ -58,10 +58,10 @@ pub fn matches(a: &Item, b: &Item) -> bool {
     }
 }
 
-/// The whole list for a fresh ring: `items` from slot 2 on, the last of them (the guard) in every
+/// The whole list for a fresh ring: `items` from slot 2 on, the last of them (the end loiter) in every
 /// slot that is left.
 pub fn initial_list(home: Item, items: &[Item]) -> Vec<Item> {
-    let over_home = Item { altitude_amsl_m: home.altitude_amsl_m + HOME_LOITER_M, ..guard_after(&home) };
+    let over_home = Item { altitude_amsl_m: home.altitude_amsl_m + HOME_LOITER_M, ..end_loiter_after(&home) };
     let filler = items.last().copied().unwrap_or(over_home);
     let mut list = vec![Item { kind: ItemKind::Home, ..home }, over_home];
     list.extend(items.iter().copied());
@@ -126,8 +126,8 @@ impl Slots {
         self.get(position).is_some_and(|have| matches(&have, item))
     }
 
-    /// A loiter with the autopilot's own radius: our guard.
-    pub fn is_guard(&self, position: u64) -> bool {
+    /// A loiter with the autopilot's own radius: our end loiter.
+    pub fn is_end_loiter(&self, position: u64) -> bool {
         matches!(self.get(position), Some(Item { kind: ItemKind::Loiter { radius_m }, .. }) if radius_m == 0.0)
     }
 

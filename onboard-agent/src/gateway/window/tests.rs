@@ -181,7 +181,7 @@ fn cancel_and_replace_at_every_position_of_the_active_entry() {
             assert_eq!(stale, 0, "flown {flown}, keep {keep}: {:?}", rig.tokens_steered());
             let new: Vec<u64> = rig.tokens_steered().into_iter().filter(|t| *t >= 1000).collect();
             assert_eq!(new, (1000..1012).collect::<Vec<_>>(), "flown {flown}, keep {keep}");
-            assert!(rig.window.at_guard());
+            assert!(rig.window.at_end_loiter());
         }
     }
 }
@@ -190,9 +190,9 @@ fn cancel_and_replace_at_every_position_of_the_active_entry() {
 fn starving_it_circles_the_last_waypoint_and_goes_on_when_fed() {
     let mut rig = Rig::new(3);
     (0..5).for_each(|_| rig.reach());
-    assert!(rig.window.at_guard());
+    assert!(rig.window.at_end_loiter());
     let target = rig.autopilot.target.unwrap();
-    assert_eq!(target, guard_after(&ring::item(&waypoint(3))));
+    assert_eq!(target, end_loiter_after(&ring::item(&waypoint(3))));
     rig.window.feed(None, waypoints(4, 2));
     rig.settle();
     assert_eq!(rig.window.current().unwrap().token, Token(4));
@@ -257,7 +257,7 @@ proptest! {
             rig.reach();
             rig.settle();
         }
-        prop_assert!(rig.window.at_guard());
+        prop_assert!(rig.window.at_end_loiter());
         let steered: Vec<u64> = rig.tokens_steered();
         let mut seen = steered.clone();
         seen.dedup();

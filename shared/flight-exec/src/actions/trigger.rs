@@ -2,9 +2,9 @@
 
 use super::{Done, Passage, Piece, is_control, is_wait};
 use crate::api::Output;
-use crate::cursor::Trouble;
+use crate::cursor::LayoutError;
 use crate::executor::Executor;
-use crate::handed::Handed;
+use crate::issued::IssuedWaypoint;
 use crate::world::World;
 use flight_plan::{Act, EvalError, LegAction, Place, Trigger};
 use geometry::{LatLon, LocalFrame};
@@ -28,25 +28,25 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    fn new(handed: &Handed, at: LatLon, way_m: f64, complete: bool) -> Self {
-        let piece = Piece { from: handed.before.end_of_path().last.position, to: handed.waypoint.position };
+    fn new(issued: &IssuedWaypoint, at: LatLon, way_m: f64, complete: bool) -> Self {
+        let piece = Piece { from: issued.before.end_of_path().last.position, to: issued.waypoint.position };
         Self { way_m, piece, at, complete }
     }
 
     /// At the beginning of a passage.
-    pub fn begun(handed: &Handed) -> Self {
-        Self::new(handed, handed.before.end_of_path().last.position, handed.leg_start_m, false)
+    pub fn begun(issued: &IssuedWaypoint) -> Self {
+        Self::new(issued, issued.before.end_of_path().last.position, issued.leg_start_m, false)
     }
 
     /// At a waypoint.
-    pub fn reached(handed: &Handed) -> Self {
-        Self::new(handed, handed.waypoint.position, handed.end_m, true)
+    pub fn reached(issued: &IssuedWaypoint) -> Self {
+        Self::new(issued, issued.waypoint.position, issued.end_m, true)
     }
 
     /// So far before the waypoint it steers to, metres.
-    pub fn on_the_way(handed: &Handed, aircraft: Option<LatLon>, left_m: f64) -> Self {
-        let begin = handed.before.end_of_path().last.position;
-        Self::new(handed, aircraft.unwrap_or(begin), handed.end_m - left_m, false)
+    pub fn on_the_way(issued: &IssuedWaypoint, aircraft: Option<LatLon>, left_m: f64) -> Self {
+        let begin = issued.before.end_of_path().last.position;
+        Self::new(issued, aircraft.unwrap_or(begin), issued.end_m - left_m, false)
     }
 }
 
@@ -60,7 +60,7 @@ impl Executor {
         for (number, (action, done)) in actions.iter().zip(&passage.done).enumerate() {
             let ways_m = self.due(passage, *done, action, moment).unwrap_or_else(|reason| {
                 let leg = passage.leg.clone();
-                self.tell_trouble(Trouble::Expression { leg, reason }, out);
+                self.tell_trouble(LayoutError::Expression { leg, reason }, out);
                 Vec::new()
             });
             let caught_up_m = ways_m.get(MOST_AT_ONCE - 1).copied().unwrap_or(moment.way_m - passage.began_m);

@@ -80,7 +80,7 @@ pub struct Status {
     pub emergency_in_force: Option<Id>,
     /// Next token to be flown.
     pub current: Option<Token>,
-    /// Waypoints handed out and not flown yet.
+    /// Waypoints issued and not flown yet.
     pub outstanding: usize,
     /// The decision that is being asked for, if any.
     pub decision: Option<DecisionRequest>,

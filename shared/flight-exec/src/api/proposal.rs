@@ -31,7 +31,7 @@ pub struct ProposalReport {
     /// Seconds to that position.
     pub next_in_s: Option<f64>,
     /// Metres of the present path that would still be flown before the first waypoint that is another one; `None`: none is, as far
-    /// ahead as waypoints are handed out.
+    /// ahead as waypoints are issued.
     pub differs_in_m: Option<f64>,
     /// The same in seconds.
     pub differs_in_s: Option<f64>,

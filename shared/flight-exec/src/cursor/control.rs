@@ -1,7 +1,7 @@
 //! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
 
 use super::enter::has_own_waypoints;
-use super::{Cursor, Doing, LoopFrame, Mark, Notes, Trail, Visit};
+use super::{Cursor, CursorLog, CursorPhase, LoopFrame, SilentLeg, Trail, Visit};
 use crate::choice::{By, Choice};
 use crate::expand::Expansion;
 use crate::expand::track::turn_round;
@@ -15,7 +15,7 @@ const MOST_CROSSINGS_KEPT: usize = 256;
 
 impl Cursor {
     /// The leg's points are all given out: on to what follows.
-    pub(super) fn leave(&mut self, world: &World, notes: &mut Notes) {
+    pub(super) fn leave(&mut self, world: &World, notes: &mut CursorLog) {
         let flown = self.expansion.take();
         let list = self.list(world);
         let Some(leg) = list.get(self.index).filter(|_| self.performed_stage(world).is_none()) else {
@@ -36,7 +36,7 @@ impl Cursor {
     }
 
     /// The leg's place is where the path is, which passes it as high and as fast as the leg says. A wait there has told of it.
-    fn passes_where_it_is(&mut self, leg: &Leg, world: &World, notes: &mut Notes) {
+    fn passes_where_it_is(&mut self, leg: &Leg, world: &World, notes: &mut CursorLog) {
         if has_own_waypoints(leg) {
             (self.path.last.level, self.path.last.airspeed_mps) = (self.level, self.airspeed_mps);
         }
@@ -47,7 +47,7 @@ impl Cursor {
 
     /// The leg it is at is behind: back along the trail, or on to the leg's successor.
     fn go_on_from(&mut self, leg: &Leg, flown: Option<Arc<Expansion>>, inner: Option<Trail>, world: &World) {
-        self.doing = Doing::Arriving;
+        self.doing = CursorPhase::Arriving;
         if let Some(frame) = self.loops.last_mut().filter(|frame| frame.reverse) {
             frame.back = frame.back.saturating_sub(1);
             return;
@@ -66,16 +66,16 @@ impl Cursor {
             Some(leg) => {
                 let reverse = self.loops.last().is_some_and(|frame| frame.reverse);
                 self.index = if reverse { self.index } else { successor(self.list(world), leg, self.index) };
-                self.doing = Doing::Arriving;
+                self.doing = CursorPhase::Arriving;
             }
-            None => self.doing = Doing::Flying,
+            None => self.doing = CursorPhase::Flying,
         }
     }
 
     /// A leg is passed without a waypoint of its own.
-    fn mark(&self, leg: &Leg, notes: &mut Notes) {
+    fn mark(&self, leg: &Leg, notes: &mut CursorLog) {
         if !leg.actions.is_empty() {
-            notes.marks.push(Mark { leg: leg.id.clone(), passage: self.passage });
+            notes.silent_legs.push(SilentLeg { leg: leg.id.clone(), passage: self.passage });
         }
     }
 
@@ -90,7 +90,7 @@ impl Cursor {
         self.loops.clear();
         self.index = 0;
         let over = self.stage >= self.stages(world).len();
-        self.doing = if over { Doing::Ended } else { Doing::Arriving };
+        self.doing = if over { CursorPhase::Ended } else { CursorPhase::Arriving };
     }
 
     /// Keeps what a pass back would need.
@@ -110,7 +110,7 @@ impl Cursor {
     }
 
     /// The innermost list is at its end in the direction of flight.
-    pub(super) fn end_of_list(&mut self, world: &World, notes: &mut Notes) {
+    pub(super) fn end_of_list(&mut self, world: &World, notes: &mut CursorLog) {
         // without its frame, it is in the list of the loop itself
         let innermost = self.loops.pop().and_then(|frame| {
             let leg = self.list(world).get(frame.index)?;
@@ -145,17 +145,17 @@ impl Cursor {
         }
         self.loops.push(frame);
         self.index = 0;
-        self.doing = Doing::Arriving;
+        self.doing = CursorPhase::Arriving;
         if passes.form == IterativeForm::Reverse {
             // the leg's own may be others than those of its end (see `set_level_and_speed`)
             (self.level, self.airspeed_mps) = (self.path.last.level, self.path.last.airspeed_mps);
             let round = turn_round(&self.path, passes.turn, self.airspeed_mps, world);
             self.expansion = Some(Arc::new(round));
-            self.begin_passage(Doing::Turning);
+            self.begin_passage(CursorPhase::Turning);
         }
     }
 
-    pub(super) fn begin_passage(&mut self, doing: Doing) {
+    pub(super) fn begin_passage(&mut self, doing: CursorPhase) {
         self.passage += 1;
         self.given = 0;
         self.left_or_not = None;
@@ -170,7 +170,7 @@ impl Cursor {
     }
 
     /// A fork or merge: which way on.
-    pub(super) fn cross(&mut self, leg: &Leg, fork: Fork, world: &World, notes: &mut Notes) {
+    pub(super) fn cross(&mut self, leg: &Leg, fork: Fork, world: &World, notes: &mut CursorLog) {
         let Fork { branches, default, .. } = fork;
         self.leg_start = self.path;
         self.remember(world, None, None);
@@ -200,7 +200,7 @@ impl Cursor {
     fn wait_here(&mut self, world: &World) {
         let circle = self.circle_here(world);
         self.expansion = Some(Arc::new(Expansion::Points(vec![circle])));
-        self.begin_passage(Doing::Flying);
+        self.begin_passage(CursorPhase::Flying);
     }
 
     fn count_crossing(&mut self, leg: &Id) {
@@ -225,7 +225,7 @@ impl Cursor {
 
     /// At a crossing of a holding's fix, or a point of a track until an altitude: is it left? Provisional ahead of the
     /// aircraft, read for the last time when it is there.
-    pub(super) fn leave_open_end(&self, lap: u64, world: &World, notes: &mut Notes) -> (Choice, bool) {
+    pub(super) fn leave_open_end(&self, lap: u64, world: &World, notes: &mut CursorLog) -> (Choice, bool) {
         let leg = self.leg(world);
         let leaves = match leg.map(|l| (&l.id, &l.kind)) {
             Some((id, LegKind::Hm { until, max_laps, .. })) => {
@@ -276,7 +276,7 @@ fn choose<'a>(
     branches: &'a [Branch],
     default: Option<&Id>,
     world: &World,
-    notes: &mut Notes,
+    notes: &mut CursorLog,
 ) -> Option<(&'a Branch, By)> {
     let named = |id: &Id| branches.iter().find(|b| b.id == *id);
     let taken = world.decisions.iter().find(|d| d.leg == *leg && d.crossing == crossing);

@@ -1,10 +1,10 @@
 //! Giving out points, with their altitudes; circling at the end of a leg.
 
-use super::{Cursor, Doing, Emission, Notes, Step};
+use super::{Cursor, CursorLog, CursorPhase, Emission, Step};
 use crate::api::Action;
 use crate::choice::Choice;
 use crate::expand::Point;
-use crate::path::{Passing, PathState, distance_and_course};
+use crate::path::{PathEnd, PathState, distance_and_course};
 use crate::world::World;
 use flight_plan::{Act, Trigger};
 
@@ -14,7 +14,7 @@ const CLIMB_LEAD_M: f64 = 8.0;
 
 impl Cursor {
     /// Seconds to be circled at the end of the leg before it is left.
-    pub(super) fn wait_due(&self, world: &World, notes: &mut Notes) -> Option<f64> {
+    pub(super) fn wait_due(&self, world: &World, notes: &mut CursorLog) -> Option<f64> {
         let leg = self.leg(world).filter(|leg| !leg.actions.is_empty() && self.expansion.is_some())?;
         if world.waited == Some(self.passage) {
             return None;
@@ -29,10 +29,10 @@ impl Cursor {
         Some(seconds.map(|s: f64| s.max(0.0)).sum()).filter(|s| *s > 0.0)
     }
 
-    pub(super) fn wait(&mut self, seconds: f64, notes: Notes, world: &World) -> Step {
+    pub(super) fn wait(&mut self, seconds: f64, notes: CursorLog, world: &World) -> Step {
         // what was left for the wait stays left, whatever its condition says afterwards
         let leaves = notes.choices.iter().any(|c| matches!(c, Choice::Hold { .. }));
-        let doing = if leaves { Doing::Leaving } else { self.doing };
+        let doing = if leaves { CursorPhase::Leaving } else { self.doing };
         let sealed = (!notes.is_empty()).then(|| Box::new(Cursor { doing, ..self.clone() }));
         let circle = self.circle_here(world);
         // the end of a leg that was left may be over unknown ground: there the altitude stays
@@ -82,7 +82,7 @@ impl Cursor {
             }
         };
         self.path = PathState {
-            last: Passing { position: point.position, level, airspeed_mps, fly_over: point.fly_over },
+            last: PathEnd { position: point.position, level, airspeed_mps, fly_over: point.fly_over },
             course_deg: if length_m > 0.5 { course_deg } else { from.course_deg },
             predicted_amsl_m,
             commanded_amsl_m,
@@ -91,7 +91,7 @@ impl Cursor {
         };
         self.given += 1;
         if matches!(point.action, Action::Loiter { .. }) {
-            self.doing = Doing::Waiting;
+            self.doing = CursorPhase::Waiting;
         }
         Emission {
             position: point.position,
@@ -100,7 +100,7 @@ impl Cursor {
             action: point.action,
             fly_over: point.fly_over,
             wait_s: None,
-            notes: Notes::default(),
+            notes: CursorLog::default(),
             sealed: None,
         }
     }

@@ -1,6 +1,6 @@
 //! Beginning a leg.
 
-use super::{Cursor, Doing, LoopFrame, Notes, Origin, Step, Trail, Trouble, Visit};
+use super::{Cursor, CursorLog, CursorPhase, LayoutError, LoopFrame, Origin, Step, Trail, Visit};
 use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion, runway};
 use crate::path::PathState;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 impl Cursor {
     /// At the beginning of a stage or a leg: what is it?
-    pub(super) fn arrive(&mut self, world: &World, notes: &mut Notes) {
+    pub(super) fn arrive(&mut self, world: &World, notes: &mut CursorLog) {
         self.note_seen(world);
         if let Some(stage) = self.performed_stage(world) {
             return self.perform_stage(stage, world, notes);
@@ -41,7 +41,7 @@ impl Cursor {
         self.chain(world).iter().for_each(|leg| seen.note(&leg.id));
     }
 
-    fn begin_backward(&mut self, leg: &Leg, visit: &Visit, world: &World, notes: &mut Notes) {
+    fn begin_backward(&mut self, leg: &Leg, visit: &Visit, world: &World, notes: &mut CursorLog) {
         self.index = visit.index;
         self.note_seen(world);
         match (&leg.kind, &visit.inner) {
@@ -69,7 +69,7 @@ impl Cursor {
         self.index = 0;
     }
 
-    fn perform_stage(&mut self, stage: &Stage, world: &World, notes: &mut Notes) {
+    fn perform_stage(&mut self, stage: &Stage, world: &World, notes: &mut CursorLog) {
         let points = match stage.kind {
             StageKind::TakeOff => runway::take_off(stage, world),
             _ => runway::land(stage, &self.path, world),
@@ -78,11 +78,11 @@ impl Cursor {
         self.fly_or_refuse(&stage.id, points.map(Expansion::Points), notes);
     }
 
-    fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, notes: &mut Notes) {
+    fn begin(&mut self, leg: &Leg, visit: Option<&Visit>, world: &World, notes: &mut CursorLog) {
         let inside = self.inside(world);
         self.set_level_and_speed(leg, visit, &inside);
-        let onward = self.onward(leg, world);
-        let approach = Approach { reversed: visit, onward, ..self.approach(&self.path) };
+        let continuation = self.continuation(leg, world);
+        let approach = Approach { reversed: visit, continuation, ..self.approach(&self.path) };
         self.origin = Some(Origin { path: self.path, wind_mps: world.flight.wind_mps });
         let expansion = expand(leg, &approach, &inside);
         self.fly_or_refuse(&leg.id, expansion, notes);
@@ -91,17 +91,17 @@ impl Cursor {
     /// How it comes to its leg, forwards, the path ending at `path`.
     pub(super) fn approach<'a>(&self, path: &'a PathState) -> Approach<'a> {
         let (level, airspeed_mps) = (self.level, self.airspeed_mps);
-        Approach { path, level, airspeed_mps, reversed: None, onward: None }
+        Approach { path, level, airspeed_mps, reversed: None, continuation: None }
     }
 
     /// A leg that can't be flown is passed without an expansion; a pattern of a loop as on the pass before.
-    fn fly_or_refuse(&mut self, id: &Id, expansion: Result<Expansion, ExpandError>, notes: &mut Notes) {
+    fn fly_or_refuse(&mut self, id: &Id, expansion: Result<Expansion, ExpandError>, notes: &mut CursorLog) {
         let refused = |why: ExpandError| {
-            notes.troubles.push(Trouble::Leg { leg: id.clone(), reason: why.to_string() });
+            notes.errors.push(LayoutError::Leg { leg: id.clone(), reason: why.to_string() });
         };
         let last = || self.loops.last().filter(|frame| !frame.reverse)?.patterns.get(&self.index).cloned();
         self.expansion = expansion.map(Arc::new).map_err(refused).ok().or_else(last);
-        self.begin_passage(Doing::Flying);
+        self.begin_passage(CursorPhase::Flying);
     }
 
     /// Altitude and speed belong to the waypoint that is flown to: backwards, what is made of many waypoints keeps those it
@@ -132,12 +132,12 @@ impl Cursor {
 
     /// For an orbit: where the path goes afterwards. Looked up by a cursor that skips it; an orbit after an orbit is
     /// approached as it comes.
-    pub(super) fn onward(&self, leg: &Leg, world: &World) -> Option<LatLon> {
+    pub(super) fn continuation(&self, leg: &Leg, world: &World) -> Option<LatLon> {
         if world.looking_ahead || !matches!(leg.kind, LegKind::Orbit { .. }) {
             return None;
         }
         let mut ahead = self.clone();
-        ahead.doing = Doing::Flying;
+        ahead.doing = CursorPhase::Flying;
         ahead.expansion = None;
         let world = World { looking_ahead: true, ..*world };
         match ahead.next(&world) {

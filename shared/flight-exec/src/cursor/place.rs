@@ -1,7 +1,7 @@
 //! Places: telling people where a cursor is, and putting a cursor at a leg.
 
 use super::enter::has_own_waypoints;
-use super::{Cursor, Doing, LoopFrame, Trail};
+use super::{Cursor, CursorPhase, LoopFrame, Trail};
 use crate::api::{Branching, IterationPlace, PlacePointer};
 use crate::path::PathState;
 use crate::world::World;
@@ -15,7 +15,7 @@ impl Cursor {
     pub fn place(&self, world: &World) -> PlacePointer {
         let stage = self.current_stage(world).map_or_else(|| Id::new(""), |s| s.id.clone());
         let chain = self.chain(world);
-        let turning = self.doing == Doing::Turning;
+        let turning = self.doing == CursorPhase::Turning;
         let innermost = chain.get(self.loops.len().saturating_sub(1)).filter(|_| turning);
         let leg = innermost.or(chain.get(self.loops.len())).map_or_else(|| stage.clone(), |l| l.id.clone());
         PlacePointer {
@@ -58,7 +58,8 @@ impl Cursor {
     pub fn passes_over_to(&mut self, leg: &Id, path: PathState, world: &World) -> bool {
         let mut passed = 0;
         while self.place(world).leg != *leg {
-            let left_out = self.doing == Doing::Flying && self.leg(world).is_some_and(has_own_waypoints);
+            let left_out =
+                self.doing == CursorPhase::Flying && self.leg(world).is_some_and(has_own_waypoints);
             if !left_out || passed == MOST_LEFT_OUT {
                 return false;
             }
@@ -112,7 +113,7 @@ impl Cursor {
             stage: target.stage,
             loops: loops.collect(),
             index: target.indices.last().copied().unwrap_or(0),
-            doing: Doing::Arriving,
+            doing: CursorPhase::Arriving,
             expansion: None,
             given: 0,
             leg_start: self.path,

@@ -1,6 +1,6 @@
 //! The leg being flown with other values: a variable was written, or the plan is another one.
 
-use super::{Cursor, Doing, Origin, Trouble};
+use super::{Cursor, CursorPhase, LayoutError, Origin};
 use crate::expand::track::{Approach, expand};
 use crate::expand::{ExpandError, Expansion};
 use crate::world::World;
@@ -17,8 +17,8 @@ impl Cursor {
     ///
     /// # Errors
     /// The new values make no such leg; the old one stays.
-    pub fn refresh_leg(&mut self, world: &World) -> Result<bool, Trouble> {
-        let under_way = self.doing == Doing::Flying && !self.is_reverse();
+    pub fn refresh_leg(&mut self, world: &World) -> Result<bool, LayoutError> {
+        let under_way = self.doing == CursorPhase::Flying && !self.is_reverse();
         let leg = self.leg(world).filter(|leg| under_way && leg.as_fork().is_none());
         let (Some(leg), Some(old)) = (leg, self.expansion.clone()) else { return Ok(false) };
         if matches!(*old, Expansion::Points(_)) && self.at_the_end_of_its_leg() {
@@ -29,7 +29,7 @@ impl Cursor {
         let mut fresh = self.clone();
         fresh.level = inside.level(&chain, stage, self.leg_start.last.level);
         fresh.airspeed_mps = inside.airspeed_mps(&chain, stage);
-        let refused = |why: ExpandError| Trouble::Leg { leg: leg.id.clone(), reason: why.to_string() };
+        let refused = |why: ExpandError| LayoutError::Leg { leg: leg.id.clone(), reason: why.to_string() };
         let other = fresh.regenerated(leg, &old, &inside).map_err(refused)?;
         let moved = (fresh.level, fresh.airspeed_mps) != (self.level, self.airspeed_mps);
         let changed = moved || other.is_some();
@@ -47,7 +47,7 @@ impl Cursor {
         let in_it = |e: &Arc<Expansion>| {
             matches!(**e, Expansion::Scan(_) | Expansion::Pattern(_) | Expansion::Orbit(_))
         };
-        self.doing == Doing::Flying && self.expansion.as_ref().is_some_and(in_it)
+        self.doing == CursorPhase::Flying && self.expansion.as_ref().is_some_and(in_it)
     }
 
     /// The leg's expansion with the values of now and the number of the point it goes on at, if it is another one.
@@ -68,8 +68,10 @@ impl Cursor {
             (Expansion::Orbit(_), _) => {
                 // seen from where it was entered, so that the same values give the same circle
                 let start = Cursor { path: self.leg_start, ..self.clone() };
-                let approach =
-                    Approach { onward: start.onward(leg, world), ..self.approach(&self.leg_start) };
+                let approach = Approach {
+                    continuation: start.continuation(leg, world),
+                    ..self.approach(&self.leg_start)
+                };
                 Some(expand(leg, &approach, world)?)
             }
             _ => return self.joined_again(leg, old, world),

@@ -1,7 +1,7 @@
 //! What a pass back flies: the legs passed on the way out.
 
 use crate::expand::Expansion;
-use crate::path::{Level, Passing};
+use crate::path::{Level, PathEnd};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -19,9 +19,9 @@ pub struct Visit {
     /// The highest index up to here: what is beyond it was not passed before.
     pub(crate) highest: usize,
     /// Where the path was before it.
-    pub start: Passing,
+    pub start: PathEnd,
     /// Where the path was after it; for one that was skipped, where the aircraft was.
-    pub end: Passing,
+    pub end: PathEnd,
     /// The altitude it was flown at.
     pub level: Level,
     /// The airspeed it was flown at, m/s.
@@ -34,7 +34,7 @@ pub struct Visit {
 
 impl Visit {
     /// Of a leg that was passed from one point to another.
-    pub fn new(index: usize, start: Passing, end: Passing) -> Self {
+    pub fn new(index: usize, start: PathEnd, end: PathEnd) -> Self {
         let (level, airspeed_mps) = (end.level, end.airspeed_mps);
         Self { index, highest: index, start, end, level, airspeed_mps, inner: None, flown: None }
     }
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn a_leg_passed_again_begins_it_anew_from_there() {
         let level = Level { metres: 500.0, reference: AltitudeReference::Amsl };
-        let at = Passing { position: LatLon::new(36.5, -84.2), level, airspeed_mps: 25.0, fly_over: false };
+        let at = PathEnd { position: LatLon::new(36.5, -84.2), level, airspeed_mps: 25.0, fly_over: false };
         let trail = |legs: &[usize]| Trail::from_iter(legs.iter().map(|index| Visit::new(*index, at, at)));
         for (passed, left) in [
             (&[0, 1, 2][..], &[0, 1, 2][..]),

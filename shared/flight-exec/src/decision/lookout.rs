@@ -1,13 +1,13 @@
-//! The way to an intersection: how far, how long, and beyond what is handed out.
+//! The way to an intersection: how far, how long, and beyond what is issued.
 //!
-//! A circle or a racetrack takes a waypoint every few seconds: what is handed out may end long before an intersection whose decision
+//! A circle or a racetrack takes a waypoint every few seconds: what is issued may end long before an intersection whose decision
 //! is due soon. So the path is looked along as far as a question can be near, without handing anything out.
 
 use crate::api::{DecisionRequest, Event, Output};
 use crate::choice::Choice;
 use crate::cursor::{Cursor, Emission, Step};
 use crate::executor::Executor;
-use crate::handed::Onward;
+use crate::issued::Continuation;
 use crate::path::distance_and_course;
 use crate::review::ground_speed_mps;
 use crate::world::World;
@@ -22,7 +22,7 @@ const MOST_WAYPOINTS: usize = 2000;
 /// Over the ground a way is never made slower, m/s: against a wind that nobody can fly in.
 const LEAST_GROUND_MPS: f64 = 1.0;
 
-/// A question about an intersection beyond what is handed out.
+/// A question about an intersection beyond what is issued.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Ahead {
     pub request: DecisionRequest,
@@ -58,7 +58,7 @@ struct Sighted {
 }
 
 impl Executor {
-    /// Looks along the path behind what is handed out for a question that is due soon, and asks it.
+    /// Looks along the path behind what is issued for a question that is due soon, and asks it.
     pub(crate) fn look_ahead(&mut self, out: &mut Vec<Output>) {
         self.state.ahead = self.sight().and_then(|sighted| self.soon(&sighted));
         let Some(Ahead { request, crossing }) = self.state.ahead.clone() else { return };
@@ -72,7 +72,7 @@ impl Executor {
     fn soon(&self, sighted: &Sighted) -> Option<Ahead> {
         let fork = self.program.leg(&sighted.leg)?.as_fork()?;
         let left = sighted.way.until_due(fork.decide_before);
-        // one that comes into sight after its deadline is asked when it is handed out
+        // one that comes into sight after its deadline is asked when it is issued
         if left.seconds > self.config.ask_ahead_s || left.seconds <= 0.0 {
             return None;
         }
@@ -80,7 +80,7 @@ impl Executor {
         Some(Ahead { request, crossing: sighted.crossing })
     }
 
-    /// The first intersection behind what is handed out, if it may be asked about now.
+    /// The first intersection behind what is issued, if it may be asked about now.
     fn sight(&self) -> Option<Sighted> {
         if !self.program.has_forks() {
             return None;
@@ -89,7 +89,7 @@ impl Executor {
         let stages = self.program.stages(cursor.section).iter().skip(cursor.stage);
         let lead_s = stages.filter_map(|s| self.longest_lead_s(&s.legs)).reduce(f64::max)?;
         let mut world = World { waited, ..self.world() };
-        let mut way = self.way_along(self.state.handed.len());
+        let mut way = self.way_along(self.state.issued.len());
         for _ in 0..MOST_WAYPOINTS {
             if way.seconds > lead_s + self.config.ask_ahead_s {
                 return None;
@@ -118,11 +118,11 @@ impl Executor {
         None
     }
 
-    /// Where the path goes on behind what is handed out, a wait there being over.
+    /// Where the path goes on behind what is issued, a wait there being over.
     fn onward_cursor(&self) -> Option<(Cursor, Option<u64>)> {
-        match (self.state.onward, self.state.handed.back()) {
-            (Onward::Open, _) => Some((self.state.tail.clone()?, self.state.waited)),
-            (Onward::Waiting, Some(last)) if last.wait_s.is_some() => {
+        match (self.state.continuation, self.state.issued.back()) {
+            (Continuation::Open, _) => Some((self.state.tail.clone()?, self.state.waited)),
+            (Continuation::Waiting, Some(last)) if last.wait_s.is_some() => {
                 let before = last.sealed.as_deref().unwrap_or(&last.before).clone();
                 Some((before, Some(last.passage)))
             }
@@ -143,11 +143,11 @@ impl Executor {
         legs.iter().filter_map(of).reduce(f64::max)
     }
 
-    /// From the aircraft along the first waypoints handed out.
+    /// From the aircraft along the first waypoints issued.
     pub(super) fn way_along(&self, waypoints: usize) -> Way {
         let mut at = self.state.aircraft.as_ref().map(|a| a.position);
         let mut way = Way::default();
-        for waypoint in self.state.handed.iter().take(waypoints).map(|h| &h.waypoint) {
+        for waypoint in self.state.issued.iter().take(waypoints).map(|h| &h.waypoint) {
             if let Some(from) = at {
                 way = self.along(way, from, waypoint.position, waypoint.airspeed_mps);
             }

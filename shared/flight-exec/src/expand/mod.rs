@@ -9,7 +9,7 @@ mod course;
 pub mod holding;
 pub mod orbit;
 pub mod pattern;
-mod remade;
+mod regenerated;
 pub mod runway;
 pub mod scan;
 mod spacing;

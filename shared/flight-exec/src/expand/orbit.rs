@@ -25,14 +25,14 @@ pub struct Circle {
 
 impl Circle {
     /// Begins at the point nearest to where the path comes `from`, goes round `turns` times, and on to the point nearest to
-    /// where it goes `onward` to.
+    /// where it goes on to.
     ///
     /// # Errors
     /// Radius or turns that are no positive numbers.
     pub fn new(
         (centre, radius_m, turns, turn): (LatLon, f64, f64, TurnDirection),
         from: LatLon,
-        onward: Option<LatLon>,
+        continuation: Option<LatLon>,
         tolerance_m: f64,
     ) -> Result<Self, ExpandError> {
         if !(radius_m > 0.0 && turns > 0.0 && radius_m.is_finite() && turns <= MOST_TURNS) {
@@ -45,7 +45,7 @@ impl Circle {
         let start_bearing_deg = centre.bearing_deg(from);
         let turned_deg = 360.0 * turns.fract();
         let behind = |to| normalise_360(side * (centre.bearing_deg(to) - start_bearing_deg) - turned_deg);
-        let onward_deg = onward.map(behind).filter(|deg| *deg < 360.0 - SHORT_DEG).unwrap_or(0.0);
+        let onward_deg = continuation.map(behind).filter(|deg| *deg < 360.0 - SHORT_DEG).unwrap_or(0.0);
         let sweep_deg = 360.0 * turns + onward_deg;
         let widest_deg = Flattening::Circumscribed.step_rad(radius_m, tolerance_m).to_degrees().max(0.5);
         let steps = (sweep_deg / widest_deg).ceil();
@@ -96,9 +96,9 @@ mod tests {
             (1.25, TurnDirection::Left, 180.0, 540.0),
             (1.0, TurnDirection::Left, 0.0, 360.0),
         ] {
-            let onward = CENTRE.destination(exit_deg, 5000.0);
+            let continuation = CENTRE.destination(exit_deg, 5000.0);
             let from = CENTRE.destination(0.0, 3000.0);
-            let c = Circle::new((CENTRE, 250.0, turns, turn), from, Some(onward), 3.0).unwrap();
+            let c = Circle::new((CENTRE, 250.0, turns, turn), from, Some(continuation), 3.0).unwrap();
             let swept = c.step_deg.abs() * c.steps as f64;
             assert!((swept - sweep_deg).abs() < 1e-6, "{turns} turns to {exit_deg}: {swept}");
             assert!(c.point(c.count()).is_none());

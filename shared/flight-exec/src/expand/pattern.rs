@@ -3,7 +3,7 @@
 mod heights;
 mod recipe;
 
-use super::remade::Remade;
+use super::regenerated::Regenerated;
 use super::track::Approach;
 use super::{ExpandError, Point};
 use crate::path::{Level, distance_m};
@@ -27,7 +27,7 @@ pub struct Flight {
     /// Waypoints of the pattern that are left out: flown already and not moved.
     first: u64,
     #[serde(skip)]
-    laid_out: Remade<LaidOut>,
+    laid_out: Regenerated<LaidOut>,
 }
 
 /// The pattern itself: made again from the recipe after a restart.
@@ -52,7 +52,7 @@ impl Flight {
 
     fn laid_out_from(recipe: Recipe, entry: LatLon) -> Result<Self, ExpandError> {
         let laid_out = recipe.lay_out(entry)?;
-        Ok(Self { recipe, entry, first: 0, laid_out: Remade::of(laid_out) })
+        Ok(Self { recipe, entry, first: 0, laid_out: Regenerated::of(laid_out) })
     }
 
     fn laid_out(&self) -> Option<&LaidOut> {

@@ -14,7 +14,7 @@ mod sweeps;
 
 pub use sweeps::Sweeps;
 
-use super::remade::Remade;
+use super::regenerated::Regenerated;
 use super::{ExpandError, Point};
 use geometry::{LatLon, Vec2};
 use layout::{Ends, LaidOut, Line};
@@ -47,9 +47,9 @@ struct Sweep {
     /// Tracks flown before the regeneration, the latest ones.
     flown: Vec<(LatLon, LatLon)>,
     #[serde(skip)]
-    laid_out: Remade<LaidOut>,
+    laid_out: Regenerated<LaidOut>,
     #[serde(skip)]
-    stretches: Remade<Stretches>,
+    stretches: Regenerated<Stretches>,
 }
 
 impl Sweep {
@@ -81,11 +81,11 @@ impl Sweep {
             left_out,
             tracks,
             flown,
-            laid_out: Remade::default(),
-            stretches: Remade::default(),
+            laid_out: Regenerated::default(),
+            stretches: Regenerated::default(),
         };
-        sweep.stretches = Remade::of(Stretches::of(&sweep.order(&laid_out), &laid_out)?);
-        sweep.laid_out = Remade::of(laid_out);
+        sweep.stretches = Regenerated::of(Stretches::of(&sweep.order(&laid_out), &laid_out)?);
+        sweep.laid_out = Regenerated::of(laid_out);
         Ok(sweep)
     }
 

@@ -6,7 +6,7 @@ use super::until_altitude::Track;
 use super::{ExpandError, Expansion, Point, arc, course, holding, orbit};
 use crate::api::FARTHEST_M;
 use crate::cursor::Visit;
-use crate::path::{Level, Passing, PathState};
+use crate::path::{Level, PathEnd, PathState};
 use crate::world::World;
 use flight_plan::{Holding, HoldingLength, Leg, LegKind, PlanWaypoint, TurnDirection};
 use geometry::LatLon;
@@ -28,7 +28,7 @@ pub struct Approach<'a> {
     /// Its passage forwards, when it is flown in reverse now.
     pub reversed: Option<&'a Visit>,
     /// Where the path goes afterwards, if known (orbits).
-    pub onward: Option<LatLon>,
+    pub continuation: Option<LatLon>,
 }
 
 /// The points of a leg.
@@ -68,7 +68,7 @@ fn forward(leg: &Leg, approach: &Approach, world: &World) -> Result<Expansion, E
         LegKind::Orbit { centre, radius_m, turns, turn } => {
             let values = (world.place(centre)?, world.number(radius_m)?, world.number(turns)?, *turn);
             let tolerance_m = world.config.arc_tolerance_m;
-            Expansion::Orbit(orbit::Circle::new(values, from, approach.onward, tolerance_m)?)
+            Expansion::Orbit(orbit::Circle::new(values, from, approach.continuation, tolerance_m)?)
         }
         LegKind::Cf { to, course_deg } => {
             let (to, inbound_deg) = (waypoint(to, world)?, world.number(course_deg)?);
@@ -126,7 +126,7 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
 }
 
 /// A point of the way out, as it was passed there.
-fn passed(passing: &Passing) -> Point {
+fn passed(passing: &PathEnd) -> Point {
     Point {
         fly_over: passing.fly_over,
         level: Some(passing.level),

@@ -3,8 +3,8 @@
 //! The same `step` as aboard, the same guidance and dynamics as the simulator, no sockets and no clock: what is seen here is what
 //! will be sent.
 
-mod alike;
 mod changes;
+mod equivalence;
 mod flight;
 mod rehearsal;
 mod scenario;
@@ -105,7 +105,7 @@ pub struct LegPassage {
 /// A waypoint that was steered to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FlownWaypoint {
-    /// As it was handed out.
+    /// As it was issued.
     pub waypoint: Waypoint,
     /// Index of its passage in [`Preview::legs`].
     pub passage: Option<usize>,

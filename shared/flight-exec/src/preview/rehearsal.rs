@@ -10,8 +10,8 @@
 //! A plan with conditions that depend on time, energy, motion or place is only taken over up to the edit; one in which a
 //! runway, a variable or the order of stages is another is flown as a whole.
 
-use super::alike::are_alike;
 use super::changes::{Changes, reads_flight};
+use super::equivalence::are_alike;
 use super::flight::{Circumstances, Flight, Progress, empty};
 use super::shift::{Marks, Shift};
 use super::situation::Situation;
@@ -363,12 +363,12 @@ fn note_reads(stretches: &mut [Stretch], at: &Situation) {
 fn ahead_of(at: &Situation) -> Vec<Id> {
     let state = &at.executor.state;
     let mut ids: Vec<Id> = Vec::new();
-    for handed in &state.handed {
-        ids.push(handed.place.leg.clone());
-        ids.push(handed.place.stage.clone());
-        ids.extend(handed.place.iterations.iter().map(|i| i.leg.clone()));
-        ids.extend(handed.marks.iter().map(|mark| mark.leg.clone()));
-        ids.extend(handed.choices.iter().map(|choice| choice.leg().clone()));
+    for issued in &state.issued {
+        ids.push(issued.place.leg.clone());
+        ids.push(issued.place.stage.clone());
+        ids.extend(issued.place.iterations.iter().map(|i| i.leg.clone()));
+        ids.extend(issued.silent_legs.iter().map(|mark| mark.leg.clone()));
+        ids.extend(issued.choices.iter().map(|choice| choice.leg().clone()));
     }
     ids.extend(state.passages.iter().map(|passage| passage.leg.clone()));
     if let Some(tail) = &state.tail {

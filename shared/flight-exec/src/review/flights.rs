@@ -7,15 +7,15 @@
 //! the plan as it stands, the plan with the branches of each of those flights, and each of those emergency plans from that point.
 
 use super::alternates::Origin;
+use super::emergency_coverage::EmergencyCoverage;
 use super::flown::{Flown, Point, fly, tireless};
-use super::in_force::InForce;
 use super::layout::{LaidOut, Outset, Way, counts, decisions, lay_out};
 use crate::api::{AircraftState, Command, Event, Output};
 use crate::config::Config;
 use crate::cursor::Cursor;
 use crate::decision::Decision;
 use crate::executor::Executor;
-use crate::path::{Level, Passing, PathState};
+use crate::path::{Level, PathEnd, PathState};
 use crate::preview::{
     Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
 };
@@ -111,12 +111,12 @@ impl Circumstances<'_> {
             return from.outset(None, &self.tireless);
         }
         let near = self.executor.alterable_from();
-        let laid_out = |h: &crate::handed::Handed| LaidOut {
+        let laid_out = |h: &crate::issued::IssuedWaypoint| LaidOut {
             waypoint: h.waypoint.clone(),
             wanted_amsl_m: h.waypoint.altitude_amsl_m,
             passage: h.passage,
         };
-        let kept = self.executor.state.handed.iter().take(near).map(laid_out).collect();
+        let kept = self.executor.state.issued.iter().take(near).map(laid_out).collect();
         Outset { kept, cursor: self.executor.bookmark(near) }
     }
 }
@@ -246,9 +246,9 @@ impl Flights {
     /// flown, and not of these.
     fn fly_emergencies(&mut self, given: &Circumstances, used_j: f64) {
         let program = given.program;
-        let in_force = InForce::of(program);
+        let emergency_coverage = EmergencyCoverage::of(program);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MOST_EMERGENCY_PLANS) {
-            let Some(worst) = self.worst_for(program, plan, index, &in_force) else { continue };
+            let Some(worst) = self.worst_for(program, plan, index, &emergency_coverage) else { continue };
             let beginning = Beginning {
                 position: worst.position,
                 altitude_amsl_m: worst.altitude_amsl_m,
@@ -279,7 +279,7 @@ impl Flights {
         program: &Program,
         plan: &EmergencyPlan,
         index: usize,
-        in_force: &InForce,
+        emergency_coverage: &EmergencyCoverage,
     ) -> Option<Point> {
         let runway = program.plan.runway(&plan.runway)?.threshold;
         let all = || self.main.iter().flat_map(|flown| flown.points.iter().map(move |p| (flown, *p)));
@@ -288,7 +288,7 @@ impl Flights {
             points.max_by(|a, b| far(a).total_cmp(&far(b)))
         };
         let applies = |(flown, p): &(&Flown, Point)| {
-            flown.leg(p).is_some_and(|leg| in_force.plans(leg).any(|i| i == index))
+            flown.leg(p).is_some_and(|leg| emergency_coverage.plans(leg).any(|i| i == index))
         };
         let first = farthest(&mut all().filter(applies).map(|(_, p)| p));
         first.or_else(|| farthest(&mut all().map(|(_, p)| p)))
@@ -425,7 +425,7 @@ impl Beginning {
     fn path(&self, profile: &Profile) -> PathState {
         let level = Level { metres: self.altitude_amsl_m, reference: AltitudeReference::Amsl };
         PathState {
-            last: Passing {
+            last: PathEnd {
                 position: self.position,
                 level,
                 airspeed_mps: profile.cruise_airspeed_mps,

@@ -11,7 +11,7 @@
 
 use super::View;
 use super::alternates::{Alternate, Origin, alternates, ground_speed_mps, turn_rad};
-use super::in_force::Engine;
+use super::emergency_coverage::Engine;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
 use geometry::{LatLon, PathElement};
@@ -27,7 +27,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         for named in [true, false] {
             let answers = Some(Engine { plan, named });
             let applies = |from: &&Origin| {
-                view.in_force.engine(&from.leg) == answers && (named || !is_near_runway(view, from))
+                view.emergency_coverage.engine(&from.leg) == answers && (named || !is_near_runway(view, from))
             };
             let from: Vec<&Origin> = origins.iter().filter(applies).collect();
             let straight = [alternate.runway.threshold];

@@ -2,7 +2,7 @@
 
 use crate::api::{Action, Token, Waypoint};
 use crate::choice::{By, Choice};
-use crate::cursor::{Cursor, Doing, Step, Trouble};
+use crate::cursor::{Cursor, CursorPhase, LayoutError, Step};
 use crate::decision::Decision;
 use crate::executor::Executor;
 use crate::world::{LoopCount, World};
@@ -173,7 +173,7 @@ pub(super) fn lay_out(
 /// A wait is over: the leg is at its end once more, as before its circle was given out.
 fn go_on(world: &mut World, cursor: &mut Cursor) {
     world.waited = Some(cursor.passage);
-    cursor.doing = Doing::Flying;
+    cursor.doing = CursorPhase::Flying;
     cursor.given = cursor.given.saturating_sub(1);
 }
 
@@ -218,17 +218,17 @@ impl Layout {
         self.note(emission.notes);
     }
 
-    fn note(&mut self, notes: crate::cursor::Notes) {
+    fn note(&mut self, notes: crate::cursor::CursorLog) {
         for choice in notes.choices {
             if let Choice::Branch { leg, branch: Some(branch), .. } = choice {
                 self.taken.insert((leg, branch));
             }
         }
-        for trouble in notes.troubles {
+        for trouble in notes.errors {
             match trouble {
-                Trouble::Leg { leg, reason } => self.refused.push((leg, reason)),
-                Trouble::Ground { leg, reason } => self.without_ground.push((leg, reason)),
-                Trouble::Expression { .. } => {}
+                LayoutError::Leg { leg, reason } => self.refused.push((leg, reason)),
+                LayoutError::Ground { leg, reason } => self.without_ground.push((leg, reason)),
+                LayoutError::Expression { .. } => {}
             }
         }
     }

@@ -11,12 +11,13 @@ mod ahead;
 mod alternates;
 mod altitudes;
 mod ceiling;
+mod emergency_coverage;
+mod emergency_routes;
 mod endurance;
 mod extremes;
 mod flights;
 mod flown;
 mod glide;
-mod in_force;
 mod landings;
 mod layout;
 pub mod plausibility;
@@ -30,7 +31,6 @@ mod turns;
 mod unknown_terrain;
 mod unseen;
 mod waypoints;
-mod ways;
 mod wind;
 mod zones;
 
@@ -38,13 +38,13 @@ pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_t
 use aircraft::{Profile, Wind};
 use alternates::Origin;
 pub(crate) use alternates::ground_speed_mps;
+use emergency_coverage::EmergencyCoverage;
 pub use extremes::{MOST_TRIALS, review_extremes};
 use flight_plan::{
     Altitude, AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value,
     Variables,
 };
 use flights::Flights;
-use in_force::InForce;
 use prepared::Zones;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -92,7 +92,7 @@ struct View<'a> {
     variables: Variables,
     flights: Flights,
     zones: Zones,
-    in_force: InForce,
+    emergency_coverage: EmergencyCoverage,
 }
 
 type Rule = fn(&View, &mut Vec<Problem>);
@@ -112,7 +112,7 @@ const RULES: [Rule; 16] = [
     waypoints::check,
     endurance::check,
     landings::check,
-    ways::check,
+    emergency_routes::check,
     powered::check,
     glide::check,
 ];
@@ -140,8 +140,9 @@ impl<'a> View<'a> {
         variables: Variables,
         flights: Flights,
     ) -> Self {
-        let (zones, in_force) = (Zones::of(program, profile, conditions), InForce::of(program));
-        Self { program, profile, terrain, conditions, variables, flights, zones, in_force }
+        let (zones, emergency_coverage) =
+            (Zones::of(program, profile, conditions), EmergencyCoverage::of(program));
+        Self { program, profile, terrain, conditions, variables, flights, zones, emergency_coverage }
     }
 
     /// What every rule finds.

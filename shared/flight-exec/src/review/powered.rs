@@ -8,7 +8,7 @@ use flight_plan::Problem;
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins = view.origins_with_energy();
     for (index, alternate) in alternates(view) {
-        let applies = |from: &&Origin| view.in_force.powered(&from.leg).contains(&index);
+        let applies = |from: &&Origin| view.emergency_coverage.powered(&from.leg).contains(&index);
         let missing = origins.iter().filter(applies).map(|from| (missing_j(view, &alternate, from), from));
         let worst = missing.max_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((missing_j, from)) = worst.filter(|(missing_j, _)| *missing_j > 0.0) {

@@ -216,7 +216,7 @@ fn an_emergency_without_a_plan_is_left_to_the_gateway() {
     rig.fly_to_the_end();
 }
 
-/// Nothing is handed out any more, and the place is none: the plan's own answer is there all the same.
+/// Nothing is issued any more, and the place is none: the plan's own answer is there all the same.
 #[test]
 fn an_emergency_after_a_refused_batch_finds_its_plan() {
     let mut rig = Rig::started(LEGS);

@@ -167,7 +167,7 @@ fn control_legs_have_no_points() {
     let rig = Rig::started(legs);
     let (world, here) = (rig.executor.world(), rig.executor.here());
     let (level, airspeed_mps) = (here.last.level, here.last.airspeed_mps);
-    let approach = Approach { path: &here, level, airspeed_mps, reversed: None, onward: None };
+    let approach = Approach { path: &here, level, airspeed_mps, reversed: None, continuation: None };
     for (leg, points) in [("l", 0), ("x", 0), ("z", 1)] {
         let leg = world.program.leg(&leg.into()).unwrap();
         assert_eq!(expand(leg, &approach, &world).unwrap().count(), Some(points));

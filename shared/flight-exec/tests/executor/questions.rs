@@ -23,7 +23,7 @@ fn is_taken(rig: &Rig) -> bool {
     rig.events.iter().any(|e| matches!(e, Event::DecisionTaken { .. }))
 }
 
-/// Many waypoints a kilometre: those handed out end long before the intersection.
+/// Many waypoints a kilometre: those issued end long before the intersection.
 #[test]
 fn behind_an_orbit_or_a_holding_a_decision_is_asked_for_in_time() {
     for (name, before) in [

@@ -33,7 +33,11 @@ pub const POLICIES: &[Policy] = &[
         "The emergency plan is the named one, or the most specific one of the leg for the cause.",
         most_specific,
     ),
-    policy("in-force-is-told", "The plan told to be in force is the one that the leg has.", in_force),
+    policy(
+        "in-force-is-told",
+        "The plan told to be in force is the one that the leg has.",
+        emergency_coverage,
+    ),
     policy("alarm-ends-a-hold", "An emergency doesn't wait for a resume.", ends_a_hold),
     policy(
         "back-by-command-only",
@@ -182,7 +186,7 @@ fn most_specific(trace: &Trace, found: &mut Findings) {
     }
 }
 
-fn in_force(trace: &Trace, found: &mut Findings) {
+fn emergency_coverage(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.after.is_flying() && emergency_flown(s.after).is_none()) {
         let (Some(program), Some(place)) = (step.after.program.as_deref(), step.after.place()) else {
             continue;

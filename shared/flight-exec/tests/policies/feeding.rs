@@ -1,4 +1,4 @@
-//! What is handed to the gateway: numbers, transactions, contents.
+//! What is issued to the gateway: numbers, transactions, contents.
 
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, apart_m, knows};

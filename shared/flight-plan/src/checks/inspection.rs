@@ -1,6 +1,6 @@
 //! What the rules look at: the plan's legs with their geometry at the variables' initial values.
 
-use super::memory::Recall;
+use super::incremental_cache::Recall;
 use super::step::{Marks, Point, Step};
 use super::trace::Trace;
 use crate::expression::{self, Expression, ExpressionError, Names};

@@ -14,16 +14,17 @@ mod gradients;
 mod holdings;
 mod home;
 mod identifiers;
+mod incremental_cache;
 mod inspection;
 mod intersections;
 mod iteratives;
 mod levels;
-mod memory;
 mod orbits;
 mod order;
 mod path;
 mod pattern_turns;
 mod patterns;
+mod plan_context;
 mod procedures;
 mod references;
 mod remedy;
@@ -32,7 +33,6 @@ mod rf;
 mod runways;
 mod scans;
 mod segments;
-mod setting;
 mod spacings;
 mod speeds;
 mod stages;
@@ -48,14 +48,14 @@ mod zones;
 #[cfg(test)]
 mod testing;
 
+pub use incremental_cache::IncrementalCache;
 pub(crate) use inspection::Expressions;
-pub use memory::Memory;
 
 use crate::ids::Ids;
 use crate::{FlightPlan, Id, Problem};
 use ::aircraft::Profile;
+use incremental_cache::{Last, Recall};
 use inspection::Inspection;
-use memory::{Last, Recall};
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -126,7 +126,7 @@ pub fn check(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Vec
 }
 
 /// As [`check`], for a plan that is checked again and again while it is edited: much quicker where little has changed.
-pub fn check_again(plan: &FlightPlan, memory: &mut Memory) -> Vec<Problem> {
+pub fn check_again(plan: &FlightPlan, memory: &mut IncrementalCache) -> Vec<Problem> {
     checked_again(plan, memory).problems
 }
 
@@ -143,7 +143,7 @@ pub(crate) fn checked(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrai
     look_at(plan, profile, terrain, None).0
 }
 
-pub(crate) fn checked_again(plan: &FlightPlan, memory: &mut Memory) -> Checked {
+pub(crate) fn checked_again(plan: &FlightPlan, memory: &mut IncrementalCache) -> Checked {
     let terrain = memory.terrain.clone();
     let (checked, last) = look_at(plan, &memory.profile, terrain.as_ref(), Some(memory.last.take()));
     memory.last = last;

@@ -1,8 +1,8 @@
 //! The way through a plan: from leg to leg in the order of the document, as far as that says what follows what.
 
 use super::extent::{self, Region};
+use super::incremental_cache::Recall;
 use super::inspection::Inspection;
-use super::memory::Recall;
 use super::path::Path;
 use super::step::{Around, Point, Step};
 use crate::ids::Spots;

@@ -142,10 +142,10 @@ fn safe_mode_refused_below_the_height_for_it_is_asked_for_until_it_is_granted() 
 fn safe_mode_never_granted_is_not_wanted_of_the_next_flight() {
     let mut flight = needs_safe(usize::MAX);
     run(&mut flight, 30);
-    assert_eq!(flight.process.manager.liaison.wanted(), Some(&GatewayRequest::Safe));
+    assert_eq!(flight.process.manager.gateway_session.wanted(), Some(&GatewayRequest::Safe));
     flight.gateway.state = GatewayState::Stop;
     run(&mut flight, 2);
-    assert_eq!(flight.process.manager.liaison.wanted(), None);
+    assert_eq!(flight.process.manager.gateway_session.wanted(), None);
 }
 
 #[test]

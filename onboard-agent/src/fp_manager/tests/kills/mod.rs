@@ -8,7 +8,7 @@ mod gateway_faults;
 
 use crate::clock::Time;
 use crate::fp_manager::journal::faulty::{Death, Faulty, Random};
-use crate::fp_manager::journal::{Clerk, Job, Limits, Log, Saved, Storage, encode};
+use crate::fp_manager::journal::{Job, Limits, Log, Saved, Storage, Writer, encode};
 use crate::fp_manager::{Config, Effect, Manager, compile, restart};
 use asks::{Ask, What, asks};
 use gateway::Gateway;
@@ -29,7 +29,7 @@ fn config() -> Config {
 
 struct Process {
     manager: Manager,
-    clerk: Clerk<Faulty>,
+    writer: Writer<Faulty>,
 }
 
 /// The process died.
@@ -60,7 +60,7 @@ struct Flight {
 fn begin(disk: &Faulty, config: &Config) -> (Process, Vec<String>) {
     let (mut log, found) = Log::open(disk.clone(), LIMITS);
     let past = restart(&mut log, found.as_deref().unwrap_or_default(), config, Time::ZERO);
-    (Process { manager: past.manager, clerk: Clerk::new(log, None) }, past.troubles)
+    (Process { manager: past.manager, writer: Writer::new(log, None) }, past.troubles)
 }
 
 impl Flight {
@@ -101,7 +101,7 @@ impl Flight {
 
     fn hand_in_state(&mut self) {
         let (saved, plans) = self.process.manager.saved();
-        self.process.clerk.perform(self.time, vec![Job::State(Box::new(saved), plans)]);
+        self.process.writer.perform(self.time, vec![Job::State(Box::new(saved), plans)]);
         if self.alive().is_ok() {
             self.all_is_synced();
         }
@@ -126,7 +126,7 @@ impl Flight {
                 queue.extend(self.carry_out(effect));
             }
         }
-        if self.process.clerk.report(self.time).wants_state {
+        if self.process.writer.report(self.time).wants_state {
             self.hand_in_state();
         }
         self.alive()
@@ -148,7 +148,7 @@ impl Flight {
         self.turn += 1;
         self.history.push_back((self.turn, self.process.manager.saved().0));
         jobs.push(Job::Turn { payload: encode(&entries).unwrap(), sync });
-        self.process.clerk.perform(self.time, jobs);
+        self.process.writer.perform(self.time, jobs);
         self.alive()?;
         self.written = self.turn;
         if sync {

@@ -194,8 +194,8 @@ impl Order<'_> {
                 sequence = sequence.saturating_add(1);
             }
         }
-        let onward = self.all.saturating_sub(self.first);
-        match sequence.checked_sub(onward) {
+        let continuation = self.all.saturating_sub(self.first);
+        match sequence.checked_sub(continuation) {
             None => Some(self.first + sequence),
             Some(back) => self.first.checked_sub(back + 1),
         }
@@ -204,14 +204,14 @@ impl Order<'_> {
     /// Places at which a track may be no neighbour of the one before, ascending: where a cell begins, where the order turns back,
     /// and behind what is left out.
     fn breaks(&self, laid_out: &LaidOut) -> Vec<u64> {
-        let onward = self.all.saturating_sub(self.first);
+        let continuation = self.all.saturating_sub(self.first);
         let cells = laid_out.pattern.cells_of_tracks().map(|cell| match cell.start.checked_sub(self.first) {
             Some(sequence) => sequence,
             // backwards, a cell begins with its last track, or with the one before the first
-            None => onward.saturating_add(self.first.saturating_sub(cell.end)),
+            None => continuation.saturating_add(self.first.saturating_sub(cell.end)),
         });
         let behind = self.left_out.iter().map(|left_out| left_out.saturating_add(1));
-        let sequences = [0, onward].into_iter().chain(cells).chain(behind);
+        let sequences = [0, continuation].into_iter().chain(cells).chain(behind);
         let place = |sequence: u64| {
             let before = self.left_out.partition_point(|left_out| *left_out < sequence);
             sequence.saturating_sub(before as u64)

@@ -1,13 +1,13 @@
 //! What the FP Manager itself has recorded.
 
-use crate::fp_manager::succession::Succession;
+use crate::fp_manager::plan_history::PlanHistory;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use usal::contract::GatewayRequest;
 
 /// What the FP Manager remembers beside the executor.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Notes {
+pub struct ManagerState {
     /// Wanted of the gateway and not granted yet.
     pub wanted: Option<GatewayRequest>,
     /// The gateway or the pilot flies.
@@ -16,14 +16,14 @@ pub struct Notes {
     pub answered_alarms: BTreeSet<String>,
     /// The plans of this flight.
     #[serde(default)]
-    pub succession: Succession,
+    pub plan_history: PlanHistory,
 }
 
 /// As [`::journal::Entry`].
-pub type Entry = ::journal::Entry<Notes>;
+pub type Entry = ::journal::Entry<ManagerState>;
 /// As [`::journal::Record`].
-pub type Record = ::journal::Record<Notes>;
+pub type Record = ::journal::Record<ManagerState>;
 /// As [`::journal::Saved`].
-pub type Saved = ::journal::Saved<Notes>;
+pub type Saved = ::journal::Saved<ManagerState>;
 /// As [`::journal::Chapter`].
-pub type Chapter = ::journal::Chapter<Notes>;
+pub type Chapter = ::journal::Chapter<ManagerState>;

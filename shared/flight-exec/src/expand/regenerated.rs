@@ -4,9 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 /// Something that its recipe makes: not kept in a snapshot but made again, and so no part of its owner's value: equal to any other.
 #[derive(Debug)]
-pub struct Remade<T>(OnceLock<Option<Arc<T>>>);
+pub struct Regenerated<T>(OnceLock<Option<Arc<T>>>);
 
-impl<T> Remade<T> {
+impl<T> Regenerated<T> {
     /// Made already.
     pub fn of(made: T) -> Self {
         Self(OnceLock::from(Some(Arc::new(made))))
@@ -18,13 +18,13 @@ impl<T> Remade<T> {
     }
 }
 
-impl<T> Default for Remade<T> {
+impl<T> Default for Regenerated<T> {
     fn default() -> Self {
         Self(OnceLock::new())
     }
 }
 
-impl<T> PartialEq for Remade<T> {
+impl<T> PartialEq for Regenerated<T> {
     fn eq(&self, _: &Self) -> bool {
         true
     }

@@ -23,13 +23,13 @@ impl Manager {
 
     /// The gateway's state, as it publishes it.
     pub fn gateway_status(&mut self, now: Time, status: &GatewayStatus, out: &mut Vec<Effect>) {
-        let controlled = self.liaison.is_controlled();
-        self.liaison.state(now, status.state);
-        if !controlled && self.liaison.is_controlled() {
+        let controlled = self.gateway_session.is_controlled();
+        self.gateway_session.state(now, status.state);
+        if !controlled && self.gateway_session.is_controlled() {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
-        if self.liaison.is_joined() && self.liaison.is_airborne() {
+        if self.gateway_session.is_joined() && self.gateway_session.is_airborne() {
             for call in self.alarms.listed(&status.alarms) {
                 self.emergency(now, call, out);
             }
@@ -43,7 +43,9 @@ impl Manager {
             GatewayEvent::Progress { current: Some(current), .. } => self.progress(now, current, out),
             // while waypoints are on their way it is not the end, nor what Safe mode or the pilot flies
             GatewayEvent::Progress { current: None, taken }
-                if self.feeder.is_idle() && !self.liaison.is_controlled() && !self.is_ahead_of(taken) =>
+                if self.feeder.is_idle()
+                    && !self.gateway_session.is_controlled()
+                    && !self.is_ahead_of(taken) =>
             {
                 self.step(now, Input::Progress { current: None }, out);
             }
@@ -67,7 +69,7 @@ impl Manager {
     /// An alarm of the gateway asks for an emergency plan. On the ground it has to ask again in the air; while a plan
     /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do.
     fn emergency(&mut self, now: Time, call: alarms::Call, out: &mut Vec<Effect>) {
-        if !self.liaison.is_airborne() {
+        if !self.gateway_session.is_airborne() {
             return self.alarms.look_again();
         }
         let cause = call.cause;
@@ -77,14 +79,14 @@ impl Manager {
             if refusal.code == "not-more-severe" {
                 return;
             }
-            self.liaison.want(GatewayRequest::Safe);
+            self.gateway_session.want(GatewayRequest::Safe);
         }
         self.alarms.answer(call);
     }
 
     /// The gateway appeared: it has to be joined (again).
     pub fn gateway_appeared(&mut self, now: Time, out: &mut Vec<Effect>) {
-        self.liaison.lost();
+        self.gateway_session.lost();
         self.send(now, out);
     }
 

@@ -8,9 +8,9 @@ const MOST: usize = 16;
 
 /// Hashes of the plans of this flight; the last one is being flown.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Succession(Vec<String>);
+pub struct PlanHistory(Vec<String>);
 
-impl Succession {
+impl PlanHistory {
     /// This plan is being flown now.
     pub fn goes_on_with(&mut self, plan: &str) {
         if self.0.last().is_some_and(|last| last == plan) {
@@ -36,10 +36,10 @@ impl Succession {
 mod tests {
     use super::*;
 
-    fn after(plans: impl IntoIterator<Item = u32>) -> Succession {
-        let mut succession = Succession::default();
-        plans.into_iter().for_each(|plan| succession.goes_on_with(&plan.to_string()));
-        succession
+    fn after(plans: impl IntoIterator<Item = u32>) -> PlanHistory {
+        let mut plan_history = PlanHistory::default();
+        plans.into_iter().for_each(|plan| plan_history.goes_on_with(&plan.to_string()));
+        plan_history
     }
 
     #[test]
@@ -58,10 +58,10 @@ mod tests {
 
     #[test]
     fn a_new_flight_begins_with_the_plan_it_is_started_with() {
-        let mut succession = after([1, 2]);
-        succession.new_flight();
-        assert_eq!(succession.earlier(), [""; 0]);
-        succession.goes_on_with("3");
-        assert_eq!(succession.earlier(), ["2"]);
+        let mut plan_history = after([1, 2]);
+        plan_history.new_flight();
+        assert_eq!(plan_history.earlier(), [""; 0]);
+        plan_history.goes_on_with("3");
+        assert_eq!(plan_history.earlier(), ["2"]);
     }
 }

@@ -4,7 +4,7 @@ use flight_plan::{Cause, Id, Program};
 use std::collections::HashMap;
 
 /// Which emergency plans answer on which leg.
-pub(super) struct InForce {
+pub(super) struct EmergencyCoverage {
     by_leg: HashMap<Id, Answers>,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Engine {
 const POWERED: [Cause; 6] =
     [Cause::Operator, Cause::Payload, Cause::Traffic, Cause::Link, Cause::Gps, Cause::Energy];
 
-impl InForce {
+impl EmergencyCoverage {
     pub fn of(program: &Program) -> Self {
         let number: HashMap<&Id, usize> =
             program.flown().emergency_plans.iter().enumerate().map(|(i, e)| (&e.id, i)).collect();

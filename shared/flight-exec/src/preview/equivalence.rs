@@ -6,10 +6,10 @@
 use super::situation::Situation;
 use crate::actions::{Passage, Wait};
 use crate::api::Waypoint;
-use crate::cursor::{Cursor, LoopFrame, Mark};
+use crate::cursor::{Cursor, LoopFrame, SilentLeg};
 use crate::decision::lookout::Ahead;
 use crate::executor::Executor;
-use crate::handed::Handed;
+use crate::issued::IssuedWaypoint;
 use crate::path::PathState;
 use crate::state::State;
 use std::collections::VecDeque;
@@ -98,7 +98,7 @@ impl<'a> Offset<'a> {
     }
 
     fn states(&self, one: &State, other: &State) -> bool {
-        let same = |s: &State| (s.phase, s.onward, s.tail_has_choices, s.gateway_controls, s.revision);
+        let same = |s: &State| (s.phase, s.continuation, s.tail_has_choices, s.gateway_controls, s.revision);
         let announced = match (&one.announced, &other.announced) {
             (Some((a, leg)), Some((b, other))) => leg == other && self.passage(*a, *b),
             (a, b) => a == b,
@@ -120,13 +120,13 @@ impl<'a> Offset<'a> {
             && pair(&one.wait, &other.wait, |a, b| self.waits(a, b))
             && all(one.passages.iter(), other.passages.iter(), |a, b| self.passages(a, b))
             && pair(&one.tail, &other.tail, |a, b| self.cursors(a, b))
-            && all(one.handed.iter(), other.handed.iter(), |a, b| self.handed(a, b))
+            && all(one.issued.iter(), other.issued.iter(), |a, b| self.issued(a, b))
     }
 
     /// A passage that was released or waited at: the same one, or both are over.
     fn marked(&self, one: Option<u64>, other: Option<u64>) -> bool {
         let under_way = |n: Option<u64>, e: &Executor| {
-            n.is_some_and(|n| e.state.handed.front().is_none_or(|front| n >= front.before.passage))
+            n.is_some_and(|n| e.state.issued.front().is_none_or(|front| n >= front.before.passage))
         };
         match (under_way(one, self.one), under_way(other, self.other)) {
             (false, false) => true,
@@ -148,13 +148,13 @@ impl<'a> Offset<'a> {
             && (one.flown_s - other.flown_s).abs() < ROUNDING_S
     }
 
-    fn handed(&self, one: &Handed, other: &Handed) -> bool {
-        let same = |h: &Handed| (h.wait_s, h.pinned);
+    fn issued(&self, one: &IssuedWaypoint, other: &IssuedWaypoint) -> bool {
+        let same = |h: &IssuedWaypoint| (h.wait_s, h.pinned);
         self.waypoint(&one.waypoint, &other.waypoint)
             && self.passage(one.passage, other.passage)
             && same(one) == same(other)
             && (&one.place, &one.choices) == (&other.place, &other.choices)
-            && self.marks(&one.marks, &other.marks)
+            && self.marks(&one.silent_legs, &other.silent_legs)
             && self.way(one.leg_start_m, other.leg_start_m)
             && self.way(one.end_m, other.end_m)
             && self.flying_time(one.end_s, other.end_s)
@@ -162,7 +162,7 @@ impl<'a> Offset<'a> {
             && pair(&one.sealed, &other.sealed, |a, b| self.cursors(a, b))
     }
 
-    fn marks(&self, one: &[Mark], other: &[Mark]) -> bool {
+    fn marks(&self, one: &[SilentLeg], other: &[SilentLeg]) -> bool {
         all(one.iter(), other.iter(), |a, b| a.leg == b.leg && self.passage(a.passage, b.passage))
     }
 

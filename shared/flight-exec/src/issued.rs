@@ -1,8 +1,8 @@
-//! Waypoints handed out and not flown yet, each with the bookmark it was made from.
+//! Waypoints issued and not flown yet, each with the bookmark it was made from.
 
 use crate::api::{Action, PlacePointer, Token, Waypoint};
 use crate::choice::Choice;
-use crate::cursor::{Cursor, Doing, Emission, Mark, Notes, Step, Trouble};
+use crate::cursor::{Cursor, CursorLog, CursorPhase, Emission, LayoutError, SilentLeg, Step};
 use crate::path::distance_m;
 use crate::world::World;
 use flight_plan::Id;
@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 /// Two waypoints this close are the same for the autopilot, metres.
 const SAME_M: f64 = 0.5;
 
-/// One waypoint handed out.
+/// One waypoint issued.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Handed {
+pub struct IssuedWaypoint {
     /// As it was sent.
     pub waypoint: Waypoint,
     /// Where it is in the plan.
@@ -23,7 +23,7 @@ pub struct Handed {
     /// Choices between the waypoint before it and this one; emptied when they are final.
     pub choices: Vec<Choice>,
     /// Legs passed there without a waypoint of their own; emptied with the choices.
-    pub marks: Vec<Mark>,
+    pub silent_legs: Vec<SilentLeg>,
     /// Circled here for so many seconds, then left by itself.
     pub wait_s: Option<f64>,
     /// The cursor after those choices.
@@ -43,10 +43,10 @@ pub struct Handed {
     pub pinned: bool,
 }
 
-/// How the path goes on after the last waypoint handed out.
+/// How the path goes on after the last waypoint issued.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Onward {
-    /// More can be handed out.
+pub enum Continuation {
+    /// More can be issued.
     Open,
     /// The last one ends the plan.
     Ended,
@@ -60,15 +60,15 @@ pub enum Onward {
 #[derive(Debug, Clone)]
 pub struct Stretch {
     /// Its waypoints, without tokens (all zero).
-    pub handed: Vec<Handed>,
+    pub issued: Vec<IssuedWaypoint>,
     /// The cursor after the last.
     pub tail: Cursor,
     /// How it goes on.
-    pub onward: Onward,
+    pub continuation: Continuation,
     /// What happens after the last waypoint.
-    pub tail_notes: Notes,
+    pub tail_notes: CursorLog,
     /// What went wrong on the way.
-    pub troubles: Vec<Trouble>,
+    pub errors: Vec<LayoutError>,
 }
 
 /// Lays out path from a cursor, as long as `more(count, end of path)` asks for it.
@@ -83,20 +83,20 @@ pub fn lay_out(
     mut more: impl FnMut(usize, &Cursor) -> bool,
 ) -> Stretch {
     let mut stretch = Stretch {
-        handed: Vec::new(),
+        issued: Vec::new(),
         tail: from.clone(),
-        onward: Onward::Open,
-        tail_notes: Notes::default(),
-        troubles: Vec::new(),
+        continuation: Continuation::Open,
+        tail_notes: CursorLog::default(),
+        errors: Vec::new(),
     };
     let mut world = World { arriving, ..*world };
-    while stretch.onward == Onward::Open && more(stretch.handed.len(), &stretch.tail) {
+    while stretch.continuation == Continuation::Open && more(stretch.issued.len(), &stretch.tail) {
         let before = stretch.tail.clone();
         let step = stretch.tail.next(&world);
         world.arriving = false;
         stretch.take(step, before, marked, &world);
     }
-    if stretch.onward == Onward::Open && stretch.tail.at_the_end_of_its_leg() {
+    if stretch.continuation == Continuation::Open && stretch.tail.at_the_end_of_its_leg() {
         stretch.look_for_the_end(&world);
     }
     stretch
@@ -106,29 +106,29 @@ impl Stretch {
     fn take(&mut self, step: Step, before: Cursor, marked: bool, world: &World) {
         match step {
             Step::Waypoint(emission) => {
-                self.handed.push(handed(*emission, before, &self.tail, world, &mut self.troubles))
+                self.issued.push(issued(*emission, before, &self.tail, world, &mut self.errors))
             }
             Step::Ended { mut notes } => {
                 self.tail = before;
-                self.troubles.append(&mut notes.troubles);
+                self.errors.append(&mut notes.errors);
                 self.tail_notes = notes;
                 self.end(marked, world);
             }
-            Step::Waiting => self.onward = Onward::Waiting,
+            Step::Waiting => self.continuation = Continuation::Waiting,
             Step::Stalled { .. } => {
                 self.tail = before;
-                self.onward = Onward::Stalled;
+                self.continuation = Continuation::Stalled;
             }
         }
     }
 
     /// The end is marked on the last waypoint; a plan that turns out to be over where the aircraft is gets one there.
     fn end(&mut self, marked: bool, world: &World) {
-        self.onward = Onward::Ended;
-        if self.handed.is_empty() && marked {
+        self.continuation = Continuation::Ended;
+        if self.issued.is_empty() && marked {
             return;
         }
-        if let Some(last) = self.handed.last_mut() {
+        if let Some(last) = self.issued.last_mut() {
             last.waypoint.end_of_plan = true;
             return;
         }
@@ -143,34 +143,34 @@ impl Stretch {
             fly_over: true,
             wait_s: None,
             // what led to the end is told there
-            notes: Notes::default(),
+            notes: CursorLog::default(),
             sealed: None,
         };
-        let mut last = handed(emission, self.tail.clone(), &self.tail, world, &mut self.troubles);
+        let mut last = issued(emission, self.tail.clone(), &self.tail, world, &mut self.errors);
         last.waypoint.end_of_plan = true;
         last.pinned = true;
-        self.handed.push(last);
+        self.issued.push(last);
     }
 
     /// The horizon may end just where the plan does; then the mark must not come too late.
     fn look_for_the_end(&mut self, world: &World) {
         let mut ahead = self.tail.clone();
-        if let (Step::Ended { notes }, Some(last)) = (ahead.next(world), self.handed.last_mut()) {
+        if let (Step::Ended { notes }, Some(last)) = (ahead.next(world), self.issued.last_mut()) {
             last.waypoint.end_of_plan = true;
             self.tail_notes = notes;
-            self.onward = Onward::Ended;
+            self.continuation = Continuation::Ended;
         }
     }
 }
 
-fn handed(
+fn issued(
     emission: Emission,
     before: Cursor,
     after: &Cursor,
     world: &World,
-    troubles: &mut Vec<Trouble>,
-) -> Handed {
-    troubles.extend(emission.notes.troubles);
+    errors: &mut Vec<LayoutError>,
+) -> IssuedWaypoint {
+    errors.extend(emission.notes.errors);
     let place = after.place(world);
     let waypoint = Waypoint {
         token: Token(0),
@@ -182,12 +182,12 @@ fn handed(
         leg: place.leg.clone(),
         end_of_plan: false,
     };
-    Handed {
+    IssuedWaypoint {
         waypoint,
         place,
         before,
         choices: emission.notes.choices,
-        marks: emission.notes.marks,
+        silent_legs: emission.notes.silent_legs,
         wait_s: emission.wait_s,
         sealed: emission.sealed,
         passage: after.passage,
@@ -199,9 +199,9 @@ fn handed(
     }
 }
 
-impl Handed {
+impl IssuedWaypoint {
     /// It is what the other one is, for the autopilot and for the plan.
-    pub fn is_same_as(&self, other: &Handed) -> bool {
+    pub fn is_same_as(&self, other: &IssuedWaypoint) -> bool {
         let (a, b) = (&self.waypoint, &other.waypoint);
         a.leg == b.leg
             && a.action == b.action
@@ -214,25 +214,25 @@ impl Handed {
     }
 
     /// It is at the same place as the other one.
-    pub fn is_where(&self, other: &Handed) -> bool {
+    pub fn is_where(&self, other: &IssuedWaypoint) -> bool {
         distance_m(self.waypoint.position, other.waypoint.position) < SAME_M
     }
 
     /// Makes what happens before it final.
-    pub fn seal(&mut self) -> (Vec<Choice>, Vec<Mark>) {
+    pub fn seal(&mut self) -> (Vec<Choice>, Vec<SilentLeg>) {
         if let Some(sealed) = self.sealed.take() {
             self.before = *sealed;
         }
-        (std::mem::take(&mut self.choices), std::mem::take(&mut self.marks))
+        (std::mem::take(&mut self.choices), std::mem::take(&mut self.silent_legs))
     }
 
     /// Makes what happens before a wait final, all but the choice that is waited for: that bookmark is at the intersection.
-    pub fn seal_before_wait(&mut self) -> (Vec<Choice>, Vec<Mark>) {
+    pub fn seal_before_wait(&mut self) -> (Vec<Choice>, Vec<SilentLeg>) {
         let waiting = self.sealed.as_deref().unwrap_or(&self.before).clone();
         let passage = waiting.passage.saturating_sub(1);
-        self.before = Cursor { doing: Doing::Arriving, expansion: None, given: 0, passage, ..waiting };
+        self.before = Cursor { doing: CursorPhase::Arriving, expansion: None, given: 0, passage, ..waiting };
         let open = self.choices.split_off(self.choices.len().saturating_sub(1));
-        (std::mem::replace(&mut self.choices, open), std::mem::take(&mut self.marks))
+        (std::mem::replace(&mut self.choices, open), std::mem::take(&mut self.silent_legs))
     }
 
     /// A loop that it is in will be flown so often, as its place says and the choice that led to it.
@@ -262,13 +262,13 @@ impl Handed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::{Level, Passing, PathState};
+    use crate::path::{Level, PathEnd, PathState};
     use flight_plan::AltitudeReference;
     use geometry::LatLon;
 
-    fn at_rest() -> Handed {
+    fn at_rest() -> IssuedWaypoint {
         let level = Level { metres: 500.0, reference: AltitudeReference::Amsl };
-        let last = Passing { position: LatLon::new(36.5, -84.2), level, airspeed_mps: 25.0, fly_over: false };
+        let last = PathEnd { position: LatLon::new(36.5, -84.2), level, airspeed_mps: 25.0, fly_over: false };
         let path = PathState {
             last,
             course_deg: 0.0,
@@ -296,12 +296,12 @@ mod tests {
             reverse: false,
             distance_m: 0.0,
         };
-        Handed {
+        IssuedWaypoint {
             waypoint,
             place,
             before: cursor,
             choices: Vec::new(),
-            marks: Vec::new(),
+            silent_legs: Vec::new(),
             wait_s: None,
             sealed: None,
             passage: 1,
@@ -316,7 +316,7 @@ mod tests {
     /// Each of them is something that the autopilot or the plan would do otherwise; a token is no difference.
     #[test]
     fn one_difference_makes_another_waypoint() {
-        type Change = fn(&mut Handed);
+        type Change = fn(&mut IssuedWaypoint);
         let changes: [(&str, Change, bool); 11] = [
             ("token", |h| h.waypoint.token = Token(9), true),
             ("a hand's breadth", |h| h.waypoint.position.lat_deg += 1e-6, true),

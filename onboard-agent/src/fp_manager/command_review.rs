@@ -14,7 +14,7 @@ use usal::contract::{Command, Empty, Refusal};
 
 /// Most commands that wait.
 const MOST_WAITING: usize = 16;
-/// Looks at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
+/// CommandReview at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
 const MOST_LOOKS: u32 = 3;
 
 /// A command that wants its answer.
@@ -41,7 +41,7 @@ pub enum Verdict {
 
 /// The commands that wait, the first of them being looked at.
 #[derive(Default)]
-pub struct Looks {
+pub struct CommandReview {
     waiting: VecDeque<Waiting>,
     look: Option<Look>,
 }
@@ -58,7 +58,7 @@ struct Look {
     turns: u64,
 }
 
-impl Looks {
+impl CommandReview {
     /// It has to wait: to be looked at, or because its asker's earlier one does, if it is a write.
     pub fn concern(&self, asked: &Asked, manager: &Manager) -> bool {
         let behind = || self.waiting.iter().any(|waiting| waiting.asked.by == asked.by);

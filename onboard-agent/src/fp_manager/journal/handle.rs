@@ -1,8 +1,8 @@
 //! Shell: the thread that owns the disk, and the handle to it. The flight waits for the disk where it must, and
 //! never long: a slow disk is a trouble that is told, not one that is flown into.
 
-use super::clerk::{Clerk, Job, Report};
 use super::storage::Storage;
+use super::writer::{Job, Report, Writer};
 use anyhow::Context;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -17,8 +17,8 @@ const DOCUMENT_PATIENCE: Duration = Duration::from_secs(60);
 const WAITING_MAX: usize = 8 << 20;
 
 /// The journal, as the flight sees it.
-pub struct Keeper {
-    desk: Arc<Desk>,
+pub struct JournalHandle {
+    queue: Arc<JobQueue>,
     progress: watch::Receiver<Progress>,
     /// Number of the last job given.
     given: u64,
@@ -41,7 +41,7 @@ struct Progress {
 
 /// Where the thread finds its jobs.
 #[derive(Default)]
-struct Desk {
+struct JobQueue {
     slot: Mutex<Slot>,
     changed: Condvar,
 }
@@ -55,21 +55,21 @@ struct Slot {
     closed: bool,
 }
 
-impl Keeper {
+impl JournalHandle {
     /// Starts the thread.
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start<S: Storage + Send + 'static>(clerk: Clerk<S>) -> anyhow::Result<Self> {
-        let desk = Arc::<Desk>::default();
-        let report = clerk.report(Duration::ZERO);
+    pub fn start<S: Storage + Send + 'static>(writer: Writer<S>) -> anyhow::Result<Self> {
+        let queue = Arc::<JobQueue>::default();
+        let report = writer.report(Duration::ZERO);
         let (sender, progress) = watch::channel(Progress { done: 0, writing: false, report });
-        let theirs = desk.clone();
+        let theirs = queue.clone();
         std::thread::Builder::new()
             .name("fp-manager-disk".into())
-            .spawn(move || work(clerk, &theirs, &sender))
+            .spawn(move || work(writer, &theirs, &sender))
             .context("the thread that writes the journal")?;
-        Ok(Self { desk, progress, given: 0, state: 0, behind: false, told: false })
+        Ok(Self { queue, progress, given: 0, state: 0, behind: false, told: false })
     }
 
     /// Has a job done, after those given before.
@@ -78,7 +78,7 @@ impl Keeper {
         if matches!(job, Job::State(..)) {
             self.state = self.given;
         }
-        let mut slot = self.desk.lock();
+        let mut slot = self.queue.lock();
         slot.last = self.given;
         slot.bytes += job.bytes();
         if slot.bytes > WAITING_MAX {
@@ -88,7 +88,7 @@ impl Keeper {
             slot.jobs.push(job);
         }
         drop(slot);
-        self.desk.changed.notify_one();
+        self.queue.changed.notify_one();
     }
 
     /// Has a proposal's document on the disk, while the flight goes on; the future ends when it is there, when the disk
@@ -107,11 +107,11 @@ impl Keeper {
     /// Something could not even be given: only a new state helps.
     pub fn lose(&mut self) {
         self.given += 1;
-        let mut slot = self.desk.lock();
+        let mut slot = self.queue.lock();
         slot.last = self.given;
         slot.overrun = true;
         drop(slot);
-        self.desk.changed.notify_one();
+        self.queue.changed.notify_one();
     }
 
     /// Waits until everything given is done, but not for long.
@@ -153,14 +153,14 @@ impl Keeper {
     }
 }
 
-impl Drop for Keeper {
+impl Drop for JournalHandle {
     fn drop(&mut self) {
-        self.desk.lock().closed = true;
-        self.desk.changed.notify_one();
+        self.queue.lock().closed = true;
+        self.queue.changed.notify_one();
     }
 }
 
-impl Desk {
+impl JobQueue {
     fn lock(&self) -> MutexGuard<'_, Slot> {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -184,23 +184,23 @@ impl Desk {
     }
 }
 
-fn work<S: Storage>(mut clerk: Clerk<S>, desk: &Desk, progress: &watch::Sender<Progress>) {
+fn work<S: Storage>(mut writer: Writer<S>, queue: &JobQueue, progress: &watch::Sender<Progress>) {
     let start = Instant::now();
     loop {
-        let due = clerk.due().map(|due| due.saturating_sub(start.elapsed()));
-        let wait = if clerk.is_writing() { Some(Duration::ZERO) } else { due };
-        let Some((jobs, last, overrun)) = desk.take(wait) else { break };
+        let due = writer.due().map(|due| due.saturating_sub(start.elapsed()));
+        let wait = if writer.is_writing() { Some(Duration::ZERO) } else { due };
+        let Some((jobs, last, overrun)) = queue.take(wait) else { break };
         let now = start.elapsed();
         if overrun {
-            clerk.overrun(now);
+            writer.overrun(now);
         }
-        clerk.perform(now, jobs);
-        let report = clerk.report(now);
-        progress.send_replace(Progress { done: last, writing: clerk.is_writing(), report });
-        if clerk.is_writing() {
-            clerk.write_piece();
-            progress.send_modify(|progress| progress.writing = clerk.is_writing());
+        writer.perform(now, jobs);
+        let report = writer.report(now);
+        progress.send_replace(Progress { done: last, writing: writer.is_writing(), report });
+        if writer.is_writing() {
+            writer.write_piece();
+            progress.send_modify(|progress| progress.writing = writer.is_writing());
         }
     }
-    clerk.finish(start.elapsed());
+    writer.finish(start.elapsed());
 }

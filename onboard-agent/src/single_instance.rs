@@ -13,7 +13,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 
 /// Another one is there: a restart would not help.
 #[derive(Debug, thiserror::Error)]
-pub enum Taken {
+pub enum AlreadyRunning {
     /// On the same folder.
     #[error(
         "another {service} uses the state directory {folder}: end that one, or name another directory with --state-dir"
@@ -44,7 +44,7 @@ pub struct Lock(#[expect(dead_code, reason = "the system holds the lock as long 
 ///
 /// # Errors
 /// Another process has it.
-pub async fn lock(folder: Option<&Path>, service: &'static str) -> Result<Option<Lock>, Taken> {
+pub async fn lock(folder: Option<&Path>, service: &'static str) -> Result<Option<Lock>, AlreadyRunning> {
     match folder {
         Some(folder) => lock_within(PATIENCE, folder, service).await,
         None => Ok(None),
@@ -55,7 +55,7 @@ async fn lock_within(
     patience: Duration,
     folder: &Path,
     service: &'static str,
-) -> Result<Option<Lock>, Taken> {
+) -> Result<Option<Lock>, AlreadyRunning> {
     let path = folder.join(format!("{service}.lock"));
     let unlocked = |error: std::io::Error| {
         tracing::warn!(%error, file = %path.display(), "the state directory can't be kept for this process alone");
@@ -73,7 +73,7 @@ async fn lock_within(
             Ok(()) => return Ok(Some(Lock(file))),
             Err(TryLockError::WouldBlock) if since.elapsed() < patience => tokio::time::sleep(PAUSE).await,
             Err(TryLockError::WouldBlock) => {
-                return Err(Taken::Folder { service, folder: folder.display().to_string() });
+                return Err(AlreadyRunning::Folder { service, folder: folder.display().to_string() });
             }
             Err(TryLockError::Error(error)) => return unlocked(error),
         }
@@ -83,12 +83,12 @@ async fn lock_within(
 /// Sees to it that nobody announces this service on the session's network, as far as its hub is there.
 ///
 /// # Errors
-/// Somebody does ([`Taken`]), or the session is closed.
+/// Somebody does ([`AlreadyRunning`]), or the session is closed.
 pub async fn expect_nobody(session: &Session, service: &'static str) -> anyhow::Result<()> {
     let since = Instant::now();
     while session.is_announced(service).await? {
         if since.elapsed() >= PATIENCE {
-            return Err(Taken::Vehicle { service, vehicle: session.vehicle().to_owned() }.into());
+            return Err(AlreadyRunning::Vehicle { service, vehicle: session.vehicle().to_owned() }.into());
         }
         tokio::time::sleep(PAUSE).await;
     }

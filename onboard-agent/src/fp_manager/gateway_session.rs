@@ -13,7 +13,7 @@ const ATTEMPTS: u32 = 5;
 
 /// Where we stand.
 #[derive(Debug, Default)]
-pub struct Liaison {
+pub struct GatewaySession {
     joined: bool,
     joining: bool,
     not_before: Option<Time>,
@@ -60,7 +60,7 @@ impl Wish {
     }
 }
 
-impl Liaison {
+impl GatewaySession {
     /// As an earlier process knew it: what it wanted, and whether it had control.
     pub fn restored(wanted: Option<GatewayRequest>, controlled: bool) -> Self {
         Self { wanted: wanted.map(Wish::new), controlled, ..Self::default() }
@@ -229,11 +229,15 @@ mod tests {
 
     #[test]
     fn who_waits_for_safe_mode_does_not_make_do_with_a_hold() {
-        let mut liaison = Liaison::restored(Some(GatewayRequest::Safe), false);
-        liaison.want(GatewayRequest::Hold);
-        assert_eq!(liaison.wanted(), Some(&GatewayRequest::Safe));
-        liaison.state(Duration::ZERO, GatewayState::Stop);
-        liaison.want(GatewayRequest::Hold);
-        assert_eq!(liaison.wanted(), Some(&GatewayRequest::Hold), "on the ground nobody waits for it");
+        let mut gateway_session = GatewaySession::restored(Some(GatewayRequest::Safe), false);
+        gateway_session.want(GatewayRequest::Hold);
+        assert_eq!(gateway_session.wanted(), Some(&GatewayRequest::Safe));
+        gateway_session.state(Duration::ZERO, GatewayState::Stop);
+        gateway_session.want(GatewayRequest::Hold);
+        assert_eq!(
+            gateway_session.wanted(),
+            Some(&GatewayRequest::Hold),
+            "on the ground nobody waits for it"
+        );
     }
 }

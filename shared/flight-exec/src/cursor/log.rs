@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 
 /// Choices, legs passed, and what went wrong, each in order.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Notes {
+pub struct CursorLog {
     /// Choices made.
     pub choices: Vec<Choice>,
     /// Legs with actions that were passed without a waypoint of their own.
-    pub marks: Vec<Mark>,
+    pub silent_legs: Vec<SilentLeg>,
     /// Legs that can't be flown, expressions that have no value.
-    pub troubles: Vec<Trouble>,
+    pub errors: Vec<LayoutError>,
 }
 
 /// A leg that flew nothing, because the path was there already.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mark {
+pub struct SilentLeg {
     /// The leg.
     pub leg: Id,
     /// Its passage.
@@ -27,7 +27,7 @@ pub struct Mark {
 
 /// Something of a leg that doesn't work with the values of now.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Trouble {
+pub enum LayoutError {
     /// It can't be flown, and is left out.
     Leg {
         /// The leg.
@@ -51,7 +51,7 @@ pub enum Trouble {
     },
 }
 
-impl Trouble {
+impl LayoutError {
     /// Nothing is known of the ground at a position from which a leg's altitude counts.
     pub(super) fn unknown_ground(leg: Id, LatLon { lat_deg, lon_deg }: LatLon) -> Self {
         let reason = format!(
@@ -61,10 +61,10 @@ impl Trouble {
     }
 }
 
-impl Notes {
+impl CursorLog {
     /// Nothing that a bookmark would have to come after.
     pub fn is_empty(&self) -> bool {
-        self.choices.is_empty() && self.marks.is_empty()
+        self.choices.is_empty() && self.silent_legs.is_empty()
     }
 
     /// A value, or a note why it has none.
@@ -73,6 +73,6 @@ impl Notes {
     }
 
     fn no_value(&mut self, leg: &Id, why: &EvalError) {
-        self.troubles.push(Trouble::Expression { leg: leg.clone(), reason: why.to_string() });
+        self.errors.push(LayoutError::Expression { leg: leg.clone(), reason: why.to_string() });
     }
 }

@@ -19,7 +19,7 @@ const MOST_LOOKS: f64 = 500.0;
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins: Vec<Origin> = view.origins(EVERY_S).filter(|from| view.is_steered(&from.leg)).collect();
     for (index, alternate) in alternates(view) {
-        let applies = |from: &&Origin| view.in_force.plans(&from.leg).any(|plan| plan == index);
+        let applies = |from: &&Origin| view.emergency_coverage.plans(&from.leg).any(|plan| plan == index);
         let (mut zones, mut hill) = (HashSet::new(), false);
         for from in origins.iter().filter(applies) {
             through_zones(view, &alternate, from, &mut zones, problems);

@@ -57,14 +57,14 @@ pub struct Report {
 }
 
 /// Keeps a log.
-pub struct Clerk<S> {
+pub struct Writer<S> {
     log: Log<S>,
     trouble: Option<String>,
     dirty_since: Option<Time>,
     not_before: Time,
 }
 
-impl<S: Storage> Clerk<S> {
+impl<S: Storage> Writer<S> {
     /// Of a log that has no state yet; `trouble`: it could not be read.
     pub fn new(log: Log<S>, trouble: Option<&io::Error>) -> Self {
         Self { log, trouble: trouble.map(advice), dirty_since: None, not_before: Time::ZERO }

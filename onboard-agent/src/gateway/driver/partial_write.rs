@@ -19,7 +19,7 @@ const PATIENCE: u32 = 30;
 
 /// One write.
 #[derive(Debug, Clone)]
-pub struct Salvo {
+pub struct PartialWrite {
     start: u16,
     items: Vec<Item>,
     /// Read back as wanted.
@@ -32,7 +32,7 @@ pub struct Salvo {
     probe: Option<Time>,
 }
 
-impl Salvo {
+impl PartialWrite {
     /// Begins a write; `rto` carries over what is known of the link.
     pub fn begin(
         now: Time,
@@ -43,10 +43,11 @@ impl Salvo {
         out: &mut Vec<MavMessage>,
     ) -> Self {
         let confirmed = vec![false; items.len()];
-        let mut salvo = Self { start, items, confirmed, differs: None, rounds: 0, rto, probe: Some(now) };
-        salvo.rto.start(now);
-        salvo.round(peer, out);
-        salvo
+        let mut partial_write =
+            Self { start, items, confirmed, differs: None, rounds: 0, rto, probe: Some(now) };
+        partial_write.rto.start(now);
+        partial_write.round(peer, out);
+        partial_write
     }
 
     /// What was learnt of the link.

@@ -9,7 +9,7 @@ use std::mem::discriminant;
 use std::sync::Arc;
 
 /// The setting of a plan.
-pub(super) struct Setting {
+pub(super) struct PlanContext {
     fixes: Vec<Fix>,
     variables: Vec<Variable>,
     runways: Vec<Runway>,
@@ -28,7 +28,7 @@ pub(super) struct Moved {
     sources: HashSet<Arc<str>>,
 }
 
-impl Setting {
+impl PlanContext {
     /// That of a plan. What stayed in it since `last` is not copied again.
     pub fn of(plan: &FlightPlan, last: Option<Self>) -> Self {
         let (fixes, variables) = last.map_or_else(Default::default, |last| (last.fixes, last.variables));

@@ -2,7 +2,7 @@
 
 use super::extent::Region;
 use super::inspection::{Expressions, Inspection};
-use super::setting::{Moved, Setting};
+use super::plan_context::{Moved, PlanContext};
 use super::step::{Around, Point, Step};
 use crate::ids::Ids;
 use crate::{FlightPlan, Leg};
@@ -14,19 +14,19 @@ use terrain::Terrain;
 ///
 /// Legs that both plans share (an edit copies only those that it changes), that are entered as before and have the same around them
 /// are not looked at again.
-pub struct Memory {
+pub struct IncrementalCache {
     pub(super) profile: Profile,
     pub(super) terrain: Arc<dyn Terrain>,
     pub(super) last: Option<Last>,
 }
 
-impl std::fmt::Debug for Memory {
+impl std::fmt::Debug for IncrementalCache {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Memory").field("profile", &self.profile.name).finish_non_exhaustive()
+        f.debug_struct("IncrementalCache").field("profile", &self.profile.name).finish_non_exhaustive()
     }
 }
 
-impl Memory {
+impl IncrementalCache {
     /// Nothing is remembered yet. The terrain must stay as it is: with other elevations, make a new memory.
     pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
         Self { profile, terrain, last: None }
@@ -35,7 +35,7 @@ impl Memory {
 
 /// The last check.
 pub(super) struct Last {
-    setting: Setting,
+    setting: PlanContext,
     steps: Vec<Step>,
     expressions: Arc<Expressions>,
     ids: Arc<Ids>,
@@ -44,7 +44,7 @@ pub(super) struct Last {
 impl Last {
     /// Keeps a check for the next one.
     pub fn of(inspection: Inspection, recall: Recall) -> Self {
-        let setting = Setting::of(inspection.plan, recall.setting);
+        let setting = PlanContext::of(inspection.plan, recall.setting);
         let (steps, expressions, ids) = inspection.into_parts();
         Self { setting, steps, expressions, ids }
     }
@@ -62,7 +62,7 @@ pub(super) struct Recall {
     left: usize,
     /// Of each new step: the old one of the same leg, and what followed that.
     from: Vec<Option<Origin>>,
-    setting: Option<Setting>,
+    setting: Option<PlanContext>,
     moved: Moved,
     pub expressions: Arc<Expressions>,
     pub ids: Arc<Ids>,

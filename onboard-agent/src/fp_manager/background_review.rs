@@ -15,7 +15,7 @@ type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
 
 /// What is looked at afterwards: one way at a time, then the latest.
 #[derive(Default)]
-pub struct Afterwards {
+pub struct BackgroundReview {
     look: Option<Look>,
     /// Taken since; the way being looked at is not flown any more.
     next: Option<Review>,
@@ -26,7 +26,7 @@ struct Look {
     since: Instant,
 }
 
-impl Afterwards {
+impl BackgroundReview {
     /// Has a way looked at.
     pub fn look(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static) {
         match self.look {
@@ -70,14 +70,14 @@ mod tests {
         (0..count).map(|i| Problem::error("keep-out", format!("{i} of {count}"))).collect()
     }
 
-    async fn reasons(afterwards: &mut Afterwards) -> Vec<String> {
+    async fn reasons(afterwards: &mut BackgroundReview) -> Vec<String> {
         let events = afterwards.next().await.into_iter();
         events.map(|event| format!("{event:?}")).collect()
     }
 
     #[tokio::test]
     async fn only_the_way_taken_last_is_told_of() {
-        let mut afterwards = Afterwards::default();
+        let mut afterwards = BackgroundReview::default();
         for count in 1..=3 {
             afterwards.look(move || problems(count));
         }
@@ -90,7 +90,7 @@ mod tests {
 
     #[tokio::test]
     async fn very_many_problems_and_a_review_that_fails() {
-        let mut afterwards = Afterwards::default();
+        let mut afterwards = BackgroundReview::default();
         afterwards.look(|| problems(1000));
         assert_eq!(reasons(&mut afterwards).await.len(), MOST_TOLD);
         afterwards.look(|| panic!("for the test"));
