@@ -1,7 +1,7 @@
 //! The fire-watch mission's logic: a service above the plan that sees the fire grow and move, decides at the
 //! intersection, sends a new plan and tells when the fire is out. Pure; the preview follows the same steps.
 
-use flight_exec::preview::{self, Scenario, Trigger};
+use flight_exec::rehearse::{self, Scenario, Trigger};
 use flight_exec::{Command, Event, PlacePointer, Token};
 use flight_plan::{
     Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Program, Spot, Value, VariableValue,
@@ -205,22 +205,22 @@ pub fn scenario(
     let mut triggers = Vec::new();
     for step in steps {
         let at = match &step.when {
-            When::On { leg, iteration, waypoints } => preview::When::Waypoints {
+            When::On { leg, iteration, waypoints } => rehearse::When::Waypoints {
                 leg: leg.clone(),
                 iteration: (*iteration > 0).then_some(*iteration),
                 count: *waypoints,
             },
             When::Asked { .. } => match asked_s.next() {
-                Some(seconds) => preview::When::After { seconds: *seconds },
+                Some(seconds) => rehearse::When::After { seconds: *seconds },
                 None => continue,
             },
         };
         let mut then = Vec::new();
         for act in &step.acts {
             then.push(match act {
-                Act::Command(command) => preview::Act::Command(command.clone()),
+                Act::Command(command) => rehearse::Act::Command(command.clone()),
                 Act::Update(edit) => {
-                    preview::Act::Update { program: compile(edit.apply(plan)?)?, entry: None }
+                    rehearse::Act::Update { program: compile(edit.apply(plan)?)?, entry: None }
                 }
             });
         }

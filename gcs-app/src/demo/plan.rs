@@ -9,7 +9,7 @@ use crate::report::{Record, Track, assemble, authored};
 use aircraft::{Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
-use flight_exec::preview::Preview;
+use flight_exec::rehearse::Preview;
 use flight_plan::{FlightPlan, Program, Runway, StageKind};
 use std::sync::Arc;
 use terrain::Terrain;

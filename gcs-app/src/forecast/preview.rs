@@ -2,7 +2,7 @@
 
 use super::{Forecast, Passage, Point, Shared};
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Kept, Options, Preview, PreviewError, Rehearsal, Start};
+use flight_exec::rehearse::{Kept, Options, Preview, PreviewError, Rehearsal, Start};
 use flight_plan::{FlightPlan, Program};
 use geometry::LocalFrame;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use super::wind::Air;
 use super::{check, forecast, select};
 use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
-use flight_exec::preview::{Act, Scenario, Trigger, When};
+use flight_exec::rehearse::{Act, Scenario, Trigger, When};
 use flight_plan::{Change, FlightPlan, Id, Problem};
 use std::path::Path;
 use std::process::ExitCode;

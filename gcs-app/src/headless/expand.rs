@@ -5,7 +5,7 @@ use super::output::{DASH, Output, or_stdout};
 use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
-use flight_exec::preview::Preview;
+use flight_exec::rehearse::Preview;
 use flight_plan::Program;
 use interchange::{Export, Note, csv};
 use std::path::{Path, PathBuf};

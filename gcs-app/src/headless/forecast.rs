@@ -3,7 +3,7 @@
 use super::source::Loaded;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Options, Preview, PreviewError, Scenario, Start, preview_with};
+use flight_exec::rehearse::{Options, Preview, PreviewError, Scenario, Start, preview_with};
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Place, Program, Value};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashMap;

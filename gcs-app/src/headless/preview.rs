@@ -5,7 +5,7 @@ use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use crate::report;
-use flight_exec::preview::Preview;
+use flight_exec::rehearse::Preview;
 use flight_plan::Id;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

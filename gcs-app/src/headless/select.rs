@@ -2,7 +2,7 @@
 
 use super::source::Loaded;
 use anyhow::{anyhow, bail};
-use flight_exec::preview::{Act, Preview, Scenario, Trigger, When};
+use flight_exec::rehearse::{Act, Preview, Scenario, Trigger, When};
 use flight_exec::{Branching, Command};
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;

@@ -3,6 +3,9 @@
 use geometry::Vec2;
 use serde::{Deserialize, Serialize};
 
+/// Least speed over the ground with which a place is still reached, m/s.
+const LEAST_GROUND_MPS: f64 = 1.0;
+
 /// A constant wind: where it blows **to**, m/s over the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Wind {
@@ -36,6 +39,15 @@ impl Wind {
     pub fn vector(&self) -> Vec2 {
         Vec2::new(self.east_mps, self.north_mps)
     }
+
+    /// Speed over the ground of an aircraft that flies a track (degrees true) in this wind at an airspeed, m/s; `None` if the wind is
+    /// too strong for it. (Wind triangle.)
+    pub fn ground_speed_mps(&self, airspeed_mps: f64, track_deg: f64) -> Option<f64> {
+        let along = Vec2::from_bearing_rad(track_deg.to_radians());
+        let (with_mps, across_mps) = (self.vector().dot(along), self.vector().cross(along));
+        let through_mps = (airspeed_mps * airspeed_mps - across_mps * across_mps).max(0.0).sqrt();
+        Some(through_mps + with_mps).filter(|v| *v > LEAST_GROUND_MPS && across_mps.abs() < airspeed_mps)
+    }
 }
 
 #[cfg(test)]
@@ -51,6 +63,22 @@ mod tests {
             assert!((wind.east_mps - east).abs() < 1e-3 && (wind.north_mps - north).abs() < 1e-3);
             assert!((wind.direction_from_deg() - from).abs() < 1e-9);
             assert!((wind.speed_mps() - speed).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn wind_triangle_gives_the_ground_speed_or_none_if_the_track_cannot_be_held() {
+        let east = Wind { east_mps: 10.0, north_mps: 0.0 };
+        for (track_deg, airspeed_mps, ground_mps) in [
+            (90.0, 25.0, Some(35.0)),
+            (270.0, 25.0, Some(15.0)),
+            (0.0, 26.0, Some(24.0)),
+            (270.0, 10.5, None),
+            (0.0, 10.0, None),
+        ] {
+            let found = east.ground_speed_mps(airspeed_mps, track_deg);
+            let near = found.zip(ground_mps).is_none_or(|(a, b): (f64, f64)| (a - b).abs() < 1e-9);
+            assert!(found.is_some() == ground_mps.is_some() && near, "{track_deg} {airspeed_mps}: {found:?}");
         }
     }
 }

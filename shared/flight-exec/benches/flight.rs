@@ -5,7 +5,7 @@
 use aircraft::{Profile, Wind};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use flight_exec::preview::{Options, Scenario, Start};
+use flight_exec::rehearse::{Options, Scenario, Start};
 use flight_exec::{AircraftState, Command, Config, Executor, Input, Output, RequestId, Time, preview};
 use flight_plan::{Program, compile_document};
 use geometry::LatLon;
@@ -114,7 +114,7 @@ fn executor_step_progress(bencher: Bencher) {
 /// A million waypoints of a scan, through the cursor: six times round one of nearly 100,000 tracks, the most a plan may have.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn million_waypoints_of_a_scan(bencher: Bencher) {
-    use flight_exec::cursor::{Cursor, Step};
+    use flight_exec::layout::cursor::{Cursor, Step};
     let scan = r#"<iterative id="l" form="forward" count="6">
         <scan id="s" spacing="0.05" heading="0" overshoot="0"><area fix="A" radius="2490"/></scan></iterative>"#;
     let executor = Flying::start(scan).executor;

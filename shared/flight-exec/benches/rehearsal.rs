@@ -4,7 +4,7 @@
 
 use aircraft::{Profile, Wind};
 use divan::Bencher;
-use flight_exec::preview::{Options, Rehearsal, Scenario, Start, preview};
+use flight_exec::rehearse::{Options, Rehearsal, Scenario, Start, preview};
 use flight_plan::{Edit, FlightPlan, IncrementalCache, compile, compile_again};
 use geometry::LatLon;
 use std::sync::Arc;

@@ -1,11 +1,26 @@
 //! The virtual machine: inputs in, outputs out, time as an argument.
 
+pub(crate) mod actions;
+mod commands;
+mod emergency;
+mod progress;
+mod proposal;
+pub(crate) mod questions;
+mod refresh;
+mod replan;
+pub(crate) mod snapshot;
+pub(crate) mod state;
+mod status;
+mod update;
+
+pub use snapshot::{RestoreError, Snapshot};
+
 use crate::api::{Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
-use crate::config::Config;
-use crate::issued::IssuedWaypoint;
-use crate::path::{Level, PathEnd, PathState, distance_m};
-use crate::state::State;
-use crate::world::{ReadSet, World};
+use crate::executor::state::State;
+use crate::layout::path::{Level, PathEnd, PathState, distance_m};
+use crate::layout::stretch::IssuedWaypoint;
+use crate::layout::world::{ReadSet, World};
+use crate::value::Config;
 use aircraft::Profile;
 use flight_plan::{AltitudeReference, FlightState, Program, Variables};
 use geometry::LatLon;
@@ -122,7 +137,7 @@ impl Executor {
 
     fn advance_clock(&mut self, now: Time) {
         if let Some(last) = self.last_step {
-            self.state.clock_s += crate::world::seconds_between(last, now);
+            self.state.clock_s += crate::layout::world::seconds_between(last, now);
         }
         self.last_step = Some(self.last_step.map_or(now, |last| last.max(now)));
     }

@@ -3,42 +3,24 @@
 //! [`api`] is the whole conversation: inputs and outputs are closed enums, time is an argument,
 //! waypoints carry tokens and answers carry them back.
 //!
-//! A [`cursor`] walks the program and gives waypoint after waypoint; the [`Executor`] hands them out a bounded way
+//! A [`layout::cursor`] walks the program and gives waypoint after waypoint; the [`Executor`] hands them out a bounded way
 //! ahead, each with the bookmark (a clone of the cursor) it was made from. Whatever changes (a variable, a decision, a count,
 //! the plan) is answered in one way: go back to the first bookmark that may still be altered, lay the path out anew, and
 //! feed what differs as one transaction. Choices made ahead (loops, intersections, holdings) are provisional: they are read again
 //! while the aircraft approaches, and for the last time when it is there.
 
-mod actions;
 pub mod api;
-pub mod choice;
-mod commands;
-mod config;
-pub mod cursor;
-pub mod decision;
-mod emergency;
 mod executor;
-pub mod expand;
-mod issued;
-pub mod path;
-pub mod preview;
-mod progress;
-mod proposal;
-mod refresh;
-mod replan;
+pub mod layout;
+pub mod rehearse;
 pub mod review;
-mod snapshot;
-mod state;
-mod status;
-mod update;
-pub mod world;
+pub mod value;
 
 pub use api::*;
-pub use config::Config;
-pub use executor::Executor;
-pub use preview::{Preview, PreviewError, preview};
+pub use executor::{Executor, RestoreError, Snapshot};
+pub use rehearse::{Preview, PreviewError, preview};
 pub use review::{
     Conditions, Margins, compile_and_review, compile_and_review_ahead, review, review_ahead, review_command,
     review_extremes, review_turn,
 };
-pub use snapshot::{RestoreError, Snapshot};
+pub use value::Config;

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Act, Options, Scenario, Start, Trigger, When, preview_with};
+use flight_exec::rehearse::{Act, Options, Scenario, Start, Trigger, When, preview_with};
 use flight_exec::{Action, Command, Event, Preview, PreviewError, preview};
 use flight_plan::{Cause, Program, VariableValue, compile_document};
 use std::path::Path;
@@ -213,7 +213,7 @@ fn decision_by_default_at_its_deadline() {
 #[test]
 fn it_can_be_cancelled() {
     let mut told = 0;
-    let mut progress = |advance: &flight_exec::preview::Advance| {
+    let mut progress = |advance: &flight_exec::rehearse::Advance| {
         told += 1;
         advance.time_s < 100.0
     };

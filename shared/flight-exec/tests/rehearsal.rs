@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Options, Rehearsal, Scenario, Start};
+use flight_exec::rehearse::{Options, Rehearsal, Scenario, Start};
 use flight_exec::{Event, Preview, PreviewError, preview};
 use flight_plan::{Program, compile_document};
 use geometry::LatLon;
@@ -190,7 +190,7 @@ fn same(kept: &Preview, fresh: &Preview) -> Result<(), TestCaseError> {
         let alike = near(a.distance_m, b.distance_m, 1e6) && near(a.energy_j, b.energy_j, 3e7);
         prop_assert!(alike, "{a:?} instead of {b:?}");
         let b =
-            flight_exec::preview::LegPassage { distance_m: a.distance_m, energy_j: a.energy_j, ..b.clone() };
+            flight_exec::rehearse::LegPassage { distance_m: a.distance_m, energy_j: a.energy_j, ..b.clone() };
         prop_assert_eq!(a, &b);
     }
     let told = |flown: &Preview| -> Vec<_> {

@@ -12,7 +12,7 @@ use super::map::{arrow, draw_north, draw_places, draw_scale};
 use super::style::*;
 use super::view::View;
 use super::{assemble, zones};
-use flight_exec::preview::{FlownWaypoint, LegPassage, Preview};
+use flight_exec::rehearse::{FlownWaypoint, LegPassage, Preview};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::headless::{Source, forecast};
 use crate::report::canvas::count;
 use aircraft::Wind;
-use flight_exec::preview::Scenario;
+use flight_exec::rehearse::Scenario;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -4,13 +4,11 @@ use super::View;
 use super::flown::Flown;
 use aircraft::{Profile, Wind};
 use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway};
+use geometry::LatLon;
 use geometry::geodesy::normalise_180;
-use geometry::{LatLon, Vec2};
 
 /// Most places of a way out that a glide is led through.
 const MOST_PLACES: usize = 200;
-/// Least speed over the ground with which a place is still reached, m/s.
-const LEAST_GROUND_MPS: f64 = 1.0;
 
 /// An emergency plan.
 pub(super) struct Alternate<'a> {
@@ -77,22 +75,14 @@ fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
     let legs = plan.stages.iter().flat_map(|s| &s.legs);
     let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
     let mut route: Vec<LatLon> = places.take(MOST_PLACES).chain([runway.threshold]).collect();
-    route.dedup_by(|a, b| crate::path::distance_m(*a, *b) < 1.0);
+    route.dedup_by(|a, b| crate::layout::path::distance_m(*a, *b) < 1.0);
     route
-}
-
-/// Speed over the ground on a track in a wind, m/s; `None` if the wind is too strong for it. (Wind triangle.)
-pub(crate) fn ground_speed_mps(airspeed_mps: f64, track_deg: f64, wind: Wind) -> Option<f64> {
-    let along = Vec2::from_bearing_rad(track_deg.to_radians());
-    let (with_mps, across_mps) = (wind.vector().dot(along), wind.vector().cross(along));
-    let through_mps = (airspeed_mps * airspeed_mps - across_mps * across_mps).max(0.0).sqrt();
-    Some(through_mps + with_mps).filter(|v| *v > LEAST_GROUND_MPS && across_mps.abs() < airspeed_mps)
 }
 
 /// Seconds on the straight way from one place to another at the cruise speed; `None` if the wind doesn't let it.
 pub(super) fn flying_s(profile: &Profile, from: LatLon, to: LatLon, wind: Wind) -> Option<f64> {
-    let (distance_m, course_deg) = crate::path::distance_and_course(from, to);
-    Some(distance_m / ground_speed_mps(profile.cruise_airspeed_mps, course_deg, wind)?)
+    let (distance_m, course_deg) = crate::layout::path::distance_and_course(from, to);
+    Some(distance_m / wind.ground_speed_mps(profile.cruise_airspeed_mps, course_deg)?)
 }
 
 /// Angle between two courses, radians in 0..=π.

@@ -70,7 +70,7 @@ fn through_zones(
 fn into_terrain(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
     let time_s = flying_s(view.profile, from.position, alternate.entry, view.conditions.wind)?;
     let way = PathElement::Line { from: from.position, to: alternate.entry };
-    let length_m = crate::path::distance_m(from.position, alternate.entry);
+    let length_m = crate::layout::path::distance_m(from.position, alternate.entry);
     let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
     // where the flight itself is in the ground, another rule says so
     let ground_m = view.terrain.elevation_m(from.position)?;

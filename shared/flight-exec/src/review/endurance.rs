@@ -4,7 +4,7 @@
 
 use super::View;
 use super::flights::Choice;
-use crate::preview::{Preview, PreviewError};
+use crate::rehearse::{Preview, PreviewError};
 use flight_plan::{Id, LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {

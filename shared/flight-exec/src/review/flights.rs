@@ -11,14 +11,13 @@ use super::emergency_coverage::EmergencyCoverage;
 use super::flown::{Flown, Point, fly, tireless};
 use super::layout::{LaidOut, Outset, Way, counts, decisions, lay_out};
 use crate::api::{AircraftState, Command, Event, Output};
-use crate::config::Config;
-use crate::cursor::Cursor;
-use crate::decision::Decision;
 use crate::executor::Executor;
-use crate::path::{Level, PathEnd, PathState};
-use crate::preview::{
+use crate::layout::cursor::Cursor;
+use crate::layout::path::{Level, PathEnd, PathState};
+use crate::rehearse::{
     Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
 };
+use crate::value::{Config, Decision};
 use aircraft::{Aircraft, Profile, Wind};
 use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Variables};
 use geometry::LatLon;
@@ -111,7 +110,7 @@ impl Circumstances<'_> {
             return from.outset(None, &self.tireless);
         }
         let near = self.executor.alterable_from();
-        let laid_out = |h: &crate::issued::IssuedWaypoint| LaidOut {
+        let laid_out = |h: &crate::layout::stretch::IssuedWaypoint| LaidOut {
             waypoint: h.waypoint.clone(),
             wanted_amsl_m: h.waypoint.altitude_amsl_m,
             passage: h.passage,
@@ -284,7 +283,7 @@ impl Flights {
         let runway = program.plan.runway(&plan.runway)?.threshold;
         let all = || self.main.iter().flat_map(|flown| flown.points.iter().map(move |p| (flown, *p)));
         let farthest = |points: &mut dyn Iterator<Item = Point>| {
-            let far = |p: &Point| crate::path::distance_m(p.position, runway);
+            let far = |p: &Point| crate::layout::path::distance_m(p.position, runway);
             points.max_by(|a, b| far(a).total_cmp(&far(b)))
         };
         let applies = |(flown, p): &(&Flown, Point)| {
@@ -322,7 +321,7 @@ pub(super) fn points(planned: &Preview, every_s: f64) -> Vec<Origin> {
             leg: passage.place.leg.clone(),
             position: point.position,
             altitude_amsl_m: point.altitude_amsl_m,
-            course_deg: crate::path::distance_and_course(point.position, next.position).1,
+            course_deg: crate::layout::path::distance_and_course(point.position, next.position).1,
             time_s: point.time_s,
             used_j: before_j + share * passage.energy_j,
         });

@@ -10,7 +10,7 @@
 //! runway is ahead, or not yet out of sight. So are, for the fallback, those of departure and arrival: they climb and descend near it.
 
 use super::View;
-use super::alternates::{Alternate, Origin, alternates, ground_speed_mps, turn_rad};
+use super::alternates::{Alternate, Origin, alternates, turn_rad};
 use super::emergency_coverage::Engine;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
@@ -86,11 +86,11 @@ fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -
     let turn_s_per_rad = profile.turn_radius_m(speed_mps) / speed_mps;
     let (mut here, mut course_deg, mut height_m) = (from.position, from.course_deg, 0.0);
     for place in way {
-        let (distance_m, arrives_deg) = crate::path::distance_and_course(here, *place);
+        let (distance_m, arrives_deg) = crate::layout::path::distance_and_course(here, *place);
         if distance_m < 1.0 {
             continue;
         }
-        let ground_mps = ground_speed_mps(speed_mps, arrives_deg, view.conditions.wind)?;
+        let ground_mps = view.conditions.wind.ground_speed_mps(speed_mps, arrives_deg)?;
         height_m += distance_m / ground_mps * sink_mps;
         height_m += turn_rad(course_deg, arrives_deg) * turn_s_per_rad * turning_mps;
         (here, course_deg) = (*place, arrives_deg);
@@ -133,9 +133,9 @@ fn out_of_reach(
 fn hill(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
     let speed_mps = view.profile.cruise_airspeed_mps;
     let way = PathElement::Line { from: from.position, to: alternate.entry };
-    let (length_m, course_deg) = crate::path::distance_and_course(from.position, alternate.entry);
+    let (length_m, course_deg) = crate::layout::path::distance_and_course(from.position, alternate.entry);
     let slope = glide_sink_mps(view.profile, speed_mps, 1.0)
-        / ground_speed_mps(speed_mps, course_deg, view.conditions.wind)?;
+        / view.conditions.wind.ground_speed_mps(speed_mps, course_deg)?;
     let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
     let along = (0..looks as u32).map(|i| length_m * f64::from(i) / looks);
     let under = |along_m: f64| -> Option<LatLon> {

@@ -1,7 +1,7 @@
 //! `emergency-endless`: an emergency plan, flown as it stands with nobody's help, does not end on its runway.
 
 use super::View;
-use crate::preview::{Preview, PreviewError};
+use crate::rehearse::{Preview, PreviewError};
 use flight_plan::{Id, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {

@@ -1,11 +1,10 @@
 //! A plan laid out as waypoints, with the ways that are to be looked at chosen beforehand.
 
 use crate::api::{Action, Token, Waypoint};
-use crate::choice::{By, Choice};
-use crate::cursor::{Cursor, CursorPhase, LayoutError, Step};
-use crate::decision::Decision;
 use crate::executor::Executor;
-use crate::world::{LoopCount, World};
+use crate::layout::cursor::{Cursor, CursorPhase, LayoutError, Step};
+use crate::layout::world::World;
+use crate::value::{By, Choice, Decision, LoopCount};
 use flight_plan::{Id, LegKind, Program};
 use std::collections::{HashMap, HashSet};
 
@@ -194,7 +193,7 @@ impl Layout {
         self.hurried_from.get_or_insert(self.waypoints.len());
     }
 
-    fn take(&mut self, emission: crate::cursor::Emission, cursor: &Cursor, world: &World) {
+    fn take(&mut self, emission: crate::layout::cursor::Emission, cursor: &Cursor, world: &World) {
         let leg = cursor.place(world).leg;
         let last = &cursor.path.last;
         let waypoint = Waypoint {
@@ -218,7 +217,7 @@ impl Layout {
         self.note(emission.notes);
     }
 
-    fn note(&mut self, notes: crate::cursor::CursorLog) {
+    fn note(&mut self, notes: crate::layout::cursor::CursorLog) {
         for choice in notes.choices {
             if let Choice::Branch { leg, branch: Some(branch), .. } = choice {
                 self.taken.insert((leg, branch));

@@ -37,7 +37,6 @@ mod zones;
 pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_turn};
 use aircraft::{Profile, Wind};
 use alternates::Origin;
-pub(crate) use alternates::ground_speed_mps;
 use emergency_coverage::EmergencyCoverage;
 pub use extremes::{MOST_TRIALS, review_extremes};
 use flight_plan::{

@@ -60,7 +60,7 @@ impl StayIn<'_> {
             return nearest.and_then(|(zone, perhaps)| Some((*zone, zone.excursion(&piece)?, *perhaps)));
         }
         let climb_m = (to.altitude_amsl_m - from.altitude_amsl_m).abs();
-        let length_m = crate::path::distance_m(from.position, to.position);
+        let length_m = crate::layout::path::distance_m(from.position, to.position);
         let middle = middle(from, to);
         if halvings == 0 || near.len() == 1 || (length_m < self.finest_m() && climb_m < FINEST_CLIMB_M) {
             let surrounded = near.len() > 1 && self.is_surrounded(&near, middle);

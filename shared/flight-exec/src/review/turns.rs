@@ -5,11 +5,11 @@
 //! are laid out for the wind that is measured, so they are no matter of this.
 
 use super::View;
-use super::alternates::{ground_speed_mps, turn_rad};
+use super::alternates::turn_rad;
 use super::flown::Flown;
 use super::layout::LaidOut;
 use crate::api::Action;
-use crate::path::distance_and_course;
+use crate::layout::path::distance_and_course;
 use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
 use geometry::LatLon;
 use geometry::turn::radius_m;
@@ -96,7 +96,7 @@ fn turn(
     let wind = view.conditions.wind;
     // a wind that it can't fly across carries it along
     let ground_mps =
-        ground_speed_mps(airspeed_mps, course_deg, wind).unwrap_or(airspeed_mps + wind.speed_mps());
+        wind.ground_speed_mps(airspeed_mps, course_deg).unwrap_or(airspeed_mps + wind.speed_mps());
     Some(Turn {
         at: from,
         ground_mps,

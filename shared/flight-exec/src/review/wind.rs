@@ -5,8 +5,7 @@
 //! a warning, and a change is judged by what follows from it.
 
 use super::View;
-use super::alternates::ground_speed_mps;
-use crate::path::distance_and_course;
+use crate::layout::path::distance_and_course;
 use flight_plan::{Id, Problem};
 
 /// What is wrong.
@@ -46,7 +45,7 @@ fn first_held_up<'a>(view: &'a View) -> Option<(&'a Id, f64)> {
         let [from, to] = piece else { return None };
         let (length_m, course_deg) = distance_and_course(from.waypoint.position, to.waypoint.position);
         let airspeed_mps = to.waypoint.airspeed_mps;
-        let is_held_up = length_m > 0.0 && ground_speed_mps(airspeed_mps, course_deg, wind).is_none();
+        let is_held_up = length_m > 0.0 && wind.ground_speed_mps(airspeed_mps, course_deg).is_none();
         is_held_up.then_some((&to.waypoint.leg, airspeed_mps))
     });
     held_up.find(|(leg, _)| view.is_steered(leg))

@@ -7,7 +7,7 @@
 use super::View;
 use super::flown::Flown;
 use super::prepared::{At, Prepared, When};
-use crate::preview::Preview;
+use crate::rehearse::Preview;
 use flight_plan::{Id, Problem, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;

@@ -2,7 +2,7 @@
 
 use crate::rig::{GROUND_M, Rig, document_with, fix, program};
 use aircraft::{Profile, Wind};
-use flight_exec::preview::{Options, Scenario, Start};
+use flight_exec::rehearse::{Options, Scenario, Start};
 use flight_exec::{Command, Event, Input, ResolvedAct, Time, preview};
 use geometry::LatLon;
 use proptest::prelude::*;

@@ -161,7 +161,7 @@ fn a_holding_without_a_course_lies_as_the_aircraft_arrives() {
 /// Loops and intersections are walked through, not flown.
 #[test]
 fn control_legs_have_no_points() {
-    use flight_exec::expand::track::{Approach, expand};
+    use flight_exec::layout::expand::track::{Approach, expand};
     let legs = r#"<iterative id="l" form="forward" count="2"><TF id="a" fix="B1"/></iterative>
         <intersection id="x" default="on" decideBefore="9s"><branch id="on"/><branch id="back" next="l"/></intersection><TF id="z" fix="A3"/>"#;
     let rig = Rig::started(legs);

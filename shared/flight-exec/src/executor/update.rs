@@ -1,0 +1,223 @@
+//! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
+
+use crate::api::{Event, Output, Phase, Refusal};
+use crate::executor::{Executor, refusal};
+use crate::layout::cursor::{Cursor, CursorPhase};
+use crate::layout::translate::translated;
+use crate::layout::world::World;
+use flight_plan::{Id, LegPath, Program, Variable};
+use std::sync::Arc;
+
+impl Executor {
+    /// Makes the proposal the active plan.
+    pub(crate) fn commit(
+        &mut self,
+        hash: &str,
+        entry: Option<&Id>,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
+        let proposed = self.proposed.clone().filter(|p| **p.hash() == *hash).ok_or_else(|| {
+            let advice = "was not the last acceptable one proposed: propose it first";
+            refusal("not-proposed", format!("plan {hash} {advice}"))
+        })?;
+        if !self.is_flying() {
+            self.activate(proposed, out);
+            self.state.issued.clear();
+            self.state.tail = None;
+            self.enter_phase(Phase::Idle, out);
+            return Ok(());
+        }
+        match self.carried_over(&proposed, entry)? {
+            Carried::Enter(cursor) => {
+                self.activate(proposed, out);
+                self.jump(*cursor, out);
+            }
+            Carried::On { bookmarks, sealed, keep } => {
+                self.seal_in_the_new_plan(sealed);
+                self.go_on_in(proposed, &bookmarks, keep, out);
+            }
+        }
+        Ok(())
+    }
+
+    fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
+        self.carry_variables_over(&program, out);
+        self.state.seen_ahead_only = self.is_under_way();
+        self.state.revision += 1;
+        let event = Event::PlanActivated { hash: program.hash().clone(), revision: self.state.revision };
+        let before = std::mem::replace(&mut self.program, program);
+        self.proposed = None;
+        // what couldn't be flown in the old plan may come to be told again in the new one
+        self.state.told.clear();
+        self.carry_passages_over(&before);
+        self.forget_branches_gone();
+        out.push(Output::Event(event));
+    }
+
+    /// Values that the new plan doesn't allow become its initial ones, and that is told.
+    fn carry_variables_over(&mut self, program: &Program, out: &mut Vec<Output>) {
+        let carried = self.state.variables.carried_over(&program.plan);
+        for Variable { name, .. } in &program.plan.variables {
+            let (Some(before), Some(value)) = (self.state.variables.get(name), carried.get(name)) else {
+                continue;
+            };
+            if before != value {
+                let (name, value, by) = (name.clone(), value.clone(), "plan".into());
+                out.push(Output::Event(Event::VariableChanged { name, value, by }));
+            }
+        }
+        self.state.variables = carried;
+    }
+
+    /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
+    fn go_on_in(&mut self, program: Arc<Program>, bookmarks: &[Cursor], keep: usize, out: &mut Vec<Output>) {
+        let before = self.program.clone();
+        let same = before == program;
+        self.activate(program, out);
+        // as it was laid out goes on what can't be laid out any more
+        let left_out = bookmarks.get(keep).and_then(|at| self.would_leave_out_the_leg_begun(keep, at));
+        let keep = left_out.as_ref().map_or(keep, |(_, behind)| *behind);
+        if let Some((trouble, _)) = left_out {
+            self.tell_trouble(trouble, out);
+        }
+        let (kept, continuation) = bookmarks.split_at(keep.min(bookmarks.len()));
+        let world = self.world();
+        let places: Vec<_> =
+            bookmarks.iter().skip(1).map(|at| (at.place(&world), at.activations())).collect();
+        for ((issued, bookmark), (place, activations)) in self.state.issued.iter_mut().zip(kept).zip(places) {
+            issued.before = bookmark.clone();
+            issued.pinned = true;
+            if place.leg == issued.place.leg {
+                (issued.place, issued.activations) = (place, activations);
+            }
+        }
+        self.follow_what_acts_now();
+        self.forget_counts_of_loops_left(bookmarks.first());
+        let Some(mut continuation) = continuation.first().cloned() else { return };
+        let refreshed = if same { Ok(false) } else { self.refreshed(kept.len(), &mut continuation) };
+        if let Err(trouble) = refreshed {
+            self.tell_trouble(trouble, out);
+        }
+        self.replan_with(kept.len(), continuation, false, out);
+        self.wait_anew(&before);
+    }
+
+    /// The cursors behind choices that are final when their waypoints are steered to.
+    fn seal_in_the_new_plan(&mut self, sealed: Vec<Option<Cursor>>) {
+        for (issued, cursor) in self.state.issued.iter_mut().zip(sealed) {
+            issued.sealed = cursor.map(Box::new);
+        }
+    }
+
+    /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left. On the way to a leg the
+    /// loops around the one before it are still there.
+    fn forget_counts_of_loops_left(&mut self, before: Option<&Cursor>) {
+        let Some(front) = self.state.issued.front() else { return };
+        let path = self.program.path(&front.place.leg);
+        let chain = path.iter().flat_map(|path| self.program.chain(path));
+        let around = chain.filter(|leg| leg.as_loop().is_some()).map(|leg| leg.id.clone());
+        let before = before.filter(|_| !self.is_announced(front));
+        let still_there = before.map_or(Vec::new(), |cursor| cursor.loop_ids(&self.world()));
+        let loops: Vec<Id> = around.chain(still_there).collect();
+        self.state.counts.retain(|c| loops.contains(&c.leg));
+    }
+
+    fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
+        let world = self.world();
+        let current = self.state.issued.front().map(|h| &h.place.leg);
+        let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
+        if let Some(current) = current.filter(|path| self.is_of_the_plan_flown(path, new)) {
+            let keep = self.alterable_from();
+            let entered = self.bookmark(0).passage;
+            let translate = |i: usize| {
+                let begun = self.at_the_leg_begun(i, &world);
+                let kept = i.checked_sub(1).filter(|_| begun.is_none());
+                let kept = kept.and_then(|i| self.state.issued.get(i));
+                let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
+                translated(&bookmark, kept, &current, entered, new, &world)
+            };
+            let bookmarks = (0..=self.state.issued.len()).map(translate).collect();
+            let sealed = self.state.issued.iter().map(|issued| {
+                let sealed = issued.sealed.as_deref()?;
+                Some(translated(sealed, Some(issued), &current, entered, new, &world))
+            });
+            let sealed = sealed.collect();
+            return Ok(Carried::On { bookmarks, sealed, keep });
+        }
+        let Some(entry) = entry else {
+            let reason =
+                "the leg being flown is not there in the new plan: name the leg to enter in the commit";
+            return Err(refusal("entry-needed", reason));
+        };
+        let target = new.path(entry).ok_or_else(|| {
+            refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
+        })?;
+        self.check_taken_off()?;
+        self.check_not_a_take_off(new, &target)?;
+        let now = self.place_reached();
+        if target.emergency_plan.is_some() && !self.is_of_the_plan_flown(&target, new) {
+            let reason =
+                format!("leg `{entry}` is of an emergency plan that is not being flown: name another leg");
+            return Err(refusal("unknown-leg", reason));
+        }
+        let mut cursor = now.placed_at(&target, &now.loop_ids(&world), new);
+        let mut here = self.here();
+        here.last.level = now.path.last.level;
+        cursor.move_path_to(here);
+        Ok(Carried::Enter(Box::new(cursor)))
+    }
+
+    /// In the new plan too, a path is in the main plan, or in the emergency plan that is being flown.
+    fn is_of_the_plan_flown(&self, path: &LegPath, new: &Program) -> bool {
+        let plan = path.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
+        plan == self.state.emergency.as_ref().map(|e| &e.plan)
+    }
+}
+
+impl Executor {
+    /// At the beginning of the leg being flown, when waypoint number `index` is its first and still ahead (after a
+    /// resume it comes behind the place where the hold was given): that waypoint's bookmark is at the end of the leg before it, and a leg that a new
+    /// plan puts in between belongs to the past.
+    pub(crate) fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
+        let first = self.state.issued.get(index)?;
+        let before = Some(self.bookmark(index)).filter(|c| c.passage != first.passage)?;
+        let mut begun = before.clone();
+        self.is_announced(first).then(|| begun.next(world))?;
+        if begun.place(world).leg != first.place.leg {
+            // what it waits for is there: that choice is made, and told, by laying the path out
+            let to = &first.place.leg;
+            let moves_on = !first.is_loiter() && begun.passes_over_to(to, before.path, world);
+            moves_on.then_some(())?;
+        }
+        (begun.path, begun.rejoined) = (before.path, before.rejoined.clone());
+        begun.given = 0;
+        if begun.doing != CursorPhase::Turning {
+            begun.doing = CursorPhase::Arriving;
+            begun.expansion = None;
+            begun.passage = first.passage.saturating_sub(1);
+        }
+        Some(begun)
+    }
+
+    /// From the bookmark of waypoint number `index` one would come to another leg by now: to one that was left out before `begun`.
+    pub(crate) fn leads_elsewhere(&self, index: usize, begun: &Cursor) -> bool {
+        let (mut there, world) = (self.bookmark(index), self.world());
+        there.next(&world);
+        there.place(&world).leg != begun.place(&world).leg
+    }
+}
+
+/// How a flight goes over to a new plan.
+enum Carried {
+    /// Directly to an entry leg.
+    Enter(Box<Cursor>),
+    /// Goes on where it is.
+    On {
+        /// Bookmarks before each waypoint ahead, and behind the last of them.
+        bookmarks: Vec<Cursor>,
+        /// Likewise, behind the choices that led to each.
+        sealed: Vec<Option<Cursor>>,
+        /// So many of the waypoints stay.
+        keep: usize,
+    },
+}

@@ -1,0 +1,85 @@
+//! Take-off and landing: the autopilot performs them, the plan says where and how high.
+
+use super::track::SAME_PLACE_M;
+use super::{ExpandError, Point};
+use crate::api::Action;
+use crate::layout::path::{Level, PathState, distance_m};
+use crate::layout::world::World;
+use flight_plan::{AltitudeReference, Runway, Stage};
+use geometry::LatLon;
+use geometry::geodesy::normalise_180;
+
+/// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
+const ALIGNED_DEG: f64 = 30.0;
+
+/// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
+///
+/// # Errors
+/// The stage names no runway of the plan, or has no altitude with a value.
+pub fn take_off(stage: &Stage, world: &World) -> Result<Vec<Point>, ExpandError> {
+    let runway = runway(stage, world)?;
+    let altitude = stage.altitude.as_ref().ok_or(ExpandError::Incomplete)?;
+    // the ground that a climb-out altitude is above is the runway, not what lies below its end
+    let is_amsl = altitude.reference == AltitudeReference::Amsl;
+    let ground_m = if is_amsl { 0.0 } else { runway.elevation_amsl_m };
+    let metres = ground_m + world.number(&altitude.metres)?;
+    let level = Level { metres, reference: AltitudeReference::Amsl };
+    let climb_m = (level.metres - runway.elevation_amsl_m).max(0.0);
+    let speed_mps = world.profile.cruise_airspeed_mps;
+    let way_m = runway.length_m + climb_m / world.profile.max_climb_mps.max(0.1) * speed_mps;
+    let position = runway.threshold.destination(runway.heading_deg, way_m);
+    let action = Action::TakeOff { heading_deg: runway.heading_deg };
+    Ok(vec![Point { position, fly_over: false, action, level: Some(level), airspeed_mps: None }])
+}
+
+/// The final approach and the touch-down point. It begins at the runway's approach entry, if it has one and the path has not passed
+/// that already: is there, or nearer to the threshold and on the runway's line.
+///
+/// # Errors
+/// The stage names no runway of the plan.
+pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>, ExpandError> {
+    let runway = runway(stage, world)?;
+    let final_m = world.config.final_approach_m;
+    let mut points = Vec::new();
+    let gate = on_final(runway, final_m, world);
+    let is_aligned = |from: LatLon| {
+        normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
+    };
+    let mut from = path.last.position;
+    let threshold_m = |at| distance_m(at, runway.threshold);
+    let passed = |entry| {
+        let nearer = threshold_m(from) <= threshold_m(entry) && is_aligned(from);
+        nearer || distance_m(from, entry) < SAME_PLACE_M
+    };
+    if let Some(entry) = runway.approach_entry.filter(|entry| !passed(*entry)) {
+        points.push(Point { position: entry, ..on_final(runway, threshold_m(entry), world) });
+        from = entry;
+    }
+    if !is_aligned(from) {
+        let radius_m = world.turn_radius_m(path.last.airspeed_mps);
+        points.push(on_final(runway, final_m + 4.0 * radius_m, world));
+    }
+    points.push(gate);
+    points.push(Point {
+        position: runway.threshold,
+        fly_over: true,
+        action: Action::Land { heading_deg: runway.heading_deg },
+        level: Some(Level { metres: runway.elevation_amsl_m, reference: AltitudeReference::Amsl }),
+        airspeed_mps: None,
+    });
+    Ok(points)
+}
+
+fn on_final(runway: &Runway, before_m: f64, world: &World) -> Point {
+    let height_m = before_m * world.config.glide_slope_deg.to_radians().tan();
+    let metres = runway.elevation_amsl_m + height_m;
+    Point {
+        level: Some(Level { metres, reference: AltitudeReference::Amsl }),
+        ..Point::fly(runway.threshold.destination(runway.heading_deg + 180.0, before_m))
+    }
+}
+
+fn runway<'a>(stage: &Stage, world: &World<'a>) -> Result<&'a Runway, ExpandError> {
+    let id = stage.runway.as_ref().ok_or(ExpandError::Incomplete)?;
+    world.program.plan.runway(id).ok_or(ExpandError::Incomplete)
+}

@@ -1,0 +1,11 @@
+//! Laying out: from a place in the plan and the values of now to a stretch of waypoints. Pure functions.
+//!
+//! Each module may use those above it:
+//! [`path`] and [`world`], [`expand`] (one leg), [`cursor`] (from leg to leg), [`stretch`] (waypoint after waypoint).
+
+pub mod cursor;
+pub mod expand;
+pub mod path;
+pub mod stretch;
+pub(crate) mod translate;
+pub mod world;

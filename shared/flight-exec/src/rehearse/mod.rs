@@ -1,0 +1,257 @@
+//! The whole flight ahead of time: the executor against the simulated aircraft, faster than real time.
+//!
+//! The same `step` as aboard, the same guidance and dynamics as the simulator, no sockets and no clock: what is seen here is what
+//! will be sent.
+
+mod changes;
+mod equivalence;
+mod flight;
+mod rehearsal;
+mod scenario;
+mod shift;
+mod situation;
+
+pub use rehearsal::{Kept, Rehearsal};
+pub use scenario::{Act, Scenario, Trigger, When};
+
+use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
+use crate::executor::Executor;
+use crate::value::Config;
+use aircraft::{Profile, Wind};
+use flight::{Circumstances, Flight};
+use flight_plan::{Id, Program};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// Where the flight starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Start {
+    /// On the runway of the plan's take-off stage.
+    Runway,
+    /// In cruise.
+    InFlight {
+        /// Where.
+        position: LatLon,
+        /// Metres AMSL.
+        altitude_amsl_m: f64,
+        /// Degrees true.
+        heading_deg: f64,
+    },
+}
+
+/// How far and how finely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The executor's settings.
+    pub config: Config,
+    /// Longest flight, seconds of simulated time.
+    pub most_s: f64,
+    /// Most waypoints flown.
+    pub most_waypoints: usize,
+    /// Time between two points of the track, seconds.
+    pub track_every_s: f64,
+    /// Time step of the dynamics, seconds (0.02..=0.2).
+    pub step_s: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            config: Config::default(),
+            most_s: 12.0 * 3600.0,
+            most_waypoints: 200_000,
+            track_every_s: 1.0,
+            step_s: 0.1,
+        }
+    }
+}
+
+/// A point of the previewed track.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TrackPoint {
+    /// Seconds since the start.
+    pub time_s: f64,
+    /// Where.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// Index of the passage in [`Preview::legs`]; `None` before the first leg.
+    pub passage: Option<usize>,
+    /// Pass of the innermost loop, from 1; 0 outside loops.
+    pub iteration: u64,
+}
+
+/// One passage of a leg.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LegPassage {
+    /// Where in the plan.
+    pub place: PlacePointer,
+    /// Seconds since the start at which it was entered.
+    pub start_s: f64,
+    /// Seconds since the start at which the next one was entered.
+    pub end_s: f64,
+    /// Distance over the ground, metres.
+    pub distance_m: f64,
+    /// Energy used, joules.
+    pub energy_j: f64,
+    /// Waypoints flown.
+    pub waypoints: u64,
+}
+
+/// A waypoint that was steered to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlownWaypoint {
+    /// As it was issued.
+    pub waypoint: Waypoint,
+    /// Index of its passage in [`Preview::legs`].
+    pub passage: Option<usize>,
+    /// Seconds since the start at which the aircraft began to steer to it.
+    pub from_s: f64,
+    /// It was replaced before it was reached.
+    pub replaced: bool,
+}
+
+/// A whole flight.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Preview {
+    /// Where the aircraft is when.
+    pub track: Vec<TrackPoint>,
+    /// Every waypoint steered to, in order.
+    pub waypoints: Vec<FlownWaypoint>,
+    /// What happened, with seconds since the start.
+    pub events: Vec<(f64, Event)>,
+    /// Commands of the scenario that were refused, with seconds since the start.
+    pub refusals: Vec<(f64, Refusal)>,
+    /// What the plans that the scenario put forward would have done, with seconds since the start.
+    pub proposals: Vec<(f64, ProposalReport)>,
+    /// Passages of legs, in order.
+    pub legs: Vec<LegPassage>,
+    /// Triggers of the scenario that never fired, by index.
+    pub not_fired: Vec<usize>,
+    /// Duration, seconds.
+    pub time_s: f64,
+    /// Distance over the ground, metres.
+    pub distance_m: f64,
+    /// Energy used, joules.
+    pub energy_j: f64,
+    /// Share of the energy left, 0..1.
+    pub battery_left: f64,
+    /// It ended on the ground.
+    pub landed: bool,
+}
+
+/// Why there is no preview.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PreviewError {
+    /// No take-off stage to start from.
+    #[error("the plan has no take-off stage: say where in flight the preview should start")]
+    NoStart,
+    /// The executor refused to start.
+    #[error("the plan can't be started: {0}")]
+    Refused(Refusal),
+    /// Longer than allowed.
+    #[error(
+        "after {seconds:.0} s the flight still goes on, at leg `{leg}`: give its loops a count or a condition that ends them"
+    )]
+    TooLong {
+        /// The limit.
+        seconds: f64,
+        /// The leg being flown.
+        leg: Id,
+    },
+    /// More waypoints than allowed.
+    #[error(
+        "after {waypoints} waypoints the flight still goes on, at leg `{leg}`: widen its pattern or shorten its loops"
+    )]
+    TooManyWaypoints {
+        /// The limit.
+        waypoints: usize,
+        /// The leg being flown.
+        leg: Id,
+    },
+    /// The battery is empty.
+    #[error("the energy is used up after {seconds:.0} s, at leg `{leg}`: shorten the plan or land before")]
+    OutOfEnergy {
+        /// When.
+        seconds: f64,
+        /// The leg being flown.
+        leg: Id,
+    },
+    /// It holds or waits, and nothing in the scenario would make it go on.
+    #[error(
+        "after {seconds:.0} s the flight waits at leg `{leg}` and nobody goes on: give the intersection a default, or the holding an end"
+    )]
+    Waiting {
+        /// When.
+        seconds: f64,
+        /// The leg being flown.
+        leg: Id,
+    },
+    /// The callback said so.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What the progress callback is told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advance {
+    /// Simulated seconds so far.
+    pub time_s: f64,
+    /// Where the flight is.
+    pub place: Option<PlacePointer>,
+    /// Waypoints flown so far.
+    pub waypoints: usize,
+}
+
+/// Flies a plan ahead of time.
+///
+/// # Errors
+/// The flight can't start or doesn't end within the limits.
+pub fn preview(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    wind: Wind,
+    start: Start,
+    scenario: &Scenario,
+    options: &Options,
+) -> Result<Preview, PreviewError> {
+    preview_with(program, profile, terrain, wind, start, scenario, options, &mut |_| true)
+}
+
+/// As [`preview`], telling about every ten simulated seconds; the callback returns false to cancel.
+///
+/// # Errors
+/// As [`preview`], and `Cancelled`.
+#[allow(clippy::too_many_arguments)] // the flight's whole circumstances, each given by another part of the caller
+pub fn preview_with(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    wind: Wind,
+    start: Start,
+    scenario: &Scenario,
+    options: &Options,
+    progress: &mut dyn FnMut(&Advance) -> bool,
+) -> Result<Preview, PreviewError> {
+    let given = Circumstances { wind, scenario, options };
+    Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
+}
+
+/// Flies on from where a flight under way is, with what is left of its energy; times are seconds from now.
+///
+/// # Errors
+/// As [`preview`]; `NoStart`: nothing is being flown.
+pub(crate) fn preview_on(
+    flight: Executor,
+    wind: Wind,
+    scenario: &Scenario,
+    options: &Options,
+) -> Result<Preview, PreviewError> {
+    let given = Circumstances { wind, scenario, options };
+    Flight::under_way(flight, given).ok_or(PreviewError::NoStart)?.flown(&mut |_| true)
+}
