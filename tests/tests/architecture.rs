@@ -12,9 +12,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("flight-exec", &["geometry", "terrain", "aircraft", "flight-plan"]),
     ("interchange", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec"]),
     ("usal", &["geometry", "flight-plan", "flight-exec"]),
-    ("sim", &["geometry", "aircraft"]),
+    ("autopilot-link", &[]),
+    ("sim", &["geometry", "aircraft", "autopilot-link"]),
     ("journal", &["flight-exec"]),
-    ("onboard-agent", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "journal", "usal"]),
+    (
+        "onboard-agent",
+        &[
+            "geometry",
+            "terrain",
+            "aircraft",
+            "flight-plan",
+            "flight-exec",
+            "journal",
+            "usal",
+            "autopilot-link",
+        ],
+    ),
     (
         "gcs-app",
         &[
@@ -40,7 +53,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("zenoh", &["usal"]),
     ("zenoh-ext", &["usal"]),
-    ("mavlink", &["onboard-agent", "sim"]),
+    ("mavlink", &["autopilot-link", "onboard-agent", "sim"]),
     ("egui", &["gcs-app"]),
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),

@@ -7,8 +7,10 @@
 use crate::config::{Config, Control};
 use crate::core::mode::Mode;
 use crate::core::{Peer, STEP_NS, Simulator};
-use crate::link::{Bound, LinkEvent, OpenLink};
+use crate::frame::{self, Decoder};
+use crate::link::Bound;
 use anyhow::Context;
+use autopilot_link::{Event, Link};
 use geometry::LatLon;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
@@ -213,7 +215,10 @@ fn truth(simulator: &Simulator, lockstep: bool, ignored_bytes: u64) -> Truth {
 struct Runner {
     config: Config,
     simulator: Simulator,
-    link: OpenLink,
+    link: Link,
+    decoder: Decoder,
+    /// What came last over the link.
+    received: Vec<u8>,
     controls: mpsc::Receiver<Control>,
     shared: Arc<Mutex<Shared>>,
     partner: Option<Peer>,
@@ -226,17 +231,19 @@ impl Runner {
     fn new(
         config: Config,
         mut simulator: Simulator,
-        link: OpenLink,
+        link: Link,
         controls: mpsc::Receiver<Control>,
         shared: Arc<Mutex<Shared>>,
     ) -> Self {
-        for peer in link.known_peers() {
+        for peer in link.peers() {
             simulator.connect(peer);
         }
         Self {
             config,
             simulator,
             link,
+            decoder: Decoder::default(),
+            received: Vec::new(),
             controls,
             shared,
             partner: None,
@@ -263,12 +270,15 @@ impl Runner {
     }
 
     fn flush(&mut self) {
-        let frames = self.simulator.take_outgoing();
-        self.link.send(frames);
+        for frame in self.simulator.take_outgoing() {
+            self.link.send(frame.to, &frame.bytes);
+        }
+        self.link.flush();
     }
 
     fn publish(&mut self) {
-        let truth = truth(&self.simulator, self.partner.is_some(), self.link.ignored_bytes());
+        let ignored_bytes = self.decoder.ignored_bytes + self.link.stats().stranger_bytes;
+        let truth = truth(&self.simulator, self.partner.is_some(), ignored_bytes);
         let mut shared = lock(&self.shared);
         shared.truth = truth;
         if truth.time_s + 1e-9 < self.next_track_s {
@@ -333,7 +343,7 @@ impl Runner {
     /// Does the next thing that comes in, or waits until a time; false: it is to stop.
     async fn serve_until(&mut self, until: Instant) -> bool {
         tokio::select! {
-            event = self.link.next() => self.on_link(event),
+            event = self.link.next(&mut self.received, frame::is_mavlink) => self.on_link(event),
             control = self.controls.recv() => return self.on_control(control),
             () = tokio::time::sleep_until(until) => {}
         }
@@ -354,27 +364,37 @@ impl Runner {
         }
     }
 
-    fn on_link(&mut self, event: LinkEvent) {
+    fn on_link(&mut self, event: Event) {
         match event {
-            LinkEvent::Connected(peer) => {
+            Event::Connected(peer) => {
+                self.decoder.restart();
                 self.simulator.connect(peer);
             }
-            LinkEvent::Gone(peer) => {
+            Event::Gone(peer) => {
                 self.simulator.disconnect(peer);
                 if self.partner == Some(peer) {
                     self.partner = None;
                     self.next_wall = Instant::now();
                 }
             }
-            LinkEvent::Frames(peer, frames) => {
-                self.simulator.connect(peer);
-                for frame in frames {
-                    self.simulator.receive(peer, frame);
-                }
-                self.note_answers();
-                self.flush();
+            Event::Stream(peer) => {
+                self.decoder.push(&self.received);
+                self.hear(peer);
+            }
+            Event::Datagram(peer) => {
+                self.decoder.push_datagram(&self.received);
+                self.hear(peer);
             }
         }
+    }
+
+    fn hear(&mut self, peer: Peer) {
+        self.simulator.connect(peer);
+        for frame in frame::take_frames(&mut self.decoder) {
+            self.simulator.receive(peer, frame);
+        }
+        self.note_answers();
+        self.flush();
     }
 
     fn note_answers(&mut self) {

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use mavlink::dialects::ardupilotmega::*;
-use sim::frame::{Body, Decoder, Sender, encode_from};
+use sim::frame::{Body, Decoder, Sender, encode_from, take_frames};
 use sim::{Config, Control, Handle, Link, Mode};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -41,11 +41,14 @@ impl Client {
         let (mut buffer, mut heard) = ([0_u8; 8192], Vec::new());
         match self.stream.read(&mut buffer) {
             Ok(0) => panic!("the simulator hung up"),
-            Ok(n) => self.decoder.push(&buffer[..n], |f| {
-                if let Body::Known(m) = f.body {
-                    heard.push(*m);
+            Ok(n) => {
+                self.decoder.push(&buffer[..n]);
+                for frame in take_frames(&mut self.decoder) {
+                    if let Body::Known(m) = frame.body {
+                        heard.push(*m);
+                    }
                 }
-            }),
+            }
             Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(e) => panic!("{e}"),
         }

@@ -61,9 +61,10 @@ impl Rig {
         for message in self.driver.take_messages() {
             if pass(To::Autopilot, &message) {
                 let bytes = encode(self.driver.header(0), &message);
-                let mut frames = vec![];
-                self.sim_decoder.push(&bytes, |f| frames.push(f));
-                frames.into_iter().for_each(|f| self.sim.receive(PEER, f));
+                self.sim_decoder.push(&bytes);
+                for frame in sim::frame::take_frames(&mut self.sim_decoder) {
+                    self.sim.receive(PEER, frame);
+                }
             }
         }
     }

@@ -1,10 +1,9 @@
 //! Shell: the link to the autopilot. Carries bytes, knows who sent them, finds the frames.
 
-mod address;
 mod tcp;
 mod udp;
 
-pub use address::{Address, AddressError};
+pub use autopilot_link::{Address, AddressError};
 
 use super::driver::{Decoded, encode};
 use mavlink::MavHeader;

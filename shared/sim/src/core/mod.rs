@@ -15,6 +15,7 @@ pub mod transfer;
 
 use crate::frame::{self, Body, Frame};
 use autopilot::{Autopilot, Home, Severity};
+pub use autopilot_link::Peer;
 use faults::{BadLink, Dice, Effects, FaultRequest, Schedule};
 use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity};
 use std::collections::BTreeMap;
@@ -29,10 +30,6 @@ pub const MOST_PEERS: usize = 8;
 const TIMESYNC_ID: u32 = 111;
 /// Share of the battery that the low-battery fault leaves.
 const LOW_BATTERY_SHARE: f64 = 0.15;
-
-/// A partner on a link; the shell gives the numbers out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Peer(pub u32);
 
 /// Bytes to be sent: one whole frame.
 #[derive(Debug, Clone, PartialEq)]

@@ -34,10 +34,12 @@ impl Ground {
 
     fn listen(&mut self) {
         for outgoing in self.sim.take_outgoing() {
-            self.decoder.push(&outgoing.bytes, |frame| match frame.body {
-                Body::Known(message) => self.heard.push(*message),
-                Body::Strange { .. } => {}
-            });
+            self.decoder.push(&outgoing.bytes);
+            for frame in frame::take_frames(&mut self.decoder) {
+                if let Body::Known(message) = frame.body {
+                    self.heard.push(*message);
+                }
+            }
         }
     }
 

@@ -85,9 +85,10 @@ impl Flight {
         self.station.answer_step(step);
         for message in self.station.take_messages() {
             let bytes = encode(self.station.header(0), &message);
-            let mut frames = vec![];
-            self.sim_decoder.push(&bytes, |f| frames.push(f));
-            frames.into_iter().for_each(|f| self.sim.receive(PEER, f));
+            self.sim_decoder.push(&bytes);
+            for frame in sim::frame::take_frames(&mut self.sim_decoder) {
+                self.sim.receive(PEER, frame);
+            }
         }
         let now_s = self.now.as_secs_f64();
         self.events.extend(self.station.take_events().into_iter().map(|e| (now_s, e)));

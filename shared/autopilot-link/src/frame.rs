@@ -1,0 +1,330 @@
+//! Pure: MAVLink frames from bytes and to bytes. Garbage is counted and skipped, never a reason to stop.
+//!
+//! The decoder gives frames as they are on the wire. Whoever needs the message asks for it: a value that
+//! the dialect does not know loses the message and not the frame, so that even it can be answered.
+
+use mavlink::dialects::ardupilotmega::MavMessage;
+use mavlink::{MAV_STX, MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message, calculate_crc};
+
+/// The longest frame, bytes: header 10, payload 255, checksum 2, signature 13.
+pub const LONGEST: usize = 280;
+const SIGNED: u8 = 0x01;
+const SIGNATURE_BYTES: usize = 13;
+const CHECKSUM_BYTES: usize = 2;
+
+/// Who sent a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sender {
+    /// System id.
+    pub system: u8,
+    /// Component id.
+    pub component: u8,
+}
+
+/// A frame whose checksum is right, as it is on the wire.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    version: MavlinkVersion,
+    /// Who sent it.
+    pub sender: Sender,
+    /// Message id.
+    pub id: u32,
+    /// Payload; MAVLink 2 cuts trailing zeros.
+    pub payload: &'a [u8],
+}
+
+impl Frame<'_> {
+    /// The message; `None` if it has a value that the dialect does not know.
+    pub fn message(&self) -> Option<MavMessage> {
+        MavMessage::parse(self.version, self.id, self.payload).ok()
+    }
+}
+
+/// Cuts bytes that come in pieces into frames. Keeps at most one unfinished frame, once all whole ones were
+/// taken.
+#[derive(Debug, Clone, Default)]
+pub struct Decoder {
+    pending: Vec<u8>,
+    /// Bytes of `pending` that are done with.
+    done: usize,
+    /// The pending bytes end with the end of a datagram.
+    datagram: bool,
+    /// Bytes that belonged to no good frame.
+    pub ignored_bytes: u64,
+}
+
+/// What stands at the beginning of some bytes.
+enum Cut {
+    NeedMore,
+    /// So many bytes belong to no frame.
+    Skip(usize),
+    Frame(Shape),
+}
+
+/// Where the parts of a frame are.
+#[derive(Clone, Copy)]
+struct Shape {
+    version: MavlinkVersion,
+    header: usize,
+    payload: usize,
+    total: usize,
+}
+
+impl Decoder {
+    /// Takes in a piece of a stream; take the frames by [`Self::next_frame`] before the next piece.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.pending.drain(..self.done.min(self.pending.len()));
+        self.done = 0;
+        self.datagram = false;
+        self.pending.extend_from_slice(bytes);
+    }
+
+    /// Takes in a datagram: what is left over at its end is garbage, and not the start of the next one.
+    pub fn push_datagram(&mut self, bytes: &[u8]) {
+        self.push(bytes);
+        self.datagram = true;
+    }
+
+    /// Forgets an unfinished frame: another stream begins.
+    pub fn restart(&mut self) {
+        self.pending.clear();
+        self.done = 0;
+    }
+
+    /// The next whole frame; `None`: more bytes are needed.
+    pub fn next_frame(&mut self) -> Option<Frame<'_>> {
+        let shape = loop {
+            let rest = self.pending.get(self.done..).unwrap_or_default();
+            match cut(rest) {
+                Cut::Frame(shape) => break shape,
+                Cut::Skip(bytes) => self.skip(bytes),
+                Cut::NeedMore if self.datagram => self.skip(rest.len()),
+                Cut::NeedMore => return None,
+            }
+            if self.done >= self.pending.len() {
+                return None;
+            }
+        };
+        let start = self.done;
+        self.done += shape.total;
+        parse(shape, self.pending.get(start..self.done)?)
+    }
+
+    fn skip(&mut self, bytes: usize) {
+        self.ignored_bytes += bytes as u64;
+        self.done += bytes;
+    }
+}
+
+/// Looks at the beginning of the bytes.
+fn cut(bytes: &[u8]) -> Cut {
+    let Some(start) = bytes.iter().position(|b| matches!(*b, MAV_STX | MAV_STX_V2)) else {
+        return if bytes.is_empty() { Cut::NeedMore } else { Cut::Skip(bytes.len()) };
+    };
+    if start > 0 {
+        return Cut::Skip(start);
+    }
+    let (version, header) = match bytes.first() {
+        Some(&MAV_STX_V2) => (MavlinkVersion::V2, 10),
+        _ => (MavlinkVersion::V1, 6),
+    };
+    let (Some(&length), Some(&flags)) = (bytes.get(1), bytes.get(2)) else { return Cut::NeedMore };
+    let flags = if version == MavlinkVersion::V2 { flags } else { 0 };
+    // other incompatible flags than the signature: not for us
+    if flags & !SIGNED != 0 {
+        return Cut::Skip(1);
+    }
+    let payload = usize::from(length);
+    let signature = if flags == SIGNED { SIGNATURE_BYTES } else { 0 };
+    let shape = Shape { version, header, payload, total: header + payload + CHECKSUM_BYTES + signature };
+    match bytes.get(..shape.total) {
+        None => Cut::NeedMore,
+        Some(frame) if is_intact(shape, frame) => Cut::Frame(shape),
+        Some(_) => Cut::Skip(1),
+    }
+}
+
+fn is_intact(shape: Shape, frame: &[u8]) -> bool {
+    let end = shape.header + shape.payload;
+    let (Some(covered), Some(&[low, high])) = (frame.get(1..end), frame.get(end..end + CHECKSUM_BYTES))
+    else {
+        return false;
+    };
+    let id = message_id(shape.version, frame).unwrap_or(0);
+    calculate_crc(covered, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high])
+}
+
+fn message_id(version: MavlinkVersion, frame: &[u8]) -> Option<u32> {
+    match version {
+        MavlinkVersion::V2 => Some(u32::from_le_bytes([*frame.get(7)?, *frame.get(8)?, *frame.get(9)?, 0])),
+        MavlinkVersion::V1 => frame.get(5).map(|id| u32::from(*id)),
+    }
+}
+
+fn parse(shape: Shape, frame: &[u8]) -> Option<Frame<'_>> {
+    // system and component id stand before the message id
+    let at = if shape.version == MavlinkVersion::V2 { 5 } else { 3 };
+    Some(Frame {
+        version: shape.version,
+        sender: Sender { system: *frame.get(at)?, component: *frame.get(at + 1)? },
+        id: message_id(shape.version, frame)?,
+        payload: frame.get(shape.header..shape.header + shape.payload)?,
+    })
+}
+
+/// Appends a message's MAVLink 2 frame to `out`.
+pub fn encode_into(sender: Sender, sequence: u8, message: &MavMessage, out: &mut Vec<u8>) {
+    let header = MavHeader { system_id: sender.system.into(), component_id: sender.component, sequence };
+    let mut raw = MAVLinkV2MessageRaw::new();
+    raw.serialize_message(header, message);
+    out.extend_from_slice(raw.raw_bytes());
+}
+
+/// A message's MAVLink 2 frame.
+pub fn encode(sender: Sender, sequence: u8, message: &MavMessage) -> Vec<u8> {
+    let mut bytes = vec![];
+    encode_into(sender, sequence, message, &mut bytes);
+    bytes
+}
+
+/// A MAVLink 2 frame around a payload made by hand; what is beyond 255 bytes is cut off.
+pub fn encode_payload(sender: Sender, sequence: u8, id: u32, payload: &[u8]) -> Vec<u8> {
+    let payload = payload.get(..255).unwrap_or(payload);
+    let [id0, id1, id2, _] = id.to_le_bytes();
+    let Sender { system, component } = sender;
+    let mut bytes = vec![MAV_STX_V2, payload.len() as u8, 0, 0, sequence, system, component, id0, id1, id2];
+    bytes.extend_from_slice(payload);
+    let crc = calculate_crc(bytes.get(1..).unwrap_or_default(), MavMessage::extra_crc(id));
+    bytes.extend_from_slice(&crc.to_le_bytes());
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, TIMESYNC_DATA};
+    use proptest::prelude::*;
+
+    const AUTOPILOT: Sender = Sender { system: 1, component: 1 };
+
+    fn timesync(ts1: i64) -> MavMessage {
+        MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1, ..TIMESYNC_DATA::DEFAULT })
+    }
+
+    fn bytes_of(ts1: i64) -> Vec<u8> {
+        encode(AUTOPILOT, 0, &timesync(ts1))
+    }
+
+    /// Takes every whole frame: who sent it, and its message.
+    fn take(decoder: &mut Decoder) -> Vec<(Sender, Option<MavMessage>)> {
+        let mut found = vec![];
+        while let Some(frame) = decoder.next_frame() {
+            found.push((frame.sender, frame.message()));
+        }
+        found
+    }
+
+    fn decode(bytes: &[u8]) -> (Vec<(Sender, Option<MavMessage>)>, u64) {
+        let mut decoder = Decoder::default();
+        decoder.push(bytes);
+        (take(&mut decoder), decoder.ignored_bytes)
+    }
+
+    #[test]
+    fn what_is_encoded_is_decoded() {
+        for message in [timesync(5), MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT)] {
+            let bytes = encode(AUTOPILOT, 7, &message);
+            assert_eq!(decode(&bytes), (vec![(AUTOPILOT, Some(message))], 0));
+        }
+    }
+
+    #[test]
+    fn garbage_is_counted_and_the_next_frame_is_found_whatever_the_pieces() {
+        let mut bytes = vec![0x00, 0x11, 0xFD, 0x03];
+        for i in 1..=5 {
+            bytes.extend(bytes_of(i));
+            bytes.extend([0xFE, 9, 0xFD]);
+        }
+        bytes.extend(bytes_of(6));
+        bytes.extend([0; 300]);
+        let expected: Vec<_> = (1..=6).map(|i| (AUTOPILOT, Some(timesync(i)))).collect();
+        for piece in [1, 7, 64, 4096] {
+            let (mut decoder, mut found) = (Decoder::default(), vec![]);
+            for part in bytes.chunks(piece) {
+                decoder.push(part);
+                found.extend(take(&mut decoder));
+            }
+            assert_eq!(found, expected, "pieces of {piece}");
+            assert_eq!(decoder.ignored_bytes, 4 + 5 * 3 + 300, "pieces of {piece}");
+        }
+    }
+
+    #[test]
+    fn a_damaged_checksum_loses_only_that_frame() {
+        let mut bytes = bytes_of(1);
+        *bytes.last_mut().unwrap() ^= 0x55;
+        bytes.extend(bytes_of(2));
+        assert_eq!(decode(&bytes).0, [(AUTOPILOT, Some(timesync(2)))]);
+    }
+
+    #[test]
+    fn an_unknown_value_of_an_enumeration_loses_the_message_and_not_the_frame() {
+        let mut payload = [0_u8; 33];
+        payload[28..30].copy_from_slice(&60_001_u16.to_le_bytes());
+        payload[32] = 1;
+        let mut bytes = encode_payload(AUTOPILOT, 0, 76, &payload);
+        bytes.extend(bytes_of(2));
+        let mut decoder = Decoder::default();
+        decoder.push(&bytes);
+        let frame = decoder.next_frame().unwrap();
+        assert_eq!((frame.id, frame.payload, frame.message()), (76, &payload[..], None));
+        assert_eq!(take(&mut decoder), [(AUTOPILOT, Some(timesync(2)))]);
+    }
+
+    #[test]
+    fn version_one_frames_are_understood() {
+        let header = MavHeader { system_id: 200, component_id: 3, sequence: 1 };
+        let message = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+        let mut raw = mavlink::MAVLinkV1MessageRaw::new();
+        raw.serialize_message(header, &message);
+        let expected = (Sender { system: 200, component: 3 }, Some(message));
+        assert_eq!(decode(raw.raw_bytes()), (vec![expected], 0));
+    }
+
+    #[test]
+    fn a_cut_datagram_does_not_swallow_the_next_one_and_a_new_stream_not_its_first_frame() {
+        let (mut decoder, whole) = (Decoder::default(), bytes_of(1));
+        decoder.push_datagram(&whole[..9]);
+        assert_eq!(take(&mut decoder), []);
+        decoder.push_datagram(&whole);
+        assert_eq!((take(&mut decoder).len(), decoder.ignored_bytes), (1, 9));
+        decoder.push(&whole[..9]);
+        assert_eq!(take(&mut decoder), []);
+        decoder.restart();
+        decoder.push(&whole);
+        assert_eq!((take(&mut decoder).len(), decoder.ignored_bytes), (1, 9));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+        #[test]
+        fn any_bytes_in_any_pieces_give_the_frames_among_them_in_bounded_memory(
+            noise in prop::collection::vec(any::<u8>(), 0..600),
+            piece in 1..50_usize,
+        ) {
+            let mut bytes = noise;
+            // longer than any frame that a false start could claim
+            bytes.extend([0; 300]);
+            bytes.extend(bytes_of(77));
+            let (mut decoder, mut last) = (Decoder::default(), None);
+            for part in bytes.chunks(piece) {
+                decoder.push(part);
+                last = take(&mut decoder).pop().or(last);
+                prop_assert!(decoder.pending.len() - decoder.done < LONGEST);
+            }
+            prop_assert_eq!(last, Some((AUTOPILOT, Some(timesync(77)))));
+            prop_assert_eq!(decoder.pending.len(), decoder.done);
+        }
+    }
+}

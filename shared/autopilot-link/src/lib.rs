@@ -1,0 +1,14 @@
+//! Shell: the links between an autopilot and whoever steers it, and the decoder of MAVLink frames.
+//! The agent and the simulator share it.
+//!
+//! A [`Link`] carries bytes: it knows sockets and addresses, and no protocol. [`frame`] is pure: it cuts
+//! bytes into MAVLink frames. Whose datagrams are believed is asked of whoever knows the protocol.
+
+mod address;
+pub mod frame;
+mod link;
+mod outbox;
+
+pub use address::{Address, AddressError};
+pub use link::{Event, Link, Partners, Peer, Stats};
+pub use outbox::Outbox;

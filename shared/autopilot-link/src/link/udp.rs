@@ -1,0 +1,130 @@
+//! Datagrams. The return path belongs to those who were recognised, not to any stranger.
+
+use super::{Event, Peer, Stats};
+use std::io;
+use std::net::SocketAddr;
+use std::time::{Duration, Instant};
+use tokio::net::{UdpSocket, lookup_host};
+
+/// The largest datagram.
+const LARGEST: usize = 65_536;
+
+/// Who may be at the other end of datagrams.
+#[derive(Debug, Clone, Copy)]
+pub enum Partners {
+    /// This one, from the start, and nobody else ever.
+    Only(SocketAddr),
+    /// Whoever is recognised by what he says, until he is silent for too long.
+    Recognised {
+        /// So many at once.
+        most: usize,
+        /// After so much silence another may take the place.
+        silent: Duration,
+    },
+}
+
+impl Partners {
+    /// The one autopilot that spoke first; one that was silent for so long may come back from another address.
+    pub const AUTOPILOT: Self = Self::Recognised { most: 1, silent: Duration::from_secs(5) };
+}
+
+struct Partner {
+    peer: Peer,
+    address: SocketAddr,
+    heard: Instant,
+}
+
+/// A socket and who is at its other end.
+pub struct Udp {
+    socket: UdpSocket,
+    rule: Partners,
+    partners: Vec<Partner>,
+    /// Peers that there were so far.
+    given: u32,
+}
+
+impl Udp {
+    /// Exchanges datagrams with those that the rule allows.
+    pub fn new(socket: UdpSocket, rule: Partners) -> Self {
+        let mut udp = Self { socket, rule, partners: vec![], given: 0 };
+        if let Partners::Only(address) = rule {
+            udp.admit(address);
+        }
+        udp
+    }
+
+    /// Sends to whoever listens there.
+    ///
+    /// # Errors
+    /// If there is no such place, or no socket.
+    pub async fn to(to: &str) -> io::Result<Self> {
+        let none = || io::Error::new(io::ErrorKind::NotFound, format!("no address for {to}"));
+        let address = lookup_host(to).await?.next().ok_or_else(none)?;
+        let own = if address.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
+        Ok(Self::new(UdpSocket::bind(own).await?, Partners::Only(address)))
+    }
+
+    /// Our own address.
+    pub fn local_address(&self) -> Option<SocketAddr> {
+        self.socket.local_addr().ok()
+    }
+
+    /// Who is at the other end.
+    pub fn peers(&self) -> Vec<Peer> {
+        self.partners.iter().map(|p| p.peer).collect()
+    }
+
+    /// Waits for a partner's datagram.
+    pub async fn next(
+        &mut self,
+        into: &mut Vec<u8>,
+        mut is_partner: impl FnMut(&[u8]) -> bool,
+        stats: &mut Stats,
+    ) -> Event {
+        into.reserve(LARGEST);
+        loop {
+            into.clear();
+            // an error is the echo of a partner that is not there yet: datagrams go on
+            let Ok((length, from)) = self.socket.recv_buf_from(into).await else {
+                tokio::task::yield_now().await;
+                continue;
+            };
+            if let Some(peer) = self.peer_at(from, || is_partner(into)) {
+                return Event::Datagram(peer);
+            }
+            stats.strangers += 1;
+            stats.stranger_bytes += length as u64;
+        }
+    }
+
+    /// The partner at an address; a new one if he is recognised and there is room.
+    fn peer_at(&mut self, from: SocketAddr, is_partner: impl FnOnce() -> bool) -> Option<Peer> {
+        let now = Instant::now();
+        if let Some(partner) = self.partners.iter_mut().find(|p| p.address == from) {
+            partner.heard = now;
+            return Some(partner.peer);
+        }
+        let Partners::Recognised { most, silent } = self.rule else { return None };
+        let recent = |p: &Partner| now.duration_since(p.heard) < silent;
+        if self.partners.iter().filter(|p| recent(p)).count() >= most || !is_partner() {
+            return None;
+        }
+        self.partners.retain(recent);
+        tracing::info!(%from, "a partner on the autopilot's link");
+        Some(self.admit(from))
+    }
+
+    fn admit(&mut self, address: SocketAddr) -> Peer {
+        self.given = self.given.wrapping_add(1);
+        let peer = Peer(self.given);
+        self.partners.push(Partner { peer, address, heard: Instant::now() });
+        peer
+    }
+
+    /// Sends a datagram. False: it could not be sent.
+    pub fn send(&mut self, to: Peer, bytes: &[u8]) -> bool {
+        let partner = self.partners.iter().find(|p| p.peer == to);
+        // a full buffer or an absent partner loses the datagram, as radio does
+        partner.is_some_and(|p| self.socket.try_send_to(bytes, p.address).is_ok())
+    }
+}
