@@ -169,7 +169,6 @@ fn next_version() -> u64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use flight_plan::Fix;
     use geometry::LatLon;

@@ -1,6 +1,5 @@
 //! The demo from end to end, as its user starts it: exit status and report.
-
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 use std::path::Path;
 use std::process::{Command, Output};

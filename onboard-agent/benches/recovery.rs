@@ -2,7 +2,7 @@
 //! and for each that is synced; and milliseconds from the start of a process that comes back after a kill to its join
 //! with the gateway (goal: below one second), with a full segment to replay; the same with a plan of ten thousand fixes,
 //! which a restart compiles again.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
 
 use flight_exec::{AircraftState, Executor, Input};
 use onboard_agent::fp_manager::journal::{Entry, Folder, Job, Limits, Log, Record, Writer, encode};

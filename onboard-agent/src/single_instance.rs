@@ -97,7 +97,6 @@ pub async fn expect_nobody(session: &Session, service: &'static str) -> anyhow::
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     #[tokio::test]

@@ -131,9 +131,9 @@ fn told(status: ExitStatus) -> String {
     status.code().map_or_else(|| "unknown status".into(), |code| format!("exit status {code}"))
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::shutdown;
     use std::os::unix::fs::PermissionsExt;

@@ -4,7 +4,7 @@
 //!
 //! The mission is laid around the place where the autopilot stands: take-off, departure with an RF, one sweep of the
 //! scan loop, a plan update in flight, an emergency plan, landing. It prints what it saw.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use system_tests::rig::{Rig, id};
 use usal::contract::{Cause, Command, GatewayState, VariableValue};

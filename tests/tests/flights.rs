@@ -1,5 +1,5 @@
 //! Whole flights of the real binaries, in lockstep: time goes on only when the test says so.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use system_tests::{
     plans::Field,

@@ -214,7 +214,6 @@ fn on_cut(p: [f32; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     const FILE: &[u8] = include_bytes!("../../../assets/basemap/world.lwbm");

@@ -58,7 +58,6 @@ pub fn demo_terrain() -> Arc<dyn Terrain> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use geometry::LatLon;
 

@@ -183,7 +183,6 @@ fn nothing_refused(outcome: &Outcome) -> (bool, String) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use flight_plan::Runway;
 

@@ -231,7 +231,6 @@ pub fn scenario(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use flight_exec::{Branching, DecisionRequest, IterationPlace};
 

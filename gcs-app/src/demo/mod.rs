@@ -228,7 +228,6 @@ fn conclude(args: &Args, prepared: &Prepared, ending: &flight::Ending, wall_s: f
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     #[test]

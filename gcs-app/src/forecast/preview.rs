@@ -119,7 +119,6 @@ fn passages(preview: &Preview) -> Vec<Passage> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use flight_plan::{Edit, compile};
     use terrain::Flat;

@@ -134,7 +134,6 @@ fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::headless::source::tests::source;
     use flight_plan::Value;

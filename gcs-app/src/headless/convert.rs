@@ -88,7 +88,6 @@ fn tell(file: &Path, notes: &[Note], json: bool) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::headless::source::tests::source;
 

@@ -169,7 +169,6 @@ fn told(report: &ProposalReport) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::headless::source::tests::source;
 

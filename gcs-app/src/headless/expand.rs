@@ -151,7 +151,6 @@ fn csv(preview: &Preview, selection: &Selection) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
     use crate::headless::source::tests::source;
 

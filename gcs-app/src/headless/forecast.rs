@@ -130,7 +130,6 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::headless::source::tests::source;
     use terrain::{Flat, Tiles};

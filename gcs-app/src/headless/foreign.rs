@@ -145,7 +145,6 @@ pub fn tell(path: &Path, notes: &[Note]) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -53,7 +53,6 @@ pub fn or_stdout(file: Option<&PathBuf>) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

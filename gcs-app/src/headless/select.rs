@@ -163,7 +163,6 @@ fn position(text: &str) -> Option<LatLon> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::headless::source::tests::source;
 

@@ -193,7 +193,6 @@ fn read_at_most(path: &Path, limit: u64) -> anyhow::Result<Vec<u8>> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     /// A source that is a file of this text.

@@ -53,7 +53,6 @@ pub fn shown(wind: &Wind) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

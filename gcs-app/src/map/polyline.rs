@@ -132,7 +132,6 @@ fn thinned(line: &[Mercator], apart: f64) -> Vec<Mercator> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use egui::{Rect, pos2, vec2};
     use geometry::LatLon;

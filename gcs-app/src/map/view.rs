@@ -123,7 +123,6 @@ impl View {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::panic)]
     use super::*;
     use egui::vec2;
     use walkers::{MapMemory, MercatorProjection};

@@ -255,7 +255,6 @@ fn shown(value: &VariableValue) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use flight_exec::Branching;
 

@@ -216,7 +216,6 @@ fn is_captured((here, offset_m): (LatLon, f64), (next, next_m): (LatLon, f64)) -
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     const HOME: LatLon = LatLon::new(36.3, -84.2);

@@ -271,7 +271,6 @@ fn add_curve(
 
 /// Pixels of a colour in a picture.
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 pub(super) fn count(png: &[u8], ink: Ink) -> usize {
     let picture = tiny_skia::Pixmap::decode_png(png).unwrap();
     let same = |p: &&tiny_skia::PremultipliedColorU8| {

@@ -112,7 +112,6 @@ fn crosses(a: Vec2, b: Vec2, p: Vec2) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::report::record::TrackPoint;
 

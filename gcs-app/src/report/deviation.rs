@@ -156,7 +156,6 @@ fn times(track: &Track, passage: usize) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::report::record::PlaceKind;
     use geometry::LatLon;

@@ -94,7 +94,6 @@ fn tint(elevation_m: f64) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     #[test]

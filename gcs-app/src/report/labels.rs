@@ -119,7 +119,6 @@ fn room(canvas: &Canvas, (x, y): (f32, f32), text: &str, size: f32) -> [f32; 4] 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::super::style::*;
     use super::*;
 

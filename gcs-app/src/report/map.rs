@@ -318,7 +318,6 @@ fn draw_header(canvas: &mut Canvas, record: &Record) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     #[test]

@@ -245,7 +245,6 @@ fn draw_legend(canvas: &mut Canvas, record: &Record) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     #[test]

@@ -214,7 +214,6 @@ impl Record {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     /// An out-and-back flight with a scan, made up: enough for everything to be drawn.

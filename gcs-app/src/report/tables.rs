@@ -191,7 +191,6 @@ pub fn events(record: &Record) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::report;
 

@@ -98,7 +98,6 @@ impl Bounds {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::report::canvas::count;
     use crate::report::{Findings, made_up_record, map};

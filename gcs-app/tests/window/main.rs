@@ -1,7 +1,6 @@
 //! The window, driven as a person drives it: real buttons, real drags, a vehicle at the far end of
 //! the link that the test plays.
-
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod flying;
 mod planning;

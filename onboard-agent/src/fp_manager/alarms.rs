@@ -83,7 +83,6 @@ pub fn call(alarm: &Alarm) -> Option<Call> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     fn alarm(id: &str, severity: Severity, cause: Option<Cause>) -> Alarm {

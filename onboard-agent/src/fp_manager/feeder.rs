@@ -173,7 +173,6 @@ fn sentence(faults: &[(Token, String, String)]) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use proptest::prelude::*;
     use usal::contract::{Action, LatLon, Waypoint};

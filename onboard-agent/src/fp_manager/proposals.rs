@@ -155,7 +155,6 @@ pub(super) fn broken(error: &tokio::task::JoinError) -> Problem {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use aircraft::Profile;
     use flight_exec::{AircraftState, Command, Input, RequestId, Time};

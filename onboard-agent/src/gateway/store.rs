@@ -132,7 +132,6 @@ fn write(folder: &Path, snapshot: &Snapshot) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::gateway::core::Intent;
     use usal::contract::{SafeParameters, Token};

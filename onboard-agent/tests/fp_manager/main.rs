@@ -1,5 +1,5 @@
 //! The FP Manager over loopback, with a gateway that flies at a waypoint a step.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod ahead;
 mod fake_gateway;

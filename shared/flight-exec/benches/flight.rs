@@ -1,6 +1,6 @@
 //! The promises of speed: executor step (goal < 2 µs), a million waypoints of a scan through the cursor, preview of two
 //! hours (goal < 200 ms).
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
 
 use aircraft::{Profile, Wind};
 use divan::counter::ItemsCount;

@@ -1,5 +1,5 @@
 //! A flight under way, and what is ahead of it: changes are held against the rules from where the aircraft is.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 #[path = "common/grid.rs"]
 mod grid;

@@ -132,7 +132,7 @@ fn evaluate_a_condition(bencher: Bencher) {
 }
 
 /// The least time of some passes over a document. What they make is thrown away outside of the time.
-#[allow(clippy::disallowed_methods)] // a bench reads the clock
+#[expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
 fn timed<T>(pass: impl FnOnce() -> T) -> Duration {
     let start = Instant::now();
     let made = black_box(pass());

@@ -1,5 +1,4 @@
 //! Local frames beside the geodesics they stand for.
-#![allow(missing_docs)]
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use geometry::{LatLon, LocalFrame, PathElement, Vec2};

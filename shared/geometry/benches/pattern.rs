@@ -1,7 +1,6 @@
 //! Patterns: waypoints per second, one after the other by their number, as latitude and longitude.
-#![allow(clippy::unwrap_used, missing_docs)]
-// the library is pure; its bench measures time
-#![allow(clippy::disallowed_methods)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
+#![expect(clippy::disallowed_methods, reason = "the library is pure; its bench measures time")]
 
 use divan::black_box;
 use geometry::pattern::{

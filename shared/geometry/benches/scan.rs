@@ -1,7 +1,6 @@
 //! Scans: waypoints per second, and lines over a concave polygon beside a bare scanline.
-#![allow(clippy::unwrap_used, missing_docs)]
-// the library is pure; its bench measures time
-#![allow(clippy::disallowed_methods)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
+#![expect(clippy::disallowed_methods, reason = "the library is pure; its bench measures time")]
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

@@ -1,7 +1,6 @@
 //! Zones: a long plan held against many of them.
-#![allow(clippy::unwrap_used, missing_docs)]
-// the library is pure; its bench measures time
-#![allow(clippy::disallowed_methods)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
+#![expect(clippy::disallowed_methods, reason = "the library is pure; its bench measures time")]
 
 use divan::black_box;
 use geometry::zone::{Band, Rule, Shape, Stretch, Zone};

@@ -2,8 +2,7 @@
 //!
 //! In: `{"outer": [[east, north], …], "holes": [[…], …], "spacing_m": …, "heading_deg": …, "overshoot_m": …}`, metres.
 //! Out: the scanning pieces in flight order, and how long it took to lay them out.
-// an example is a shell: it may look at the clock and give up
-#![allow(clippy::disallowed_methods)]
+#![expect(clippy::disallowed_methods, reason = "an example is a shell: it may look at the clock")]
 
 use geometry::scan::{Corner, Entry, Scan, ScanParameters};
 use geometry::{Polygon, Vec2};

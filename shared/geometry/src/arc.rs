@@ -171,7 +171,6 @@ impl RadiusToFix {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::testing::HERE;
     use proptest::prelude::*;

@@ -101,8 +101,7 @@ pub fn normalise_180(deg: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    // the published figures are kept as they are printed
-    #![allow(clippy::excessive_precision)]
+    #![expect(clippy::excessive_precision, reason = "the published figures are kept as they are printed")]
     use super::*;
     use proptest::prelude::*;
 

@@ -169,7 +169,6 @@ fn small_angle_rad(angle_rad: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::testing::{HERE, assert_joins, assert_smooth, length_m};
     use proptest::prelude::*;

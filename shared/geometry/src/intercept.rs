@@ -182,7 +182,6 @@ fn widest(room_m: impl Fn(f64) -> f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::path::course_change_deg;
     use crate::testing::{HERE, assert_joins, assert_smooth, length_m};

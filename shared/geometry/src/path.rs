@@ -218,7 +218,6 @@ pub fn course_change_deg(from_deg: f64, to_deg: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::testing::HERE;
     use proptest::prelude::*;

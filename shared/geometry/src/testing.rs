@@ -1,5 +1,4 @@
 //! What several tests need.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::path::course_change_deg;
 use crate::{LatLon, PathElement};

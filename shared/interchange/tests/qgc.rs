@@ -1,5 +1,5 @@
 //! Plans of QGroundControl in the versions and with the settings that it has written over the years.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod outline;
 

@@ -1,5 +1,5 @@
 //! What is written is read again: the same waypoints, within 1e-7 degrees and 0.1 m.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod made;
 

@@ -159,7 +159,6 @@ fn checksum(parts: &[&[u8]]) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use proptest::collection::vec;
     use proptest::prelude::*;

@@ -132,7 +132,6 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -8,8 +8,7 @@
 //! transmitter, log download, the time an upload takes; its dead reckoning without satellites is perfect, and
 //! telemetry comes at 10 Hz at most.
 
-// ArduPlane and its clients still speak much that the dialect calls deprecated
-#![allow(deprecated)]
+#![allow(deprecated, reason = "ArduPlane and its clients still use much that the dialect calls deprecated")]
 
 pub mod config;
 pub mod core;

@@ -51,7 +51,6 @@ fn fallback(distance_m: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     /// A ridge 1000 m high along latitude 36.5, sloping 10 m a hundredth of a degree; nothing known north of 36.6.

@@ -213,7 +213,6 @@ fn signed(sign: u8, plus: u8, minus: u8, digits: &[u8], count: usize, limit: i32
 
 #[cfg(test)]
 pub(crate) mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use proptest::prelude::*;
 

@@ -75,7 +75,6 @@ impl Terrain for Tiles {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::tile::tests::hgt;
 

@@ -1,6 +1,6 @@
 //! One hop over loopback: ours (typed, CBOR, last value or sequence numbers) beside bare Zenoh
 //! between the same two kinds of session in the same run. Prints percentiles and the ratio.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
 
 use std::net::TcpListener;
 use std::time::{Duration, Instant};

@@ -123,7 +123,6 @@ impl Session {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     /// `LEGWORK_BLESS=1 cargo test -p usal` rewrites the file: look at the difference before

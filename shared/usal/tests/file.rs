@@ -1,5 +1,5 @@
 //! Files over loopback: complete or absent, with the faults that threaten that.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod common;
 

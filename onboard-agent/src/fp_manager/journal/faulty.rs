@@ -1,5 +1,4 @@
 //! A disk that dies at any byte and fails on request: what was synced stays, of the rest a random part.
-#![allow(missing_docs)]
 
 use super::storage::Storage;
 use std::cell::RefCell;
@@ -126,11 +125,6 @@ impl Faulty {
     /// Bytes of all files.
     pub fn size(&self) -> usize {
         self.0.borrow().size()
-    }
-
-    /// Operations so far.
-    pub fn operations(&self) -> u64 {
-        self.0.borrow().operations
     }
 
     /// Changes the bytes of a file.

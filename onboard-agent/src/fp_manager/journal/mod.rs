@@ -52,7 +52,7 @@
 
 mod entries;
 #[cfg(test)]
-pub mod faulty;
+pub(super) mod faulty;
 mod handle;
 mod log;
 mod storage;

@@ -1,5 +1,4 @@
 //! Faults of the disk, one a test, without a disk and without a clock.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::faulty::{Death, Faulty, Operation, Random};
 use super::*;

@@ -213,7 +213,6 @@ fn is_stale(now: Time, t: &Telemetry) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use crate::gateway::order::{Fix, Mode, Report};
     use geometry::LatLon;

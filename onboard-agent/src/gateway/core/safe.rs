@@ -143,7 +143,6 @@ fn waypoint(position: LatLon, altitude_amsl_m: f64, airspeed_mps: f64, action: A
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
 
     const HOME: LatLon = LatLon::new(36.4905, -84.2710);

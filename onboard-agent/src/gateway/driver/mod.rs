@@ -246,8 +246,7 @@ impl Driver {
         self.tick(now);
     }
 
-    // ArduPilot asks by the deprecated message, and has to be answered
-    #[expect(deprecated)]
+    #[expect(deprecated, reason = "ArduPilot asks by the deprecated message, and has to be answered")]
     fn receive_mission(&mut self, now: Time, peer: Peer, message: &MavMessage) {
         if self.partial_write.is_some() {
             return self.receive_salvo(now, message);

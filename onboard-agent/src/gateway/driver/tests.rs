@@ -1,5 +1,4 @@
 //! Transfers against the simulator's mission protocol, with what happens on bad links.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::*;
 use crate::gateway::order::{Item, ItemKind};

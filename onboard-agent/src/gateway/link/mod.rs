@@ -115,7 +115,6 @@ impl Link {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
     use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot};
     use std::net::UdpSocket;

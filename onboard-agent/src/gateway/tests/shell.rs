@@ -1,5 +1,4 @@
 //! The whole gateway over sockets: simulator, link, session.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::gateway::{Address, Config, run};
 use std::net::TcpListener;

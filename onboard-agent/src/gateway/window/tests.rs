@@ -1,5 +1,4 @@
 //! The window against a small model of an autopilot's list.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::*;
 use crate::gateway::order::ItemKind;

@@ -1,5 +1,4 @@
 //! Flights: tracking accuracy in wind, turns, circles, take-off and landing.
-#![allow(clippy::unwrap_used)]
 
 use super::*;
 use crate::{Aircraft, Wind};

@@ -227,7 +227,10 @@ pub fn preview(
 ///
 /// # Errors
 /// As [`preview`], and `Cancelled`.
-#[allow(clippy::too_many_arguments)] // the flight's whole circumstances, each given by another part of the caller
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the circumstances of a flight: each is known to another part of the caller"
+)]
 pub fn preview_with(
     program: &Arc<Program>,
     profile: &Profile,

@@ -73,7 +73,6 @@ fn open_ended(kind: &LegKind) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::api::Refusal;
 

@@ -131,7 +131,6 @@ fn not_tried(variable: &Variable) -> Problem {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use flight_plan::Id;
 

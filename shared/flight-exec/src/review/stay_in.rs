@@ -119,7 +119,6 @@ fn middle(from: At, to: At) -> At {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::super::prepared::{When, Zones};
     use super::super::{Conditions, Margins};
     use super::*;

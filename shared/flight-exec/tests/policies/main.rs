@@ -5,7 +5,7 @@
 //! `LEGWORK_SEED=17 cargo test -p flight-exec --test policies` flies that one again and tells what happened.
 //! `LEGWORK_SEQUENCES=1000000 LEGWORK_FROM=250000 cargo test --release -p flight-exec --test policies -- --nocapture`
 //! flies many, and goes on where another run has stopped; `LEGWORK_THREADS=1` leaves the other cores to others.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod actions;
 mod answers;

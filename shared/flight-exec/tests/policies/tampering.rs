@@ -1,5 +1,5 @@
 //! Can each policy be broken at all? Traces are tampered with where the policy applied, and it must notice.
-#![allow(clippy::unit_arg)] // `Some(change)`: changed, one line each
+#![expect(clippy::unit_arg, reason = "`Some(change)`: changed, one line each")]
 
 use crate::policy::{self, Findings, Policy};
 use crate::trace::{Deed, Moment, Seen, Trace};

@@ -1,5 +1,4 @@
 //! For the rules' tests: a good plan, changed at one place.
-#![allow(clippy::panic)]
 
 use crate::{FlightPlan, Problem, check, read};
 use aircraft::Profile;

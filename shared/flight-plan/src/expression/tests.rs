@@ -1,5 +1,4 @@
 //! What expressions mean, with the `cel` crate's own interpreter as the oracle.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::*;
 use crate::{FlightPlan, Variable, VariableValue, Variables};

@@ -87,7 +87,6 @@ fn corner(route: &Route, p: &CorridorParameters, lines: &Lines) -> Result<Corner
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn parameters() -> CorridorParameters {

@@ -12,7 +12,6 @@ pub fn creeping_heading_deg(area: &Polygon, progress_deg: Option<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::Vec2;
 

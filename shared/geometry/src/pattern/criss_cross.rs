@@ -69,7 +69,6 @@ pub(super) fn scan_vertex(scan: &Scan, index: u64) -> Option<Vertex> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::Vec2;
     use crate::scan::Corner;

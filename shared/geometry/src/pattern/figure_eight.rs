@@ -81,7 +81,6 @@ impl FigureEight {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn parameters(turn: Turn, laps: u64) -> FigureEightParameters {

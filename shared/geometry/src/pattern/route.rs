@@ -189,7 +189,6 @@ fn meeting(before: &Edge, after: &Edge) -> Vec<Vec2> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn route(points: &[(f64, f64)]) -> Route {

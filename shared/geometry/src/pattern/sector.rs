@@ -98,7 +98,6 @@ impl SectorSearch {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::path::course_change_deg;
 

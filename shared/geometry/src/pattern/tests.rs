@@ -1,5 +1,4 @@
 //! What holds for every pattern.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
 use crate::Polygon;
 use crate::polygon::tests::any_area;

@@ -65,7 +65,6 @@ impl TrackLine {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::Vec2;
 

@@ -247,7 +247,6 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::polygon::tests::any_area;
     use proptest::prelude::*;

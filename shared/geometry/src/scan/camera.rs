@@ -23,7 +23,6 @@ pub fn camera_spacing_m(height_m: f64, field_of_view_deg: f64, side_overlap: f64
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

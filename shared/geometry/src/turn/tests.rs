@@ -1,4 +1,3 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
 use crate::testing::{HERE, assert_joins, assert_smooth, length_m};
 use proptest::prelude::*;

@@ -237,7 +237,6 @@ impl<T: Clone> BadLink<T> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -1,5 +1,4 @@
 //! The core as a ground station sees it: transcripts, flights and faults, without a socket.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use super::item::{Item, degrees_e7};
 use super::mode::Mode;

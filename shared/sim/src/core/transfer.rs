@@ -178,7 +178,6 @@ fn put(items: &mut Vec<Item>, seq: u16, item: Item) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::panic)]
     use super::*;
     use MavMissionResult as R;
     use geometry::LatLon;

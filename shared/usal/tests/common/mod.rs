@@ -1,6 +1,6 @@
 //! A hub on a free port, clients of it, outside clients that know only Zenoh, and waiting with a
 //! deadline.
-#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(dead_code, reason = "each test uses its own part of it")]
 
 use std::future::Future;
 use std::time::Duration;

@@ -1,6 +1,5 @@
 //! A thousand deaths: a flight whose FP Manager dies at random bytes and instants, over a disk that keeps what was
 //! synced and a random part of the rest, beside the same flight undisturbed.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod asks;
 mod gateway;

@@ -1,5 +1,4 @@
 //! Whole flights: core, window and driver against the simulator's pure core, without sockets.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input, Settings, Snapshot};

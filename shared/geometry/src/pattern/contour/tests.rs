@@ -1,4 +1,3 @@
-#![allow(clippy::unwrap_used)]
 use super::*;
 use crate::polygon::signed_area_m2;
 use crate::polygon::tests::any_area;

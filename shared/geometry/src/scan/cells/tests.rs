@@ -1,4 +1,3 @@
-#![allow(clippy::unwrap_used)]
 use super::super::tests::{parameters as scan_parameters, polygon, u_shape};
 use super::super::{Corner, Entry};
 use super::*;

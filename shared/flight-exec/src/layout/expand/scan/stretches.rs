@@ -225,7 +225,6 @@ impl Order<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use geometry::scan::{CellScan, Entry, ScanParameters};
     use geometry::{LocalFrame, Polygon};
