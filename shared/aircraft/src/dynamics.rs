@@ -147,7 +147,7 @@ impl Aircraft {
             (self.battery.energy_left_j - joules).clamp(0.0, self.battery.capacity_j);
     }
 
-    /// Goes back in time by a part of the last step and rounds the motion to what an autopilot tells of it: position to
+    /// Goes back in time by a part of the last step and rounds the motion to what an autopilot reports: position to
     /// 1e-7 degrees (1 cm), altitude and speeds to centimetres, angles to a thousandth of a radian. On the
     /// ground nothing is done.
     ///
@@ -410,7 +410,7 @@ mod tests {
         assert!((was.altitude_amsl_m - is.altitude_amsl_m).abs() < 0.02);
         assert!(wrap_pi(was.heading_rad - is.heading_rad).abs() < 1e-3);
         assert!((before.battery().energy_left_j - a.battery().energy_left_j).abs() < 0.1);
-        // an aircraft that was a millimetre beside it is in the same place now
+        // an aircraft that was a millimetre away is in the same place now
         let mut beside = before.clone();
         beside.local = beside.local + Vec2::new(1e-4, -1e-4);
         fly(&mut beside, 0.1, &demand(20.0, 1.0), &wind);

@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 /// No arc needs more vertices than this: it bounds what a tolerance of nearly 0 can cost.
 pub const MAX_SEGMENTS: usize = 10_000;
 
-/// Where the vertices go that stand for an arc.
+/// Where the vertices that approximate an arc are placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Flattening {
@@ -37,7 +37,7 @@ impl Flattening {
         (2.0 * cos_half.clamp(-1.0, 1.0).acos()).min(FRAC_PI_2)
     }
 
-    /// Chords that an arc needs, every vertex being placed alike: sweep / step, rounded up,
+    /// Chords that an arc needs if every vertex is placed in the same way: sweep / step, rounded up,
     /// within 1..=[`MAX_SEGMENTS`].
     pub fn segments(self, radius_m: f64, sweep_deg: f64, tolerance_m: f64) -> usize {
         let step_rad = self.step_rad(radius_m, tolerance_m);
@@ -45,7 +45,7 @@ impl Flattening {
     }
 }
 
-/// Rounds up, forgiving rounding errors; anything that is not a number gives 1.
+/// Rounds up, tolerating rounding errors; anything that is not a number gives 1.
 fn whole_segments(exact: f64) -> usize {
     (exact - 1e-9).ceil().clamp(1.0, MAX_SEGMENTS as f64) as usize
 }
@@ -77,7 +77,7 @@ pub fn flatten(element: &PathElement, how: Flattening, tolerance_m: f64) -> Vec<
     points
 }
 
-/// Places around a centre: from a frame where it is exact, which is many times cheaper, else by geodesics.
+/// Places around a centre: from a local frame where that is exact (many times cheaper), else by geodesics.
 struct Around {
     centre: LatLon,
     frame: Option<LocalFrame>,
@@ -134,7 +134,7 @@ fn balanced(radius_m: f64, sweep_rad: f64, tolerance_m: f64) -> Vertices {
     }
     let inner =
         if sweep_rad > 2.0 * end_step { whole_segments((sweep_rad - 2.0 * end_step) / step) } else { 0 };
-    // all angles shrink alike until they fit; chords then bend less than they may
+    // all angles shrink by the same factor until they fit; chords then bend less than they may
     let shrink = sweep_rad / (2.0 * end_step + inner as f64 * step);
     let outside_m = tolerance_m.min(radius_m) * (shrink * shrink).min(1.0);
     Box::new((0..=inner).map(move |i| Vertex {
@@ -143,7 +143,7 @@ fn balanced(radius_m: f64, sweep_rad: f64, tolerance_m: f64) -> Vertices {
     }))
 }
 
-/// How well a coded arc fits: from `start` to `end` around `centre`.
+/// How well a coded arc fits from `start` to `end` around `centre`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RadiusToFix {
     /// The arc, with the start's radius.

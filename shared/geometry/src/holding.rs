@@ -1,4 +1,4 @@
-//! Holdings: the racetrack, how it is entered, and the turn-round that is made of an entry.
+//! Holdings: the racetrack, its entries, and the course reversal that is built from an entry.
 
 use crate::path::course_change_deg;
 use crate::plane::{Pen, Pose};
@@ -109,7 +109,7 @@ impl Racetrack {
     fn direct(&self, mut pen: Pen) -> Vec<PathElement> {
         let (r, side) = (self.radius_m, self.turn.sign());
         let way = self.place(self.leg_m, r) - pen.pose.turn_centre(side, r);
-        // with no way between the centres both turns are one
+        // with no distance between the centres both turns are one
         let course_rad = if way.length() > 1e-6 * r { way.bearing_rad() } else { self.inbound_rad() + PI };
         let first = forward_angle_rad(side * (course_rad - pen.pose.course_rad));
         let second = forward_angle_rad(side * (self.inbound_rad() - course_rad));
@@ -129,7 +129,7 @@ impl Racetrack {
         pen.finish()
     }
 
-    /// Outbound beside the inbound leg, round through the holding side, intercept, roll out.
+    /// Outbound parallel to the inbound leg, round through the holding side, intercept, roll out.
     fn parallel(&self, mut pen: Pen, leg_m: f64) -> Vec<PathElement> {
         let (r, side) = (self.radius_m, self.turn.sign());
         let intercept = PARALLEL_INTERCEPT_DEG.to_radians();

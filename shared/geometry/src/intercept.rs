@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_4;
 
 /// Greatest angle at which a course is intercepted, radians.
 const GREATEST_INTERCEPT_RAD: f64 = FRAC_PI_4;
-/// Who comes round is on the course by this many turn radii before the fix.
+/// After coming round, the aircraft is on the course at this many turn radii before the fix.
 const SETTLED_RADII: f64 = 2.0;
 /// Shares of the frame's radius: farther away than the first, the aircraft flies straight towards a gate on the course, the
 /// second before the fix, until it is the third before the gate.
@@ -16,7 +16,7 @@ const GATE: f64 = 0.5;
 const BEFORE_GATE: f64 = 0.3;
 /// Step that shows the direction of a true course in a frame, metres.
 const STEP_M: f64 = 100.0;
-/// As near to it as this, the aircraft is on the course, metres.
+/// Within this distance the aircraft is on the course, metres.
 const ON_COURSE_M: f64 = 1e-3;
 /// Longest track from a fix, metres: farther, geodesics are no longer the shortest way.
 const LONGEST_TRACK_M: f64 = 10_000_000.0;
@@ -26,7 +26,7 @@ const LONGEST_TRACK_M: f64 = 10_000_000.0;
 pub enum Joining {
     /// By a turn to an intercept of this angle (0..=45 degrees), straight on, and a turn onto the course.
     Intercept {
-        /// Angle between the course and the way to it, degrees.
+        /// Angle between the course and the path to it, degrees.
         angle_deg: f64,
     },
     /// There is no room for an intercept before the fix (the aircraft is beside or beyond it): it comes round by two
@@ -70,7 +70,7 @@ pub fn course_to_fix(
     let way = path.pop()?;
     let near = way.pose_at(way.length_m() - BEFORE_GATE * frame.radius_m());
     let towards = PathElement::Line { from: way.start(), to: near.position };
-    // a wide turn may have used the whole way
+    // a wide turn may have used the whole distance
     path.extend((towards.length_m() > 1.0).then_some(towards));
     let start = pose_in(&frame, near.position, near.bearing_end_deg);
     let joined = join(fix, start, inbound_course_deg.to_radians(), radius_m);

@@ -3,7 +3,7 @@
 use crate::Terrain;
 use geometry::LatLon;
 
-/// Most points looked at on one path, so that a bad path cannot take for ever.
+/// Most samples on one path, so that a bad path cannot take for ever.
 const MOST_SAMPLES: f64 = 100_000.0;
 
 /// What lies under a path.
@@ -17,7 +17,7 @@ pub struct Ground {
     pub unknown: f64,
 }
 
-/// Looks at the terrain every `spacing_m` metres (and at both ends) of the geodesic from `from` to `to`.
+/// Samples the terrain every `spacing_m` metres (and at both ends) of the geodesic from `from` to `to`.
 ///
 /// A spacing that is no positive number, or that would need more than 100,000 points, is widened to
 /// what gives that many. Half the data's spacing (about 45 m for 3″) misses nothing that bilinear

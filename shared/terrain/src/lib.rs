@@ -1,7 +1,7 @@
 //! Pure: elevation tiles (SRTM HGT bytes to metres above sea level).
 //!
-//! [`Tile`] reads one file, [`Tiles`] answers from several, [`along`] looks at what lies under a path.
-//! Files are read by whoever owns the disk; this crate gets their name and bytes.
+//! [`Tile`] reads one file, [`Tiles`] combines several, [`along`] gives the ground under a path.
+//! The caller reads the files; this crate gets their names and bytes.
 
 pub mod along;
 pub mod tile;
@@ -13,12 +13,12 @@ pub use tiles::Tiles;
 
 use geometry::LatLon;
 
-/// Ground elevation, wherever it comes from.
+/// Ground elevation from any source.
 pub trait Terrain: Send + Sync {
-    /// Metres above mean sea level at `p`, or `None` where nothing is known.
+    /// Metres above mean sea level at `p`; `None` where the elevation is unknown.
     fn elevation_m(&self, p: LatLon) -> Option<f64>;
 
-    /// Metres that no elevation within a box is above; `None`: not said. The box does not cross the antimeridian.
+    /// An upper bound of the elevation within a box, metres; `None`: unknown. The box does not cross the antimeridian.
     fn at_most_m(&self, _south_west: LatLon, _north_east: LatLon) -> Option<f64> {
         None
     }

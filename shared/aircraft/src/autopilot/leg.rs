@@ -9,7 +9,7 @@ use geometry::{LatLon, Vec2};
 /// Track changes up to this need no turn, and above [`REVERSAL_RAD`] none fits: fly over the point.
 const STRAIGHT_RAD: f64 = 0.01;
 const REVERSAL_RAD: f64 = 175.0 * std::f64::consts::PI / 180.0;
-/// A runway's own line is followed if the way to it is no farther off its heading than this.
+/// A runway's own line is followed if the course to it differs from its heading by no more than this.
 const ALIGNED_DEG: f64 = 30.0;
 /// Shorter legs have no direction, metres.
 const SHORTEST_M: f64 = 0.5;

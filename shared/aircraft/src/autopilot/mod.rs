@@ -2,7 +2,7 @@
 //!
 //! The owner of the waypoints keeps the list; [`Guidance`] knows only the leg being flown:
 //!
-//! 1. [`Guidance::direct`] begins a leg from wherever the aircraft is; [`Guidance::proceed`] begins the leg
+//! 1. [`Guidance::direct`] begins a leg at the aircraft's position; [`Guidance::proceed`] begins the leg
 //!    from the target just reached to the one that follows it.
 //! 2. [`Guidance::step`] with the target after the current one, if there is one, gives the demand for the
 //!    aircraft and says when the current target is reached.
@@ -32,7 +32,7 @@ pub enum Action {
     },
     /// Fly to it.
     Fly,
-    /// Circle it until told otherwise.
+    /// Circle it until a new command.
     Loiter {
         /// Metres; positive clockwise. Zero: the aircraft's planning turn radius, clockwise.
         radius_m: f64,
@@ -93,7 +93,7 @@ impl Guidance {
         Self { profile, leg: None, corner: None }
     }
 
-    /// Begins a leg from wherever the aircraft is (and at its altitude) to `target`.
+    /// Begins a leg at the aircraft's position and altitude, to `target`.
     pub fn direct(&mut self, state: &State, target: Target) {
         self.begin(Leg::new(state.position, state.altitude_amsl_m, target));
     }

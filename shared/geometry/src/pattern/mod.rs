@@ -43,7 +43,7 @@ pub struct Vertex {
     pub at: Vec2,
     /// Number of the track (scan line, lap, loop, side, pass or leg) that it belongs to, from 0 in flight order.
     pub track: u64,
-    /// The way to it from the waypoint before is flown on that track; otherwise it leads there from somewhere
+    /// The segment from the waypoint before is part of that track; otherwise it leads there from elsewhere
     /// else. Backwards, the way *from* it is.
     pub on_track: bool,
 }
@@ -61,7 +61,7 @@ pub enum Pattern {
     ExpandingSquare(ExpandingSquare),
     /// Triangles with a common corner.
     SectorSearch(SectorSearch),
-    /// There and back beside a route.
+    /// Out and back, parallel to a route.
     TrackLine(TrackLine),
     /// Parallel tracks along a route.
     Corridor(Corridor),
@@ -88,7 +88,7 @@ impl Pattern {
     }
 
     /// The waypoint of a number; `None` from [`Pattern::count`] on. It costs the same for every number: nothing before
-    /// it is computed (a scan looks at every edge of its polygon).
+    /// it is computed (a scan examines every edge of its polygon).
     pub fn vertex(&self, index: u64) -> Option<Vertex> {
         match self {
             Pattern::Scan(p) => criss_cross::scan_vertex(p, index),
@@ -225,11 +225,11 @@ fn whole(count: f64) -> Result<u64, PatternError> {
     Err(PatternError::TooMany { most: MOST_VERTICES })
 }
 
-/// The waypoints of tracks, one after the other, with the corners of the way to each before it.
+/// The waypoints of tracks in order; the corners of the path to a track come before it.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Stored {
     points: Vec<Vec2>,
-    /// Where the way to each track begins, and where the track does.
+    /// The index at which the path to each track begins, and the index at which the track begins.
     starts: Vec<(usize, usize)>,
 }
 

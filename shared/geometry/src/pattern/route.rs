@@ -1,10 +1,10 @@
-//! A route in the plane, and the paths beside it.
+//! A route in the plane, and the paths parallel to it.
 
 use super::{MOST_STORED, PatternError};
 use crate::Vec2;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
-/// Points that a route may have; bounds what laying out tracks beside it costs.
+/// Most points of a route; bounds the cost of laying out parallel tracks.
 pub(super) const MOST_POINTS: usize = 10_000;
 /// Corners up to this turn are mitred on their outside; sharper ones rounded.
 const MITRED_RAD: f64 = FRAC_PI_2;
@@ -29,7 +29,7 @@ struct Edge {
     right: Vec2,
 }
 
-/// An edge beside the route: where the path arrives on it by way of the points of a join.
+/// An edge parallel to the route: where the path arrives on it through the points of a join.
 #[derive(Debug, Clone)]
 struct Piece {
     edge: Edge,
@@ -71,7 +71,7 @@ impl Route {
         first.into_iter().chain(self.edges.iter().map(|e| e.to))
     }
 
-    /// Refuses more paths beside it than can be laid out at once.
+    /// Refuses more parallel paths than can be laid out at once.
     pub(super) fn check_paths(&self, paths: u64) -> Result<(), PatternError> {
         let points = (self.edges.len() as u64 + 1).saturating_mul(paths);
         if points > MOST_STORED as u64 {
@@ -83,8 +83,8 @@ impl Route {
     /// The path a distance to its right (negative: left), prolonged at both ends, metres.
     ///
     /// Outer corners are mitred up to a right angle, else rounded by waypoints on tangents. Inner corners are where the edges
-    /// beside the route meet; an edge too short for the corners at its ends is left out, so that there are no loops. A route that
-    /// comes back near itself is not looked after: tracks beside it then cross as the route's own surroundings do.
+    /// parallel to the route meet; an edge too short for the corners at its ends is left out, so that there are no loops. A route
+    /// that comes back near itself gets no special treatment: its parallel tracks cross each other there.
     pub fn beside(&self, right_m: f64, prolonged_m: f64) -> Vec<Vec2> {
         let mut pieces: Vec<Piece> = Vec::with_capacity(self.edges.len());
         for number in 0..self.edges.len() {
@@ -106,7 +106,7 @@ impl Route {
         path
     }
 
-    /// Adds the edge beside the route, and takes away those before it that it leaves no room for.
+    /// Adds a parallel edge, and removes those before it that have no room left.
     fn append(&self, pieces: &mut Vec<Piece>, number: usize, right_m: f64) {
         let Some(&edge) = self.edges.get(number) else { return };
         let beside =
@@ -145,7 +145,7 @@ impl Piece {
     }
 }
 
-/// Where edges beside a corner of the route meet, or what leads round it.
+/// Where the parallel edges at a corner of the route meet, or the points that lead round it.
 fn corner(before: &Edge, after: &Edge, vertex: Vec2, right_m: f64) -> Vec<Vec2> {
     let turn_rad = before.along.cross(after.along).atan2(before.along.dot(after.along));
     // anticlockwise is positive: a left turn has its outside on the right

@@ -6,7 +6,7 @@ use crate::{Flattening, Vec2};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// Waypoints cut the curve by no more than this share of the spacing, whatever the tolerance.
+/// Waypoints cut the curve by no more than this share of the spacing, at any tolerance.
 const MOST_CUT: f64 = 1.0 / 40.0;
 /// So much of the tolerance is planned with: chords bend most at their outer end, where the curve's bound grows
 /// by less than (2 + π/4) / (2 + π/8) = 1.17 over a chord's.

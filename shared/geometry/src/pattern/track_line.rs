@@ -12,12 +12,12 @@ const MOST_PAIRS: u64 = 1000;
 pub struct TrackLineParameters {
     /// Distance between neighbouring passes, metres.
     pub spacing_m: f64,
-    /// Ends where it began: out half a spacing beside the route, back half a spacing on its other side. Otherwise it
+    /// Ends where it began: out half a spacing to one side of the route, back half a spacing to the other. Otherwise it
     /// ends at the other end: out on the route itself, then back and out a spacing to either side.
     pub returns: bool,
     /// How many pairs of passes are flown, each a spacing farther out. Not returning, 0 is the route alone.
     pub pairs: u64,
-    /// Side of the first pass beside the route.
+    /// Side of the route on which the first pass is.
     pub first_side: Turn,
 }
 

@@ -73,7 +73,7 @@ impl Polygon {
         for way in ways {
             after = after - way;
             let sum_m = (way * way.length().recip()).cross(after - before).abs();
-            // equal ones must not be told apart by rounding
+            // rounding must not make equal ones differ
             if sum_m < best.0 - 1e-3 {
                 best = (sum_m, way.bearing_rad().to_degrees().rem_euclid(180.0));
             }
@@ -97,7 +97,7 @@ impl Polygon {
                 far += 1;
             }
             let width_m = away(corner(far)) / way.length();
-            // a millimetre: equal widths must not be told apart by rounding
+            // a millimetre: rounding must not make equal widths differ
             if width_m < best.0 - 1e-3 {
                 best = (width_m, way.bearing_rad().to_degrees().rem_euclid(180.0));
             }

@@ -1,12 +1,12 @@
 //! Simple polygons with holes, in a local frame.
 
 mod measure;
+mod shortest_path;
 mod validity;
-mod way;
 
 pub(crate) use measure::{distance_to_segment_m, signed_area_m2};
+pub use shortest_path::{EdgeBudget, Interior};
 pub use validity::PolygonError;
-pub use way::{Interior, Looks};
 
 use crate::{Flattening, LatLon, LocalFrame, Vec2};
 use std::f64::consts::TAU;

@@ -1,5 +1,9 @@
-//! A scan cell by cell: the arms of a concave area and the sides of a hole are finished one after the other, and what lies between
-//! them is not flown across (boustrophedon decomposition, Choset and Pignon 1997).
+//! A scan cell by cell: the arms of a concave area and the sides of a hole are finished one after the other, and the gaps between
+//! them are not crossed (boustrophedon decomposition, Choset and Pignon 1997).
+//!
+//! The scanning pieces of the lines are numbered cell by cell. For a concave area one pass over its lines finds the cells (at most
+//! a million lines). A convex area is one cell of any number of lines and costs nothing. From one cell to the next leads the
+//! shortest path inside the area ([`Interior`]).
 
 mod find;
 mod order;
@@ -9,13 +13,13 @@ mod tests;
 use super::outline::{Span, Sweep, spans};
 use super::{Order, Scan, ScanError, ScanParameters};
 use crate::Vec2;
-use crate::polygon::{Interior, Looks, Polygon, distance_to_segment_m};
+use crate::polygon::{EdgeBudget, Interior, Polygon, distance_to_segment_m};
 use find::Finder;
 use order::in_flight_order;
 use std::ops::Range;
 
-/// A scan whose tracks are the scanning pieces of a [`Scan`]'s lines, cell by cell. A cell goes on as long as one piece of a line
-/// meets one of the next, and no other. A convex area is one cell, of any number of lines, and its tracks are those of the scan.
+/// A scan whose tracks are the scanning pieces of a [`Scan`]'s lines, cell by cell. A cell continues as long as one piece of a line
+/// adjoins exactly one piece of the next. A convex area is one cell, and its tracks are those of the scan.
 #[derive(Debug, Clone)]
 pub struct CellScan {
     scan: Scan,
@@ -41,7 +45,7 @@ impl CellScan {
     /// what is flown come first.
     ///
     /// # Errors
-    /// A parameter that makes no sense; a concave area that is too intricate, or has too many lines.
+    /// An invalid parameter; a concave area that is too intricate, or has too many lines.
     pub fn new(area: &Polygon, p: &ScanParameters) -> Result<Self, ScanError> {
         let scan = Scan::new(area, p)?;
         if area.is_convex() {
@@ -74,23 +78,24 @@ impl CellScan {
         self.cell(track).is_some_and(|(_, cell)| cell.order.along_heading(track - cell.first_track))
     }
 
-    /// Whether a turn at their ends leads from one track to another; otherwise there is a way between them.
+    /// Whether one turn leads from a track to another; otherwise a path lies between them.
     pub fn turns_into(&self, track: u64, next: u64) -> bool {
         let cell = |track| self.cell(track).map(|(number, _)| number);
         track.abs_diff(next) == 1 && cell(track) == cell(next)
     }
 
-    /// Corners of the area; 0: of a convex one, which is one cell.
+    /// Number of corners of a concave area; 0 for a convex one, which is one cell.
     pub fn corners(&self) -> usize {
         self.interior.as_ref().map_or(0, |interior| interior.area().edges().count())
     }
 
-    /// The corners of the shortest way inside the area between two places at ends of tracks; `None`: the area is too intricate.
-    pub fn way(&self, from: Vec2, to: Vec2, looks: &mut Looks) -> Option<Vec<Vec2>> {
-        self.interior.as_ref().map_or(Some(Vec::new()), |interior| interior.way(from, to, looks))
+    /// The corners of the shortest path inside the area between two ends of tracks; `None`: the budget did not last, the area is
+    /// too intricate.
+    pub fn path_inside(&self, from: Vec2, to: Vec2, budget: &mut EdgeBudget) -> Option<Vec<Vec2>> {
+        self.interior.as_ref().map_or(Some(Vec::new()), |interior| interior.shortest_path(from, to, budget))
     }
 
-    /// Both ends of tracks as they lie along the heading; `None` for what is no track.
+    /// Both ends of tracks in the order along the heading; `None` where there is no such track.
     pub fn ends(&self, tracks: impl Iterator<Item = u64>) -> impl Iterator<Item = Option<(Vec2, Vec2)>> {
         let mut sweep = Sweep::default();
         tracks.map(move |track| {

@@ -2,9 +2,14 @@
 //!
 //! A scan is a set of parallel *lines* across the polygon, numbered from its left edge, flown as
 //! *tracks*, numbered in flight order. A line that crosses a gap (a hole, a bay of a concave
-//! outline) has several scanning segments. [`Scan`] goes line by line and marks the gap between them as transit; [`CellScan`]
-//! is what an aircraft flies that is to stay over the area: cell by cell, with ways inside from one to the next.
+//! outline) has several scanning segments. [`Scan`] goes line by line and marks the gaps as transit. [`CellScan`] is what an
+//! aircraft flies to stay over the area: cell by cell, with a path inside the area from one cell to the next.
 //! Nothing is stored per line: a million tracks take the memory of the polygon.
+//!
+//! What leads outside the area: the overshoot, and beyond it only turns, that is one turn radius beyond the ends of tracks and
+//! as far aside as the next track.
+//!
+//! Tracks can be addressed by number, so a scan can be resumed anywhere, flown backwards, or regenerated in flight.
 
 mod camera;
 mod cells;
@@ -34,22 +39,22 @@ pub struct ScanParameters {
     /// Greatest distance between neighbouring lines, metres. As few lines as that allows are spread evenly over the
     /// polygon's extent, the first and the last one half their distance inside.
     pub spacing_m: f64,
-    /// For a scan that takes the place of another one, whose lines are to stay where they were: a place on the border
-    /// between two of its strips ([`Scan::grid`]). Lines are `spacing_m` apart then, counted from there; only the
-    /// outermost ones, in the middle of what is left of their strips, may be nearer to their neighbours, down to half of that.
+    /// For a scan that replaces another one and keeps its lines: a place on the border between two of the old strips
+    /// ([`Scan::grid`]). Lines are then `spacing_m` apart, counted from there. The outermost ones lie in the middle of what is
+    /// left of their strips, so they may be nearer to their neighbours, down to half the spacing.
     pub grid: Option<Vec2>,
     /// Direction of the lines, degrees true; `None`: the one with the fewest lines.
     pub heading_deg: Option<f64>,
     /// How far a track goes on beyond the area's edge, metres. No point of a scanning segment is
-    /// farther outside the area. From half the spacing on, every point of the area is
-    /// within half the spacing of a scanning segment, whatever the area's shape: where the edge is
-    /// slanted, tracks are prolonged as far as the strip they stand for needs it.
+    /// farther outside the area. With half the spacing or more, every point of the area is
+    /// within half the spacing of a scanning segment, for any shape of the area: where the edge is
+    /// slanted, tracks are extended as far as their strip needs it.
     pub overshoot_m: f64,
     /// Where the pattern begins.
     pub entry: Entry,
-    /// Radius of the turns between tracks, metres. Where neighbouring lines are nearer than twice
-    /// of it, each turn leads over k lines or more, k · spacing ≥ 2 · radius, and those between are flown on the way back. 0: neighbours
-    /// in turn.
+    /// Radius of the turns between tracks, metres. If neighbouring lines are nearer than twice this radius, each turn skips
+    /// to a line k or more away, k · spacing ≥ 2 · radius, and the lines between are flown later. 0: each line after its
+    /// neighbour.
     pub turn_radius_m: f64,
 }
 
@@ -86,7 +91,7 @@ impl Corner {
     }
 }
 
-/// Why a polygon can't be scanned so.
+/// Why a polygon can't be scanned with these parameters.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ScanError {
     /// Not a positive number.
@@ -110,7 +115,7 @@ pub enum ScanError {
     /// More lines than can be counted.
     #[error("a spacing of {0} m gives more lines than can be counted: widen it")]
     TooManyLines(f64),
-    /// A concave area with more cells than are told apart.
+    /// A concave area with too many cells, or a search for paths inside that ran out of its budget.
     #[error(
         "an area of {corners} corners is too intricate to be flown cell by cell: simplify it, or give an overshoot of half its gaps"
     )]
@@ -121,10 +126,10 @@ pub enum ScanError {
     /// The camera is not above the ground.
     #[error("the camera is {0} m above the ground: it must be a positive number")]
     CameraHeight(f64),
-    /// A camera sees less than a half space.
+    /// Not between 0 and 180 degrees.
     #[error("the camera's field of view is {0}°: it must be between 0 and 180")]
     FieldOfView(f64),
-    /// Strips that overlap wholly never get on.
+    /// Not between 0 and 1: strips that overlap completely never cover new ground.
     #[error("the side overlap is {0}: it must be 0 or more and below 1")]
     SideOverlap(f64),
 }
@@ -138,7 +143,7 @@ pub struct Scan {
     order: Order,
     heading_deg: f64,
     overshoot_m: f64,
-    /// Half-width of the strip that a track is prolonged for, metres.
+    /// Half-width of the strip that a track covers and is extended for, metres.
     strip_m: f64,
 }
 
@@ -156,7 +161,7 @@ impl Axes {
     }
 }
 
-/// Where the lines are, across the heading: each in the middle of the strip that it stands for.
+/// Where the lines are, across the heading: each in the middle of the strip that it covers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lines {
     /// Where the first strip begins: at the left edge or, on a given grid, outside it.
@@ -170,14 +175,14 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Lines between two edges, evenly spread, as few as are no more than `most_m` apart; the outer ones half a spacing inside.
+    /// As few lines as possible, evenly spread, no more than `most_m` apart; the outer ones half a spacing inside the edges.
     pub fn even((left_m, right_m): (f64, f64), most_m: f64) -> Result<Self, ScanError> {
         let count = strips(right_m - left_m, most_m)?;
         Ok(Self::strips_of((right_m - left_m) / count as f64, left_m, count, (left_m, right_m)))
     }
     /// Lines of strips of one width, one of which begins at `grid_m`. The outer strips end at the edges.
     fn on_grid((left_m, right_m): (f64, f64), spacing_m: f64, grid_m: f64) -> Result<Self, ScanError> {
-        // forgives rounding: a strip that ends at the edge is not in the area
+        // tolerates rounding: a strip that ends at the edge is not in the area
         let first = ((left_m - grid_m) / spacing_m + 1e-9).floor();
         let begin_m = grid_m + first * spacing_m;
         let count = strips(right_m - begin_m, spacing_m)?;
@@ -199,7 +204,7 @@ impl Lines {
     }
     #[inline]
     pub fn across_m(&self, line: u64) -> f64 {
-        // the middle of a whole strip; that of what is left of an outer one is farther inside
+        // the middle of a whole strip; the middle of a cut outer strip is farther inside
         (self.begin_m + (line as f64 + 0.5) * self.spacing_m).max(self.first_m).min(self.last_m)
     }
     fn nearest(&self, across_m: f64) -> u64 {
@@ -214,7 +219,7 @@ impl Lines {
 
 /// How many strips make up a width.
 fn strips(width_m: f64, spacing_m: f64) -> Result<u64, ScanError> {
-    // forgives rounding: a width of 10 spacings has 10 strips
+    // tolerates rounding: a width of 10 spacings has 10 strips
     let count = (width_m / spacing_m * (1.0 - 1e-12) - 1e-9).ceil().max(1.0);
     if count > MAX_LINES {
         return Err(ScanError::TooManyLines(spacing_m));
@@ -226,7 +231,7 @@ impl Scan {
     /// Prepares a scan.
     ///
     /// # Errors
-    /// A parameter that makes no sense.
+    /// An invalid parameter, or too many lines.
     pub fn new(polygon: &Polygon, p: &ScanParameters) -> Result<Self, ScanError> {
         p.check()?;
         let heading_deg = p.heading_deg.unwrap_or_else(|| polygon.fewest_tracks_heading_deg());
@@ -274,17 +279,17 @@ impl Scan {
         along_m.map(|&along_m| self.axes.along * along_m + self.axes.across * across_m)
     }
 
-    /// Direction of the lines, degrees true (0..180 if it was left to the scan).
+    /// Direction of the lines, degrees true (0..180 if the scan chose it).
     pub fn heading_deg(&self) -> f64 {
         self.heading_deg
     }
 
-    /// Distance between neighbouring lines as they are laid, metres: at most the one asked for.
+    /// Actual distance between neighbouring lines, metres: at most the requested one.
     pub fn spacing_m(&self) -> f64 {
         self.lines.spacing_m
     }
 
-    /// A place on the border between two of the strips that the lines stand for.
+    /// A place on the border between two strips.
     pub fn grid(&self) -> Vec2 {
         self.axes.across * self.lines.begin_m
     }
@@ -294,7 +299,8 @@ impl Scan {
         self.lines.count
     }
 
-    /// How many lines on the next track is at least, if there are more than twice so many (1: neighbours in turn).
+    /// The least number of lines from one track to the next, if there are more than twice as many lines (1: each line after
+    /// its neighbour).
     pub fn interleave(&self) -> u64 {
         self.order.step()
     }
@@ -310,8 +316,8 @@ impl Scan {
     }
 
     /// The track whose line is nearest to a point, among those that are wanted (for example not
-    /// yet flown); of two equally near ones the one flown first. Looks at the lines from
-    /// the nearest on outwards; `None` if none is wanted.
+    /// yet flown); of two equally near ones the one flown first. Tries the lines from
+    /// the nearest outwards; `None` if none is wanted.
     pub fn nearest_track(&self, point: Vec2, wanted: impl Fn(u64) -> bool) -> Option<u64> {
         let middle = self.lines.nearest(point.dot(self.axes.across));
         let last = self.lines.count.saturating_sub(1);

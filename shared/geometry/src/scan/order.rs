@@ -1,31 +1,34 @@
 //! Which line is flown when, and in which direction.
+//!
+//! Lines that are too near for a turn from one to the next are interleaved block by block: alternately in the two halves of a
+//! block, then from its middle to the next block. The common alternative, every k-th line in several passes, leaves turns of one
+//! spacing between the passes. Blocks of 2k + 1 lines or more leave none, and are finished one after the other.
 
 use super::Corner;
 
-/// A numbering of lines in flight order. Lines that are too near for a turn from one to the next are interleaved block by block: to
-/// and fro between the halves of a block, and from its middle on to the next one.
+/// A numbering of lines in flight order. See the module's text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Order {
     lines: u64,
-    /// How many lines a turn leads over at least, where there are enough of them.
+    /// The least number of lines from one track to the next, where there are enough of them.
     step: u64,
     corner: Corner,
 }
 
-/// Lines in blocks one after the other, the greater ones first. All have an odd number of lines but perhaps the last one, which has
-/// what is left.
+/// Lines in consecutive blocks, the larger ones first. Each has an odd number of lines, except perhaps the last one, which has
+/// the rest.
 #[derive(Debug, Clone, Copy)]
 struct Blocks {
     count: u64,
-    /// So many have two lines more than the others.
+    /// How many blocks have two lines more than the others.
     greater: u64,
-    /// Lines of the others.
+    /// Lines of the other blocks.
     size: u64,
 }
 
 impl Blocks {
-    /// Of 2k + 1 lines or more: each turn leads over k lines or k + 1, and so does the one to the next block. A last block of an
-    /// even number ends at its edge, which doesn't matter to anybody, and its turns lead over one less than half of it.
+    /// Blocks of 2k + 1 lines or more: each turn crosses k or k + 1 lines, also the turn to the next block. A last block with an
+    /// even number of lines ends at its edge, which is harmless; its turns cross one line less than half of it.
     fn of(lines: u64, step: u64) -> Self {
         let least = 2 * step + 1;
         let count = (lines / least).max(1);
@@ -36,12 +39,12 @@ impl Blocks {
         Self { count, greater: pairs % count, size: least + 2 * (pairs / count) }
     }
 
-    /// Where a block begins.
+    /// The first line of a block.
     fn start(&self, block: u64) -> u64 {
         block * self.size + 2 * block.min(self.greater)
     }
 
-    /// The block of the line or track, with where it begins and how many of `lines` it has.
+    /// The block of a line or track: its first line, and how many of `lines` it has.
     fn around(&self, number: u64, lines: u64) -> (u64, u64) {
         let size = self.size.max(1);
         let in_greater = self.greater * (size + 2);
@@ -58,14 +61,15 @@ impl Blocks {
 }
 
 impl Order {
-    /// Lines beginning at a corner, each turn over `step` lines at least if there are so many.
+    /// Lines from a corner on; each turn crosses at least `step` lines if there are enough.
     fn new(lines: u64, step: u64, corner: Corner) -> Self {
         let step = step.clamp(1, lines.max(1));
         Self { lines, step, corner }
     }
 
-    /// Turns between tracks need no loops: k lines at least from one to the next, k · spacing ≥ 2 · turn radius (both in metres), if there
-    /// are more than 2k lines. Of fewer the middle one is too near to all others; then turns are as wide as they can be made.
+    /// So that turns between tracks need no loops: at least k lines from one to the next, k · spacing ≥ 2 · turn radius (both in
+    /// metres), if there are more than 2k lines. Of fewer lines the middle one is too near to all others; then turns are as wide
+    /// as possible.
     pub fn interleaved(lines: u64, turn_radius_m: f64, spacing_m: f64, corner: Corner) -> Self {
         let step = (2.0 * turn_radius_m / spacing_m - 1e-9).ceil().max(1.0);
         Self::new(lines, step as u64, corner)

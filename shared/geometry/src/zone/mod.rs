@@ -1,7 +1,7 @@
 //! Zones to keep out of or to stay in, and whether a path does.
 //!
 //! A zone is a circle or a polygon (with holes, its edges geodesics) between two altitudes. A [`Stretch`] is a piece of path
-//! with its altitudes; what is far from a zone is told from it by one distance, so that thousands of stretches can be held
+//! with its altitudes; one distance rules out what is far from a zone, so that thousands of stretches can be held
 //! against tens of zones.
 //!
 //! Errors: circles are exact to a millimetre on lines, polygons good to 1 m up to 50 km from the middle of the zone and to 5 m up to
@@ -241,7 +241,7 @@ impl Zone {
         self.ball.gap_m(&stretch.ball)
     }
 
-    /// How far a position is outside, whatever its altitude and the margin, metres; 0 inside.
+    /// How far a position is outside, without regard to altitude and margin, metres; 0 inside.
     pub fn outside_m(&self, position: LatLon) -> f64 {
         match &self.ground {
             Ground::Circle(circle) => circle.outside_m(position),

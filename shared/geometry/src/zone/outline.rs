@@ -13,7 +13,7 @@ const CHORD_M: f64 = 10_000.0;
 const ARC_TOLERANCE_M: f64 = 0.1;
 /// The worst point is found to this, metres.
 const FOUND_TO_M: f64 = 0.05;
-/// Most parts of a chord that are looked at; each halves the error where it matters.
+/// Most parts into which a chord is divided; each division halves the error where it matters.
 const MOST_PARTS: usize = 400;
 
 /// A polygon in its frame.

@@ -5,7 +5,7 @@ mod shapes;
 mod tests;
 
 use super::{PatternError, Stored, Vertex, counted, finite, not_negative, positive};
-use crate::polygon::{Interior, Looks};
+use crate::polygon::{EdgeBudget, Interior};
 use crate::turn::Turn;
 use crate::{Polygon, Vec2};
 use serde::{Deserialize, Serialize};
@@ -13,11 +13,11 @@ use shapes::{Shape, area_m2, contains, grown, minus, rings_of};
 
 /// Distances from the edge at which loops may be flown.
 const MOST_LEVELS: u64 = 10_000;
-/// Most that (drawn-in corners² + corners) · levels may be: the library's time grows with that, for whatever lies
-/// beside drawn-in corners crosses itself. This takes a second or two.
+/// Limit of (reflex corners² + corners) · levels: the library's time grows with that, because offsets at reflex corners
+/// cross themselves. This takes a second or two.
 const MOST_WORK: f64 = 5e5;
-/// Edges that are looked at to find the ways between loops: a quarter of a second.
-const MOST_LOOKS: u64 = 40_000_000;
+/// Edges compared to find the paths between loops: a quarter of a second.
+const MOST_EDGES: u64 = 40_000_000;
 /// Share of a strip along loops that their sharp corners may leave unseen.
 const MOST_UNSEEN: f64 = 0.0015;
 /// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing …
@@ -60,7 +60,7 @@ pub struct ContourParameters {
     pub tolerance_m: f64,
 }
 
-/// Closed loops; each is a track, ending where it begins. Inward, the ways between them stay in the area, as they do.
+/// Closed loops; each is a track that ends where it begins. Inward, loops and the paths between them stay in the area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contours {
     stored: Stored,
@@ -234,7 +234,7 @@ fn without_loops_inside(mut areas: Vec<Shape>, others: &[Shape]) -> Vec<Shape> {
     areas
 }
 
-/// What is laid out so far.
+/// The pattern laid out so far.
 struct Path {
     stored: Stored,
     turn: Turn,
@@ -243,9 +243,9 @@ struct Path {
     at: Vec2,
     /// The end of the last loop, towards there.
     along: Option<Vec2>,
-    /// The area, if ways between loops have to be kept inside it.
+    /// The area, if paths between loops must stay inside it.
     interior: Option<Interior>,
-    looks: Looks,
+    budget: EdgeBudget,
 }
 
 impl Path {
@@ -258,7 +258,7 @@ impl Path {
             at: p.entry,
             along: None,
             interior,
-            looks: Looks::new(MOST_LOOKS),
+            budget: EdgeBudget::new(MOST_EDGES),
         }
     }
 
@@ -303,14 +303,14 @@ impl Path {
         best.map(|(edge, place, ..)| (edge, place))
     }
 
-    /// The corners of the way from one loop to the next one; the first one is come to from wherever.
+    /// The corners of the path from one loop to the next one; none before the first loop.
     fn way_to(&mut self, begin: Vec2) -> Result<Vec<Vec2>, PatternError> {
         let Some(interior) = self.interior.as_ref().filter(|_| self.stored.count() > 0) else {
             return Ok(Vec::new());
         };
         let corners = interior.area().edges().count();
         let too_intricate = PatternError::TooIntricate { corners, levels: self.stored.starts.len() as u64 };
-        interior.way(self.at, begin, &mut self.looks).ok_or(too_intricate)
+        interior.shortest_path(self.at, begin, &mut self.budget).ok_or(too_intricate)
     }
 }
 
@@ -323,7 +323,7 @@ fn places(ring: &[Vec2], every_m: f64) -> impl Iterator<Item = (usize, Vec2, Vec
     })
 }
 
-/// What a turn needs of the ways before and after it, in radii: tan(Δ/2).
+/// What a turn takes of the segments before and after it, in radii: tan(Δ/2).
 fn half_tangent(before: Vec2, after: Vec2) -> f64 {
     (before.cross(after).atan2(before.dot(after)).abs() / 2.0).tan()
 }

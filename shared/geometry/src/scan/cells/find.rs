@@ -1,17 +1,17 @@
-//! Where the cells of a concave area are: from line to line.
+//! Finds the cells of a concave area, line by line.
 
 use super::super::outline::{Span, Sweep, spans};
 use super::super::{Scan, ScanError, ScanParameters};
 use crate::Vec2;
-use crate::polygon::{Interior, Looks};
+use crate::polygon::{EdgeBudget, Interior};
 use std::ops::Range;
 
-/// Lines that a concave area may have: each is looked at.
+/// Most lines of a concave area: each is examined.
 const MOST_LINES: u64 = 1_000_000;
-/// Cells that it may have.
+/// Most cells.
 const MOST_CELLS: usize = 2_000;
-/// Edges looked at to find out where cells end.
-const MOST_LOOKS: u64 = 40_000_000;
+/// Edges compared to find out where cells end.
+const MOST_EDGES: u64 = 40_000_000;
 
 /// A cell that is not yet part of a flight.
 #[derive(Debug, Clone)]
@@ -22,20 +22,20 @@ pub struct Found {
     /// The ends of its first and its last piece.
     pub first: (Vec2, Vec2),
     pub last: (Vec2, Vec2),
-    /// Cells that pieces of it meet.
+    /// Cells that adjoin it.
     pub neighbours: Vec<usize>,
 }
 
-/// A piece of the line looked at last, and its cell.
+/// A piece of the last line, and its cell.
 type Open = (Span, usize);
 
-/// Goes from line to line.
+/// Proceeds from line to line.
 pub struct Finder<'a> {
     scan: &'a Scan,
     interior: &'a Interior,
-    /// Longest prolongation of a track to where its neighbour ends, metres.
+    /// Longest extension of a track to where its neighbour ends, metres.
     most_jump_m: f64,
-    looks: Looks,
+    budget: EdgeBudget,
     cells: Vec<Found>,
     open: Vec<Open>,
     too_intricate: ScanError,
@@ -47,7 +47,7 @@ impl<'a> Finder<'a> {
             scan,
             interior,
             most_jump_m: p.overshoot_m.max(2.0 * p.turn_radius_m).max(scan.lines.spacing_m()),
-            looks: Looks::new(MOST_LOOKS),
+            budget: EdgeBudget::new(MOST_EDGES),
             cells: Vec::new(),
             open: Vec::new(),
             too_intricate: ScanError::TooIntricate { corners: interior.area().edges().count() },
@@ -116,7 +116,7 @@ impl<'a> Finder<'a> {
         self.open = open;
     }
 
-    /// Whether the turns between pieces of two lines need nobody to go far beside the area.
+    /// Whether the turns between pieces of two lines stay near the area.
     fn leads_on(&mut self, line: u64, old: Span, new: Span) -> Result<bool, ScanError> {
         let jump_m = (old.start_m - new.start_m).abs().max((old.end_m - new.end_m).abs());
         if jump_m <= self.most_jump_m {
@@ -124,7 +124,7 @@ impl<'a> Finder<'a> {
         }
         let place = |line: u64, span| self.scan.ends_of(self.scan.lines.across_m(line), span);
         let (from, to) = (place(line.saturating_sub(1), old), place(line, new));
-        let mut straight = |a, b| self.interior.is_straight(a, b, &mut self.looks).ok_or(self.too_intricate);
+        let mut straight = |a, b| self.interior.is_straight(a, b, &mut self.budget).ok_or(self.too_intricate);
         Ok(straight(from.0, to.0)? && straight(from.1, to.1)?)
     }
 
@@ -155,7 +155,7 @@ impl<'a> Finder<'a> {
     }
 }
 
-/// Which pieces of the line before each piece meets: both lists ascend.
+/// Which pieces of the line before each piece adjoins; both lists ascend.
 fn meetings(before: &[Open], line: &[Span]) -> Vec<Vec<usize>> {
     let mut met: Vec<Vec<usize>> = vec![Vec::new(); line.len()];
     let (mut i, mut j) = (0, 0);

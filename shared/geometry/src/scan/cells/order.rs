@@ -1,11 +1,11 @@
-//! In which order cells are flown.
+//! The order in which cells are flown.
 
 use super::super::{Corner, Entry, Order, Scan, ScanParameters};
 use super::Cell;
 use super::find::Found;
 use crate::Vec2;
 
-/// The cells one after the other.
+/// The cells in flight order.
 pub fn in_flight_order(found: Vec<Found>, scan: &Scan, p: &ScanParameters) -> Vec<Cell> {
     let mut left: Vec<bool> = vec![true; found.len()];
     let mut cells = Vec::with_capacity(found.len());
@@ -26,7 +26,7 @@ pub fn in_flight_order(found: Vec<Found>, scan: &Scan, p: &ScanParameters) -> Ve
     cells
 }
 
-/// Where to begin: at the nearest corner of a cell, or at one of the whole pattern.
+/// Where to begin: at the nearest corner of a cell, or at a corner of the whole pattern.
 fn begin(found: &[Found], entry: Entry) -> Option<(usize, Corner)> {
     let cells = || found.iter().enumerate();
     let corner = match entry {
@@ -49,7 +49,7 @@ fn begin(found: &[Found], entry: Entry) -> Option<(usize, Corner)> {
     Some((cell?.0, corner))
 }
 
-/// The cells that are left and the fewest cells away from one; all that are left, if it meets none of them.
+/// The remaining cells that are the fewest cells away from one; all remaining cells, if none is connected to it.
 fn nearest_left(found: &[Found], left: &[bool], from: usize) -> Vec<usize> {
     let is_left = |i: &usize| left.get(*i) == Some(&true);
     let mut seen = vec![false; found.len()];

@@ -27,7 +27,7 @@ fn the_arms_of_a_u_are_finished_one_after_the_other() {
     assert_eq!(turns, [true, true, true, false, true, false, true, true, true]);
     // from the end of the last line, in the west, round the corner of the bay to the eastern arm's nearest corner
     let flown = tracks(&scan);
-    let way = scan.way(flown[5].1, flown[6].0, &mut Looks::new(10_000)).unwrap();
+    let way = scan.path_inside(flown[5].1, flown[6].0, &mut EdgeBudget::new(10_000)).unwrap();
     assert_eq!((flown[5].1.e.round(), flown[6].0.e.round()), (0.0, 600.0));
     assert_eq!(way.len(), 1);
     assert!((way[0] - Vec2::new(600.0, 200.0)).length() < 1e-9);

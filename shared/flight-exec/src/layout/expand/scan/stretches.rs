@@ -3,13 +3,13 @@
 use super::super::ExpandError;
 use super::super::area::geometric;
 use super::layout::LaidOut;
-use geometry::polygon::Looks;
+use geometry::polygon::EdgeBudget;
 use geometry::scan::ScanError;
 use geometry::{LatLon, Vec2};
 use std::ops::Range;
 
 /// Edges of the area that are looked at to find all the ways of a sweep: a quarter of a second.
-const MOST_LOOKS: u64 = 40_000_000;
+const MOST_EDGES: u64 = 40_000_000;
 
 /// The order in which the tracks of a pattern are flown.
 pub struct Order<'a> {
@@ -66,7 +66,7 @@ impl Stretches {
     pub fn of(order: &Order, laid_out: &LaidOut) -> Result<Self, ExpandError> {
         let tracks = order.count();
         let mut stretches = Self { all: Vec::new(), tracks };
-        let mut looks = Looks::new(MOST_LOOKS);
+        let mut budget = EdgeBudget::new(MOST_EDGES);
         for place in order.breaks(laid_out) {
             let Some(track) = order.track(place) else { continue };
             let before = place.checked_sub(1).and_then(|before| Some((before, order.track(before)?)));
@@ -77,7 +77,7 @@ impl Stretches {
                 Some((place, before)) => stretches.end_of(before, place, laid_out),
                 None => order.from.map(|from| laid_out.frame.to_local(from)),
             };
-            stretches.begin((place, track), order, from, laid_out, &mut looks)?;
+            stretches.begin((place, track), order, from, laid_out, &mut budget)?;
         }
         Ok(stretches)
     }
@@ -89,7 +89,7 @@ impl Stretches {
         order: &Order,
         from: Option<Vec2>,
         laid_out: &LaidOut,
-        looks: &mut Looks,
+        budget: &mut EdgeBudget,
     ) -> Result<(), ExpandError> {
         let Some((low, high)) = laid_out.ends_of(track) else { return Ok(()) };
         let nearer_low = |from: Vec2| (low - from).length() <= (high - from).length();
@@ -97,7 +97,7 @@ impl Stretches {
         let start = if along_first { low } else { high };
         let way = match from {
             None => Vec::new(),
-            Some(from) => laid_out.pattern.way(from, start, looks).ok_or_else(|| {
+            Some(from) => laid_out.pattern.path_inside(from, start, budget).ok_or_else(|| {
                 let corners = laid_out.pattern.corners();
                 geometric(ScanError::TooIntricate { corners })
             })?,
@@ -252,9 +252,9 @@ mod tests {
         let all = laid_out.pattern.tracks();
         let order = Order { all, first: 0, along_first: true, left_out: &[], from: None };
         let beyond = Some(laid_out.ends_of(0).unwrap().0);
-        let begun = |looks: u64| {
+        let begun = |budget: u64| {
             let mut stretches = Stretches { all: Vec::new(), tracks: all };
-            stretches.begin((1, all - 1), &order, beyond, &laid_out, &mut Looks::new(looks))
+            stretches.begin((1, all - 1), &order, beyond, &laid_out, &mut EdgeBudget::new(budget))
         };
         assert!(begun(10_000).is_ok());
         assert!(begun(0).unwrap_err().to_string().contains("8 corners is too intricate"));

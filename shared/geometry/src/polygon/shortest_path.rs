@@ -1,4 +1,8 @@
-//! Ways from one place of an area to another that stay inside it.
+//! The shortest path inside an area between two of its places.
+//!
+//! A* over the reflex corners of the area (those that stick into it), with the straight distance to the goal as the estimate.
+//! Each visibility test counts the edges it compares against an [`EdgeBudget`], so that no area can cost more than was
+//! allowed; a search that runs out of budget gives `None`.
 
 use super::measure::foot;
 use super::{Polygon, ring_edges, signed_area_m2};
@@ -6,19 +10,19 @@ use crate::Vec2;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// So near to an edge a place counts as inside, metres: rounding puts places on edges on either side.
+/// A place this near to an edge counts as inside, metres: rounding puts places on edges on either side.
 const ON_EDGE_M: f64 = 1e-3;
 
-/// An area, prepared for being crossed.
+/// An area, prepared for shortest paths.
 ///
-/// The shortest way inside a polygon turns at nothing but its corners that stick into the area (Lozano-Pérez and Wesley 1979).
+/// The shortest path inside a polygon turns only at its reflex corners (Lozano-Pérez and Wesley 1979).
 #[derive(Debug, Clone)]
 pub struct Interior {
     area: Polygon,
     corners: Vec<Corner>,
 }
 
-/// A corner that sticks into the area, and its neighbours.
+/// A reflex corner (it sticks into the area), and its neighbours.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     at: Vec2,
@@ -26,12 +30,12 @@ struct Corner {
     after: Vec2,
 }
 
-/// What may still be looked at: bounds what finding ways costs. One look is one edge.
+/// How many edges a search may still compare: bounds its cost.
 #[derive(Debug, Clone, Copy)]
-pub struct Looks(u64);
+pub struct EdgeBudget(u64);
 
-impl Looks {
-    /// So many edges may be looked at; 40 million take about a quarter of a second.
+impl EdgeBudget {
+    /// A budget of so many edges; 40 million take about a quarter of a second.
     pub fn new(edges: u64) -> Self {
         Self(edges)
     }
@@ -41,10 +45,10 @@ impl Looks {
     }
 }
 
-/// A corner that a way was found to, in the order in which such are gone on from.
+/// A corner that has been reached and not yet expanded; ordered by `whole_m`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Open {
-    /// By way of it at least so far, metres.
+    /// Lower bound of the whole path through this corner, metres.
     whole_m: f64,
     corner: usize,
 }
@@ -56,19 +60,19 @@ impl PartialOrd for Open {
     }
 }
 impl Ord for Open {
-    /// The shortest is the greatest: a heap gives that first.
+    /// Reversed: the heap returns its greatest element, which must be the shortest path.
     fn cmp(&self, other: &Self) -> Ordering {
         other.whole_m.total_cmp(&self.whole_m).then(other.corner.cmp(&self.corner))
     }
 }
 
-/// The best way to a corner that is known.
+/// The shortest path to a corner found so far.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
-    way_m: f64,
-    /// By way of this corner; `None`: straight.
+    length_m: f64,
+    /// The corner before it; `None`: straight from the start.
     from: Option<usize>,
-    /// Gone on from.
+    /// Already expanded.
     closed: bool,
 }
 
@@ -78,9 +82,9 @@ impl Interior {
         let outer_side = signed_area_m2(area.outer()).signum();
         let rings = area.rings.iter().enumerate();
         let corners = rings.flat_map(|(number, ring)| {
-            // which way round its ring goes, with the area on the left of the outer one and of a hole's reverse
+            // the side of the ring on which the area lies: left of an anticlockwise outer ring, the other side for holes
             let side = if number == 0 { outer_side } else { -signed_area_m2(ring).signum() };
-            sticking_in(ring, side)
+            reflex_corners(ring, side)
         });
         Self { corners: corners.collect(), area }
     }
@@ -90,20 +94,21 @@ impl Interior {
         &self.area
     }
 
-    /// The corners of the shortest way inside between two places, without these; places outside are taken as the nearest ones
-    /// on the edge. `None`: it can't be found with so many looks.
-    pub fn way(&self, from: Vec2, to: Vec2, looks: &mut Looks) -> Option<Vec<Vec2>> {
-        let (from, to) = (self.moved_in(from), self.moved_in(to));
+    /// The corners of the shortest path inside between two places, without the two. A place outside is moved to the nearest
+    /// place on the edge. `None`: the budget did not last.
+    pub fn shortest_path(&self, from: Vec2, to: Vec2, budget: &mut EdgeBudget) -> Option<Vec<Vec2>> {
+        let (from, to) = (self.nearest_inside(from), self.nearest_inside(to));
         Search { inside: self, from, to, reached: vec![None; self.corners.len()], open: BinaryHeap::new() }
-            .way(looks)
+            .run(budget)
     }
 
-    /// Whether the straight way between two places stays inside, which places outside are moved to.
-    pub fn is_straight(&self, from: Vec2, to: Vec2, looks: &mut Looks) -> Option<bool> {
-        self.sees(self.moved_in(from), self.moved_in(to), looks)
+    /// Whether the straight line between two places stays inside; places outside are moved to the edge first. `None`: the
+    /// budget did not last.
+    pub fn is_straight(&self, from: Vec2, to: Vec2, budget: &mut EdgeBudget) -> Option<bool> {
+        self.sees(self.nearest_inside(from), self.nearest_inside(to), budget)
     }
 
-    fn moved_in(&self, p: Vec2) -> Vec2 {
+    fn nearest_inside(&self, p: Vec2) -> Vec2 {
         if self.area.contains(p) {
             return p;
         }
@@ -112,8 +117,8 @@ impl Interior {
     }
 
     /// Whether the straight line between two places of the area stays in it.
-    fn sees(&self, a: Vec2, b: Vec2, looks: &mut Looks) -> Option<bool> {
-        looks.take(self.area.edges().count())?;
+    fn sees(&self, a: Vec2, b: Vec2, budget: &mut EdgeBudget) -> Option<bool> {
+        budget.take(self.area.edges().count())?;
         let length_m = (b - a).length();
         if length_m <= ON_EDGE_M {
             return Some(true);
@@ -121,7 +126,7 @@ impl Interior {
         let line = Line { from: a, along: (b - a) * length_m.recip(), length_m };
         let mut meetings_m = vec![0.0, length_m];
         for (c, d) in self.area.edges() {
-            if line.meets(c, d, &mut meetings_m) {
+            if line.is_crossed_by(c, d, &mut meetings_m) {
                 return Some(false);
             }
         }
@@ -131,7 +136,7 @@ impl Interior {
             _ => None,
         });
         for middle in middles {
-            looks.take(2 * self.area.edges().count())?;
+            budget.take(2 * self.area.edges().count())?;
             if self.area.distance_outside_m(middle) > ON_EDGE_M {
                 return Some(false);
             }
@@ -140,8 +145,8 @@ impl Interior {
     }
 }
 
-/// The corners of a ring that stick into the area that lies to the left (`side` 1) or to the right (−1) of it.
-fn sticking_in(ring: &[Vec2], side: f64) -> Vec<Corner> {
+/// The reflex corners of a ring whose area lies to the left (`side` 1) or to the right (−1) of it.
+fn reflex_corners(ring: &[Vec2], side: f64) -> Vec<Corner> {
     let next = ring_edges(ring).skip(1).chain(ring_edges(ring));
     let corner = |((before, at), (_, after)): ((Vec2, Vec2), (Vec2, Vec2))| Corner { at, before, after };
     let turns = |c: &Corner| side * (c.at - c.before).cross(c.after - c.at);
@@ -149,9 +154,9 @@ fn sticking_in(ring: &[Vec2], side: f64) -> Vec<Corner> {
 }
 
 impl Corner {
-    /// Whether a taut line in a direction can bend here: both edges lie on one side of it.
-    fn is_touched_along(&self, way: Vec2) -> bool {
-        let along = way * way.length().max(ON_EDGE_M).recip();
+    /// Whether a taut line in this direction can bend here: both edges of the corner lie on one side of it.
+    fn is_tangent_along(&self, direction: Vec2) -> bool {
+        let along = direction * direction.length().max(ON_EDGE_M).recip();
         let off_m = [self.before, self.after].map(|neighbour| along.cross(neighbour - self.at));
         off_m.iter().all(|m| *m >= -ON_EDGE_M) || off_m.iter().all(|m| *m <= ON_EDGE_M)
     }
@@ -170,7 +175,7 @@ impl Line {
     }
 
     /// Whether an edge crosses it; where it only touches it is added.
-    fn meets(&self, c: Vec2, d: Vec2, touches_m: &mut Vec<f64>) -> bool {
+    fn is_crossed_by(&self, c: Vec2, d: Vec2, touches_m: &mut Vec<f64>) -> bool {
         let (c_m, d_m) = (self.along.cross(c - self.from), self.along.cross(d - self.from));
         if c_m.min(d_m) > ON_EDGE_M || c_m.max(d_m) < -ON_EDGE_M {
             return false;
@@ -186,7 +191,7 @@ impl Line {
     }
 }
 
-/// Looking for one way (A*, with the straight distance as what is left).
+/// One search.
 struct Search<'a> {
     inside: &'a Interior,
     from: Vec2,
@@ -196,41 +201,41 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn way(mut self, looks: &mut Looks) -> Option<Vec<Vec2>> {
-        if self.inside.sees(self.from, self.to, looks)? {
+    fn run(mut self, budget: &mut EdgeBudget) -> Option<Vec<Vec2>> {
+        if self.inside.sees(self.from, self.to, budget)? {
             return Some(Vec::new());
         }
-        self.go_on(None, looks)?;
+        self.expand(None, budget)?;
         while let Some(Open { corner, .. }) = self.open.pop() {
             let Some(reached) = self.reached.get_mut(corner)?.as_mut().filter(|r| !r.closed) else {
                 continue;
             };
             reached.closed = true;
-            // whatever is left is at least as long as straight on from here
-            if self.inside.sees(self.inside.corners.get(corner)?.at, self.to, looks)? {
+            // the straight line is the shortest possible rest, so no other open corner can do better
+            if self.inside.sees(self.inside.corners.get(corner)?.at, self.to, budget)? {
                 return Some(self.corners_to(corner));
             }
-            self.go_on(Some(corner), looks)?;
+            self.expand(Some(corner), budget)?;
         }
         None
     }
 
-    /// Looks at every corner from one.
-    fn go_on(&mut self, from: Option<usize>, looks: &mut Looks) -> Option<()> {
+    /// Expands a corner: every corner visible from it may now be reached through it.
+    fn expand(&mut self, from: Option<usize>, budget: &mut EdgeBudget) -> Option<()> {
         let (start, so_far_m) = match from {
             None => (self.from, 0.0),
-            Some(i) => (self.inside.corners.get(i)?.at, self.reached.get(i)?.as_ref()?.way_m),
+            Some(i) => (self.inside.corners.get(i)?.at, self.reached.get(i)?.as_ref()?.length_m),
         };
         for (i, corner) in self.inside.corners.iter().enumerate() {
             let step = corner.at - start;
-            let way_m = so_far_m + step.length();
+            let length_m = so_far_m + step.length();
             let known = self.reached.get(i).copied().flatten();
-            if known.is_some_and(|k| k.way_m <= way_m) || !corner.is_touched_along(step) {
+            if known.is_some_and(|k| k.length_m <= length_m) || !corner.is_tangent_along(step) {
                 continue;
             }
-            if self.inside.sees(start, corner.at, looks)? {
-                *self.reached.get_mut(i)? = Some(Reached { way_m, from, closed: false });
-                self.open.push(Open { whole_m: way_m + (self.to - corner.at).length(), corner: i });
+            if self.inside.sees(start, corner.at, budget)? {
+                *self.reached.get_mut(i)? = Some(Reached { length_m, from, closed: false });
+                self.open.push(Open { whole_m: length_m + (self.to - corner.at).length(), corner: i });
             }
         }
         Some(())
@@ -251,8 +256,8 @@ mod tests {
     use crate::polygon::tests::any_area;
     use proptest::prelude::*;
 
-    fn plenty() -> Looks {
-        Looks::new(u64::MAX)
+    fn plenty() -> EdgeBudget {
+        EdgeBudget::new(u64::MAX)
     }
 
     /// A bay between two arms, open to the north, and a hole in the western arm; in either direction.
@@ -273,25 +278,25 @@ mod tests {
     }
 
     #[test]
-    fn the_shortest_way_goes_round_bays_and_holes() {
+    fn the_shortest_path_goes_round_bays_and_holes() {
         for area in areas() {
-            let way = |from: (f64, f64), to: (f64, f64)| {
+            let path = |from: (f64, f64), to: (f64, f64)| {
                 let (from, to) = (Vec2::new(from.0, from.1), Vec2::new(to.0, to.1));
-                let way = area.way(from, to, &mut plenty()).unwrap();
-                way.iter().map(|p| (p.e as i32, p.n as i32)).collect::<Vec<_>>()
+                let path = area.shortest_path(from, to, &mut plenty()).unwrap();
+                path.iter().map(|p| (p.e as i32, p.n as i32)).collect::<Vec<_>>()
             };
-            assert_eq!(way((250.0, 590.0), (650.0, 590.0)), [(300, 200), (600, 200)]);
-            assert_eq!(way((250.0, 590.0), (800.0, 100.0)), [(300, 200)]);
-            assert_eq!(way((10.0, 10.0), (890.0, 10.0)), []);
+            assert_eq!(path((250.0, 590.0), (650.0, 590.0)), [(300, 200), (600, 200)]);
+            assert_eq!(path((250.0, 590.0), (800.0, 100.0)), [(300, 200)]);
+            assert_eq!(path((10.0, 10.0), (890.0, 10.0)), []);
             // along an edge, and past a corner that is touched
-            assert_eq!(way((300.0, 600.0), (300.0, 200.0)), []);
-            assert_eq!(way((300.0, 600.0), (300.0, 0.0)), []);
+            assert_eq!(path((300.0, 600.0), (300.0, 200.0)), []);
+            assert_eq!(path((300.0, 600.0), (300.0, 0.0)), []);
             // round the shorter side of the hole
-            assert_eq!(way((140.0, 410.0), (140.0, 290.0)), [(100, 400), (100, 300)]);
-            assert_eq!(way((160.0, 410.0), (160.0, 290.0)), [(200, 400), (200, 300)]);
+            assert_eq!(path((140.0, 410.0), (140.0, 290.0)), [(100, 400), (100, 300)]);
+            assert_eq!(path((160.0, 410.0), (160.0, 290.0)), [(200, 400), (200, 300)]);
             // from outside: from the nearest place of the edge
-            assert_eq!(way((-50.0, 10.0), (950.0, 10.0)), []);
-            assert_eq!(way((350.0, 500.0), (650.0, 500.0)), [(300, 200), (600, 200)]);
+            assert_eq!(path((-50.0, 10.0), (950.0, 10.0)), []);
+            assert_eq!(path((350.0, 500.0), (650.0, 500.0)), [(300, 200), (600, 200)]);
         }
     }
 
@@ -299,35 +304,35 @@ mod tests {
     fn what_takes_too_many_looks_is_not_found() {
         let [area, _] = areas();
         let (from, to) = (Vec2::new(250.0, 590.0), Vec2::new(650.0, 590.0));
-        assert_eq!(area.way(from, to, &mut Looks::new(20)), None);
-        assert_eq!(area.is_straight(from, to, &mut Looks::new(12)), Some(false));
-        assert_eq!(area.is_straight(from, to, &mut Looks::new(11)), None);
+        assert_eq!(area.shortest_path(from, to, &mut EdgeBudget::new(20)), None);
+        assert_eq!(area.is_straight(from, to, &mut EdgeBudget::new(12)), Some(false));
+        assert_eq!(area.is_straight(from, to, &mut EdgeBudget::new(11)), None);
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn a_way_stays_inside_and_no_corner_of_it_can_be_left_out(
+        fn a_path_stays_inside_and_no_corner_of_it_can_be_left_out(
             area in any_area(), places in [(-1500.0..1500.0, -1500.0..1500.0), (-1500.0..1500.0, -1500.0..1500.0)],
         ) {
             let inside = Interior::of(area.clone());
-            let [from, to] = places.map(|(e, n)| inside.moved_in(Vec2::new(e, n)));
-            let mut way = vec![from];
-            way.extend(inside.way(from, to, &mut plenty()).unwrap());
-            way.push(to);
-            for pair in way.windows(2) {
+            let [from, to] = places.map(|(e, n)| inside.nearest_inside(Vec2::new(e, n)));
+            let mut path = vec![from];
+            path.extend(inside.shortest_path(from, to, &mut plenty()).unwrap());
+            path.push(to);
+            for pair in path.windows(2) {
                 for share in 0..=50 {
                     let p = pair[0] + (pair[1] - pair[0]) * (f64::from(share) / 50.0);
-                    // between two looks at an edge that is nearly parallel it may be 2 mm outside
-                    prop_assert!(area.distance_outside_m(p) <= 2.0 * ON_EDGE_M, "{:?} of {:?}", p, way);
+                    // along an edge that is nearly parallel it may be 2 mm outside
+                    prop_assert!(area.distance_outside_m(p) <= 2.0 * ON_EDGE_M, "{:?} of {:?}", p, path);
                 }
             }
-            for three in way.windows(3) {
+            for three in path.windows(3) {
                 let straight = inside.sees(three[0], three[2], &mut plenty()).unwrap();
                 let detour_m = (three[1] - three[0]).length() + (three[2] - three[1]).length()
                     - (three[2] - three[0]).length();
-                prop_assert!(!straight || detour_m < 1e-3, "{:?}", way);
+                prop_assert!(!straight || detour_m < 1e-3, "{:?}", path);
             }
         }
     }
