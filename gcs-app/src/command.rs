@@ -1,6 +1,7 @@
 //! What the window may ask for. Panels and map borrow the state and push commands; the app carries
 //! them out between two frames.
 
+use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
 use flight_plan::{Edit, Id};
@@ -14,7 +15,9 @@ pub enum Command {
     Document(DocumentCommand),
     /// To what is shown.
     View(ViewCommand),
-    /// To the vehicle and the way to it.
+    /// To the links, and which vehicle is shown.
+    Link(LinkCommand),
+    /// To the vehicle that is shown.
     Fly(FlyCommand),
 }
 
@@ -68,18 +71,25 @@ pub enum ViewCommand {
     DismissNotice,
 }
 
-/// Commands to the vehicle.
+/// Commands to the links.
 #[derive(Debug, Clone)]
-pub enum FlyCommand {
-    /// Open a session to a vehicle.
+pub enum LinkCommand {
+    /// Open a link to a vehicle and show that vehicle.
     Connect {
         /// Where its gateway listens, as `tcp/127.0.0.1:7447`.
         endpoint: String,
         /// Its name.
-        vehicle: String,
+        vehicle: VehicleName,
     },
-    /// Close the session.
-    Disconnect,
+    /// Close the link to a vehicle; what is known of it stays.
+    Disconnect(VehicleName),
+    /// Show another vehicle.
+    Show(VehicleName),
+}
+
+/// Commands to the vehicle.
+#[derive(Debug, Clone)]
+pub enum FlyCommand {
     /// Propose the document.
     Propose,
     /// Choose the leg at which the proposal is entered.
@@ -164,7 +174,11 @@ impl Queue {
     pub fn view(&mut self, command: ViewCommand) {
         self.0.push(Command::View(command));
     }
-    /// To the vehicle.
+    /// To the links.
+    pub fn link(&mut self, command: LinkCommand) {
+        self.0.push(Command::Link(command));
+    }
+    /// To the vehicle that is shown.
     pub fn fly(&mut self, command: FlyCommand) {
         self.0.push(Command::Fly(command));
     }

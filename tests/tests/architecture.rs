@@ -124,10 +124,29 @@ fn pure_crates_have_no_runtime() {
     }
 }
 
+/// Parts of the window that get the time as an argument, so that a recording and a flight are the same input.
+const WITHOUT_CLOCK: &[&str] = &["state", "panels", "map", "command.rs", "document.rs", "units.rs"];
+
+#[test]
+fn state_and_panels_of_the_window_have_no_clock() {
+    let mut paths: Vec<_> = WITHOUT_CLOCK.iter().map(|part| window_source().join(part)).collect();
+    while let Some(path) = paths.pop() {
+        if path.is_dir() {
+            paths.extend(std::fs::read_dir(&path).expect("folder").flatten().map(|entry| entry.path()));
+        } else {
+            let code = std::fs::read_to_string(&path).expect("source");
+            assert!(!code.contains("::now()"), "{} looks at a clock", path.display());
+        }
+    }
+}
+
+fn window_source() -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcs-app/src")
+}
+
 #[test]
 fn only_the_demo_sees_agent_and_simulator() {
-    let source = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcs-app/src");
-    let mut folders = vec![source];
+    let mut folders = vec![window_source()];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).expect("folder").flatten() {
             let path = entry.path();

@@ -1,6 +1,6 @@
 //! Where the panels are.
 
-use super::App;
+use super::{App, Now};
 use crate::command::{BottomTab, DocumentCommand, Queue, ViewCommand};
 use crate::panels::{
     Scene, alarms, bar, decision, flight, inspector, log, pfd, problems, profile, push, table,
@@ -10,10 +10,11 @@ use crate::units;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, ScrollArea, Ui};
 
 impl App {
-    pub(super) fn lay_out(&mut self, ui: &mut Ui, now_s: f64, queue: &mut Queue) {
+    pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
-        let Self { document, vehicle, view, analysis, map, tree, .. } = self;
-        let scene = Scene { document, analysis, vehicle, view, now_s };
+        let Self { document, vehicles, view, analysis, map, tree, .. } = self;
+        let vehicle = vehicles.shown();
+        let scene = Scene { document, analysis, vehicle, vehicles, view, now_s: now.window_s, utc: now.utc };
         let frame = theme::panel(ui);
         Panel::top("bar")
             .exact_size(42.0)
@@ -147,7 +148,10 @@ fn over_map(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let clear = Rect::from_min_max(map.min + egui::vec2(96.0, 0.0), map.max - egui::vec2(0.0, 8.0));
         floating(ui, "commands", clear, Align2::CENTER_BOTTOM, |ui| {
             flight::last_command(ui, scene);
-            ui.horizontal(|ui| flight::commands(ui, scene, queue));
+            // a button held for one vehicle is not held for another
+            ui.push_id(scene.vehicles.shown_name(), |ui| {
+                ui.horizontal(|ui| flight::commands(ui, scene, queue));
+            });
         });
     }
 }

@@ -14,10 +14,10 @@ use crate::command::{BottomTab, Queue};
 use crate::document::Document;
 use crate::files::{FileNews, Files};
 use crate::forecast::{Analysis, Question, Worker};
-use crate::link::{Call, Link, Order};
+use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
 use crate::panels::{Scene, ViewState, tree::Tree};
-use crate::state::{READ_ABOARD, Vehicle};
+use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
@@ -29,16 +29,15 @@ use terrain::Terrain;
 #[derive(Debug)]
 pub struct App {
     document: Document,
-    vehicle: Vehicle,
+    vehicles: Vehicles,
     view: ViewState,
     analysis: Analysis,
     map: MapState,
     tree: Tree,
     queue: Queue,
-    link: Link,
+    links: Links,
     worker: Worker,
     files: Files,
-    asked_aboard_s: f64,
     /// Version of the document that is the plan aboard.
     mirrored: Option<u64>,
     screenshot: Option<Screenshot>,
@@ -54,18 +53,31 @@ struct Remembered {
 const STORAGE_KEY: &str = "legwork";
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
-/// The plan aboard is asked for again at most so often, seconds.
-const ASK_ABOARD_S: f64 = 3.0;
+
+/// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
+#[derive(Debug, Clone, Copy)]
+struct Now {
+    /// The window's clock, seconds.
+    window_s: f64,
+    /// The time of day.
+    utc: jiff::Timestamp,
+}
+
+impl Now {
+    fn read(ctx: &egui::Context) -> Self {
+        Self { window_s: ctx.input(|i| i.time), utc: jiff::Timestamp::now() }
+    }
+}
 
 impl App {
-    /// A ground station that talks through `link` and flies over `terrain`.
+    /// A ground station that talks through `links` and flies over `terrain`.
     ///
     /// # Errors
     /// No thread can be started.
     pub fn new(
         creation: &eframe::CreationContext<'_>,
         document: Document,
-        link: Link,
+        links: Links,
         terrain: Arc<dyn Terrain>,
     ) -> std::io::Result<Self> {
         let ctx = creation.egui_ctx.clone();
@@ -78,16 +90,15 @@ impl App {
             creation.storage.and_then(|s| eframe::get_value(s, STORAGE_KEY)).unwrap_or_default();
         let mut app = Self {
             document,
-            vehicle: Vehicle::default(),
+            vehicles: Vehicles::default(),
             view: ViewState { units: remembered.units, bottom: remembered.bottom, ..ViewState::default() },
             analysis: Analysis::default(),
             map: MapState::default(),
             tree: Tree::default(),
             queue: Queue::default(),
-            link,
+            links,
             worker: Worker::spawn(terrain, wake.clone())?,
             files: Files::new(wake),
-            asked_aboard_s: f64::NEG_INFINITY,
             mirrored: None,
             screenshot: None,
         };
@@ -104,9 +115,13 @@ impl App {
     pub fn document(&self) -> &Document {
         &self.document
     }
-    /// What is known of the vehicle.
+    /// What is known of the vehicles.
+    pub fn vehicles(&self) -> &Vehicles {
+        &self.vehicles
+    }
+    /// What is known of the vehicle that is shown.
     pub fn vehicle(&self) -> &Vehicle {
-        &self.vehicle
+        self.vehicles.shown()
     }
     /// What the operator looks at.
     pub fn view(&self) -> &ViewState {
@@ -117,26 +132,41 @@ impl App {
         &self.analysis
     }
 
-    fn scene(&self, now_s: f64) -> Scene<'_> {
+    fn scene(&self, now: Now) -> Scene<'_> {
         Scene {
             document: &self.document,
             analysis: &self.analysis,
-            vehicle: &self.vehicle,
+            vehicle: self.vehicles.shown(),
+            vehicles: &self.vehicles,
             view: &self.view,
-            now_s,
+            now_s: now.window_s,
+            utc: now.utc,
+        }
+    }
+
+    /// Opens a link to a vehicle and shows that one; an older link to the same vehicle is closed.
+    fn connect(&mut self, endpoint: &str, vehicle: &VehicleName, now_s: f64) {
+        self.disconnect(vehicle);
+        let link = self.links.connect(endpoint, vehicle);
+        self.vehicles.open(vehicle, link, endpoint, now_s);
+    }
+
+    fn disconnect(&self, vehicle: &VehicleName) {
+        if let Some(link) = self.vehicles.get(vehicle).and_then(Vehicle::open_link) {
+            self.links.order(Order::Disconnect { link });
         }
     }
 
     fn drain(&mut self, ctx: &egui::Context) {
         let now_s = ctx.input(|i| i.time);
-        let mut lacks_plan = false;
-        while let Some(news) = self.link.news() {
-            lacks_plan = self.vehicle.hear(news, now_s);
+        // no more than that in a frame: who talks without a break must not stop the drawing
+        for _ in 0..=BACKLOG {
+            let Some(message) = self.links.message() else { break };
+            self.vehicles.hear(message, now_s);
         }
         self.adopt_plan_aboard();
-        if lacks_plan && now_s - self.asked_aboard_s > ASK_ABOARD_S {
-            self.asked_aboard_s = now_s;
-            self.call(READ_ABOARD, Call::PlanAboard, now_s);
+        for vehicle in self.vehicles.due_for_plan(now_s) {
+            self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
         }
         if let Some(analysis) = self.worker.answer() {
             self.analysis = analysis;
@@ -149,7 +179,7 @@ impl App {
 
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
     fn adopt_plan_aboard(&mut self) {
-        let Some(aboard) = &self.vehicle.aboard else { return };
+        let Some(aboard) = &self.vehicles.shown().aboard else { return };
         let version = self.document.version();
         let here = self.analysis.hash_of(version);
         if here.is_some_and(|hash| *hash == *aboard.hash) {
@@ -188,13 +218,17 @@ impl App {
         }
     }
 
-    /// Sends a question to the vehicle and notes it.
-    fn call(&mut self, label: &str, call: Call, now_s: f64) {
-        let ticket = self.vehicle.requests.open(label, now_s);
-        if !self.link.order(Order::Call { ticket, call }) {
-            let outcome =
-                crate::state::Outcome::Refused("the link's thread has ended: restart the program".into());
-            self.vehicle.requests.settle(ticket, outcome, now_s);
+    /// Sends a question to a vehicle and notes it.
+    fn call(&mut self, vehicle: &VehicleName, label: &str, call: Call, now_s: f64) {
+        let Some(asked) = self.vehicles.get_mut(vehicle) else { return };
+        let ticket = asked.requests.open(label, now_s);
+        let failed = match asked.open_link() {
+            None => Some("there is no link: connect first"),
+            Some(link) if self.links.order(Order::Call { link, ticket, call }) => None,
+            Some(_) => Some("the thread of the links has ended: restart the program"),
+        };
+        if let Some(why) = failed {
+            asked.requests.settle(ticket, Outcome::Refused(why.into()), now_s);
         }
     }
 
@@ -216,24 +250,26 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.drain(ctx);
-        if self.vehicle.link.is_wanted() {
+        if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
         }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let now_s = ctx.input(|i| i.time);
+        let now = Now::read(&ctx);
         self.play(&ctx);
         let mut queue = std::mem::take(&mut self.queue);
-        keys::read(&ctx, &self.scene(now_s), &mut queue);
-        self.lay_out(ui, now_s, &mut queue);
+        keys::read(&ctx, &self.scene(now), &mut queue);
+        self.lay_out(ui, now, &mut queue);
+        // what was asked for was meant for the vehicle that was drawn
+        let drawn = self.vehicles.shown_name().cloned();
         for command in queue.take() {
-            self.carry_out(command, now_s);
+            self.carry_out(command, drawn.as_ref(), now.window_s);
         }
         self.queue = queue;
         if let Some(screenshot) = &mut self.screenshot {
-            screenshot.run(&ctx, now_s);
+            screenshot.run(&ctx, now.window_s);
         }
     }
 

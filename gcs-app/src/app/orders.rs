@@ -1,19 +1,26 @@
 //! Carrying out commands, one function per owner.
 
 use super::App;
-use crate::command::{Command, DocumentCommand, FlyCommand, ViewCommand};
+use crate::command::{Command, DocumentCommand, FlyCommand, LinkCommand, ViewCommand};
 use crate::document::Document;
-use crate::link::{Call, Order};
+use crate::link::Call;
 use crate::panels::bar::PUSH;
+use crate::state::{Proposal, VehicleName};
 use flight_exec::Command as PlanCommand;
 use usal::contract::{GatewayRequest, Propose};
 
 impl App {
-    pub(super) fn carry_out(&mut self, command: Command, now_s: f64) {
+    /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
+    pub(super) fn carry_out(&mut self, command: Command, shown: Option<&VehicleName>, now_s: f64) {
         match command {
             Command::Document(command) => self.change_document(command),
             Command::View(command) => self.change_view(command),
-            Command::Fly(command) => self.fly(command, now_s),
+            Command::Link(command) => self.change_link(command, now_s),
+            Command::Fly(command) => {
+                if let Some(vehicle) = shown {
+                    self.fly(vehicle, command, now_s);
+                }
+            }
         }
     }
 
@@ -98,50 +105,59 @@ impl App {
         }
     }
 
-    fn fly(&mut self, command: FlyCommand, now_s: f64) {
+    fn change_link(&mut self, command: LinkCommand, now_s: f64) {
         match command {
-            FlyCommand::Connect { endpoint, vehicle } => {
-                self.link.order(Order::Connect { endpoint, vehicle });
-            }
-            FlyCommand::Disconnect => {
-                self.link.order(Order::Disconnect);
-            }
-            FlyCommand::Propose => self.propose(now_s),
+            LinkCommand::Connect { endpoint, vehicle } => self.connect(&endpoint, &vehicle, now_s),
+            LinkCommand::Disconnect(vehicle) => self.disconnect(&vehicle),
+            LinkCommand::Show(vehicle) => self.vehicles.show(&vehicle),
+        }
+    }
+
+    fn fly(&mut self, vehicle: &VehicleName, command: FlyCommand, now_s: f64) {
+        match command {
+            FlyCommand::Propose => self.propose(vehicle, now_s),
             FlyCommand::EnterAt(leg) => {
-                if let Some(proposal) = &mut self.vehicle.proposal {
+                if let Some(proposal) = self.vehicles.get_mut(vehicle).and_then(|v| v.proposal.as_mut()) {
                     proposal.entry = Some(leg);
                 }
             }
-            FlyCommand::Commit => self.commit(now_s),
-            FlyCommand::DropProposal => self.vehicle.proposal = None,
+            FlyCommand::Commit => self.commit(vehicle, now_s),
+            FlyCommand::DropProposal => drop(self.take_proposal(vehicle)),
             FlyCommand::TakeAboard => {
-                if let Some(aboard) = &self.vehicle.aboard {
+                if let Some(aboard) = self.vehicles.get(vehicle).and_then(|v| v.aboard.as_ref()) {
                     self.document.replace(aboard.plan.as_ref().clone());
                 }
             }
             FlyCommand::Plan(command) => {
                 let label = plan_label(&command);
-                self.call(&label, Call::Plan(command), now_s);
+                self.call(vehicle, &label, Call::Plan(command), now_s);
             }
             FlyCommand::Gateway(request) => {
                 let label = gateway_label(&request);
-                self.call(label, Call::Gateway(request), now_s);
+                self.call(vehicle, label, Call::Gateway(request), now_s);
             }
-            FlyCommand::Launch => self.call("Start and take off", Call::Plan(PlanCommand::Start), now_s),
+            FlyCommand::Launch => {
+                self.call(vehicle, "Start and take off", Call::Plan(PlanCommand::Start), now_s);
+            }
         }
     }
 
-    fn propose(&mut self, now_s: f64) {
-        self.vehicle.proposal = None;
-        let seen_revision = self.vehicle.status.as_ref().map(|s| s.value.revision);
-        let xml = flight_plan::write(self.document.plan());
-        self.call(PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
+    fn take_proposal(&mut self, vehicle: &VehicleName) -> Option<Proposal> {
+        self.vehicles.get_mut(vehicle)?.proposal.take()
     }
 
-    fn commit(&mut self, now_s: f64) {
-        let Some(proposal) = self.vehicle.proposal.take() else { return };
+    fn propose(&mut self, vehicle: &VehicleName, now_s: f64) {
+        self.take_proposal(vehicle);
+        let status = self.vehicles.get(vehicle).and_then(|v| v.status.as_ref());
+        let seen_revision = status.map(|s| s.value.revision);
+        let xml = flight_plan::write(self.document.plan());
+        self.call(vehicle, PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
+    }
+
+    fn commit(&mut self, vehicle: &VehicleName, now_s: f64) {
+        let Some(proposal) = self.take_proposal(vehicle) else { return };
         let command = PlanCommand::Commit { hash: proposal.report.hash, entry: proposal.entry };
-        self.call("Commit plan", Call::Plan(command), now_s);
+        self.call(vehicle, "Commit plan", Call::Plan(command), now_s);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{App, Screenshot};
 use crate::assets;
 use crate::document::Document;
-use crate::link::{Link, Order};
+use crate::link::Links;
 use crate::map::hillshade::Ground;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
@@ -89,12 +89,12 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     if let Some(theme) = options.theme {
         ctx.set_theme(theme);
     }
-    let link = Link::spawn(Arc::new(move || ctx.request_repaint()))?;
-    if let Some((vehicle, endpoint)) = options.connect {
-        link.order(Order::Connect { endpoint, vehicle });
-    }
+    let links = Links::spawn(Arc::new(move || ctx.request_repaint()))?;
     let terrain = assets::demo_terrain();
-    let mut app = App::new(creation, options.document.unwrap_or_default(), link, terrain.clone())?;
+    let mut app = App::new(creation, options.document.unwrap_or_default(), links, terrain.clone())?;
+    if let Some((vehicle, endpoint)) = options.connect {
+        app.connect(&endpoint, &vehicle.as_str().into(), creation.egui_ctx.input(|i| i.time));
+    }
     if let Ok(tile) = assets::demo_tile() {
         let (south_west, north_east) = tile.known_box();
         app.show_ground(Ground { terrain, south_west, north_east }, &creation.egui_ctx);

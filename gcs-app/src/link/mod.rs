@@ -1,9 +1,9 @@
-//! The way to the vehicle. A thread with a runtime of its own owns the session; the window talks to
-//! it through two channels and never waits for either.
+//! The ways to the vehicles: one link per connection, several at once. A thread with a runtime of its
+//! own owns the sessions; the window talks to it through two channels and never waits for either.
 
 mod session;
 
-use crate::state::{ActivePlan, Level, Ticket};
+use crate::state::{ActivePlan, Level, Ticket, VehicleName};
 use flight_exec::{Command as PlanCommand, ProposalReport, Status};
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -12,20 +12,31 @@ use usal::contract::{
     PlanVariables, Position, Power, Propose, Stamped,
 };
 
-/// What the window wants of the link.
+/// Which connection. Counts up, never used twice in a run: of two links to a vehicle the greater one holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LinkId(pub u64);
+
+/// What the window wants of the links.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Order {
-    /// Open a session, closing the one before.
+    /// Open a session, beside those that are open.
     Connect {
+        /// What the link is called from now on.
+        link: LinkId,
         /// Where the vehicle's gateway listens.
         endpoint: String,
         /// The vehicle's name.
-        vehicle: String,
+        vehicle: VehicleName,
     },
-    /// Close the session.
-    Disconnect,
-    /// Ask the vehicle for something.
+    /// Close a session.
+    Disconnect {
+        /// Which.
+        link: LinkId,
+    },
+    /// Ask a vehicle for something.
     Call {
+        /// Over which link.
+        link: LinkId,
         /// Comes back with the answer.
         ticket: Ticket,
         /// What.
@@ -46,13 +57,26 @@ pub enum Call {
     PlanAboard,
 }
 
-/// What the link has to tell.
+/// What a link has to tell, and of which vehicle. A recording that is played is a link like any other.
+#[derive(Debug)]
+pub struct LinkMessage {
+    /// Which link.
+    pub link: LinkId,
+    /// The vehicle at its far end.
+    pub vehicle: VehicleName,
+    /// What happened.
+    pub event: LinkEvent,
+}
+
+/// Something that happened on a link.
 #[derive(Debug)]
 pub enum LinkEvent {
     /// The session changed.
     Link(LinkState),
     /// Something was heard of the vehicle.
     Telemetry(Telemetry),
+    /// Something was not heard, and never will be.
+    Lost(Loss),
     /// A question was answered, or was not in time.
     Answer {
         /// Of the question.
@@ -60,6 +84,24 @@ pub enum LinkEvent {
         /// The answer; else a sentence that says why there is none.
         result: Result<Reply, String>,
     },
+}
+
+/// What was lost on the way from the vehicle to the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// So many events of a stream; they are missing in the log.
+    Events(u64),
+    /// So many values that came faster than the window took them; newer ones followed.
+    Values(u64),
+}
+
+/// An event and its place in its stream.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Numbered<T> {
+    /// The publisher's number of it: counts up by one.
+    pub sequence: u32,
+    /// What happened.
+    pub event: Stamped<T>,
 }
 
 /// A good answer.
@@ -88,8 +130,8 @@ pub enum Telemetry {
     Status(Box<Stamped<Status>>),
     Ahead(Stamped<Ahead>),
     Variables(Stamped<PlanVariables>),
-    PlanEvent(Stamped<PlanEvent>),
-    GatewayEvent(GatewayEvent),
+    PlanEvent(Numbered<PlanEvent>),
+    GatewayEvent(Numbered<GatewayEvent>),
 }
 
 /// How far the session has come.
@@ -126,42 +168,51 @@ impl LinkState {
     }
 }
 
-/// LinkEvent that wait for the window at most; values that come faster than they are drawn are left out,
-/// answers and events wait.
-const BACKLOG: usize = 4096;
+/// Messages that wait for the window at most. Values that come faster than they are drawn are left out
+/// and counted; answers and events wait.
+pub const BACKLOG: usize = 4096;
 
-/// The window's end.
+/// The window's end of all links.
 #[derive(Debug)]
-pub struct Link {
+pub struct Links {
     orders: mpsc::UnboundedSender<Order>,
-    news: mpsc::Receiver<LinkEvent>,
+    messages: mpsc::Receiver<LinkMessage>,
+    last: LinkId,
 }
 
-/// The far end: the session's, or a test's.
+/// The far end: the sessions', or a test's.
 #[derive(Debug)]
 pub struct Endpoint {
     /// What is asked.
     pub orders: mpsc::UnboundedReceiver<Order>,
     /// What there is to tell.
-    pub news: mpsc::Sender<LinkEvent>,
+    pub messages: mpsc::Sender<LinkMessage>,
 }
 
-/// Called when there is news to draw.
+/// Called when there is something new to draw.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-impl Link {
-    /// A link and its far end, without a session.
+impl Links {
+    /// The window's end and its far end, without a session.
     pub fn pair() -> (Self, Endpoint) {
         let (order_sender, orders) = mpsc::unbounded_channel();
-        let (news, news_receiver) = mpsc::channel(BACKLOG);
-        (Self { orders: order_sender, news: news_receiver }, Endpoint { orders, news })
+        let (messages, receiver) = mpsc::channel(BACKLOG);
+        (Self { orders: order_sender, messages: receiver, last: LinkId(0) }, Endpoint { orders, messages })
     }
 
-    /// A link whose sessions live on a thread of their own, until the link is dropped.
+    /// Links whose sessions live on a thread of their own, until this end is dropped.
     pub fn spawn(wake: Wake) -> std::io::Result<Self> {
-        let (link, endpoint) = Self::pair();
+        let (links, endpoint) = Self::pair();
         std::thread::Builder::new().name("link".into()).spawn(move || session::serve(endpoint, wake))?;
-        Ok(link)
+        Ok(links)
+    }
+
+    /// Opens a link to a vehicle; never waits.
+    pub fn connect(&mut self, endpoint: &str, vehicle: &VehicleName) -> LinkId {
+        self.last.0 += 1;
+        let (link, endpoint) = (self.last, endpoint.to_owned());
+        self.order(Order::Connect { link, endpoint, vehicle: vehicle.clone() });
+        link
     }
 
     /// Asks for something; never waits. False if the far end is gone.
@@ -169,8 +220,8 @@ impl Link {
         self.orders.send(order).is_ok()
     }
 
-    /// The next news, if there are any.
-    pub fn news(&mut self) -> Option<LinkEvent> {
-        self.news.try_recv().ok()
+    /// The next message, if there is one.
+    pub fn message(&mut self) -> Option<LinkMessage> {
+        self.messages.try_recv().ok()
     }
 }

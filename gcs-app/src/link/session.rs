@@ -1,12 +1,17 @@
-//! The thread behind the link: it owns the runtime and the session, and turns both into channels.
+//! The thread behind the links: it owns the runtime and the sessions, and turns both into channels.
+//! Each link is a task of its own, so that a vehicle that can't be reached holds up no other.
 
-use super::{Call, Endpoint, LinkEvent, LinkState, Order, Reply, Telemetry, Wake};
-use crate::state::{ActivePlan, Ticket};
+use super::{
+    Call, Endpoint, LinkEvent, LinkId, LinkMessage, LinkState, Loss, Numbered, Order, Reply, Telemetry, Wake,
+};
+use crate::state::{ActivePlan, Ticket, VehicleName};
+use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use usal::contract::{Command, Empty, Stamped};
-use usal::topics::{FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
+use usal::topics::{Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
 
 /// A command is answered within this time, or the operator learns that it was not.
@@ -14,77 +19,113 @@ const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
 /// A plan is checked aboard, and what changes the flight is flown ahead; a big one takes its time.
 const PLAN_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Serves orders until the window's end of the link is gone.
+/// Serves orders until the window's end of the links is gone.
 pub fn serve(endpoint: Endpoint, wake: Wake) {
     let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
     match runtime {
         Ok(runtime) => runtime.block_on(orders(endpoint, wake)),
-        Err(error) => tracing::error!(%error, "no threads for the link; the window works without a vehicle"),
+        Err(error) => tracing::error!(%error, "no threads for the links; the window works without a vehicle"),
     }
 }
 
-/// Where news go.
+/// Questions on their way to a session.
+type Calls = mpsc::UnboundedSender<(Ticket, Call)>;
+
+/// Where a link's messages go.
 #[derive(Clone)]
 struct Outlet {
-    news: mpsc::Sender<LinkEvent>,
+    link: LinkId,
+    vehicle: VehicleName,
+    messages: mpsc::Sender<LinkMessage>,
+    /// Values left out since the last that found room.
+    left_out: Arc<AtomicU64>,
     wake: Wake,
 }
 
 impl Outlet {
-    /// Waits for room: answers and events are never lost.
-    async fn tell(&self, news: LinkEvent) {
+    /// Waits for room: answers and events are never lost here.
+    async fn tell(&self, event: LinkEvent) {
         // the window may be gone: nobody to tell
-        let _ = self.news.send(news).await;
+        let _ = self.messages.send(self.message(event)).await;
         (self.wake)();
     }
-    /// A value; the next one is newer anyway.
+
+    /// A value; where there is no room for it, it is counted, and the next one is newer anyway.
     fn value(&self, heard: Telemetry) {
-        let _ = self.news.try_send(LinkEvent::Telemetry(heard));
+        if self.report_left_out().is_err() || self.try_tell(LinkEvent::Telemetry(heard)).is_err() {
+            self.left_out.fetch_add(1, Ordering::Relaxed);
+        }
         (self.wake)();
+    }
+
+    fn report_left_out(&self) -> Result<(), ()> {
+        let count = self.left_out.swap(0, Ordering::Relaxed);
+        if count == 0 {
+            return Ok(());
+        }
+        self.try_tell(LinkEvent::Lost(Loss::Values(count))).inspect_err(|()| {
+            self.left_out.fetch_add(count, Ordering::Relaxed);
+        })
+    }
+
+    fn try_tell(&self, event: LinkEvent) -> Result<(), ()> {
+        self.messages.try_send(self.message(event)).map_err(drop)
+    }
+
+    fn message(&self, event: LinkEvent) -> LinkMessage {
+        LinkMessage { link: self.link, vehicle: self.vehicle.clone(), event }
     }
 }
 
-/// A session and the tasks that listen on it; they end with it.
-struct Open {
-    session: Session,
-    tasks: tokio::task::JoinSet<()>,
-}
-
+/// Hands each order to its link; waits for none of them.
 async fn orders(mut endpoint: Endpoint, wake: Wake) {
-    let outlet = Outlet { news: endpoint.news, wake };
-    let mut open: Option<Open> = None;
+    let mut links: HashMap<LinkId, Calls> = HashMap::new();
     while let Some(order) = endpoint.orders.recv().await {
         match order {
-            Order::Connect { endpoint, vehicle } => {
-                open = None;
-                outlet.tell(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
-                match connect(&endpoint, &vehicle, &outlet).await {
-                    Ok(session) => open = Some(session),
-                    Err(error) => outlet.tell(LinkEvent::Link(LinkState::Failed(error.to_string()))).await,
+            Order::Connect { link, endpoint: at, vehicle } => {
+                links.retain(|_, calls| !calls.is_closed());
+                let messages = endpoint.messages.clone();
+                let outlet = Outlet { link, vehicle, messages, left_out: Arc::default(), wake: wake.clone() };
+                let (calls, questions) = mpsc::unbounded_channel();
+                links.insert(link, calls);
+                tokio::spawn(run(at, questions, outlet));
+            }
+            // its task ends when nobody can ask it anything any more
+            Order::Disconnect { link } => drop(links.remove(&link)),
+            Order::Call { link, ticket, call } => {
+                if let Some(calls) = links.get(&link) {
+                    // the task ends only after its last question
+                    let _ = calls.send((ticket, call));
                 }
             }
-            Order::Disconnect => {
-                open = None;
-                outlet.tell(LinkEvent::Link(LinkState::Off)).await;
-            }
-            Order::Call { ticket, call } => match &mut open {
-                Some(open) => {
-                    let (session, outlet) = (open.session.clone(), outlet.clone());
-                    open.tasks.spawn(async move { answer(&session, ticket, call, &outlet).await });
-                    // tasks that are done are let go
-                    while open.tasks.try_join_next().is_some() {}
-                }
-                None => {
-                    let result = Err("there is no link: connect first".to_owned());
-                    outlet.tell(LinkEvent::Answer { ticket, result }).await;
-                }
-            },
         }
     }
 }
 
-async fn connect(endpoint: &str, vehicle: &str, outlet: &Outlet) -> Result<Open, usal::SessionError> {
-    let session = Session::open(usal::Config::client(vehicle, endpoint)).await?;
+/// A link from its beginning to its end.
+async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, Call)>, outlet: Outlet) {
+    outlet.tell(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
+    match connect(&endpoint, &outlet).await {
+        Ok(mut open) => {
+            while let Some((ticket, call)) = questions.recv().await {
+                open.ask(ticket, call, &outlet);
+            }
+            // not before every listener has fallen silent: what it hears would come from a closed link
+            open.tasks.shutdown().await;
+        }
+        Err(error) => {
+            outlet.tell(LinkEvent::Link(LinkState::Failed(error.to_string()))).await;
+            while let Some((ticket, _)) = questions.recv().await {
+                let result = Err("there is no link: connect first".to_owned());
+                outlet.tell(LinkEvent::Answer { ticket, result }).await;
+            }
+        }
+    }
+    outlet.tell(LinkEvent::Link(LinkState::Off)).await;
+}
+
+async fn connect(endpoint: &str, outlet: &Outlet) -> Result<Open, usal::SessionError> {
+    let session = Session::open(usal::Config::client(outlet.vehicle.as_str(), endpoint)).await?;
     let mut open = Open { session, tasks: tokio::task::JoinSet::new() };
     open.follow(gateway::POSITION, Telemetry::Position, outlet)?;
     open.follow(gateway::ATTITUDE, Telemetry::Attitude, outlet)?;
@@ -97,9 +138,16 @@ async fn connect(endpoint: &str, vehicle: &str, outlet: &Outlet) -> Result<Open,
     open.follow(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status)), outlet)?;
     open.follow(fp_manager::AHEAD, Telemetry::Ahead, outlet)?;
     open.follow(fp_manager::VARIABLES, Telemetry::Variables, outlet)?;
-    open.listen(outlet)?;
+    open.listen(fp_manager::EVENTS, Telemetry::PlanEvent, outlet)?;
+    open.listen(gateway::EVENTS, Telemetry::GatewayEvent, outlet)?;
     open.watch(endpoint, outlet)?;
     Ok(open)
+}
+
+/// A session and the tasks that listen on it; they end with it.
+struct Open {
+    session: Session,
+    tasks: tokio::task::JoinSet<()>,
 }
 
 impl Open {
@@ -122,22 +170,28 @@ impl Open {
         Ok(())
     }
 
-    fn listen(&mut self, outlet: &Outlet) -> Result<(), usal::SessionError> {
-        let mut plan_events = self.session.listen(fp_manager::EVENTS, Start::Remembered)?;
-        let mut gateway_events = self.session.listen(gateway::EVENTS, Start::Remembered)?;
-        let (plan_outlet, gateway_outlet) = (outlet.clone(), outlet.clone());
+    /// A stream of events: each is told with its number, a gap with its size.
+    fn listen<T>(
+        &mut self,
+        events: Events<Stamped<T>>,
+        heard: fn(Numbered<T>) -> Telemetry,
+        outlet: &Outlet,
+    ) -> Result<(), usal::SessionError>
+    where
+        T: serde::de::DeserializeOwned + Send + 'static,
+    {
+        let mut subscriber = self.session.listen(events, Start::Remembered)?;
+        let outlet = outlet.clone();
         self.tasks.spawn(async move {
-            while let Some(occurrence) = plan_events.recv().await {
-                if let Occurrence::Event { event, .. } = occurrence {
-                    plan_outlet.tell(LinkEvent::Telemetry(Telemetry::PlanEvent(event))).await;
-                }
-            }
-        });
-        self.tasks.spawn(async move {
-            while let Some(occurrence) = gateway_events.recv().await {
-                if let Occurrence::Event { event, .. } = occurrence {
-                    gateway_outlet.tell(LinkEvent::Telemetry(Telemetry::GatewayEvent(event.value))).await;
-                }
+            while let Some(occurrence) = subscriber.recv().await {
+                outlet
+                    .tell(match occurrence {
+                        Occurrence::Event { sequence, event } => {
+                            LinkEvent::Telemetry(heard(Numbered { sequence, event }))
+                        }
+                        Occurrence::Gap { missed } => LinkEvent::Lost(Loss::Events(missed)),
+                    })
+                    .await;
             }
         });
         Ok(())
@@ -157,6 +211,14 @@ impl Open {
             }
         });
         Ok(())
+    }
+
+    /// Asks, and tells the answer when it comes.
+    fn ask(&mut self, ticket: Ticket, call: Call, outlet: &Outlet) {
+        let (session, outlet) = (self.session.clone(), outlet.clone());
+        self.tasks.spawn(async move { answer(&session, ticket, call, &outlet).await });
+        // tasks that are done are let go
+        while self.tasks.try_join_next().is_some() {}
     }
 }
 
@@ -195,5 +257,33 @@ async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
                 plan: Arc::new(flight_plan::read(document.xml.as_bytes()).plan),
             })))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gps(time_s: f64) -> Telemetry {
+        let value = usal::contract::Gps { fix_3d: true, satellites: 9, hdop: 1.0, unix_s: None };
+        Telemetry::Gps(Stamped { time_s, validity_s: 2.0, value })
+    }
+
+    #[test]
+    fn values_without_room_are_counted_and_told_when_there_is_room() {
+        let (messages, mut window) = mpsc::channel(3);
+        let wake: Wake = Arc::new(|| {});
+        let (link, vehicle) = (LinkId(4), VehicleName::from("uav1"));
+        let outlet = Outlet { link, vehicle, messages, left_out: Arc::default(), wake };
+        for i in 0..10 {
+            outlet.value(gps(f64::from(i)));
+        }
+        for _ in 0..3 {
+            assert!(matches!(window.try_recv().map(|m| m.event), Ok(LinkEvent::Telemetry(_))));
+        }
+        outlet.value(gps(10.0));
+        let told = window.try_recv().map(|m| (m.link, m.event));
+        assert!(matches!(told, Ok((LinkId(4), LinkEvent::Lost(Loss::Values(7))))), "{told:?}");
+        assert!(matches!(window.try_recv().map(|m| m.event), Ok(LinkEvent::Telemetry(_))));
     }
 }

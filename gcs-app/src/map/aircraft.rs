@@ -4,7 +4,7 @@ use super::polyline::{self, Cached, Style};
 use super::text;
 use super::view::{Mercator, View};
 use crate::panels::Scene;
-use crate::state::Vehicle;
+use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
@@ -12,12 +12,19 @@ use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 /// The layer; keeps the decimated trail until view or trail change.
 #[derive(Debug, Default)]
 pub struct Layer {
+    /// Whose trail it is.
+    of: Option<VehicleName>,
     trail: Cached,
 }
 
 impl Layer {
     /// The flown track: grey.
-    pub fn draw_trail(&mut self, painter: &Painter, view: &View, vehicle: &Vehicle, p: &Palette) {
+    pub fn draw_trail(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+        let shown = scene.vehicles.shown_name();
+        if self.of.as_ref() != shown {
+            *self = Self { of: shown.cloned(), ..Self::default() };
+        }
+        let vehicle = scene.vehicle;
         let line = || vehicle.trail.points().iter().map(|at| (*at).into()).collect();
         let parts = self.trail.parts(line, vehicle.trail.changes(), view);
         polyline::draw(painter, parts, Stroke::new(2.6, p.flown), Style::Solid, p.halo);

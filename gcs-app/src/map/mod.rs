@@ -123,7 +123,7 @@ impl MapState {
         plan::draw_areas(&painter, view, &self.sketch, scene, p);
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
         self.path.draw(&painter, view, scene, &self.sketch, p);
-        self.aircraft.draw_trail(&painter, view, scene.vehicle, p);
+        self.aircraft.draw_trail(&painter, view, scene, p);
         aircraft::draw_ahead(&painter, view, scene, p);
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);

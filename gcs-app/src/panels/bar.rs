@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::command::{DocumentCommand, FlyCommand, Queue, ViewCommand};
 use crate::link::LinkState;
-use crate::state::{LINK_CAUTION_S, log::short_hash};
+use crate::state::log::short_hash;
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::{Color32, RichText, Ui};
@@ -14,25 +14,26 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     ui.horizontal_centered(|ui| {
         menus(ui, scene, queue);
         ui.separator();
-        link(ui, scene, queue);
+        super::link::show(ui, scene, queue);
         state(ui, scene);
         ui.separator();
         badge(ui, scene);
         push(ui, scene, queue);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(RichText::new(utc()).monospace()).on_hover_text(local());
+            ui.label(RichText::new(utc(scene)).monospace()).on_hover_text(local(scene));
             ui.separator();
             title(ui, scene);
         });
     });
 }
 
-fn utc() -> String {
-    jiff::Timestamp::now().strftime("%H:%M:%SZ").to_string()
+fn utc(scene: &Scene<'_>) -> String {
+    scene.utc.strftime("%H:%M:%SZ").to_string()
 }
 
-fn local() -> String {
-    jiff::Zoned::now().strftime("Local time %H:%M:%S %Z").to_string()
+fn local(scene: &Scene<'_>) -> String {
+    let here = scene.utc.to_zoned(jiff::tz::TimeZone::system());
+    here.strftime("Local time %H:%M:%S %Z").to_string()
 }
 
 fn title(ui: &mut Ui, scene: &Scene<'_>) {
@@ -112,58 +113,6 @@ fn view_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-/// What is typed into the connection form.
-#[derive(Debug, Clone)]
-struct Form {
-    endpoint: String,
-    vehicle: String,
-}
-
-impl Default for Form {
-    fn default() -> Self {
-        Self { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() }
-    }
-}
-
-/// The link: its state and its age, which are also the way to the form.
-fn link(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let p = theme::of(ui);
-    let silence = scene.vehicle.silence_s(scene.now_s);
-    let (text, colour) = match (&scene.vehicle.link, silence) {
-        (LinkState::Off, _) => ("○ Connect".to_owned(), p.text),
-        (LinkState::Failed(_), _) => ("✖ No link".to_owned(), p.caution),
-        (LinkState::Connecting(_), _) | (LinkState::Connected(_), None) => {
-            ("◌ Looking for it…".to_owned(), p.weak)
-        }
-        (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => {
-            (format!("⚠ Silent for {}", units::age(age)), p.caution)
-        }
-        (LinkState::Connected(_), Some(age)) => (format!("● Link {}", units::age(age)), p.good),
-    };
-    let menu = ui.menu_button(RichText::new(text).color(colour), |ui| form(ui, scene, queue));
-    menu.response.on_hover_text(scene.vehicle.link.text());
-}
-
-fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let id = egui::Id::unique("connection form");
-    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    ui.set_width(280.0);
-    ui.label(scene.vehicle.link.text());
-    super::field::row(ui, "Gateway at", |ui| ui.text_edit_singleline(&mut form.endpoint));
-    super::field::row(ui, "Vehicle", |ui| ui.text_edit_singleline(&mut form.vehicle));
-    ui.horizontal(|ui| {
-        if ui.add(super::primary_button("Connect", theme::of(ui))).clicked() {
-            queue.fly(FlyCommand::Connect { endpoint: form.endpoint.clone(), vehicle: form.vehicle.clone() });
-            ui.close();
-        }
-        if scene.vehicle.link.is_wanted() && ui.button("Disconnect").clicked() {
-            queue.fly(FlyCommand::Disconnect);
-            ui.close();
-        }
-    });
-    ui.data_mut(|d| d.insert_temp(id, form));
-}
-
 /// What the gateway and the autopilot do: green is engaged.
 fn state(ui: &mut Ui, scene: &Scene<'_>) {
     let p = theme::of(ui);
@@ -190,8 +139,8 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
     };
     if status.plan.as_deref() == Some(hash) {
         return match status.phase {
-            Phase::Idle => ("aboard", Standing::ActivePlan),
-            Phase::Finished => ("flown", Standing::ActivePlan),
+            Phase::Idle => ("aboard", Standing::Aboard),
+            Phase::Finished => ("flown", Standing::Aboard),
             _ => ("active", Standing::Active),
         };
     }
@@ -209,7 +158,7 @@ pub enum Standing {
     /// Checked aboard, not committed.
     Proposed,
     /// Stored aboard.
-    ActivePlan,
+    Aboard,
     /// Being flown.
     Active,
 }
@@ -229,7 +178,7 @@ fn standing_look(standing: Standing, p: &Palette) -> (&'static str, Color32) {
     match standing {
         Standing::Draft => ("◇", p.text),
         Standing::Proposed => ("◈", p.accent),
-        Standing::ActivePlan => ("◆", p.accent),
+        Standing::Aboard => ("◆", p.accent),
         Standing::Active => ("◆", p.good),
     }
 }

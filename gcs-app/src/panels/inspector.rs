@@ -298,10 +298,10 @@ fn show_variable(ui: &mut Ui, scene: &Scene<'_>, variable: &Variable, queue: &mu
     let Some(aboard) = &scene.vehicle.variables else { return };
     let Some(live) = aboard.value.variables.iter().find(|v| v.name == variable.name) else { return };
     ui.separator();
-    super::group_title(ui, "ActivePlan");
+    super::group_title(ui, "Aboard");
     let shown = crate::state::log::variable(&live.value);
     super::value_with_age(ui, "Value", &shown, super::age_of(&scene.vehicle.variables, scene.now_s));
-    let id = egui::Id::unique(("set aboard", &variable.name));
+    let id = egui::Id::unique(("set aboard", scene.vehicles.shown_name(), &variable.name));
     let mut draft: VariableValue = ui.data(|d| d.get_temp(id)).unwrap_or_else(|| live.value.clone());
     match variable_field(ui, "New value", variable, &draft) {
         Change::Moving(value) | Change::Set(value) => draft = value,

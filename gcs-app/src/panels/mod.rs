@@ -6,6 +6,7 @@ pub mod decision;
 pub mod field;
 pub mod flight;
 pub mod inspector;
+pub mod link;
 pub mod log;
 pub mod pfd;
 pub mod problems;
@@ -17,7 +18,7 @@ pub mod tree;
 use crate::command::{BottomTab, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
-use crate::state::{Aged, Vehicle};
+use crate::state::{Aged, Vehicle, Vehicles};
 use crate::theme;
 use crate::units::{self, Units};
 use egui::{RichText, Ui};
@@ -49,12 +50,16 @@ pub struct Scene<'a> {
     pub document: &'a Document,
     /// What is known of the plan, found out in the background; belongs to an older version for a moment.
     pub analysis: &'a Analysis,
-    /// What is known of the vehicle.
+    /// What is known of the vehicle that is shown.
     pub vehicle: &'a Vehicle,
+    /// All vehicles that are known.
+    pub vehicles: &'a Vehicles,
     /// What the operator looks at.
     pub view: &'a ViewState,
     /// The window's clock, seconds.
     pub now_s: f64,
+    /// The time of day.
+    pub utc: jiff::Timestamp,
 }
 
 impl<'a> Scene<'a> {

@@ -71,6 +71,14 @@ impl Requests {
         Some(request.label.clone())
     }
 
+    /// No answer will come any more to what is pending: it counts as refused.
+    pub fn settle_all(&mut self, why: &str, now_s: f64) {
+        for request in self.list.iter_mut().filter(|r| r.outcome == Outcome::Pending) {
+            request.outcome = Outcome::Refused(why.into());
+            request.settled_s = Some(now_s);
+        }
+    }
+
     /// The newest request that somebody made, rather than the window for itself.
     pub fn last(&self) -> Option<&Request> {
         self.list.iter().rev().find(|r| r.label != READ_ABOARD)
@@ -102,6 +110,18 @@ mod tests {
         assert_eq!(requests.settle(first, Outcome::Accepted, 4.0), None, "answered twice");
         assert!(requests.settle(second, Outcome::Accepted, 5.0).is_some());
         assert!(!requests.is_pending("Hold"));
+    }
+
+    #[test]
+    fn a_closed_link_answers_what_was_pending_and_nothing_else() {
+        let mut requests = Requests::default();
+        let done = requests.open("Hold", 1.0);
+        requests.settle(done, Outcome::Accepted, 1.5);
+        let open = requests.open("Resume", 2.0);
+        requests.settle_all("closed", 3.0);
+        let outcomes: Vec<&Outcome> = requests.newest_first().map(|r| &r.outcome).collect();
+        assert_eq!(outcomes, [&Outcome::Refused("closed".into()), &Outcome::Accepted]);
+        assert_eq!(requests.settle(open, Outcome::Accepted, 4.0), None, "too late");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::vehicle::{decision, place, status};
 use super::{SQUARE, Window};
 use egui::Key;
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
-use gcs_app::link::{Call, LinkEvent, LinkState, Order, Reply};
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply};
 use gcs_app::state::Outcome;
 use usal::contract::{Alarm, Severity};
 
@@ -58,7 +58,8 @@ fn connecting_asks_the_link_and_shows_what_came_of_it() {
     window.click("○ Connect");
     window.click("Connect");
     let order = window.far.orders.try_recv().unwrap();
-    assert_eq!(order, Order::Connect { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() });
+    let (link, endpoint) = (LinkId(1), "tcp/127.0.0.1:7447".into());
+    assert_eq!(order, Order::Connect { link, endpoint, vehicle: "uav1".into() });
     window.tell(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
     assert!(window.shows("No link"));
     window.connect();
@@ -270,11 +271,10 @@ fn a_flood_of_news_never_stops_the_drawing() {
     for _ in 0..4000 {
         let value = status(Phase::Flying);
         let stamped = usal::contract::Stamped { time_s: 1.0, validity_s: 2.0, value };
-        let _ = window
-            .far
-            .news
-            .try_send(LinkEvent::Telemetry(gcs_app::link::Telemetry::Status(Box::new(stamped))));
+        let event = LinkEvent::Telemetry(gcs_app::link::Telemetry::Status(Box::new(stamped)));
+        let message = LinkMessage { link: LinkId(1), vehicle: "uav1".into(), event };
+        let _ = window.far.messages.try_send(message);
     }
     window.steps(2);
-    assert!(window.far.news.capacity() > 4000, "all of it was taken in at once");
+    assert!(window.far.messages.capacity() > 4000, "all of it was taken in at once");
 }

@@ -2,8 +2,10 @@
 //! the link that the test plays.
 #![cfg(test)]
 
+mod fleet;
 mod flying;
 mod planning;
+mod store;
 mod vehicle;
 
 use egui::{Pos2, Vec2, vec2};
@@ -12,7 +14,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use gcs_app::app::App;
 use gcs_app::assets;
 use gcs_app::document::Document;
-use gcs_app::link::{Endpoint, Link};
+use gcs_app::link::{Endpoint, Links};
 use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
@@ -25,11 +27,11 @@ struct Window {
 
 impl Window {
     fn open(text: &str) -> Self {
-        let (link, far) = Link::pair();
+        let (links, far) = Links::pair();
         let document = Document::read(text.as_bytes(), None);
         let harness =
             Harness::builder().with_size(vec2(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(
-                move |creation| App::new(creation, document, link, assets::demo_terrain()).unwrap(),
+                move |creation| App::new(creation, document, links, assets::demo_terrain()).unwrap(),
             );
         Self { harness, far }
     }

@@ -2,7 +2,7 @@
 
 use super::Window;
 use flight_exec::{BranchOption, DecisionRequest, Phase, PlacePointer, Status};
-use gcs_app::link::{Call, LinkEvent, LinkState, Order, Reply, Telemetry};
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
 use usal::contract::{Attitude, GatewayState, GatewayStatus, Position, Stamped};
@@ -49,9 +49,30 @@ pub fn decision(default: Option<&str>) -> DecisionRequest {
     }
 }
 
+/// A position near the runway, at a time and an altitude.
+pub fn position(time_s: f64, altitude_amsl_m: f64, on_ground: bool) -> Telemetry {
+    let value = Position {
+        position: LatLon::new(36.3190 + time_s * 1e-5, -84.1730),
+        altitude_amsl_m,
+        altitude_home_m: altitude_amsl_m - 349.0,
+        velocity_north_mps: 20.0,
+        velocity_east_mps: 15.0,
+        velocity_down_mps: -1.0,
+        track_deg: 37.0,
+        ground_speed_mps: 25.0,
+        on_ground,
+    };
+    Telemetry::Position(Stamped { time_s, validity_s: 2.0, value })
+}
+
 impl Window {
-    pub fn tell(&mut self, news: LinkEvent) {
-        self.far.news.try_send(news).unwrap();
+    /// Of the vehicle that most tests have alone, over its first link.
+    pub fn tell(&mut self, event: LinkEvent) {
+        self.tell_of("uav1", LinkId(1), event);
+    }
+
+    pub fn tell_of(&mut self, vehicle: &str, link: LinkId, event: LinkEvent) {
+        self.far.messages.try_send(LinkMessage { link, vehicle: vehicle.into(), event }).unwrap();
         self.steps(2);
     }
 
@@ -71,18 +92,7 @@ impl Window {
     }
 
     pub fn hear_position(&mut self, on_ground: bool) {
-        let value = Position {
-            position: LatLon::new(36.3190, -84.1730),
-            altitude_amsl_m: 500.0,
-            altitude_home_m: 151.0,
-            velocity_north_mps: 20.0,
-            velocity_east_mps: 15.0,
-            velocity_down_mps: -1.0,
-            track_deg: 37.0,
-            ground_speed_mps: 25.0,
-            on_ground,
-        };
-        self.hear(Telemetry::Position(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.hear(position(1.0, 500.0, on_ground));
     }
 
     pub fn hear_attitude(&mut self) {
@@ -114,7 +124,7 @@ impl Window {
     /// The next question that was asked, if there is one.
     pub fn asked(&mut self) -> Option<(Ticket, Call)> {
         match self.far.orders.try_recv() {
-            Ok(Order::Call { ticket, call }) => Some((ticket, call)),
+            Ok(Order::Call { ticket, call, .. }) => Some((ticket, call)),
             Ok(other) => panic!("{other:?}"),
             Err(_) => None,
         }

@@ -1,0 +1,116 @@
+//! The link: which vehicle is shown, how its link does, and what was lost on it. It opens the list of
+//! vehicles and the form for another connection.
+
+use super::Scene;
+use crate::command::{LinkCommand, Queue};
+use crate::link::LinkState;
+use crate::state::{LINK_CAUTION_S, Vehicle, VehicleName};
+use crate::theme::{self, Palette};
+use crate::units;
+use egui::{Color32, RichText, Ui};
+
+/// Draws the chip.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let (symbol, state, colour) = look(scene.vehicle, scene.now_s, p);
+    let name = scene.vehicles.shown_name().map_or_else(String::new, |name| format!("{name} · "));
+    let text = RichText::new(format!("{symbol} {name}{state}")).color(colour);
+    let menu = ui.menu_button(text, |ui| {
+        ui.set_width(280.0);
+        chooser(ui, scene, queue);
+        form(ui, scene, queue);
+    });
+    menu.response.on_hover_text(details(scene.vehicle));
+    lost(ui, scene.vehicle);
+}
+
+/// Symbol, words and colour of a vehicle's link.
+fn look(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, Color32) {
+    match (&vehicle.link, vehicle.silence_s(now_s)) {
+        (LinkState::Off, _) => ("○", "Connect".into(), p.text),
+        (LinkState::Failed(_), _) => ("✖", "No link".into(), p.caution),
+        (LinkState::Connecting(_), _) | (LinkState::Connected(_), None) => {
+            ("◌", "Looking for it…".into(), p.weak)
+        }
+        (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => {
+            ("⚠", format!("Silent for {}", units::age(age)), p.caution)
+        }
+        (LinkState::Connected(_), Some(age)) => ("●", format!("Link {}", units::age(age)), p.good),
+    }
+}
+
+fn details(vehicle: &Vehicle) -> String {
+    let losses = vehicle.losses.text().map_or_else(String::new, |text| format!("\n{text}"));
+    format!("{}{losses}", vehicle.link.text())
+}
+
+/// How many events are missing; nothing as long as none is.
+fn lost(ui: &mut Ui, vehicle: &Vehicle) {
+    let events = vehicle.losses.events;
+    if events > 0 {
+        let text = RichText::new(format!("⚠ {events} lost")).color(theme::of(ui).caution);
+        ui.label(text).on_hover_text(details(vehicle));
+    }
+}
+
+/// Which vehicle is shown, where there is a choice.
+fn chooser(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    if scene.vehicles.choices().count() < 2 {
+        return;
+    }
+    super::group_title(ui, "Vehicles");
+    let p = theme::of(ui);
+    egui::ScrollArea::vertical().max_height(200.0).id_salt("vehicles").show(ui, |ui| {
+        for (name, vehicle) in scene.vehicles.choices() {
+            let (symbol, state, colour) = look(vehicle, scene.now_s, p);
+            let state = if vehicle.link == LinkState::Off { "not connected".into() } else { state };
+            let shown = scene.vehicles.shown_name() == Some(name);
+            let text = RichText::new(format!("{symbol} {name} · {state}")).color(colour);
+            if ui.radio(shown, text).clicked() {
+                queue.link(LinkCommand::Show(name.clone()));
+                ui.close();
+            }
+        }
+    });
+    ui.separator();
+}
+
+/// What is typed into the connection form.
+#[derive(Debug, Clone)]
+struct Form {
+    endpoint: String,
+    vehicle: String,
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() }
+    }
+}
+
+fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let id = egui::Id::unique("connection form");
+    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    ui.label(scene.vehicle.link.text());
+    super::field::row(ui, "Gateway at", |ui| ui.text_edit_singleline(&mut form.endpoint));
+    super::field::row(ui, "Vehicle", |ui| ui.text_edit_singleline(&mut form.vehicle));
+    ui.horizontal(|ui| {
+        if ui.add(super::primary_button("Connect", theme::of(ui))).clicked() {
+            let (endpoint, vehicle) = (form.endpoint.clone(), form.vehicle.as_str().into());
+            queue.link(LinkCommand::Connect { endpoint, vehicle });
+            ui.close();
+        }
+        disconnect(ui, scene, queue);
+    });
+    ui.data_mut(|d| d.insert_temp(id, form));
+}
+
+fn disconnect(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let name: Option<&VehicleName> = scene.vehicles.shown_name().filter(|_| scene.vehicle.link.is_wanted());
+    if let Some(name) = name
+        && ui.button("Disconnect").on_hover_text(format!("Close the link to {name}")).clicked()
+    {
+        queue.link(LinkCommand::Disconnect(name.clone()));
+        ui.close();
+    }
+}

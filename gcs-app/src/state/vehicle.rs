@@ -1,0 +1,285 @@
+//! One vehicle: what is known of it, and how old that is.
+
+use super::{Aged, Level, Log, Losses, Outcome, Repeats, Requests, Ticket, Trail, log};
+use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, Reply, Telemetry};
+use flight_exec::{Phase, Status};
+use flight_plan::{FlightPlan, Id};
+use std::sync::Arc;
+use usal::contract::{
+    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanEvent,
+    PlanVariables, Position, Power, ProposalReport, Severity,
+};
+
+/// A vehicle's name: what everything known of it is kept under.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct VehicleName(Arc<str>);
+
+impl VehicleName {
+    /// As text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl From<&str> for VehicleName {
+    fn from(name: &str) -> Self {
+        Self(name.into())
+    }
+}
+
+impl std::fmt::Display for VehicleName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// A vehicle, as far as the ground station knows it.
+#[derive(Debug, Default)]
+pub struct Vehicle {
+    /// The way to it.
+    pub link: LinkState,
+    /// Which link that is; older ones are closed, and what still comes from them is not listened to.
+    link_id: Option<LinkId>,
+    /// When anything was heard of it last, seconds of the window's clock.
+    pub heard_s: Option<f64>,
+    /// Where it is.
+    pub position: Option<Aged<Position>>,
+    /// Which way up it is.
+    pub attitude: Option<Aged<Attitude>>,
+    /// The air around it.
+    pub air: Option<Aged<Air>>,
+    /// Satellites.
+    pub gps: Option<Aged<Gps>>,
+    /// Engine.
+    pub engine: Option<Aged<Engine>>,
+    /// Battery.
+    pub power: Option<Aged<Power>>,
+    /// Where it is going.
+    pub navigation: Option<Aged<Navigation>>,
+    /// What the gateway is doing.
+    pub gateway: Option<Aged<GatewayStatus>>,
+    /// What the FP Manager is doing.
+    pub status: Option<Aged<Status>>,
+    /// Waypoints handed out and not flown.
+    pub ahead: Option<Aged<Ahead>>,
+    /// Values of the plan's variables.
+    pub variables: Option<Aged<PlanVariables>>,
+    /// The active plan.
+    pub aboard: Option<ActivePlan>,
+    /// What the last proposal would do, until committed or dropped.
+    pub proposal: Option<Proposal>,
+    /// Where it has been.
+    pub trail: Trail,
+    /// Commands on their way, and their answers.
+    pub requests: Requests,
+    /// What happened.
+    pub log: Log,
+    /// What was not heard of it.
+    pub losses: Losses,
+    plan_events: Repeats,
+    gateway_events: Repeats,
+    asked_aboard_s: Option<f64>,
+}
+
+/// A plan the FP Manager flies.
+#[derive(Debug, Clone)]
+pub struct ActivePlan {
+    /// Its hash.
+    pub hash: Arc<str>,
+    /// The plan.
+    pub plan: Arc<FlightPlan>,
+}
+
+/// A proposal that was answered.
+#[derive(Debug, Clone)]
+pub struct Proposal {
+    /// What it would do.
+    pub report: ProposalReport,
+    /// The leg at which it will be entered, if one must be named.
+    pub entry: Option<Id>,
+}
+
+macro_rules! remember {
+    ($field:expr, $stamped:expr, $now:expr) => {
+        $field = Some(Aged::new($stamped, $now))
+    };
+}
+
+impl Vehicle {
+    /// Takes in what a link has to tell of this vehicle.
+    pub(super) fn hear(&mut self, link: LinkId, event: LinkEvent, now_s: f64) {
+        if self.link_id.is_some_and(|current| link < current) {
+            return;
+        }
+        if self.link_id != Some(link) {
+            self.begin_link(link, now_s);
+        }
+        match event {
+            LinkEvent::Link(state) => self.link_changed(state, now_s),
+            LinkEvent::Telemetry(heard) => {
+                self.heard_s = Some(now_s);
+                self.take(heard, now_s);
+            }
+            LinkEvent::Lost(loss) => self.lost(loss, now_s),
+            LinkEvent::Answer { ticket, result } => self.answered(ticket, result, now_s),
+        }
+    }
+
+    /// Another link to the same vehicle: what is known of it stays, what was asked over the last one is void.
+    pub(super) fn begin_link(&mut self, link: LinkId, now_s: f64) {
+        self.link_id = Some(link);
+        self.plan_events.begin_link();
+        self.gateway_events.begin_link();
+        self.give_up_requests(now_s);
+    }
+
+    fn give_up_requests(&mut self, now_s: f64) {
+        self.requests.settle_all("the link was closed before the answer came", now_s);
+        self.proposal = None;
+    }
+
+    pub(super) fn link_changed(&mut self, link: LinkState, now_s: f64) {
+        if link != self.link {
+            self.log.add(now_s, link.level(), "link", &link.text());
+        }
+        if link == LinkState::Off {
+            self.give_up_requests(now_s);
+        }
+        self.link = link;
+    }
+
+    /// The link over which it can be asked, if there is one.
+    pub fn open_link(&self) -> Option<LinkId> {
+        self.link_id.filter(|_| self.link != LinkState::Off)
+    }
+
+    fn take(&mut self, heard: Telemetry, now_s: f64) {
+        match heard {
+            Telemetry::Position(p) => {
+                self.trail.add(p.value.position, p.time_s);
+                remember!(self.position, p, now_s);
+            }
+            Telemetry::Attitude(v) => remember!(self.attitude, v, now_s),
+            Telemetry::Air(v) => remember!(self.air, v, now_s),
+            Telemetry::Gps(v) => remember!(self.gps, v, now_s),
+            Telemetry::Engine(v) => remember!(self.engine, v, now_s),
+            Telemetry::Power(v) => remember!(self.power, v, now_s),
+            Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
+            Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
+            Telemetry::Status(v) => remember!(self.status, *v, now_s),
+            Telemetry::Ahead(v) => remember!(self.ahead, v, now_s),
+            Telemetry::Variables(v) => remember!(self.variables, v, now_s),
+            Telemetry::PlanEvent(event) => self.plan_event(&event, now_s),
+            Telemetry::GatewayEvent(event) => self.gateway_event(&event, now_s),
+        }
+    }
+
+    fn lost(&mut self, loss: Loss, now_s: f64) {
+        self.losses.add(loss);
+        if let Some(text) = super::losses::sentence(loss) {
+            self.log.add(now_s, Level::Caution, "link", &text);
+        }
+    }
+
+    fn plan_event(&mut self, event: &Numbered<PlanEvent>, now_s: f64) {
+        let (level, text) = log::plan_event(&event.event.value);
+        if self.plan_events.is_new(event.sequence, event.event.time_s, &text) {
+            self.log.add(now_s, level, "plan", &text);
+        }
+    }
+
+    fn gateway_event(&mut self, event: &Numbered<GatewayEvent>, now_s: f64) {
+        let Some((level, text)) = log::gateway_event(&event.event.value) else { return };
+        if self.gateway_events.is_new(event.sequence, event.event.time_s, &text) {
+            self.log.add(now_s, level, "gateway", &text);
+        }
+    }
+
+    fn answered(&mut self, ticket: Ticket, result: Result<Reply, String>, now_s: f64) {
+        let outcome = match &result {
+            Ok(Reply::Proposal(report)) if !report.acceptable => Outcome::Refused("see its problems".into()),
+            Ok(_) => Outcome::Accepted,
+            Err(reason) => Outcome::Refused(reason.clone()),
+        };
+        let Some(label) = self.requests.settle(ticket, outcome.clone(), now_s) else { return };
+        if let Outcome::Refused(reason) = &outcome {
+            self.log.add(now_s, Level::Caution, "command", &format!("{label}: refused, {reason}"));
+        }
+        match result {
+            Ok(Reply::Proposal(report)) => {
+                let entry = report.entry_needed.then(|| report.next_leg.clone()).flatten();
+                self.proposal = Some(Proposal { report: *report, entry });
+            }
+            Ok(Reply::Plan(aboard)) => self.aboard = aboard,
+            Ok(Reply::Done) | Err(_) => {}
+        }
+    }
+
+    /// Whether the plan aboard should be asked for now; it is taken to be asked for then.
+    pub(super) fn should_ask_for_plan(&mut self, now_s: f64) -> bool {
+        let is_heard = self.silence_s(now_s).is_some_and(|silence| silence < LINK_CAUTION_S);
+        let is_due = self.asked_aboard_s.is_none_or(|asked| now_s - asked > ASK_ABOARD_S);
+        let should = is_heard && is_due && self.open_link().is_some() && self.lacks_plan_aboard();
+        if should {
+            self.asked_aboard_s = Some(now_s);
+        }
+        should
+    }
+
+    fn lacks_plan_aboard(&self) -> bool {
+        let Some(active) = self.active_hash() else { return false };
+        self.aboard.as_ref().is_none_or(|aboard| aboard.hash != active)
+    }
+
+    /// Hash of the plan that the FP Manager says is active.
+    pub fn active_hash(&self) -> Option<Arc<str>> {
+        self.status.as_ref()?.value.plan.clone()
+    }
+
+    /// What the executor is doing; idle when nothing is known.
+    pub fn phase(&self) -> Phase {
+        self.status.as_ref().map_or(Phase::Idle, |s| s.value.phase)
+    }
+
+    /// The leg being flown.
+    pub fn current_leg(&self) -> Option<&Id> {
+        Some(&self.status.as_ref()?.value.place.as_ref()?.leg)
+    }
+
+    /// In the air, as far as is known.
+    pub fn is_airborne(&self) -> bool {
+        self.position.as_ref().is_some_and(|p| !p.value.on_ground)
+    }
+
+    /// Seconds since anything was heard, if ever.
+    pub fn silence_s(&self, now_s: f64) -> Option<f64> {
+        self.heard_s.map(|heard| (now_s - heard).max(0.0))
+    }
+
+    /// Alarms, the most severe first: the gateway's, and those of the link itself.
+    pub fn alarms(&self, now_s: f64) -> Vec<Alarm> {
+        let mut alarms = self.gateway.as_ref().map(|g| g.value.alarms.clone()).unwrap_or_default();
+        alarms.extend(self.link_alarm(now_s));
+        alarms.sort_by(|a, b| b.severity.cmp(&a.severity).then_with(|| a.id.cmp(&b.id)));
+        alarms
+    }
+
+    fn link_alarm(&self, now_s: f64) -> Option<Alarm> {
+        let silence = self.silence_s(now_s).filter(|s| *s > LINK_CAUTION_S && self.link.is_wanted())?;
+        let warning = silence > LINK_WARNING_S && self.is_airborne();
+        Some(Alarm {
+            id: "link-silent".into(),
+            severity: if warning { Severity::Warning } else { Severity::Caution },
+            source: "ground station".into(),
+            advice: "Nothing is heard from the vehicle. It flies on by its plan; check the link.".into(),
+            cause: None,
+        })
+    }
+}
+
+/// The plan aboard is asked for again at most so often, seconds.
+const ASK_ABOARD_S: f64 = 3.0;
+/// Silence after which the operator should know, seconds.
+pub const LINK_CAUTION_S: f64 = 3.0;
+/// Silence after which the operator should act, seconds.
+pub const LINK_WARNING_S: f64 = 10.0;

@@ -1,0 +1,109 @@
+//! All vehicles, each under its name. One of them is shown: panels read it, commands go to it.
+
+use super::{Vehicle, VehicleName};
+use crate::link::{LinkId, LinkMessage, LinkState};
+use std::collections::BTreeMap;
+
+/// Most vehicles remembered. Beyond it goes the one that was heard longest ago, has no link and is not shown.
+const CAPACITY: usize = 256;
+
+/// What is known of the vehicles.
+#[derive(Debug, Default)]
+pub struct Vehicles {
+    by_name: BTreeMap<VehicleName, Vehicle>,
+    shown: Option<VehicleName>,
+    /// What is shown as long as there is none.
+    nobody: Vehicle,
+}
+
+impl Vehicles {
+    /// Takes a message in; it concerns the vehicle that it names and no other.
+    pub fn hear(&mut self, message: LinkMessage, now_s: f64) {
+        let LinkMessage { link, vehicle, event } = message;
+        self.shown.get_or_insert_with(|| vehicle.clone());
+        self.entry(&vehicle).hear(link, event, now_s);
+    }
+
+    /// A link is being opened to a vehicle, which is shown from now on. What is known of it stays.
+    pub fn open(&mut self, name: &VehicleName, link: LinkId, endpoint: &str, now_s: f64) {
+        self.shown = Some(name.clone());
+        let vehicle = self.entry(name);
+        vehicle.begin_link(link, now_s);
+        vehicle.link_changed(LinkState::Connecting(endpoint.into()), now_s);
+    }
+
+    fn entry(&mut self, name: &VehicleName) -> &mut Vehicle {
+        if self.by_name.len() >= CAPACITY && !self.by_name.contains_key(name) {
+            self.forget_one();
+        }
+        self.by_name.entry(name.clone()).or_default()
+    }
+
+    fn forget_one(&mut self) {
+        let heard = |v: &Vehicle| v.heard_s.unwrap_or(f64::NEG_INFINITY);
+        let idle = self.by_name.iter().filter(|(name, _)| self.shown.as_ref() != Some(*name));
+        let oldest = idle.min_by(|(_, a), (_, b)| {
+            a.link.is_wanted().cmp(&b.link.is_wanted()).then(heard(a).total_cmp(&heard(b)))
+        });
+        if let Some(name) = oldest.map(|(name, _)| name.clone()) {
+            self.by_name.remove(&name);
+        }
+    }
+
+    /// Shows another vehicle, if it is known.
+    pub fn show(&mut self, name: &VehicleName) {
+        if self.by_name.contains_key(name) {
+            self.shown = Some(name.clone());
+        }
+    }
+
+    /// The vehicle that is shown; one of which nothing is known, as long as there is none.
+    pub fn shown(&self) -> &Vehicle {
+        self.shown.as_ref().and_then(|name| self.by_name.get(name)).unwrap_or(&self.nobody)
+    }
+
+    /// Its name, if there is one.
+    pub fn shown_name(&self) -> Option<&VehicleName> {
+        self.shown.as_ref()
+    }
+
+    /// A vehicle by its name.
+    pub fn get(&self, name: &VehicleName) -> Option<&Vehicle> {
+        self.by_name.get(name)
+    }
+
+    /// A vehicle by its name, to note what is asked of it.
+    pub fn get_mut(&mut self, name: &VehicleName) -> Option<&mut Vehicle> {
+        self.by_name.get_mut(name)
+    }
+
+    /// Those the operator may choose among, by name: a name that was only mistyped is none of them.
+    pub fn choices(&self) -> impl Iterator<Item = (&VehicleName, &Vehicle)> {
+        let is_choice = |name: &VehicleName, v: &Vehicle| {
+            v.heard_s.is_some() || v.link.is_wanted() || self.shown.as_ref() == Some(name)
+        };
+        self.by_name.iter().filter(move |(name, vehicle)| is_choice(name, vehicle))
+    }
+
+    /// How many are remembered.
+    pub fn len(&self) -> usize {
+        self.by_name.len()
+    }
+
+    /// There is none yet.
+    pub fn is_empty(&self) -> bool {
+        self.by_name.is_empty()
+    }
+
+    /// A link to some vehicle is wanted.
+    pub fn any_link_wanted(&self) -> bool {
+        self.by_name.values().any(|v| v.link.is_wanted())
+    }
+
+    /// Vehicles that fly a plan which is not known here and should be asked for it now.
+    pub fn due_for_plan(&mut self, now_s: f64) -> Vec<VehicleName> {
+        let due =
+            self.by_name.iter_mut().filter_map(|(name, v)| v.should_ask_for_plan(now_s).then_some(name));
+        due.cloned().collect()
+    }
+}

@@ -1,0 +1,166 @@
+//! Several vehicles: one is shown, the others are remembered, nothing of one shows under another.
+
+use super::store::plan_event;
+use super::vehicle::{position, status};
+use super::{SQUARE, Window};
+use egui_kittest::kittest::{NodeT, Queryable};
+use flight_exec::{Command, Phase};
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, Telemetry};
+use gcs_app::state::Outcome;
+use usal::contract::Stamped;
+
+const ONE: LinkId = LinkId(1);
+const TWO: LinkId = LinkId(2);
+
+fn connected(window: &mut Window, vehicle: &str, link: LinkId, altitude_m: f64) {
+    window.tell_of(vehicle, link, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    for i in 0..20 {
+        window.tell_of(vehicle, link, LinkEvent::Telemetry(position(f64::from(i), altitude_m, false)));
+    }
+    let value = flight_exec::Status { plan: Some("0badc0de".into()), ..status(Phase::Flying) };
+    let stamped = Stamped { time_s: 1.0, validity_s: 2.0, value };
+    window.tell_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
+}
+
+/// Two vehicles in flight; the second one was connected by hand and is shown.
+fn two() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("○ Connect");
+    window.click("Connect");
+    connected(&mut window, "uav1", ONE, 500.0);
+    window.tell_of("uav1", ONE, LinkEvent::Telemetry(plan_event(7, 7.0)));
+    connect_by_form(&mut window, "uav2");
+    window
+}
+
+/// Types a name into the form and connects.
+fn connect_by_form(window: &mut Window, name: &str) {
+    open_chip(window);
+    let field = window.harness.get_all_by_role(egui::accesskit::Role::TextInput).nth(1).unwrap();
+    field.focus();
+    window.steps(1);
+    window.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.harness.event(egui::Event::Text(name.into()));
+    window.steps(2);
+    window.click("Connect");
+}
+
+fn open_chip(window: &mut Window) {
+    window.harness.query_all_by_label_contains(" · ").find(is_chip).unwrap().click();
+    window.steps(3);
+}
+
+fn is_chip(node: &egui_kittest::Node<'_>) -> bool {
+    node.rect().top() < 42.0 && node.accesskit_node().label().is_some_and(|l| l.contains("uav"))
+}
+
+fn orders(window: &mut Window) -> Vec<Order> {
+    std::iter::from_fn(|| window.far.orders.try_recv().ok()).collect()
+}
+
+#[test]
+fn a_second_vehicle_shows_nothing_of_the_first() {
+    let mut window = two();
+    assert!(window.shows("uav2 · Looking for it"));
+    let vehicle = window.app().vehicle();
+    assert!(vehicle.trail.points().is_empty() && vehicle.status.is_none() && vehicle.heard_s.is_none());
+    for of_the_first in ["⏸ Hold", "Airspeed", "keeps its old pattern"] {
+        assert!(!window.shows(of_the_first), "{of_the_first}");
+    }
+    // the first is still heard, and still not shown
+    window.tell_of("uav1", ONE, LinkEvent::Telemetry(position(30.0, 500.0, false)));
+    assert!(window.app().vehicle().position.is_none());
+    connected(&mut window, "uav2", TWO, 900.0);
+    assert_eq!(window.app().vehicle().position.as_ref().unwrap().value.altitude_amsl_m, 900.0);
+    assert!(window.shows("● uav2 · Link 0."));
+}
+
+#[test]
+fn both_sessions_stay_open_and_the_operator_chooses_which_is_shown() {
+    let mut window = two();
+    let opened: Vec<LinkId> = orders(&mut window)
+        .into_iter()
+        .filter_map(|order| match order {
+            Order::Connect { link, .. } => Some(link),
+            Order::Disconnect { .. } => panic!("the first session was closed"),
+            Order::Call { .. } => None,
+        })
+        .collect();
+    assert_eq!(opened, [ONE, TWO]);
+    connected(&mut window, "uav2", TWO, 900.0);
+    open_chip(&mut window);
+    window.harness.query_all_by_label_contains("● uav1").next().unwrap().click();
+    window.steps(3);
+    assert!(window.shows("● uav1 · Link"));
+    let vehicle = window.app().vehicle();
+    assert_eq!(vehicle.trail.points().len(), 20, "its history is still there");
+    assert_eq!(vehicle.position.as_ref().unwrap().value.altitude_amsl_m, 500.0);
+}
+
+#[test]
+fn commands_go_to_the_vehicle_that_is_shown() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    orders(&mut window);
+    window.click("⏸ Hold");
+    let [Order::Call { link, call: Call::Plan(Command::Hold), .. }] = &orders(&mut window)[..] else {
+        panic!("no hold")
+    };
+    assert_eq!(*link, TWO);
+    assert!(window.app().vehicles().get(&"uav1".into()).unwrap().requests.last().is_none());
+}
+
+#[test]
+fn an_answer_reaches_the_vehicle_that_was_asked() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    orders(&mut window);
+    window.click("⏸ Hold");
+    let Some(Order::Call { ticket, .. }) = orders(&mut window).pop() else { panic!("nothing was asked") };
+    // an answer of the other vehicle with the same number
+    window.tell_of("uav1", ONE, LinkEvent::Answer { ticket, result: Ok(gcs_app::link::Reply::Done) });
+    assert_eq!(window.app().vehicle().requests.last().unwrap().outcome, Outcome::Pending);
+    window.tell_of("uav2", TWO, LinkEvent::Answer { ticket, result: Err("not now".into()) });
+    assert!(window.shows("Hold: refused, not now"));
+}
+
+#[test]
+fn disconnecting_keeps_what_is_known_and_says_that_it_is_off() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    orders(&mut window);
+    open_chip(&mut window);
+    window.click("Disconnect");
+    assert_eq!(orders(&mut window), [Order::Disconnect { link: TWO }]);
+    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
+    assert!(window.shows("○ uav2 · Connect"));
+    assert_eq!(window.app().vehicle().trail.points().len(), 20);
+    // and again to the same vehicle
+    connect_by_form(&mut window, "uav2");
+    assert_eq!(window.app().vehicle().trail.points().len(), 20);
+    let three = LinkId(3);
+    window.tell_of("uav2", three, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
+    assert!(window.shows("● uav2 · Link"), "what the closed link still says is not listened to");
+}
+
+#[test]
+fn lost_events_are_counted_and_shown() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.connect();
+    assert!(!window.shows("lost"));
+    window.tell(LinkEvent::Lost(Loss::Events(11)));
+    window.tell(LinkEvent::Lost(Loss::Events(1)));
+    assert!(window.shows("⚠ 12 lost"));
+    let log = &window.app().vehicle().log;
+    assert_eq!(log.from_newest(0).unwrap().text, "1 event was lost");
+    assert_eq!(log.from_newest(1).unwrap().text, "11 events were lost");
+    window.tell(LinkEvent::Lost(Loss::Values(300)));
+    assert!(window.shows("⚠ 12 lost"), "values that were left out are no events");
+    assert_eq!(window.app().vehicle().losses.values, 300);
+    // another vehicle lost nothing
+    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    assert_eq!(window.app().vehicles().get(&"uav2".into()).unwrap().losses.events, 0);
+}
