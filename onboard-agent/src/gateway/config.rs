@@ -1,7 +1,7 @@
 //! What the gateway is started with.
 
-use super::link::Address;
 use aircraft::Profile;
+use autopilot_link::Address;
 use std::path::PathBuf;
 use std::sync::Arc;
 use terrain::Terrain;

@@ -1,14 +1,13 @@
 //! Shell around a pure core: the FCS Gateway between the autopilot and everyone else.
 //!
-//! `core` decides (states, buffer, plausibility, Safe mode), `window` keeps the autopilot's small
-//! list topped up, `driver` speaks MAVLink; all three are pure, and `station` is the three
-//! together. `link` carries bytes, `publish` and `shell` the contract. Orders go down, reports
-//! come up (`order`), and nothing is claimed that the autopilot has not confirmed.
+//! `core` decides (states, buffer, plausibility, Safe mode) and knows no autopilot; a `driver` knows one kind of
+//! autopilot and nothing else; both are pure, and `station` is the two together. The link carries bytes,
+//! `publish` and `shell` the contract. Orders go down, reports come up (`order`), and nothing is claimed that
+//! the autopilot has not confirmed.
 
 mod config;
 pub mod core;
 pub mod driver;
-mod link;
 pub mod order;
 mod publish;
 mod shell;
@@ -18,7 +17,7 @@ mod store;
 mod tests;
 pub mod window;
 
+pub use autopilot_link::{Address, AddressError};
 pub use config::Config;
-pub use link::{Address, AddressError, Link, Stats};
 pub use shell::run;
 pub use station::Station;

@@ -2,14 +2,14 @@
 
 use super::config::Config;
 use super::core::{Answer, Input, Settings};
-use super::link::Link;
+use super::driver::{self, FromLink};
 use super::order::Time;
 use super::publish::Publishers;
 use super::station::Station;
 use super::store::Store;
 use crate::{Shutdown, single_instance};
 use anyhow::Context;
-use mavlink::dialects::ardupilotmega::MavMessage;
+use autopilot_link::{Event, Link, Outbox};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::time::{Interval, MissedTickBehavior, interval};
@@ -99,6 +99,7 @@ impl Clock {
 struct Shell {
     station: Station,
     link: Link,
+    outbox: Outbox,
     publishers: Publishers,
     store: Store,
     clock: Clock,
@@ -121,16 +122,14 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
     let mut services = Services::new(session)?;
     let mut conductor = if config.simulated { Some(Conductor::new(session)?) } else { None };
     let mut shell = Shell::new(session, config).await?;
-    let mut ticks = ticks();
+    let (mut ticks, mut received) = (ticks(), Vec::new());
     loop {
         tokio::select! {
             () = shutdown.requested() => break,
-            messages = shell.link.receive() => {
-                for (header, message) in messages {
-                    shell.station.receive(shell.clock.now(), header, &message);
-                    if let Some(step_ns) = shell.station.take_step() {
-                        shell.step(step_ns, &mut services, conductor.as_mut()).await;
-                    }
+            event = shell.link.next(&mut received, |datagram| shell.station.recognises(datagram)) => {
+                shell.station.receive(from_link(event, &received));
+                while let Some(step_ns) = shell.station.process(shell.clock.now()) {
+                    shell.step(step_ns, &mut services, conductor.as_mut()).await;
                 }
             }
             call = services.next() => {
@@ -153,6 +152,15 @@ fn ticks() -> Interval {
     ticks
 }
 
+/// What an event of the link means to a driver. That a connection broke means nothing: it is made again.
+fn from_link(event: Event, received: &[u8]) -> FromLink<'_> {
+    match event {
+        Event::Connected(_) | Event::Gone(_) => FromLink::Connected,
+        Event::Stream(_) => FromLink::Stream(received),
+        Event::Datagram(_) => FromLink::Datagram(received),
+    }
+}
+
 impl Shell {
     async fn new(session: &Session, config: Config) -> anyhow::Result<Self> {
         let store = Store::new(config.state_dir);
@@ -166,8 +174,9 @@ impl Shell {
         }
         let now = Instant::now();
         Ok(Self {
-            station: Station::new(settings, restored, config.simulated),
+            station: Station::new(settings, restored, driver::for_autopilot(config.simulated)),
             link,
+            outbox: Outbox::default(),
             publishers: Publishers::new(session, spacing)?,
             store,
             clock: Clock {
@@ -253,8 +262,9 @@ impl Shell {
 
     /// Sends and publishes what there is.
     fn flush(&mut self) {
-        let messages: Vec<MavMessage> = self.station.take_messages();
-        self.link.send(self.station.header(0), &messages);
+        self.outbox.clear();
+        self.station.send(&mut self.outbox);
+        self.link.send_all(&self.outbox);
         let events = self.station.take_events();
         self.publishers.tell(self.clock.now(), self.station.gateway(), events);
         if let Some(snapshot) = self.station.take_snapshot() {

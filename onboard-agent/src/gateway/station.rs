@@ -1,16 +1,15 @@
-//! Pure: core and driver together, as they fly. The shell, and the tests, only carry messages.
+//! Pure: core and driver together, as they fly. The shell, and the tests, only carry bytes.
 
 use super::core::{Answer, Gateway, Input, Output, Settings, Snapshot};
-use super::driver::Driver;
+use super::driver::{Driver, FromLink};
 use super::order::{Report, Time};
-use mavlink::MavHeader;
-use mavlink::dialects::ardupilotmega::MavMessage;
+use autopilot_link::Outbox;
 use usal::contract::GatewayEvent;
 
 /// Core and driver.
 pub struct Station {
     gateway: Gateway,
-    driver: Driver,
+    driver: Box<dyn Driver>,
     events: Vec<GatewayEvent>,
     answers: Vec<(u64, Answer)>,
     save: bool,
@@ -18,12 +17,11 @@ pub struct Station {
 }
 
 impl Station {
-    /// A station that has heard nothing. `restored`: what an earlier one stored. `lockstep`: see
-    /// [`Driver::new`].
-    pub fn new(settings: Settings, restored: Option<Snapshot>, lockstep: bool) -> Self {
+    /// A station that has heard nothing. `restored`: what an earlier one stored.
+    pub fn new(settings: Settings, restored: Option<Snapshot>, driver: Box<dyn Driver>) -> Self {
         Self {
             gateway: Gateway::new(settings, restored),
-            driver: Driver::new(lockstep),
+            driver,
             events: vec![],
             answers: vec![],
             save: false,
@@ -36,15 +34,27 @@ impl Station {
         &self.gateway
     }
 
-    /// The driver, to be looked at.
-    pub fn driver(&self) -> &Driver {
-        &self.driver
+    /// A datagram from somebody unknown sounds like an autopilot's.
+    pub fn recognises(&self, datagram: &[u8]) -> bool {
+        self.driver.recognises(datagram)
     }
 
-    /// A message from the link.
-    pub fn receive(&mut self, now: Time, header: MavHeader, message: &MavMessage) {
-        self.driver.receive(now, header, message);
-        self.pump(now);
+    /// Takes in what the link brought; [`Self::process`] looks at it.
+    pub fn receive(&mut self, incoming: FromLink<'_>) {
+        self.driver.receive(incoming);
+    }
+
+    /// Goes through what was received, message by message, up to a step of the simulator: that has to be
+    /// answered first. Gives its time, ns; `None`: everything was gone through.
+    pub fn process(&mut self, now: Time) -> Option<i64> {
+        while self.driver.process(now) {
+            self.pump(now);
+            let step = self.driver.take_step();
+            if step.is_some() {
+                return step;
+            }
+        }
+        None
     }
 
     /// Time passed.
@@ -71,17 +81,11 @@ impl Station {
     }
 
     fn pump(&mut self, now: Time) {
-        loop {
-            let reports = self.driver.take_reports();
-            if reports.is_empty() {
-                return;
-            }
-            for report in reports {
-                log(&report);
-                let mut out = vec![];
-                self.gateway.step(now, Input::Report(report), &mut out);
-                self.carry_out(now, out);
-            }
+        while let Some(report) = self.driver.next_report() {
+            log(&report);
+            let mut out = vec![];
+            self.gateway.step(now, Input::Report(report), &mut out);
+            self.carry_out(now, out);
         }
     }
 
@@ -99,14 +103,9 @@ impl Station {
         }
     }
 
-    /// Messages to be sent.
-    pub fn take_messages(&mut self) -> Vec<MavMessage> {
-        self.driver.take_messages()
-    }
-
-    /// The header for the next message.
-    pub fn header(&self, sequence: u8) -> MavHeader {
-        self.driver.header(sequence)
+    /// Hands over the frames to be sent.
+    pub fn send(&mut self, outbox: &mut Outbox) {
+        self.driver.send(outbox);
     }
 
     /// Events to be told.
@@ -117,11 +116,6 @@ impl Station {
     /// What is to be stored, if it changed.
     pub fn take_snapshot(&mut self) -> Option<Snapshot> {
         std::mem::take(&mut self.save).then(|| self.gateway.snapshot())
-    }
-
-    /// A step of the simulator that waits for its answer: its time, ns.
-    pub fn take_step(&mut self) -> Option<i64> {
-        self.driver.take_step()
     }
 
     /// Answers a step.

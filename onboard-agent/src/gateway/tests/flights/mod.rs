@@ -2,8 +2,9 @@
 
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input, Settings, Snapshot};
-use crate::gateway::driver::{Decoder, encode};
+use crate::gateway::driver::{self, FromLink};
 use crate::gateway::order::Time;
+use autopilot_link::Outbox;
 use geometry::LatLon;
 use sim::core::{Peer, Simulator};
 use std::time::Duration;
@@ -28,7 +29,7 @@ pub struct Flight {
     pub beats: u64,
     /// Entries of the autopilot's list that it steered to, with the place at that time.
     pub steered: Vec<LatLon>,
-    decoder: Decoder,
+    outbox: Outbox,
     sim_decoder: sim::frame::Decoder,
     /// Number of the next waypoint.
     pub next: u64,
@@ -36,6 +37,11 @@ pub struct Flight {
 
 pub fn settings() -> Settings {
     Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None }
+}
+
+/// A station that starts, in lockstep with the simulator.
+pub fn station(restored: Option<Snapshot>) -> Station {
+    Station::new(settings(), restored, driver::for_autopilot(true))
 }
 
 impl Flight {
@@ -49,14 +55,14 @@ impl Flight {
         }
         Self {
             sim,
-            station: Station::new(settings(), None, true),
+            station: station(None),
             now: Time::ZERO,
             events: vec![],
             alive: true,
             plan: "plan",
             beats: 0,
             steered: vec![],
-            decoder: Decoder::default(),
+            outbox: Outbox::default(),
             sim_decoder: sim::frame::Decoder::default(),
             next: 1,
         }
@@ -67,12 +73,12 @@ impl Flight {
         self.sim.step();
         self.sim.ask_time();
         self.now = Duration::from_nanos(self.sim.now_ns());
-        let mut decoded = vec![];
+        let mut step = None;
         for outgoing in self.sim.take_outgoing() {
-            self.decoder.feed(&outgoing.bytes, &mut decoded);
-        }
-        for (header, message) in decoded {
-            self.station.receive(self.now, header, &message);
+            self.station.receive(FromLink::Stream(&outgoing.bytes));
+            while let Some(asked) = self.station.process(self.now) {
+                step = Some(asked);
+            }
         }
         if self.alive && self.now.as_millis().is_multiple_of(500) {
             self.beats += 1;
@@ -80,11 +86,11 @@ impl Flight {
             self.station.input(self.now, Input::Heartbeat { count, plan });
         }
         self.station.tick(self.now);
-        let step = self.station.take_step().expect("every step asks for the time");
-        self.station.answer_step(step);
-        for message in self.station.take_messages() {
-            let bytes = encode(self.station.header(0), &message);
-            self.sim_decoder.push(&bytes);
+        self.station.answer_step(step.expect("every step asks for the time"));
+        self.outbox.clear();
+        self.station.send(&mut self.outbox);
+        for bytes in self.outbox.frames() {
+            self.sim_decoder.push(bytes);
             for frame in sim::frame::take_frames(&mut self.sim_decoder) {
                 self.sim.receive(PEER, frame);
             }

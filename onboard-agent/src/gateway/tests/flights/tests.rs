@@ -136,7 +136,7 @@ fn gateway_and_fp_manager_killed_the_next_gateway_knows_the_plan_of_the_flight()
     let mut flight = Flight::on_zigzag(23, &[], 30, 300.0);
     flight.run(25.0);
     let snapshot = flight.station.gateway().snapshot();
-    flight.station = Station::new(settings(), Some(snapshot), true);
+    flight.station = station(Some(snapshot));
     flight.alive = false;
     flight.run_until(15.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
     flight.restart_fp_manager("another plan");
@@ -313,7 +313,7 @@ fn gateway_killed_the_autopilot_flies_on_and_the_next_gateway_adopts_the_flight(
         let json = serde_json::to_string(&snapshot).unwrap();
         let before = flight.progress().iter().flatten().copied().last().unwrap();
         let restored = with_memory.then(|| serde_json::from_str(&json).unwrap());
-        flight.station = Station::new(settings(), restored, true);
+        flight.station = station(restored);
         flight.events.clear();
         let expected = if with_memory { GatewayState::Nav } else { GatewayState::SafeHold };
         flight.run_until(15.0, "adopted", |f| f.state() == expected);
@@ -335,12 +335,12 @@ fn a_flight_ended_by_force_stays_ended_when_the_gateway_starts_anew() {
     flight.ask(GatewayRequest::Terminate { confirm: "test".into() }).unwrap();
     let json = serde_json::to_string(&flight.station.gateway().snapshot()).unwrap();
     // killed before anything was sent
-    flight.station = Station::new(settings(), Some(serde_json::from_str(&json).unwrap()), true);
+    flight.station = station(Some(serde_json::from_str(&json).unwrap()));
     flight.run_until(5.0, "disarmed", |f| !f.sim.autopilot.is_armed());
     assert_eq!(flight.state(), GatewayState::Terminate);
     flight.run_until(300.0, "down", |f| f.sim.autopilot.aircraft.state().on_ground);
     let snapshot = flight.station.gateway().snapshot();
-    flight.station = Station::new(settings(), Some(snapshot), true);
+    flight.station = station(Some(snapshot));
     flight.run(10.0);
     assert_eq!(flight.state(), GatewayState::Stop, "the next flight is free");
     assert!(!flight.station.gateway().snapshot().terminated);

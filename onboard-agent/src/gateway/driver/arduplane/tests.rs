@@ -1,8 +1,9 @@
 //! Transfers against the simulator's mission protocol, with what happens on bad links.
 
 use super::*;
-use crate::gateway::order::{Item, ItemKind};
+use crate::gateway::order::ItemKind;
 use crate::gateway::window::matches;
+use autopilot_link::frame::encode;
 use geometry::LatLon;
 use sim::core::{Peer as SimPeer, Simulator};
 
@@ -10,7 +11,7 @@ const PEER: SimPeer = SimPeer(1);
 
 struct Rig {
     sim: Simulator,
-    driver: Driver,
+    driver: ArduPlane,
     decoder: Decoder,
     sim_decoder: sim::frame::Decoder,
     now: Time,
@@ -28,7 +29,7 @@ impl Rig {
         let c = sim::Config::default();
         let mut sim = Simulator::new(c.profile, c.home, c.wind, 1);
         sim.connect(PEER);
-        let driver = Driver::new(false);
+        let driver = ArduPlane::new(false);
         let mut rig = Self {
             sim,
             driver,
@@ -36,10 +37,10 @@ impl Rig {
             sim_decoder: sim::frame::Decoder::default(),
             now: Time::ZERO,
         };
-        while rig.driver.peer().is_none() {
+        while rig.driver.peer.is_none() {
             rig.step(&mut |_, _| true);
         }
-        rig.driver.take_reports();
+        rig.driver.reports.clear();
         rig
     }
 
@@ -47,19 +48,20 @@ impl Rig {
     fn step(&mut self, pass: &mut impl FnMut(To, &MavMessage) -> bool) {
         self.sim.step();
         self.now = Duration::from_nanos(self.sim.now_ns());
-        let mut decoded = vec![];
         for outgoing in self.sim.take_outgoing() {
-            self.decoder.feed(&outgoing.bytes, &mut decoded);
-        }
-        for (header, message) in decoded {
-            if pass(To::Driver, &message) {
-                self.driver.receive(self.now, header, &message);
+            self.decoder.push(&outgoing.bytes);
+            while let Some(frame) = self.decoder.next_frame() {
+                let (sender, message) = (frame.sender, frame.message().unwrap());
+                if pass(To::Driver, &message) {
+                    self.driver.hear(self.now, sender, &message);
+                }
             }
         }
         self.driver.tick(self.now);
-        for message in self.driver.take_messages() {
+        let own = self.driver.own();
+        for message in std::mem::take(&mut self.driver.out) {
             if pass(To::Autopilot, &message) {
-                let bytes = encode(self.driver.header(0), &message);
+                let bytes = encode(own, 0, &message);
                 self.sim_decoder.push(&bytes);
                 for frame in sim::frame::take_frames(&mut self.sim_decoder) {
                     self.sim.receive(PEER, frame);
@@ -74,7 +76,7 @@ impl Rig {
         self.driver.order(self.now, id, order);
         for _ in 0..3000 {
             self.step(&mut pass);
-            let ended = self.driver.take_reports().into_iter().find(
+            let ended = self.driver.reports.drain(..).find(
                 |r| matches!(r, Report::Done(i) | Report::Failed(i, _) | Report::List(i, _) if *i == id),
             );
             if let Some(report) = ended {
@@ -232,7 +234,7 @@ fn link_cut_at_item_k_fails_in_plain_words_and_claims_nothing() {
 fn acks_left_over_from_another_transfer_prove_nothing() {
     let mut rig = Rig::new();
     let list = items(30);
-    let header = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let header = Sender { system: 1, component: 1 };
     let ack = MavMessage::MISSION_ACK(MISSION_ACK_DATA {
         target_system: 1,
         target_component: OWN_COMPONENT,
@@ -244,7 +246,7 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
     let (mut seed, mut tried) = (5_u32, 1);
     rig.driver.order(rig.now, OrderId(tried), Order::Upload { items: list.clone() });
     for _ in 0..3000 {
-        rig.driver.receive(rig.now, header, &ack);
+        rig.driver.hear(rig.now, header, &ack);
         rig.step(&mut |t, m| {
             let is_item = t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_));
             if is_item {
@@ -252,7 +254,7 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
             }
             !is_item || seed >> 30 != 0
         });
-        let reports = rig.driver.take_reports();
+        let reports = std::mem::take(&mut rig.driver.reports);
         if reports.contains(&Report::Done(OrderId(tried))) {
             assert!(is_on_board(&rig, &list, 0), "a false claim");
             return;
@@ -269,8 +271,8 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
 #[test]
 fn another_system_and_nonsense_in_fields_change_nothing() {
     let mut rig = Rig::new();
-    let stranger = MavHeader { system_id: 9, component_id: 1, sequence: 0 };
-    let own = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let stranger = Sender { system: 9, component: 1 };
+    let own = Sender { system: 1, component: 1 };
     let position = |lat: i32| {
         MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
             time_boot_ms: 1_000_000,
@@ -292,12 +294,12 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
         (own, position(380_000_000)),
         (own, nan),
     ];
-    rig.driver.receive(rig.now, own, &position(364_905_000));
-    rig.driver.take_reports();
+    rig.driver.hear(rig.now, own, &position(364_905_000));
+    rig.driver.reports.clear();
     for (i, (header, message)) in cases.into_iter().enumerate() {
         let ignored = rig.driver.ignored;
-        rig.driver.receive(rig.now, header, &message);
-        assert_eq!(rig.driver.take_reports(), vec![], "case {i}");
+        rig.driver.hear(rig.now, header, &message);
+        assert_eq!(rig.driver.reports, [], "case {i}");
         assert_eq!(rig.driver.ignored, ignored + 1, "case {i}");
     }
 }
@@ -319,15 +321,15 @@ fn commands_are_repeated_until_they_are_seen_to_work() {
 
 #[test]
 fn an_autopilot_that_is_not_supported_is_refused_in_plain_words() {
-    let mut driver = Driver::new(false);
-    let header = MavHeader { system_id: 1, component_id: 1, sequence: 0 };
+    let mut driver = ArduPlane::new(false);
+    let header = Sender { system: 1, component: 1 };
     let beat = HEARTBEAT_DATA {
         autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
         mavtype: MavType::MAV_TYPE_FIXED_WING,
         ..HEARTBEAT_DATA::DEFAULT
     };
-    driver.receive(Time::ZERO, header, &MavMessage::HEARTBEAT(beat));
-    let told = driver.take_reports().into_iter().find_map(|r| match r {
+    driver.hear(Time::ZERO, header, &MavMessage::HEARTBEAT(beat));
+    let told = driver.reports.drain(..).find_map(|r| match r {
         Report::Capability(Err(why)) => Some(why),
         _ => None,
     });
