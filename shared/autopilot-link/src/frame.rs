@@ -201,7 +201,6 @@ pub fn encode_payload(sender: Sender, sequence: u8, id: u32, payload: &[u8]) -> 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
     use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, TIMESYNC_DATA};
     use proptest::prelude::*;
