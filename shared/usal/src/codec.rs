@@ -65,7 +65,7 @@ pub(crate) fn decode<T: DeserializeOwned>(payload: &ZBytes, encoding: &Encoding)
     decode_bytes(&payload.to_bytes(), Format::of(encoding))
 }
 
-fn decode_bytes<T: DeserializeOwned>(bytes: &[u8], format: Format) -> Result<T, String> {
+pub(crate) fn decode_bytes<T: DeserializeOwned>(bytes: &[u8], format: Format) -> Result<T, String> {
     match format {
         Format::Json => serde_json::from_slice(bytes).map_err(|e| format!("not the JSON expected: {e}")),
         Format::Cbor => decode_cbor(bytes),

@@ -4,7 +4,7 @@
 use crate::keys::Kind;
 use crate::session::{Inner, Session};
 use crate::topics::Events;
-use crate::variable::PRIORITY;
+use crate::variable::{PRIORITY, Untyped};
 use crate::{Format, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -22,13 +22,13 @@ use zenoh_ext::{
 };
 
 /// Events that a publisher remembers for those who missed them.
-const MEMORY: usize = 2048;
+pub(crate) const MEMORY: usize = 2048;
 /// Events that a subscriber may leave lying before the newest are dropped (and told as a gap).
 const QUEUE: usize = 4096;
 /// A subscriber that missed the last event of a burst learns of it after this time.
 const HEARTBEAT: Duration = Duration::from_millis(250);
 /// How long a subscriber waits for what it missed.
-const RECOVERY_TIMEOUT: Duration = Duration::from_secs(2);
+pub(crate) const RECOVERY_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Where a subscriber begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +66,19 @@ pub struct EventPublisher<T> {
 impl<T: Serialize> EventPublisher<T> {
     /// Publishes an event. Does not wait for anybody: who cannot take it now gets it from memory.
     pub fn emit(&self, event: &T) {
+        self.put(event);
+    }
+}
+
+impl EventPublisher<Untyped> {
+    /// As [`EventPublisher::emit`], of an event of the stream's type.
+    pub fn emit_any<T: Serialize>(&self, event: &T) {
+        self.put(event);
+    }
+}
+
+impl<T> EventPublisher<T> {
+    fn put<E: Serialize>(&self, event: &E) {
         let key = self.publisher.key_expr().as_str();
         match codec::encode(event, Format::Cbor) {
             Err(reason) => self.session.inner.health.unsent(key, &reason),
@@ -104,7 +117,19 @@ impl Session {
     /// # Errors
     /// [`SessionError::Network`] on a closed session.
     pub fn emitter<T: Serialize>(&self, events: Events<T>) -> Result<EventPublisher<T>, SessionError> {
-        let key = self.key(events.service, Kind::Event, events.name)?.to_string();
+        self.emitter_named(events.service, events.name)
+    }
+
+    /// As [`Session::emitter`], of a stream that is only known by its names.
+    ///
+    /// # Errors
+    /// [`SessionError`] for a bad name or on a closed session.
+    pub fn emitter_untyped(&self, service: &str, name: &str) -> Result<EventPublisher<Untyped>, SessionError> {
+        self.emitter_named(service, name)
+    }
+
+    fn emitter_named<T>(&self, service: &str, name: &str) -> Result<EventPublisher<T>, SessionError> {
+        let key = self.key(service, Kind::Event, name)?.to_string();
         let publisher = self
             .inner
             .zenoh
@@ -168,13 +193,13 @@ struct Inlet<T> {
 }
 
 /// Microseconds since 1970.
-fn unix_us() -> u64 {
+pub(crate) fn unix_us() -> u64 {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_micros()).unwrap_or(u64::MAX)
 }
 
 /// When an event was emitted; a stranger's carries no time and counts as new.
-fn emitted_us(sample: &Sample) -> u64 {
+pub(crate) fn emitted_us(sample: &Sample) -> u64 {
     let bytes = sample.attachment().and_then(|a| a.to_bytes().as_ref().try_into().ok());
     bytes.map_or(u64::MAX, u64::from_le_bytes)
 }

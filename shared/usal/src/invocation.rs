@@ -7,6 +7,7 @@
 //! the format of the request.
 
 use crate::SessionError;
+use crate::audit::{AuditHook, Audited, Document};
 use crate::codec::{self, Format};
 use crate::contract::Refusal;
 use crate::health::Health;
@@ -18,7 +19,7 @@ use serde::de::DeserializeOwned;
 use std::collections::{HashMap, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::marker::PhantomData;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use zenoh::Wait;
@@ -130,6 +131,7 @@ impl Session {
         let (sender, receiver) = mpsc::channel(QUEUE);
         let memory = Arc::new(Mutex::new(Memory::default()));
         let health = self.inner.health.clone();
+        let audit = self.inner.audit.clone();
         let wake = self.inner.wake.clone();
         let queryable = self
             .inner
@@ -137,7 +139,7 @@ impl Session {
             .declare_queryable(key)
             .complete(true)
             .callback(move |query| {
-                if let Some(reply) = admit(&memory, &health, query) {
+                if let Some(reply) = admit(&memory, &health, &audit, query) {
                     receive(&sender, reply);
                     wake();
                 }
@@ -175,7 +177,12 @@ fn timeout(query: &Query) -> Duration {
 }
 
 /// Lets a request through to the service unless it repeats an earlier one.
-fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Option<Replier> {
+fn admit(
+    memory: &Arc<Mutex<Memory>>,
+    health: &Arc<Health>,
+    audit: &Arc<OnceLock<AuditHook>>,
+    query: Query,
+) -> Option<Replier> {
     let from = query.parameters().get("from").filter(|from| is_segment(from)).map(str::to_owned);
     let name = Name::of(&query, from.as_deref());
     let format = query.encoding().map_or(Format::Cbor, Format::of);
@@ -195,8 +202,8 @@ fn admit(memory: &Arc<Mutex<Memory>>, health: &Arc<Health>, query: Query) -> Opt
             None => memory.begin(name.clone()),
         }
     }
-    let (memory, health) = (memory.clone(), health.clone());
-    Some(Replier { query, format, name, from, memory, health, answered: false })
+    let (memory, health, audit) = (memory.clone(), health.clone(), audit.clone());
+    Some(Replier { query, format, name, from, memory, health, audit, answered: false })
 }
 
 /// By which a request is known when it is repeated: two clients may well use the same ids.
@@ -225,6 +232,7 @@ struct Replier {
     from: Option<String>,
     memory: Arc<Mutex<Memory>>,
     health: Arc<Health>,
+    audit: Arc<OnceLock<AuditHook>>,
     answered: bool,
 }
 
@@ -233,6 +241,7 @@ impl Replier {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
         send(&self.query, &reply, &self.health);
+        self.tell(&reply);
         if let Some(name) = &self.name {
             let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
             let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
@@ -240,6 +249,23 @@ impl Replier {
                 send(&waiting, &reply, &self.health);
             }
         }
+    }
+}
+
+impl Replier {
+    /// Tells who keeps the books.
+    fn tell(&self, reply: &Reply) {
+        let Some(hook) = self.audit.get() else { return };
+        let request = self.query.payload().map(ZBytes::to_bytes).unwrap_or_default();
+        let invocation = self.query.key_expr().as_str().rsplit('/').next().unwrap_or_default();
+        hook(Audited {
+            invocation: invocation.to_owned(),
+            caller: self.from.clone(),
+            id: self.name.as_ref().map(|name| name.id.clone()),
+            request: Document::new(self.format, &request),
+            accepted: reply.good,
+            answer: Document::new(reply.format, &reply.bytes.to_bytes()),
+        });
     }
 }
 

@@ -77,6 +77,11 @@ pub(crate) fn every_service(vehicle: &str, kind: Kind, name: &str) -> Result<Str
     Ok(format!("{ROOT}/{}/*/{}/{}", segment(vehicle)?, kind.as_str(), segment(name)?))
 }
 
+/// The pattern that matches every name of this kind of every service of a vehicle.
+pub(crate) fn every_name(vehicle: &str, kind: Kind) -> Result<String, KeyError> {
+    Ok(format!("{ROOT}/{}/*/{}/*", segment(vehicle)?, kind.as_str()))
+}
+
 /// Could be a part of a key.
 pub(crate) fn is_segment(text: &str) -> bool {
     segment(text).is_ok()

@@ -11,6 +11,7 @@
 pub mod contract;
 pub mod topics;
 
+mod audit;
 mod call;
 mod clock;
 mod codec;
@@ -22,9 +23,11 @@ mod health;
 mod invocation;
 mod keys;
 mod liveliness;
+mod raw;
 mod session;
 mod variable;
 
+pub use audit::{Audited, Document};
 pub use call::PendingCall;
 pub use clock::{Conductor, Participant};
 pub use codec::Format;
@@ -36,5 +39,6 @@ pub use health::{Health, HealthCount};
 pub use invocation::{Incoming, Server};
 pub use keys::{Key, KeyError, Kind};
 pub use liveliness::{Announcement, Presence};
+pub use raw::{Everything, Raw};
 pub use session::{Config, DEFAULT_ENDPOINT, Role, Session, Wake};
-pub use variable::{Received, VariablePublisher, VariableSubscriber};
+pub use variable::{Received, Untyped, VariablePublisher, VariableSubscriber};

@@ -1,10 +1,11 @@
 //! A session: one vehicle's services, over explicit endpoints.
 
 use crate::SessionError;
+use crate::audit::{AuditHook, Audited};
 use crate::health::{Health, HealthCount};
 use crate::keys::{Key, KeyError, Kind};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
@@ -102,6 +103,7 @@ pub(crate) struct Inner {
     pub(crate) health: Arc<Health>,
     pub(crate) runtime: Handle,
     pub(crate) wake: Wake,
+    pub(crate) audit: Arc<OnceLock<AuditHook>>,
     instance: String,
     requests: AtomicU64,
 }
@@ -136,6 +138,7 @@ impl Session {
                 health: Arc::default(),
                 runtime,
                 wake: config.wake.unwrap_or_else(|| Arc::new(|| {})),
+                audit: Arc::default(),
                 instance,
                 requests: AtomicU64::new(1),
             }),
@@ -156,6 +159,19 @@ impl Session {
     pub async fn is_connected(&self) -> bool {
         let info = self.inner.zenoh.info();
         info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
+    }
+
+    /// Whether it has been closed: nothing will come any more.
+    pub fn is_closed(&self) -> bool {
+        self.inner.zenoh.is_closed()
+    }
+
+    /// Has every answer that a server of this session gives from now on told to `hook`, which must return at once.
+    /// Only the first hook counts.
+    pub fn audit(&self, hook: impl Fn(Audited) + Send + Sync + 'static) {
+        if self.inner.audit.set(Box::new(hook)).is_err() {
+            tracing::debug!("the session's answers are told to somebody already");
+        }
     }
 
     /// Ends the session for all its clones and parts; returns within two seconds.

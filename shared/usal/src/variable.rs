@@ -47,11 +47,28 @@ pub struct VariablePublisher<T> {
     _type: PhantomData<fn(&T)>,
 }
 
+/// Of a publisher whose values are typed one by one, where they are published.
+#[derive(Debug, Clone, Copy)]
+pub enum Untyped {}
+
 impl<T: Serialize> VariablePublisher<T> {
     /// Publishes a value that was true at `time_s` (source time, seconds) and may be believed for
     /// `validity_s` seconds. Never blocks: under congestion it is dropped, as the next one is
     /// newer anyway.
     pub fn set(&self, time_s: f64, validity_s: f64, value: &T) {
+        self.put(time_s, validity_s, value);
+    }
+}
+
+impl VariablePublisher<Untyped> {
+    /// As [`VariablePublisher::set`], of a value of the variable's type.
+    pub fn set_any<T: Serialize>(&self, time_s: f64, validity_s: f64, value: &T) {
+        self.put(time_s, validity_s, value);
+    }
+}
+
+impl<T> VariablePublisher<T> {
+    fn put<V: Serialize>(&self, time_s: f64, validity_s: f64, value: &V) {
         let key = self.publisher.key_expr().as_str();
         let bytes = match codec::encode(&Stamped { time_s, validity_s, value }, Format::Cbor) {
             Ok(bytes) => ZBytes::from(bytes),
@@ -119,7 +136,19 @@ impl Session {
         self.publish_named(variable.service, variable.name)
     }
 
-    pub(crate) fn publish_named<T: Serialize>(
+    /// As [`Session::publish`], of a variable that is only known by its names.
+    ///
+    /// # Errors
+    /// [`SessionError`] for a bad name or on a closed session.
+    pub fn publish_untyped(
+        &self,
+        service: &str,
+        name: &str,
+    ) -> Result<VariablePublisher<Untyped>, SessionError> {
+        self.publish_named(service, name)
+    }
+
+    pub(crate) fn publish_named<T>(
         &self,
         service: &str,
         name: &str,
