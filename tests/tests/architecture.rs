@@ -26,8 +26,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "journal",
             "usal",
             "autopilot-link",
+            "service",
         ],
     ),
+    ("service", &["usal"]),
     (
         "gcs-app",
         &[

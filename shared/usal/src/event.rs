@@ -124,7 +124,11 @@ impl Session {
     ///
     /// # Errors
     /// [`SessionError`] for a bad name or on a closed session.
-    pub fn emitter_untyped(&self, service: &str, name: &str) -> Result<EventPublisher<Untyped>, SessionError> {
+    pub fn emitter_untyped(
+        &self,
+        service: &str,
+        name: &str,
+    ) -> Result<EventPublisher<Untyped>, SessionError> {
         self.emitter_named(service, name)
     }
 

@@ -25,6 +25,7 @@ mod keys;
 mod liveliness;
 mod raw;
 mod session;
+pub mod spec;
 mod variable;
 
 pub use audit::{Audited, Document};
@@ -41,4 +42,5 @@ pub use keys::{Key, KeyError, Kind};
 pub use liveliness::{Announcement, Presence};
 pub use raw::{Everything, Raw};
 pub use session::{Config, DEFAULT_ENDPOINT, Role, Session, Wake};
+pub use spec::{Rate, Said, Spec};
 pub use variable::{Received, Untyped, VariablePublisher, VariableSubscriber};

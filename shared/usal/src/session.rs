@@ -5,8 +5,8 @@ use crate::audit::{AuditHook, Audited};
 use crate::health::{Health, HealthCount};
 use crate::keys::{Key, KeyError, Kind};
 use std::fmt;
-use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
 

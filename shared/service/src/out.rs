@@ -1,0 +1,177 @@
+//! What a step leads to.
+
+use crate::tasks::on_thread;
+use crate::{Never, Reply, Time};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::any::Any;
+use std::future::Future;
+use std::pin::Pin;
+use std::time::Duration;
+use usal::contract::{Refusal, Stamped};
+use usal::topics::{Events, Invocation};
+use usal::{CallError, EventPublisher, Session, Untyped};
+
+/// Something that ends in an input.
+pub(crate) type Work<I> = Pin<Box<dyn Future<Output = I> + Send>>;
+/// A question to another service, to be asked on a session.
+pub(crate) type Question<I> = Box<dyn FnOnce(&Session) -> Work<I> + Send>;
+
+/// An event of one of the service's streams.
+pub(crate) struct Emission {
+    pub(crate) name: &'static str,
+    event: Box<dyn Any + Send>,
+    emit: fn(&EventPublisher<Untyped>, &dyn Any),
+}
+
+impl Emission {
+    pub(crate) fn by(&self, publisher: &EventPublisher<Untyped>) {
+        (self.emit)(publisher, &*self.event);
+    }
+}
+
+fn emit<E: Serialize + 'static>(publisher: &EventPublisher<Untyped>, event: &dyn Any) {
+    if let Some(event) = event.downcast_ref::<E>() {
+        publisher.emit_any(event);
+    }
+}
+
+/// A file to be kept.
+pub(crate) struct Kept {
+    pub(crate) name: &'static str,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// Collects what has to be done about an input. It is done in this order: the adapter's part; events; questions and
+/// work; files; answers.
+pub struct Out<I, O = Never> {
+    now: Time,
+    pub(crate) own: Vec<O>,
+    pub(crate) events: Vec<Emission>,
+    pub(crate) questions: Vec<Question<I>>,
+    pub(crate) unasked: Vec<Question<()>>,
+    pub(crate) work: Vec<Work<I>>,
+    pub(crate) kept: Vec<Kept>,
+    pub(crate) answers: Vec<Box<dyn FnOnce() + Send>>,
+    pub(crate) wait_for_disk: bool,
+    pub(crate) leads_to: Option<Time>,
+    pub(crate) failed: Option<anyhow::Error>,
+}
+
+impl<I: Send + 'static, O> Out<I, O> {
+    /// Nothing yet.
+    pub fn new(now: Time) -> Self {
+        Self {
+            now,
+            own: Vec::new(),
+            events: Vec::new(),
+            questions: Vec::new(),
+            unasked: Vec::new(),
+            work: Vec::new(),
+            kept: Vec::new(),
+            answers: Vec::new(),
+            wait_for_disk: false,
+            leads_to: None,
+            failed: None,
+        }
+    }
+
+    /// The adapter should do this.
+    pub fn push(&mut self, output: O) {
+        self.own.push(output);
+    }
+
+    /// Publishes an event, with the time of now.
+    pub fn emit<E: Serialize + Send + 'static>(
+        &mut self,
+        events: Events<Stamped<E>>,
+        validity_s: f64,
+        event: E,
+    ) {
+        let event = Stamped { time_s: self.now.as_secs_f64(), validity_s, value: event };
+        self.events.push(Emission { name: events.name, event: Box::new(event), emit: emit::<Stamped<E>> });
+    }
+
+    /// The events of a stream so far: for tests.
+    pub fn emitted<E: Clone + 'static>(&self, events: Events<Stamped<E>>) -> Vec<E> {
+        let of = self.events.iter().filter(|emission| emission.name == events.name);
+        of.filter_map(|e| e.event.downcast_ref::<Stamped<E>>()).map(|s| s.value.clone()).collect()
+    }
+
+    /// Answers a request.
+    pub fn answer<A: Send + 'static>(&mut self, reply: Reply<A>, answer: Result<A, Refusal>) {
+        self.answers.push(Box::new(move || reply.send(answer)));
+    }
+
+    /// Answers a request once what is to be kept is on the disk; a disk that is slow or fails is not waited for.
+    pub fn answer_when_kept<A: Send + 'static>(&mut self, reply: Reply<A>, answer: Result<A, Refusal>) {
+        self.wait_for_disk = true;
+        self.answer(reply, answer);
+    }
+
+    /// Asks a service; the answer comes as an input. In lockstep, time stands until it is there.
+    pub fn call<Q, A>(
+        &mut self,
+        invocation: Invocation<Q, A>,
+        request: Q,
+        timeout: Duration,
+        done: impl FnOnce(Result<A, CallError>) -> I + Send + 'static,
+    ) where
+        Q: Serialize + Send + 'static,
+        A: DeserializeOwned + Send + 'static,
+    {
+        self.questions.push(Box::new(move |session| {
+            let call = session.call(invocation, &request, timeout);
+            Box::pin(async move { done(call.await) })
+        }));
+    }
+
+    /// Asks a service that is only known by name; what comes of it stands in the log.
+    pub fn tell(
+        &mut self,
+        service: String,
+        name: String,
+        argument: impl Serialize + Send + 'static,
+        timeout: Duration,
+    ) {
+        self.unasked.push(Box::new(move |session| {
+            let call = session.call_named::<_, serde_json::Value>(&service, &name, &argument, timeout);
+            Box::pin(async move {
+                if let Err(error) = call.await {
+                    tracing::warn!("the call of {service}/{name}: {error}");
+                }
+            })
+        }));
+    }
+
+    /// Has work done on a thread of its own; what comes of it, or why it broke off, comes as an input. In lockstep, time
+    /// stands meanwhile, for four seconds at most.
+    pub fn work<T: Send + 'static>(
+        &mut self,
+        work: impl FnOnce() -> T + Send + 'static,
+        done: impl FnOnce(Result<T, String>) -> I + Send + 'static,
+    ) {
+        self.work.push(Box::pin(async move { done(on_thread(work).await) }));
+    }
+
+    /// Keeps a file in the service's folder, whole or not at all; the latest wins.
+    pub fn keep(&mut self, name: &'static str, bytes: Vec<u8>) {
+        self.kept.push(Kept { name, bytes });
+    }
+
+    /// Of the service that leads the simulated time: let it be so late now. Everything that is due is done, here and by
+    /// everybody who takes part; then the input wired to [`crate::Wiring::stepped`] follows.
+    pub fn lead_time_to(&mut self, time: Time) {
+        self.leads_to = Some(time);
+    }
+
+    /// The service can't go on, and ends.
+    pub fn fail(&mut self, error: anyhow::Error) {
+        self.failed.get_or_insert(error);
+    }
+
+    /// Something leaves the process.
+    pub(crate) fn leaves(&self) -> bool {
+        !(self.events.is_empty() && self.questions.is_empty() && self.unasked.is_empty())
+    }
+}
