@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("autopilot-link", &[]),
     ("sim", &["geometry", "aircraft", "autopilot-link"]),
     ("journal", &["flight-exec"]),
+    ("recording", &[]),
     (
         "onboard-agent",
         &[
@@ -24,6 +25,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "flight-plan",
             "flight-exec",
             "journal",
+            "recording",
             "usal",
             "autopilot-link",
             "service",
@@ -39,6 +41,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "flight-plan",
             "flight-exec",
             "interchange",
+            "recording",
             "usal",
             "onboard-agent",
             "sim",
@@ -47,7 +50,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("system-tests", &["geometry", "usal"]),
     (
         "fuzz-targets",
-        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "journal"],
+        &[
+            "geometry",
+            "terrain",
+            "aircraft",
+            "flight-plan",
+            "flight-exec",
+            "interchange",
+            "journal",
+            "recording",
+        ],
     ),
 ];
 
@@ -62,6 +74,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("quick-xml", &["flight-plan", "interchange"]),
     // the fuzzer asks its interpreter what an expression means
     ("cel", &["flight-plan", "fuzz-targets"]),
+    ("mcap", &["recording"]),
 ];
 
 /// A manifest for Cargo, see there; anyone may depend on it.
@@ -69,7 +82,7 @@ const NO_CODE: &str = "workspace-hack";
 
 /// Crates whose cores must stay pure: no clock, no IO, no runtime.
 const PURE: &[&str] =
-    &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "journal"];
+    &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "journal", "recording"];
 
 /// Name of each workspace package → names of its ordinary dependencies.
 fn dependencies() -> BTreeMap<String, Vec<String>> {

@@ -1,5 +1,9 @@
 //! CPU per message, beside a bare write with the `mcap` crate in the same run: `cargo bench -p recording`.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![allow(
+    clippy::expect_used,
+    clippy::disallowed_methods,
+    reason = "a bench looks at the clock, and fails by panicking"
+)]
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use mcap::records::MessageHeader;

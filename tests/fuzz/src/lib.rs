@@ -11,18 +11,20 @@ mod executor;
 mod foreign;
 mod journal;
 mod plans;
+mod recording;
 
 pub use condition::cel;
 pub use document::xml;
 pub use executor::executor;
 pub use foreign::{geojson, gpx, kml, kmz, plan, waypoints};
 pub use journal::journal;
+pub use recording::recording;
 
 /// A target: the name of its executable and of its folders, and what it does with bytes.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// Every target.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     ("xml", xml),
     ("cel", cel),
     ("plan", plan),
@@ -32,5 +34,6 @@ pub const TARGETS: [Target; 10] = [
     ("geojson", geojson),
     ("gpx", gpx),
     ("journal", journal),
+    ("recording", recording),
     ("executor", executor),
 ];

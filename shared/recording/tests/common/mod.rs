@@ -1,5 +1,5 @@
 //! What the tests of the recorder share: a disk in memory, and frames.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test uses a part of it")]
 
 use recording::{Config, Frame, Input, Output, Payload, Recorder, Report};
 use std::time::Duration;
