@@ -59,6 +59,8 @@ pub enum ViewCommand {
     Fit,
     /// Keep the aircraft in the map's middle, or stop that.
     Follow(bool),
+    /// Put a map tool to use, by its identifier.
+    Tool(&'static str),
     /// Other units.
     Units(Units),
     /// Another tab below the map.

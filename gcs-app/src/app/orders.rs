@@ -89,6 +89,7 @@ impl App {
                     self.map.follow();
                 }
             }
+            ViewCommand::Tool(id) => self.map.choose_tool(id),
             ViewCommand::Units(units) => self.view.units = units,
             ViewCommand::BottomTab(tab) => self.view.bottom = tab,
             ViewCommand::Scrub(cursor_s) => {

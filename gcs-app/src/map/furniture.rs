@@ -1,6 +1,7 @@
 //! What lies on the map's edge: scale, sources, legend, and the buttons.
 
 use super::text;
+use super::tools::Toolbox;
 use super::view::View;
 use crate::assets;
 use crate::command::{Queue, ViewCommand};
@@ -89,6 +90,26 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
     {
         queue.view(ViewCommand::Follow(!scene.view.follow));
     }
+}
+
+/// The tools at the map's left edge, and what the one in use says.
+pub fn toolbar(ui: &mut Ui, tools: &Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
+    let map = ui.min_rect();
+    let area = Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), vec2(34.0, map.height().max(40.0)));
+    let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map tools"));
+    column.spacing_mut().item_spacing.y = 4.0;
+    for (card, in_use) in tools.cards() {
+        let name = format!("{} ({})", card.name, card.key.name());
+        if button(&mut column, card.symbol, &name, in_use) {
+            queue.view(ViewCommand::Tool(card.id));
+        }
+    }
+    let Some(status) = tools.status(scene) else { return };
+    let beside = Rect::from_min_max(map.left_top() + vec2(52.0, 12.0), map.right_bottom() - vec2(52.0, 0.0));
+    let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
+    theme::card(&chip).show(&mut chip, |ui| {
+        ui.add(egui::Label::new(status).wrap_mode(egui::TextWrapMode::Extend));
+    });
 }
 
 fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {

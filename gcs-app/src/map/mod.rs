@@ -4,13 +4,13 @@
 pub mod aircraft;
 pub mod basemap;
 pub mod furniture;
-pub mod handles;
 pub mod hillshade;
 pub mod path;
 pub mod plan;
 pub mod polyline;
 pub mod sketch;
 pub mod text;
+pub mod tools;
 pub mod view;
 pub mod zones;
 
@@ -21,6 +21,7 @@ use egui::{Role, Ui};
 use flight_plan::Variables;
 use geometry::LatLon;
 use sketch::Sketch;
+use tools::{Canvas, Toolbox};
 use usal::contract::PlanVariables;
 use view::View;
 use walkers::{Map, MapMemory, lat_lon};
@@ -36,7 +37,7 @@ pub struct MapState {
     pub hillshade: hillshade::Layer,
     path: path::Layer,
     aircraft: aircraft::Layer,
-    handles: handles::Tool,
+    tools: Toolbox,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
 }
@@ -59,6 +60,18 @@ impl MapState {
     /// Keeps the aircraft in the middle from now on.
     pub fn follow(&mut self) {
         self.memory.follow_my_position();
+    }
+
+    /// Takes the keys that choose a tool and those that the tool in use understands.
+    pub fn keys(&mut self, ctx: &egui::Context, queue: &mut Queue) {
+        if !ctx.text_edit_focused() {
+            self.tools.keys(ctx, queue);
+        }
+    }
+
+    /// Puts a tool to use.
+    pub fn choose_tool(&mut self, id: &str) {
+        self.tools.choose(id);
     }
 
     /// Where something selectable is, if it is anywhere.
@@ -103,6 +116,7 @@ impl MapState {
             queue.view(ViewCommand::Follow(false));
         }
         furniture::buttons(ui, &mut memory, scene, queue);
+        furniture::toolbar(ui, &self.tools, scene, queue);
         self.memory = memory;
     }
 
@@ -127,15 +141,11 @@ impl MapState {
         aircraft::draw_ahead(&painter, view, scene, p);
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);
-        let on_handle = self.handles.run(ui, view, &self.sketch, scene, queue);
+        let canvas = Canvas { view, sketch: &self.sketch, scene };
+        self.tools.run(ui, response, &canvas, queue, p);
         path::draw_cursor(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);
         furniture::draw(&painter, view, scene, p);
-        if response.clicked() && !on_handle {
-            let picked = response.interact_pointer_pos().and_then(|at| path::leg_near(at, view, scene));
-            let written = picked.map(|leg| Selection::Leg(scene.document.written(&leg)));
-            queue.view(ViewCommand::Select(written));
-        }
     }
 
     /// Places the plan anew, when it or the variables aboard have changed.

@@ -6,6 +6,7 @@ mod fleet;
 mod flying;
 mod planning;
 mod store;
+mod tools;
 mod vehicle;
 
 use egui::{Pos2, Vec2, vec2};

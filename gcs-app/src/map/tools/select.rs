@@ -1,94 +1,77 @@
-//! Dragging: waypoints, fixes, the middle and the rim of circles, corners of polygons. A drag is
+//! Select and move: waypoints, fixes, the middle and the rim of circles, corners of polygons. A drag is
 //! one undo step.
 
-use super::sketch::{Handle, Handled, Sketch, radius_edit};
-use super::text;
-use super::view::View;
+use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::map::sketch::{Handle, Handled, Sketch, radius_edit};
+use crate::map::{path, text};
 use crate::panels::Scene;
-use crate::theme::{self, Palette};
-use egui::{Align2, CursorIcon, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, vec2};
+use crate::theme::Palette;
+use egui::{Align2, Key, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::{Edit, FlightPlan};
 use geometry::LatLon;
 
 /// Most handles that react at once; more could not be told apart.
 const MOST: usize = 1000;
-/// Reach of a handle, screen points.
-const REACH: f32 = 18.0;
 
-/// The tool.
+/// The tool; the one in use unless another one is chosen.
 #[derive(Debug, Default)]
-pub struct Tool {
-    /// From the pointer to the handle when the drag began, so that nothing jumps.
-    offset: Option<Vec2>,
+pub struct Select;
+
+impl Tool for Select {
+    fn card(&self) -> &'static Card {
+        &Card { id: "select", name: "Select and move", symbol: "⬉", key: Key::V }
+    }
+
+    fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
+        near(canvas).map(|(key, handle, at)| Grip { key, name: handle.what.name(), at }).collect()
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let picked = match pointer.grip {
+            Some(key) => canvas.sketch.handles.get(key).map(selection),
+            None => path::leg_near(pointer.at, canvas.view, canvas.scene)
+                .map(|leg| Selection::Leg(canvas.scene.document.written(&leg))),
+        };
+        queue.view(ViewCommand::Select(picked));
+    }
+
+    fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let Some(handle) = canvas.sketch.handles.get(grip) else { return };
+        let plan = canvas.scene.document.plan();
+        if let Some(edit) = edit(plan, canvas.sketch, &handle.what, canvas.view.geo(to)) {
+            queue.document(DocumentCommand::DragEdit(edit));
+        }
+    }
+
+    fn release(&mut self, queue: &mut Queue) {
+        queue.document(DocumentCommand::EndGesture);
+    }
+
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, touch: Touch, p: &Palette) {
+        let mut labels = Vec::new();
+        for (key, handle, at) in near(canvas) {
+            let selected = is_selected(canvas.scene, handle);
+            let hot = touch.hovered == Some(key) || touch.dragged == Some(key);
+            draw(painter, at, handle, selected, hot, p);
+            labels.extend(label(handle, at, selected || touch.hovered == Some(key)));
+        }
+        draw_labels(painter, labels, p);
+    }
 }
 
-impl Tool {
-    /// Draws the handles and turns drags into edits. True if the pointer clicked on one.
-    pub fn run(
-        &mut self,
-        ui: &mut Ui,
-        view: &View,
-        sketch: &Sketch,
-        scene: &Scene<'_>,
-        queue: &mut Queue,
-    ) -> bool {
-        let mut clicked = false;
-        let mut labels = Vec::new();
-        let p = theme::of(ui);
-        let near =
-            sketch.handles.iter().map(|h| (h, view.place(h.at))).filter(|(_, at)| view.rect.contains(*at));
-        for (handle, at) in near.take(MOST) {
-            let selected = is_selected(scene, handle);
-            if matches!(handle.what, Handled::Radius(_) | Handled::Corner { .. }) && !selected {
-                continue;
-            }
-            let name = handle.what.name();
-            let rect = Rect::from_center_size(at, Vec2::splat(REACH));
-            let response = ui.interact(rect, ui.scope_id().with(&name), Sense::click_and_drag());
-            response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, &name));
-            draw(ui.painter(), at, handle, selected, &response, p);
-            labels.extend(label(handle, at, selected || response.hovered()));
-            clicked |= response.clicked();
-            self.react(&response, at, view, handle, sketch, scene, queue);
-        }
-        draw_labels(ui.painter(), labels, p);
-        clicked
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "a gesture meets everything that is on the map")]
-    fn react(
-        &mut self,
-        response: &Response,
-        at: Pos2,
-        view: &View,
-        handle: &Handle,
-        sketch: &Sketch,
-        scene: &Scene<'_>,
-        queue: &mut Queue,
-    ) {
-        if response.clicked() || response.drag_started() {
-            queue.view(ViewCommand::Select(Some(selection(handle))));
-        }
-        if response.hovered() {
-            response.ctx.set_cursor_icon(CursorIcon::Grab);
-        }
-        let Some(pointer) = response.interact_pointer_pos() else { return };
-        if response.drag_started() {
-            let pressed = response.ctx.input(|i| i.pointer.press_origin()).unwrap_or(pointer);
-            self.offset = Some(at - pressed);
-        }
-        if response.dragged() && response.drag_delta() != Vec2::ZERO {
-            let to = view.geo(pointer + self.offset.unwrap_or_default());
-            if let Some(edit) = edit(scene.document.plan(), sketch, &handle.what, to) {
-                queue.document(DocumentCommand::DragEdit(edit));
-            }
-        }
-        if response.drag_stopped() {
-            self.offset = None;
-            queue.document(DocumentCommand::EndGesture);
-        }
-    }
+/// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
+fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
+    let Canvas { view, sketch, scene } = *canvas;
+    let of_outline = |h: &Handle| matches!(h.what, Handled::Radius(_) | Handled::Corner { .. });
+    sketch
+        .handles
+        .iter()
+        .enumerate()
+        .map(move |(key, handle)| (key, handle, view.place(handle.at)))
+        .filter(move |(_, _, at)| view.rect.contains(*at))
+        .take(MOST)
+        .filter(move |(_, handle, _)| !of_outline(handle) || is_selected(scene, handle))
 }
 
 fn selection(handle: &Handle) -> Selection {
@@ -124,8 +107,7 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
 }
 
 /// Shapes say what a handle is: triangle a fix, circle a waypoint, cross a centre, square a rim or corner.
-fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, response: &Response, p: &Palette) {
-    let hot = response.hovered() || response.dragged();
+fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: bool, p: &Palette) {
     let size = if selected || hot { 7.0 } else { 5.0 };
     let fill = if selected { p.accent } else { p.halo };
     let stroke = Stroke::new(if hot { 2.4 } else { 1.8 }, if selected { p.text } else { p.accent });

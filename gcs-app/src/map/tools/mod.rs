@@ -1,0 +1,268 @@
+//! Map tools. A tool is a value that is told what the pointer and the keys do over the map, answers with
+//! commands, and paints. It sees no widgets: the toolbox turns what it offers to be grabbed into widgets
+//! with names, so that screen readers and tests find them, and keeps what is dragged under the pointer.
+//!
+//! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
+
+mod measure;
+mod select;
+
+use super::sketch::Sketch;
+use super::view::View;
+use crate::command::Queue;
+use crate::panels::Scene;
+use crate::theme::Palette;
+use egui::{Context, CursorIcon, Key, Modifiers, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2};
+
+/// All tools, in the order of the toolbar. The first one is in use unless another one is chosen.
+fn all() -> Vec<Box<dyn Tool>> {
+    vec![Box::new(select::Select), Box::new(measure::Measure::default())]
+}
+
+/// What a tool is called.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Card {
+    /// Never changes.
+    pub id: &'static str,
+    /// For people.
+    pub name: &'static str,
+    /// On its button.
+    pub symbol: &'static str,
+    /// Chooses it.
+    pub key: Key,
+}
+
+/// What a tool sees of the map.
+#[derive(Debug, Clone, Copy)]
+pub struct Canvas<'a> {
+    /// Where things are on the screen.
+    pub view: &'a View,
+    /// The plan's places.
+    pub sketch: &'a Sketch,
+    /// Everything else there is to know.
+    pub scene: &'a Scene<'a>,
+}
+
+/// Something that can be grabbed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grip {
+    /// The tool's own number of it.
+    pub key: usize,
+    /// For people; two grips of a tool never have the same name.
+    pub name: String,
+    /// Where it is, on the screen.
+    pub at: Pos2,
+}
+
+/// Where the pointer is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pointer {
+    /// On the screen.
+    pub at: Pos2,
+    /// The grip under it.
+    pub grip: Option<usize>,
+}
+
+/// What the pointer does to the grips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Touch {
+    /// It is over this one.
+    pub hovered: Option<usize>,
+    /// It drags this one.
+    pub dragged: Option<usize>,
+}
+
+/// A map tool. Each method says what happened; what it should lead to goes into the queue.
+pub trait Tool: std::fmt::Debug {
+    /// What it is called.
+    fn card(&self) -> &'static Card;
+
+    /// What it is for, or what it has found out, as a short sentence; the first tool needs none.
+    fn status(&self, _scene: &Scene<'_>) -> Option<String> {
+        None
+    }
+
+    /// What can be grabbed now.
+    fn grips(&self, _canvas: &Canvas<'_>) -> Vec<Grip> {
+        Vec::new()
+    }
+
+    /// The pointer is here; `None`: it is not over the map.
+    fn hover(&mut self, _at: Option<Pos2>, _canvas: &Canvas<'_>) {}
+
+    /// The map or a grip was clicked, or a grip begins to be dragged.
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue);
+
+    /// A grip is dragged to a place of the screen.
+    fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue);
+
+    /// The drag is over.
+    fn release(&mut self, _queue: &mut Queue) {}
+
+    /// A key of [`KEYS`] was pressed; true if it meant something here.
+    fn key(&mut self, _key: Key, _queue: &mut Queue) -> bool {
+        false
+    }
+
+    /// Another tool is chosen.
+    fn leave(&mut self) {}
+
+    /// How the pointer looks over the map.
+    fn cursor(&self) -> CursorIcon {
+        CursorIcon::Default
+    }
+
+    /// Draws what belongs to it.
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, touch: Touch, p: &Palette);
+}
+
+/// Keys that a tool in use may take.
+const KEYS: [Key; 3] = [Key::Escape, Key::Enter, Key::Backspace];
+/// Reach of a grip, screen points.
+const REACH: f32 = 18.0;
+
+/// The tools, and the one in use.
+#[derive(Debug)]
+pub struct Toolbox {
+    tools: Vec<Box<dyn Tool>>,
+    current: usize,
+    /// From the pointer to the grip when the drag began, so that nothing jumps.
+    offset: Vec2,
+}
+
+impl Default for Toolbox {
+    fn default() -> Self {
+        Self { tools: all(), current: 0, offset: Vec2::ZERO }
+    }
+}
+
+impl Toolbox {
+    /// Each tool's card, and whether it is in use.
+    pub fn cards(&self) -> impl Iterator<Item = (&'static Card, bool)> {
+        self.tools.iter().enumerate().map(|(i, tool)| (tool.card(), i == self.current))
+    }
+
+    /// What the tool in use says.
+    pub fn status(&self, scene: &Scene<'_>) -> Option<String> {
+        self.tools.get(self.current)?.status(scene)
+    }
+
+    /// Puts the tool of this name to use; of none, the first.
+    pub fn choose(&mut self, id: &str) {
+        let next = self.tools.iter().position(|tool| tool.card().id == id).unwrap_or(0);
+        if next == self.current {
+            return;
+        }
+        if let Some(left) = self.tools.get_mut(self.current) {
+            left.leave();
+        }
+        self.current = next;
+    }
+
+    /// Keys that choose a tool, and those that the tool in use takes. Escape ends its gesture, then the mode.
+    pub fn keys(&mut self, ctx: &Context, queue: &mut Queue) {
+        let pressed = |key: Key| ctx.input(|i| i.modifiers.is_none() && i.key_pressed(key));
+        let consume = |key: Key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+        let chosen = self.tools.iter().map(|tool| tool.card()).find(|card| pressed(card.key));
+        if let Some(card) = chosen {
+            consume(card.key);
+            self.choose(card.id);
+        }
+        for key in KEYS.into_iter().filter(|key| pressed(*key)) {
+            let taken = self.tools.get_mut(self.current).is_some_and(|tool| tool.key(key, queue));
+            if taken || (key == Key::Escape && self.current != 0) {
+                consume(key);
+            }
+            if !taken && key == Key::Escape {
+                self.choose("");
+            }
+        }
+    }
+
+    /// Tells the tool in use what happened on the map, and lets it paint.
+    pub fn run(&mut self, ui: &Ui, map: &Response, canvas: &Canvas<'_>, queue: &mut Queue, p: &Palette) {
+        let Some(tool) = self.tools.get_mut(self.current) else { return };
+        tool.hover(map.hover_pos(), canvas);
+        if map.hovered() {
+            ui.ctx().set_cursor_icon(tool.cursor());
+        }
+        let mut touch = Touch::default();
+        for grip in tool.grips(canvas) {
+            let response = widget(ui, &grip);
+            if response.hovered() {
+                touch.hovered = Some(grip.key);
+                ui.ctx().set_cursor_icon(CursorIcon::Grab);
+            }
+            if response.dragged() {
+                touch.dragged = Some(grip.key);
+            }
+            react(tool.as_mut(), &mut self.offset, &response, &grip, canvas, queue);
+        }
+        if map.clicked()
+            && let Some(at) = map.interact_pointer_pos()
+        {
+            tool.press(Pointer { at, grip: None }, canvas, queue);
+        }
+        tool.paint(ui.painter(), canvas, touch, p);
+    }
+}
+
+fn widget(ui: &Ui, grip: &Grip) -> Response {
+    let rect = Rect::from_center_size(grip.at, Vec2::splat(REACH));
+    let response = ui.interact(rect, ui.scope_id().with(&grip.name), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, &grip.name));
+    response
+}
+
+/// Turns what happened to a grip's widget into what the tool understands.
+fn react(
+    tool: &mut dyn Tool,
+    offset: &mut Vec2,
+    response: &Response,
+    grip: &Grip,
+    canvas: &Canvas<'_>,
+    queue: &mut Queue,
+) {
+    let pointer = response.interact_pointer_pos();
+    if response.clicked() || response.drag_started() {
+        tool.press(Pointer { at: pointer.unwrap_or(grip.at), grip: Some(grip.key) }, canvas, queue);
+    }
+    let Some(pointer) = pointer else { return };
+    if response.drag_started() {
+        let pressed = response.ctx.input(|i| i.pointer.press_origin()).unwrap_or(pointer);
+        *offset = grip.at - pressed;
+    }
+    if response.dragged() && response.drag_delta() != Vec2::ZERO {
+        tool.drag(grip.key, pointer + *offset, canvas, queue);
+    }
+    if response.drag_stopped() {
+        *offset = Vec2::ZERO;
+        tool.release(queue);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_tool_has_a_name_and_a_key_of_its_own() {
+        let toolbox = Toolbox::default();
+        let cards: Vec<&Card> = toolbox.cards().map(|(card, _)| card).collect();
+        let ids: BTreeSet<&str> = cards.iter().map(|c| c.id).collect();
+        let keys: BTreeSet<Key> = cards.iter().map(|c| c.key).collect();
+        assert_eq!((ids.len(), keys.len()), (cards.len(), cards.len()));
+        // keys of the window: fit, and the cursor
+        assert!(!keys.contains(&Key::F) && !keys.contains(&Key::Space));
+    }
+
+    #[test]
+    fn an_unknown_tool_is_the_first_one() {
+        let mut toolbox = Toolbox::default();
+        toolbox.choose("measure");
+        assert_eq!(toolbox.current, 1);
+        toolbox.choose("no such tool");
+        assert_eq!(toolbox.current, 0);
+    }
+}
