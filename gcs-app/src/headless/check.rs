@@ -9,15 +9,15 @@ use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// So many remedies are told: each is a plan made anew and compared with the old one.
+/// Most edits that are described: for each the plan is edited and compared with the old one.
 const MOST_FIXES: usize = 100;
 /// How the progress is shown.
 const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values of variables";
 
-/// What a path is looked at for.
+/// The conditions of the review.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Circumstances {
-    /// The air that it is flown in.
+    /// Wind and time.
     #[command(flatten)]
     pub air: super::wind::Air,
     /// The plan only, not the path.
@@ -39,7 +39,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
     if json {
         say!("{:#}", document(&source.file, &loaded.reading.plan, &problems, &loaded.notes));
     } else {
-        foreign::tell(&source.file, &loaded.notes);
+        foreign::print_notes(&source.file, &loaded.notes);
         print(&source.file, &problems);
     }
     Ok(status(&problems))
@@ -82,7 +82,7 @@ pub fn line(file: &Path, problem: &Problem) -> String {
 }
 
 /// Complains about problems where something else is printed; gives the exit status.
-pub fn complain(file: &Path, problems: &[Problem]) -> ExitCode {
+pub fn print_errors(file: &Path, problems: &[Problem]) -> ExitCode {
     problems.iter().for_each(|problem| eprintln!("{}", line(file, problem)));
     status(problems)
 }
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(fix["changes"][0]["fate"], "changed");
     }
 
-    /// Each one is a plan made anew and compared: a long list of them would take a minute.
+    /// For each the plan is edited and compared: a long list of them would take a minute.
     #[test]
     fn of_very_many_remedies_the_first_are_told_and_the_rest_counted() {
         let plan = flight_plan::read(include_bytes!("../../../assets/plans/square.xml")).plan;

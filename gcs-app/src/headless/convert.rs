@@ -22,7 +22,7 @@ pub struct Target {
     /// Exit status 1 if anything was assumed or left out.
     #[arg(long)]
     pub strict: bool,
-    /// The notes as one JSON document, on standard error.
+    /// Print the notes as one JSON document, on standard error.
     #[arg(long)]
     pub json: bool,
     /// Overwriting.
@@ -48,7 +48,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
             let mut loaded = source.load()?;
             selection.prepare(&mut loaded)?;
             if loaded.reading.has_errors() {
-                return Ok(check::complain(&source.file, &loaded.reading.problems));
+                return Ok(check::print_errors(&source.file, &loaded.reading.problems));
             }
             (flight_plan::write(&loaded.reading.plan).into_bytes(), loaded.notes)
         }
@@ -63,11 +63,11 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         }
     };
     target.overwriting.write(&target.file, &bytes)?;
-    tell(&source.file, &notes, target.json);
+    print(&source.file, &notes, target.json);
     Ok(ExitCode::from(u8::from(target.strict && !notes.is_empty())))
 }
 
-/// Our own format holds every way of a plan.
+/// Our own format holds every branch of a plan.
 fn written_whole(selection: &Selection) -> anyhow::Result<()> {
     let option = match selection {
         Selection { emergency: Some(_), .. } => "--emergency",
@@ -75,14 +75,14 @@ fn written_whole(selection: &Selection) -> anyhow::Result<()> {
         _ => return Ok(()),
     };
     bail!(
-        "{option} chooses among the ways that are flown, and XML holds all of them: leave it out, or name another format"
+        "{option} chooses a branch or an emergency plan, and XML holds all of them: leave it out, or name another format"
     )
 }
 
-fn tell(file: &Path, notes: &[Note], json: bool) {
+fn print(file: &Path, notes: &[Note], json: bool) {
     match json {
         true => eprintln!("{:#}", serde_json::json!({"file": file.display().to_string(), "notes": notes})),
-        false => foreign::tell(file, notes),
+        false => foreign::print_notes(file, notes),
     }
 }
 

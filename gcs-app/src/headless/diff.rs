@@ -46,13 +46,13 @@ pub fn run(old: &Source, new: &Path, moment: &Moment, air: Air, json: bool) -> a
     Ok(ExitCode::from(u8::from(!(changes.is_empty() && acceptable))))
 }
 
-/// A plan whose document is one; else its problems were told.
+/// A plan without errors of reading; otherwise prints its problems.
 fn readable(source: &Source) -> anyhow::Result<Option<Loaded>> {
     let loaded = source.load()?;
-    super::foreign::tell(&source.file, &loaded.notes);
+    super::foreign::print_notes(&source.file, &loaded.notes);
     if loaded.reading.has_errors() {
-        check::complain(&source.file, &loaded.reading.problems);
-        eprintln!("{} is no plan that can be compared", source.file.display());
+        check::print_errors(&source.file, &loaded.reading.problems);
+        eprintln!("{} can't be compared: correct its errors first", source.file.display());
         return Ok(None);
     }
     Ok(Some(loaded))
@@ -74,7 +74,7 @@ fn lines(changes: &[Change], takeover: Option<&Takeover>) -> Vec<String> {
     }
     match takeover {
         None => {}
-        Some(Ok(report)) => lines.extend(told(report)),
+        Some(Ok(report)) => lines.extend(takeover_lines(report)),
         Some(Err(problems)) => {
             lines.extend(problems.iter().cloned());
             lines.push("the update would be refused".into());
@@ -83,8 +83,8 @@ fn lines(changes: &[Change], takeover: Option<&Takeover>) -> Vec<String> {
     lines
 }
 
-/// What becomes of an aircraft that begins a leg of the old plan when the new one is put forward. The new plan is looked at as it would
-/// be aboard, path and all.
+/// What happens to an aircraft that begins a leg of the old plan when the new one is proposed. The new plan is reviewed as on board,
+/// its path included.
 fn takeover(
     (old, before): (&Source, &Loaded),
     (new, after): (&Source, &Loaded),
@@ -113,15 +113,15 @@ fn takeover(
     let at = When::Entering { leg, iteration: pass };
     let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
-    // it ends where it gets there: whatever else ends it comes before
+    // the flight ends where it reaches the place; any other end comes before that
     let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air.wind, &scenario)
-        .map_err(|why| anyhow!("the old plan never comes to {place}: {why}"))?;
+        .map_err(|why| anyhow!("the old plan never reaches {place}: {why}"))?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");
     }
-    // the first one put the old plan itself forward
+    // the first proposal was the old plan itself
     let last = preview.proposals.pop().filter(|_| preview.not_fired.is_empty());
-    let (_, report) = last.ok_or_else(|| anyhow!("the old plan never comes to {place}"))?;
+    let (_, report) = last.ok_or_else(|| anyhow!("the old plan never reaches {place}"))?;
     Ok(Ok(report))
 }
 
@@ -137,7 +137,7 @@ fn reached(flown: &FlightPlan, leg: &Id, pass: Option<u64>) -> anyhow::Result<St
     Ok(format!("pass {pass} of leg `{leg}`"))
 }
 
-fn told(report: &ProposalReport) -> Vec<String> {
+fn takeover_lines(report: &ProposalReport) -> Vec<String> {
     let mut lines = report.problems.clone();
     match (&report.next_leg, report.next_position) {
         _ if report.entry_needed => {
@@ -157,9 +157,9 @@ fn told(report: &ProposalReport) -> Vec<String> {
         _ => lines.push("the aircraft would have nowhere to go".into()),
     }
     match report.differs_in_m.zip(report.differs_in_s) {
-        Some((m, s)) => lines.push(format!("its way differs in {m:.0} m and {s:.0} s")),
+        Some((m, s)) => lines.push(format!("its path differs in {m:.0} m and {s:.0} s")),
         None if report.entry_needed => {}
-        None => lines.push("its way is the same, as far ahead as it is laid out".into()),
+        None => lines.push("its path is the same, as far ahead as it is laid out".into()),
     }
     if !report.acceptable {
         lines.push("the update can't be committed there".into());
@@ -260,9 +260,9 @@ mod tests {
             .replace("<TF id=\"side2\"", "<iterative id=\"l\" form=\"forward\" count=\"2\"><TF id=\"side2\"")
             .replace("<TF id=\"side4\"", "</iterative><TF id=\"side4\"");
         for (plan, leg, pass, said) in [
-            (&looped, "side3", Some(7), "never comes to pass 7 of leg `side3`"),
+            (&looped, "side3", Some(7), "never reaches pass 7 of leg `side3`"),
             (&looped, "side1", Some(2), "`side1` is in no loop: leave --pass out"),
-            (&waits, "side3", None, "never comes to leg `side3`: the energy is used up"),
+            (&waits, "side3", None, "never reaches leg `side3`: the energy is used up"),
         ] {
             let error = status(plan, SQUARE, &Moment { at: Some(leg.into()), pass }).unwrap_err();
             assert!(error.to_string().contains(said), "{error}");

@@ -65,13 +65,13 @@ pub fn run(source: &Source, air: Air, selection: &Selection, written: &Written) 
         Ok(flown) => flown,
         Err(status) => return Ok(status),
     };
-    foreign::tell(&source.file, &notes);
+    foreign::print_notes(&source.file, &notes);
     let file = or_stdout(written.output.as_ref());
     let bytes = match format {
         Some(FileFormat::Other(format)) => {
             let export = Export { plan: program.flown(), steps: &selection.steps(&preview) };
             let made = interchange::write(format, &export)?;
-            foreign::tell(&source.file, &made.notes);
+            foreign::print_notes(&source.file, &made.notes);
             made.bytes
         }
         Some(FileFormat::Legwork) => {
@@ -106,12 +106,12 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let (program, profile) = match loaded.compile() {
         Ok(compiled) => compiled,
-        Err(problems) => return Ok(Err(check::complain(&source.file, &problems))),
+        Err(problems) => return Ok(Err(check::print_errors(&source.file, &problems))),
     };
     let forbidden = if selection.anyway { Vec::new() } else { loaded.forbidden(air.conditions()) };
     if !forbidden.is_empty() {
         eprintln!("{}: the path must not be flown; --anyway writes it all the same", source.file.display());
-        return Ok(Err(check::complain(&source.file, &forbidden)));
+        return Ok(Err(check::print_errors(&source.file, &forbidden)));
     }
     let program = Arc::new(program);
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
@@ -127,7 +127,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
             Ok(Err(ExitCode::from(1)))
         }
         (None, false) => {
-            eprintln!("{}: the flight never comes to the leg named", source.file.display());
+            eprintln!("{}: the flight never reaches the named leg", source.file.display());
             Ok(Err(ExitCode::from(1)))
         }
         (None, true) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),

@@ -14,7 +14,7 @@ use terrain::Terrain;
 /// Seconds between points of the track: a turn of the smallest aircraft is still round.
 const TRACK_EVERY_S: f64 = 0.2;
 
-/// How the progress is shown: by legs of the plan, since nobody knows how often a loop will be flown.
+/// How the progress is shown: by legs of the plan, because the number of passes of a loop is not known.
 const PROGRESS: &str = "preview {bar:30} leg {pos} of {len}, {msg}";
 /// A plan without a take-off begins so far south of its first place, metres.
 const BEFORE_FIRST_M: f64 = 1000.0;

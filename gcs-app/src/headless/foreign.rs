@@ -139,7 +139,7 @@ impl Foreign {
 }
 
 /// Notes for people, on standard error: the result may go to standard output.
-pub fn tell(path: &Path, notes: &[Note]) {
+pub fn print_notes(path: &Path, notes: &[Note]) {
     notes.iter().for_each(|note| eprintln!("{}: {note}", path.display()));
 }
 

@@ -12,7 +12,7 @@ macro_rules! with_examples {
             "\nFormats:\n",
             "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written.\n",
             "  Both kinds of csv begin with number or token, leg, position, altitude, airspeed, action, fly_over: `expand` lists what is\n",
-            "  sent, also what is replaced before it is reached, and when it is steered to; `convert` what is flown, by passage.\n",
+            "  sent (also waypoints that are replaced before they are reached) and when the aircraft steers to them; `convert` what is flown, by passage.\n",
             "  Formats are found by content and name. `-` is standard input or output. Nothing is overwritten without --force."
         )
     };

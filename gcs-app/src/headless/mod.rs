@@ -1,4 +1,4 @@
-//! What works without a window: check, expand, convert, preview and compare plans. For scripts and continuous checks.
+//! Commands without a window: check, expand, convert, preview and compare plans. For scripts and continuous checks.
 //!
 //! Exit status: 0 all is well (warnings and notes allowed), 1 the plan has errors, can't be flown, or plans differ,
 //! 2 wrong usage, or a file that can't be read or written.
@@ -24,22 +24,22 @@ use std::process::ExitCode;
 /// A headless command.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum Command {
-    /// Say what is wrong with a plan.
+    /// Report what is wrong with a plan.
     ///
-    /// Prints a line for each problem: file:line:column: severity [code] subject: message. A plan that has no errors
-    /// is also flown ahead of time, every branch and every emergency plan, and the path is looked at: zones, terrain, climbs,
-    /// energy, ways to the runways.
+    /// Prints a line for each problem: file:line:column: severity [code] subject: message. A plan without errors
+    /// is also flown ahead of time, with every branch and every emergency plan, and the path is reviewed: zones, terrain, climbs,
+    /// energy, reach of the runways.
     ///
-    /// With --json each problem also has a `fix`: null, or what the remedy that the ground station offers would do, as a sentence
-    /// (`message`) and part by part (`changes`, as `legwork diff --json` lists them).
-    /// Of the first hundred remedies; `fixes_left_out` counts the others.
+    /// With --json each problem also has a `fix`: null, or the edit that the ground station offers, as a sentence
+    /// (`message`) and part by part (`changes`, as `legwork diff --json` lists them). At most a hundred edits are described;
+    /// `fixes_left_out` counts the others.
     #[command(after_help = help::CHECK)]
     Check {
         /// The plan and its surroundings.
         #[command(flatten)]
         source: Box<Source>,
-        /// What the path is looked at for.
-        #[command(flatten, next_help_heading = "Looking at the path")]
+        /// The conditions of the review.
+        #[command(flatten, next_help_heading = "Review of the path")]
         circumstances: check::Circumstances,
         /// One JSON document instead of lines.
         #[arg(long, help_heading = None::<&str>)]
@@ -51,37 +51,37 @@ pub enum Command {
         /// The plan and its surroundings.
         #[command(flatten)]
         source: Box<Source>,
-        /// Which way is flown.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// What is flown.
+        #[command(flatten, next_help_heading = "What is flown")]
         selection: select::Selection,
         /// Where the report goes.
         #[command(flatten, next_help_heading = "What is written")]
         target: preview::Target,
-        /// The air that it is flown in.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// Wind and time.
+        #[command(flatten, next_help_heading = "What is flown")]
         air: wind::Air,
     },
     /// List the waypoints that would be sent.
     ///
-    /// The executor flies the plan against the simulated aircraft: these are the waypoints that the autopilot would be given.
+    /// The executor flies the plan with the simulated aircraft: these are the waypoints that the autopilot would receive.
     #[command(after_help = help::EXPAND)]
     Expand {
         /// The plan and its surroundings.
         #[command(flatten)]
         source: Box<Source>,
-        /// Which way is flown.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// What is flown.
+        #[command(flatten, next_help_heading = "What is flown")]
         selection: select::Selection,
         /// Where and how they are written.
         #[command(flatten, next_help_heading = "What is written")]
         written: expand::Written,
-        /// The air that it is flown in.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// Wind and time.
+        #[command(flatten, next_help_heading = "What is flown")]
         air: wind::Air,
     },
     /// Convert a plan from and to other programs' formats.
     ///
-    /// To XML, the plan is written; to any other format, the waypoints that are flown, with what else the format holds. What is
+    /// To XML, the plan is written; to any other format, the waypoints that are flown and what else the format can hold. What was
     /// assumed or can't be carried over is listed on standard error.
     #[command(after_help = help::CONVERT)]
     Convert {
@@ -91,14 +91,14 @@ pub enum Command {
         /// What is written where.
         #[command(flatten, next_help_heading = "What is written")]
         target: convert::Target,
-        /// Which way is flown.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// What is flown.
+        #[command(flatten, next_help_heading = "What is flown")]
         selection: select::Selection,
-        /// The air that it is flown in.
-        #[command(flatten, next_help_heading = "Which way is flown")]
+        /// Wind and time.
+        #[command(flatten, next_help_heading = "What is flown")]
         air: wind::Air,
     },
-    /// Say what differs between two plans, and where an aircraft would go.
+    /// Report what differs between two plans, and where an aircraft would go.
     #[command(after_help = help::DIFF)]
     Diff {
         /// The old plan and its surroundings.
@@ -110,7 +110,7 @@ pub enum Command {
         /// Where the aircraft is.
         #[command(flatten, next_help_heading = "Where the aircraft is")]
         moment: diff::Moment,
-        /// The air that it is flown in.
+        /// Wind and time.
         #[command(flatten, next_help_heading = "Where the aircraft is")]
         air: wind::Air,
         /// One JSON document instead of lines.
@@ -119,7 +119,7 @@ pub enum Command {
     },
 }
 
-/// Carries a command out.
+/// Runs a command.
 ///
 /// # Errors
 /// Files that can't be read or written, options that make no sense (exit status 2).

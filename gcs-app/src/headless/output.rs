@@ -1,4 +1,4 @@
-//! Where a command's result goes: a file that isn't there yet, or standard output.
+//! Where a command's result goes: a new file, or standard output.
 
 use crate::files::write_whole;
 use anyhow::{Context, bail};
@@ -11,7 +11,7 @@ pub const DASH: &str = "-";
 /// Where a result goes.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Output {
-    /// Overwrite what is there.
+    /// Overwrite an existing file.
     #[arg(long)]
     pub force: bool,
 }
@@ -20,7 +20,7 @@ impl Output {
     /// Writes a whole file, or to standard output (`-`).
     ///
     /// # Errors
-    /// The file is there already and `--force` was not given, or it can't be written.
+    /// The file exists and `--force` was not given, or it can't be written.
     pub fn write(&self, to: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         if to.as_os_str() == DASH {
             // a reader that has gone away is no failure
@@ -31,12 +31,12 @@ impl Output {
         write_whole(to, bytes).with_context(|| format!("can't write {}", to.display()))
     }
 
-    /// Says no to overwriting.
+    /// Refuses to overwrite.
     ///
     /// # Errors
-    /// The file is there already and `--force` was not given.
+    /// The file exists and `--force` was not given.
     pub fn allow(&self, to: &Path) -> anyhow::Result<()> {
-        // into a device or a pipe one writes over nothing; a link that leads nowhere is something
+        // writing to a device or a pipe overwrites nothing; a dangling link counts as a file
         let is_kept = |is: std::fs::Metadata| is.is_file() || is.is_dir() || is.is_symlink();
         let there = to.metadata().or_else(|_| to.symlink_metadata());
         if !self.force && there.is_ok_and(is_kept) {

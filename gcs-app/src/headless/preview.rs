@@ -42,16 +42,16 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         None => report::FILES.iter().try_for_each(|name| target.overwriting.allow(&target.out.join(name)))?,
     }
     let mut loaded = source.load()?;
-    foreign::tell(&source.file, &loaded.notes);
+    foreign::print_notes(&source.file, &loaded.notes);
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let (program, profile) = match loaded.compile() {
         Ok(compiled) => compiled,
         Err(problems) => {
-            return Ok(check::complain(&source.file, &problems));
+            return Ok(check::print_errors(&source.file, &problems));
         }
     };
-    // a diagram shows the geometry, whatever it is worth
+    // a diagram shows the geometry even if it breaks a rule
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
     let program = Arc::new(program);
@@ -80,7 +80,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         true => say!("{:#}", document(&source.file, &preview, pictures)),
         false => say!("{}", line(&source.file, &preview, pictures)),
     }
-    Ok(check::complain(&source.file, &forbidden))
+    Ok(check::print_errors(&source.file, &forbidden))
 }
 
 fn line(file: &Path, preview: &Preview, out: &Path) -> String {

@@ -1,4 +1,4 @@
-//! Which of a plan's ways are flown: variables, branches, an emergency plan.
+//! What of a plan is flown: values of variables, branches, an emergency plan.
 
 use super::source::Loaded;
 use anyhow::{anyhow, bail};
@@ -8,23 +8,23 @@ use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;
 use interchange::Step;
 
-/// What is decided ahead.
+/// Decisions given on the command line.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Selection {
-    /// Let a variable begin with this value (a position: LAT LON; a polygon: LAT LON, LAT LON, …).
+    /// Start with this value of a variable (a position: LAT LON; a polygon: LAT LON, LAT LON, …).
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
     pub set: Vec<(String, String)>,
     /// Take this branch when the intersection (in a call: CALL.LEG) is reached for the first time; otherwise conditions and
     /// defaults decide.
     #[arg(long, value_name = "LEG=BRANCH", value_parser = pair)]
     pub decide: Vec<(String, String)>,
-    /// The way of this emergency plan.
+    /// Fly this emergency plan.
     #[arg(long, value_name = "PLAN")]
     pub emergency: Option<String>,
-    /// The leg on which the emergency is raised (in a call: CALL.LEG); the first one if there is none named.
+    /// The leg on which the emergency is raised (in a call: CALL.LEG); default: the first leg.
     #[arg(long, value_name = "LEG", requires = "emergency")]
     pub at: Option<String>,
-    /// Also if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
+    /// Even if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
     #[arg(long)]
     pub anyway: bool,
 }
@@ -35,7 +35,7 @@ fn pair(text: &str) -> Result<(String, String), String> {
 }
 
 impl Selection {
-    /// Lets variables begin with the values given.
+    /// Sets the variables' initial values.
     ///
     /// # Errors
     /// No such variable, or a value it can't have.
@@ -106,7 +106,7 @@ impl Selection {
 }
 
 /// The leg that begins what has this name: a leg, a loop, a call, or a stage. The plan is the one that is flown: its calls are
-/// the legs they stand for.
+/// the legs they expand to.
 ///
 /// # Errors
 /// There is none, or it is passed without being flown.

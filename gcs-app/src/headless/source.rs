@@ -1,4 +1,4 @@
-//! A plan from a file, with the aircraft and the terrain it is meant for.
+//! A plan from a file, with its aircraft and terrain.
 
 use super::foreign::Foreign;
 use super::output::DASH;
@@ -34,7 +34,7 @@ pub struct Source {
     pub foreign: Foreign,
 }
 
-/// A plan that was read, whatever it is worth.
+/// A plan that was read; it may have errors.
 pub struct Loaded {
     /// The plan and what is wrong with its document.
     pub reading: Reading,
@@ -52,7 +52,7 @@ impl Source {
     /// Reads the files.
     ///
     /// # Errors
-    /// A file can't be read, or an elevation tile or profile is none.
+    /// A file can't be read, or is not an elevation tile or profile.
     pub fn load(&self) -> anyhow::Result<Loaded> {
         // one byte more than is allowed: the reader then says that it is too long
         let bytes = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
@@ -68,7 +68,7 @@ impl Source {
     /// A document that is here already, with the surroundings of this source.
     ///
     /// # Errors
-    /// An elevation tile or profile can't be read or is none.
+    /// An elevation tile or profile can't be read or is invalid.
     pub fn surround(&self, document: &[u8]) -> anyhow::Result<Loaded> {
         let reading = flight_plan::read(document);
         let profile = match &self.aircraft {
@@ -97,7 +97,7 @@ impl Loaded {
     pub fn problems(&self) -> Vec<Problem> {
         let mut problems = self.reading.problems.clone();
         match &self.profile {
-            // a document that names none has told so itself
+            // the document's own problems already report that it names none
             Err(_) if self.reading.plan.aircraft.is_empty() && self.reading.has_errors() => {}
             Err(reason) => {
                 let message = format!("{reason}: correct the plan's `aircraft`, or give the profile itself");
@@ -119,38 +119,39 @@ impl Loaded {
 
     /// What is wrong with the path that would be flown; nothing if the plan has errors already.
     pub fn review(&self, conditions: Conditions) -> Vec<Problem> {
-        self.look_at(|program, profile| review(program, profile, &self.terrain, conditions))
+        self.with_program(|program, profile| review(program, profile, &self.terrain, conditions))
     }
 
-    /// As [`Loaded::review`], and what is wrong when variables change; `progress` is told how many of how many flights with other
-    /// values are done.
+    /// As [`Loaded::review`], and the problems at other values of variables; `progress` gets the number of flights done, and of
+    /// all flights with other values.
     pub fn review_changes(
         &self,
         conditions: Conditions,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Vec<Problem> {
-        let mut go_on = |done, all| {
+        let mut report_progress = |done, all| {
             progress(done, all);
             true
         };
-        self.look_at(|program, profile| {
+        self.with_program(|program, profile| {
             let mut found = review(program, profile, &self.terrain, conditions);
-            let more = review_extremes(program, profile, &self.terrain, conditions, &found, &mut go_on);
+            let more =
+                review_extremes(program, profile, &self.terrain, conditions, &found, &mut report_progress);
             found.extend(more);
             found
         })
     }
 
-    fn look_at(&self, look: impl FnOnce(&Arc<Program>, &Profile) -> Vec<Problem>) -> Vec<Problem> {
+    fn with_program(&self, find: impl FnOnce(&Arc<Program>, &Profile) -> Vec<Problem>) -> Vec<Problem> {
         let Ok((program, profile)) = self.compile() else { return Vec::new() };
-        let mut found = look(&Arc::new(program), &profile);
+        let mut found = find(&Arc::new(program), &profile);
         if !self.converted {
             self.reading.places.locate(&mut found);
         }
         found
     }
 
-    /// What forbids to fly the path.
+    /// The errors that forbid flying the path.
     pub fn forbidden(&self, conditions: Conditions) -> Vec<Problem> {
         let mut found = self.review(conditions);
         found.retain(Problem::is_error);

@@ -3,7 +3,7 @@
 use aircraft::Wind;
 use flight_exec::Conditions;
 
-/// Strongest wind that makes sense, m/s.
+/// Strongest wind that is accepted, m/s.
 const MOST_MPS: f64 = 50.0;
 
 /// The wind and the time of a command that flies a plan ahead of time.
@@ -18,7 +18,7 @@ pub struct Air {
 }
 
 impl Air {
-    /// For what a path is looked at.
+    /// The conditions of a review.
     pub fn conditions(&self) -> Conditions {
         let start_unix_s = self.start.map(jiff::Timestamp::as_second);
         Conditions { wind: self.wind, start_unix_s, ..Conditions::default() }

@@ -178,7 +178,7 @@ pub enum Edit {
         /// The new one.
         with: Box<Leg>,
     },
-    /// Gives the last thing of an identifier another one. What refers to it goes on meaning the first.
+    /// Gives the last thing with an identifier another one. References keep meaning the first.
     Distinguish {
         /// The identifier that several things have.
         id: Id,

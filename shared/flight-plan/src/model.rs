@@ -369,7 +369,7 @@ pub struct Branch {
     pub label: String,
     /// The leg it leads to: in the same list, or `None` for the leg after the intersection.
     pub next: Option<Id>,
-    /// Taken when this CEL condition holds and nobody decided.
+    /// Taken when this CEL condition holds and there is no decision.
     pub when: Option<Arc<str>>,
 }
 
@@ -389,7 +389,7 @@ pub enum LegKind {
     If(PlanWaypoint),
     /// Geodesic track from the previous waypoint.
     Tf(PlanWaypoint),
-    /// Straight from wherever the aircraft is.
+    /// Straight from the aircraft's position.
     Df {
         /// Where to.
         to: PlanWaypoint,
@@ -449,7 +449,7 @@ pub enum LegKind {
     Intersection {
         /// Ways on; empty or one: a pure merge.
         branches: Vec<Branch>,
-        /// The branch taken when nobody decides.
+        /// The branch taken without a decision.
         default: Option<Id>,
         /// When the decision is due.
         decide_before: DecideBefore,

@@ -7,7 +7,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// The plan can be flown; somebody should look at this first.
+    /// The plan can be flown; a person should consider this first.
     Warning,
     /// The plan can't be flown.
     Error,

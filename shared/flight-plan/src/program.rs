@@ -1,4 +1,7 @@
 //! A checked plan, ready for the executor.
+//!
+//! [`Program::plan`] is the plan as written, and its hash the identity; [`Program::flown`] is what the executor flies. The hash is
+//! computed on request, because an edit rarely needs it.
 
 use crate::checks::{Checked, Expressions, IncrementalCache, checked, checked_again};
 use crate::expression::{Env, EvalError, Expression};
@@ -128,7 +131,7 @@ impl Program {
         *self.forks.get_or_init(|| self.flown().all_legs().iter().any(|context| forks(context.leg)))
     }
 
-    /// The plan that is flown: its calls are the legs they stand for (see [`crate::procedure`]).
+    /// The plan that is flown: its calls are expanded to legs (see [`crate::procedure`]).
     pub fn flown(&self) -> &FlightPlan {
         self.flown.as_ref().unwrap_or(&self.plan)
     }
@@ -182,14 +185,14 @@ impl Program {
     ///
     /// The most specific association wins: the leg's own, the enclosing loops' from the inside out, the stage's, the
     /// document's. At each of these levels the entry for the cause comes before the level's fallback; and a
-    /// level's fallback comes before any entry farther out, because whoever wrote it there without a
+    /// level's fallback comes before any entry farther out, because an author who wrote it there without a
     /// cause meant every cause. Legs of emergency plans end at the document's association as well; the executor
     /// sees to it that an emergency does not nest.
     pub fn emergency_for(&self, id: &Id, cause: Cause) -> Option<&EmergencyPlan> {
         self.flown().emergency_plan(self.emergency_choice(id, cause)?.plan_for(cause)?)
     }
 
-    /// The association that answers a cause on a leg (or stage): see [`Program::emergency_for`].
+    /// The emergency plan for a cause on a leg (or stage): see [`Program::emergency_for`].
     pub fn emergency_choice(&self, id: &Id, cause: Cause) -> Option<&EmergencyChoice> {
         let path = self.path(id)?;
         let chain = self.chain(&path);

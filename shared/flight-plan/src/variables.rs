@@ -141,7 +141,7 @@ impl Variables {
         Ok(())
     }
 
-    /// Writes one whatever the plan says: for trials, never in flight.
+    /// Writes a value without the plan's checks: for trials, never in flight.
     pub(crate) fn put(&mut self, name: &Id, value: VariableValue) {
         self.0.insert(name.clone(), value);
     }

@@ -56,12 +56,12 @@ pub struct Loop<'a> {
     pub turn: TurnDirection,
 }
 
-/// The ways on from an intersection.
+/// The branches of an intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fork<'a> {
     /// Ways on; empty or one: a pure merge.
     pub branches: &'a [Branch],
-    /// The branch taken when nobody decides.
+    /// The branch taken without a decision.
     pub default: Option<&'a Id>,
     /// When the decision is due.
     pub decide_before: DecideBefore,
@@ -78,7 +78,7 @@ impl Leg {
         }
     }
 
-    /// Its ways on, if it is an intersection.
+    /// Its branches, if it is an intersection.
     pub fn as_fork(&self) -> Option<Fork<'_>> {
         match &self.kind {
             LegKind::Intersection { branches, default, decide_before } => {

@@ -25,7 +25,7 @@ pub fn columns(w: &Waypoint) -> String {
 
 /// Writes a line for each waypoint, below a line of names.
 pub fn write(export: &Export<'_>, notes: &mut Notes) -> Vec<u8> {
-    losses::tell(export, Kept { speeds: true, ..Kept::default() }, &|_| false, notes);
+    losses::note_losses(export, Kept { speeds: true, ..Kept::default() }, &|_| false, notes);
     let mut text = format!("number,{COLUMNS},passage\r\n");
     for (index, step) in export.steps.iter().enumerate() {
         // writing to a string can't fail

@@ -1,4 +1,4 @@
-//! KMZ: a zip file whose first KML file is the drawing. What is unpacked is bounded, whatever the file claims.
+//! KMZ: a zip file whose first KML file is the drawing. What is unpacked is bounded, even if the file claims otherwise.
 
 use crate::drawing::Drawing;
 use crate::{Error, MAX_BYTES, kml};

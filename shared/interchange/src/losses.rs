@@ -22,8 +22,8 @@ pub struct Kept {
     pub rally: bool,
 }
 
-/// Tells everything of the plan that is not `kept`; `whole` are the legs that are written as patterns.
-pub fn tell(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes: &mut Notes) {
+/// Notes everything of the plan that is not `kept`; `whole` are the legs that are written as patterns.
+pub fn note_losses(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool, notes: &mut Notes) {
     let plan = export.plan;
     let flown: HashSet<&str> = export.steps.iter().map(|s| s.waypoint.leg.as_str()).collect();
     let contexts = plan.all_legs();

@@ -62,15 +62,15 @@ pub fn runway(
 ) -> Runway {
     let runway =
         Runway { id, threshold, elevation_amsl_m, heading_deg, length_m, priority: 1, approach_entry: None };
-    made_up(&runway, place, notes);
+    note_assumed_runway(&runway, place, notes);
     runway
 }
 
-/// Says so of a runway.
-pub fn made_up(runway: &Runway, place: &str, notes: &mut Notes) {
+/// Notes the assumptions about a runway.
+pub fn note_assumed_runway(runway: &Runway, place: &str, notes: &mut Notes) {
     let Runway { id, elevation_amsl_m, heading_deg, length_m, .. } = runway;
     let message = format!(
-        "runway `{id}` is made up from a point: {length_m:.0} m long, heading {heading_deg:.0}°, elevation {elevation_amsl_m:.0} m; correct it"
+        "runway `{id}` is assumed from a point: {length_m:.0} m long, heading {heading_deg:.0}°, elevation {elevation_amsl_m:.0} m; correct it"
     );
     notes.push("runway-made-up", place, message);
 }

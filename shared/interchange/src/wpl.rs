@@ -80,7 +80,7 @@ fn item(number: usize, line: &str, notes: &mut Notes) -> Result<Item, Error> {
     }
     let [number, _, frame, command, a, b, c, d, lat, lon, altitude, auto] = values;
     if auto == 0.0 {
-        notes.again("autocontinue", &place, "an item that waits for the operator goes on by itself");
+        notes.again("autocontinue", &place, "an item that waits for the operator continues by itself");
     }
     // a number beyond its range is saturated, and then no known frame or command
     let params = [a, b, c, d, lat, lon, altitude].map(|p: f64| if p.is_finite() { p } else { f64::NAN });
@@ -93,7 +93,7 @@ fn short(field: &str) -> String {
 
 /// Writes a list.
 pub fn write(export: &Export<'_>, notes: &mut Notes) -> Vec<u8> {
-    losses::tell(export, Kept { actions: true, speeds: true, ..Kept::default() }, &|_| false, notes);
+    losses::note_losses(export, Kept { actions: true, speeds: true, ..Kept::default() }, &|_| false, notes);
     let (home, elevation_m) = mission::home(export, notes);
     let mut text = "QGC WPL 110\n".to_owned();
     line(

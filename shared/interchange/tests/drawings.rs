@@ -44,7 +44,7 @@ fn a_runway_of_which_a_drawing_says_little_is_made_up() {
         (import.plan.runways[0].heading_deg, told)
     };
     let alone =
-        "line 1: runway `R05` is made up from a point: 600 m long, heading 0°, elevation 349 m; correct it";
+        "line 1: runway `R05` is assumed from a point: 600 m long, heading 0°, elevation 349 m; correct it";
     assert_eq!(made_up(""), (0.0, vec![alone.to_owned()]));
     let take_off = "<rte><rtept lat='36.3234283' lon='-84.1659721'><ele>429</ele><type>take-off</type></rtept>\
                     <rtept lat='36.33' lon='-84.15'><ele>500</ele></rtept></rte>";

@@ -1,5 +1,5 @@
 //! `bad-action`: distances, times or names with which an action can't be done; `wait-not-at-end`: a wait elsewhere than at
-//! the end of a leg that has one; `action-never`: an action that no passage of its leg comes to; `set-out-of-bounds`: a value that its
+//! the end of a leg that has one; `action-never`: an action that no passage of its leg triggers; `set-out-of-bounds`: a value that its
 //! variable does not take at the start. (`wrong-type`: a value of another type than its variable's.)
 
 use super::Inspection;
@@ -54,7 +54,7 @@ fn misplaced_wait(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem
 }
 
 fn wait_on_the_way(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem> {
-    let message = "wait at the end of the leg (`on=\"end\"`): an aircraft can't stop on its way";
+    let message = "wait at the end of the leg (`on=\"end\"`): an aircraft can't stop in the middle of a leg";
     let problem = Problem::error("wait-not-at-end", message).of(&leg.id);
     (action.trigger != Trigger::End).then(|| problem.perhaps_fixed_by(at_the_end(leg, index)))
 }
@@ -102,7 +102,7 @@ fn invocation_fault(service: &str, operation: &str, argument: &str) -> Option<St
         .map(|error| format!("write the argument as JSON (a text in double quotes): {error}"))
 }
 
-/// Why no passage of the leg comes to a trigger.
+/// Why no passage of the leg triggers the action.
 fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
     let leg = &step.leg;
     if matches!(leg.kind, LegKind::Intersection { .. }) {
@@ -122,18 +122,18 @@ fn never(view: &Inspection, step: &Step, trigger: &Trigger) -> Option<String> {
     })
 }
 
-/// Why no passage of a leg without a way of its own, which begins and ends in one moment, comes to a trigger.
+/// Why no passage of a leg without length, which begins and ends in one moment, triggers the action.
 fn never_at_once(view: &Inspection, trigger: &Trigger) -> Option<String> {
     let comes = match trigger {
         Trigger::Start | Trigger::End => true,
         Trigger::Distance(x) | Trigger::Time(x) => view.number(x)? <= 0.0,
         Trigger::Every(_) | Trigger::Abeam(_) => false,
     };
-    let message = "do it `on=\"start\"`, or on a leg before or after: an intersection has no way of its own";
+    let message = "do it `on=\"start\"`, or on a leg before or after: an intersection has no length";
     (!comes).then(|| message.into())
 }
 
-/// Why no part of a straight track is abeam of a place. Not of the first leg inside a loop: each pass may come to it from elsewhere.
+/// Why no part of a straight track is abeam of a place. Not for the first leg inside a loop: each pass may arrive from elsewhere.
 fn never_abeam(view: &Inspection, step: &Step, place: LatLon) -> Option<String> {
     let inside_one_list = |before: &&Step| before.around == step.around;
     let (_, start) = view.before(step).filter(inside_one_list).zip(step.start)?;
@@ -145,7 +145,9 @@ fn never_abeam(view: &Inspection, step: &Step, place: LatLon) -> Option<String> 
         m if m > length_m + BEYOND_M => format!("{:.0} m beyond its end", m - length_m),
         _ => return None,
     };
-    Some(format!("choose a place beside this leg, or move the action to another one: the place is {where_m}"))
+    Some(format!(
+        "choose a place abeam of this leg, or move the action to another one: the place is {where_m}"
+    ))
 }
 
 /// The leg with one of its actions changed; not for loops, whose bodies may be large.

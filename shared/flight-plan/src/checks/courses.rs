@@ -19,7 +19,7 @@ const DIRECTIONS: [&str; 3] = ["course", "heading", "bearing"];
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
-    // a call that could not be flown is still one, and has been looked at as it is written
+    // a call with a problem is still a call, and was checked as written
     if !matches!(leg.kind, LegKind::Call(_)) {
         directions(leg, problems);
     }
@@ -97,7 +97,7 @@ fn normalise(name: &str, value: &mut Value<f64>) {
     }
 }
 
-/// From where the path comes, the course has to be reached before the fix: with a turn of at most 90° from far aside, with two
+/// The course must be reached before the fix: with a turn of at most 90° from far to the side, with two
 /// opposite ones (S² = 4·r·offset, a little more than they need) from near by. Where it is known on which course the path comes,
 /// the way onto the course is known too.
 fn not_intercepted(
@@ -119,7 +119,8 @@ fn not_intercepted(
     let flown_m = view.turn_radius_m(step.speed_mps + DESIGN_WIND_MPS);
     let way = arrival_deg(view, step).and_then(|deg| course_to_fix(start, deg, fix, course_deg, flown_m));
     let joining = way.map(|way| way.joining);
-    let from = format!("the path comes from {aside_m:.0} m beside the course and {}", along(before_m));
+    let from =
+        format!("the path comes from {aside_m:.0} m to the side of the course and {}", along(before_m));
     let problem = if matches!(joining, Some(Joining::Intercept { .. })) {
         return None;
     } else if before_m < 0.0 {
@@ -139,7 +140,7 @@ fn not_intercepted(
     Some(problem.of(&step.leg.id).fixed_by(direct(&step.leg, to)))
 }
 
-/// From wherever the path comes within a circle, the fix is too near or behind.
+/// From every point of the circle from which the path may come, the fix is too near or behind.
 fn never_intercepted(
     view: &Inspection,
     step: &Step,
@@ -163,7 +164,8 @@ fn never_intercepted(
     Some(problem.fixed_by(direct(&step.leg, to)))
 }
 
-/// What whoever comes in the middle of the turn onto a course needs of it: √(2·r·offset − offset²). On no path it is less, metres.
+/// The length of the course that an aircraft needs if it arrives in the middle of the turn onto it: √(2·r·offset − offset²),
+/// metres. No path needs less.
 fn turning_m(radius_m: f64, aside_m: f64) -> f64 {
     let aside_m = aside_m.min(radius_m);
     (2.0 * radius_m * aside_m - aside_m * aside_m).sqrt()
@@ -176,13 +178,13 @@ fn seen_from(fix: LatLon, course_deg: f64, position: LatLon) -> (f64, f64) {
     (back.distance_m * off_rad.cos(), (back.distance_m * off_rad.sin()).abs())
 }
 
-/// In words, where on the way to a fix somebody is who has so many metres before it.
+/// Describes a position by its distance before a fix.
 fn along(before_m: f64) -> String {
     let side = if before_m < 0.0 { "behind" } else { "before" };
     format!("{:.0} m {side} the fix", before_m.abs())
 }
 
-/// The course on which the path comes to a step, where the document says so, degrees true.
+/// The course on which the path arrives at a step, if the document determines it, degrees true.
 fn arrival_deg(view: &Inspection, step: &Step) -> Option<f64> {
     let before = view.before(step)?;
     match &before.leg.kind {

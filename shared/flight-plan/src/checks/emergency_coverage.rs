@@ -1,4 +1,4 @@
-//! `no-emergency-plan`: legs of a stage for which no emergency plan is named, whatever the cause; `duplicate-cause`: two
+//! `no-emergency-plan`: legs of a stage for which no emergency plan is named, for any cause; `duplicate-cause`: two
 //! plans are named for one cause at one place.
 
 use super::Inspection;

@@ -11,7 +11,7 @@ use geometry::{LatLon, LocalFrame, Turn, Vec2};
 /// What distances that are added up in the plane may be off on the earth, as far as [`Region::MOST_M`], metres.
 const ROOM_M: f64 = 5.0;
 
-/// The circle in which a point of the path is, wherever that may be.
+/// The circle in which a point of the path lies, if its exact place is not known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Region {
     pub centre: LatLon,
@@ -41,7 +41,7 @@ impl Region {
     }
 }
 
-/// Where a pattern ends that ends at the same place wherever it is entered.
+/// Where a pattern ends, if the end does not depend on where it is entered.
 pub(super) fn end_of(view: &Inspection, step: &Step, pattern: &Pattern) -> Option<LatLon> {
     match pattern {
         Pattern::FigureEight { centre, .. } | Pattern::Sector { centre, .. } => view.place(centre),

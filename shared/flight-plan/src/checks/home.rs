@@ -24,7 +24,7 @@ pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     }
 }
 
-/// A take-off stage without its runway is another rule's.
+/// Another rule reports a take-off stage without its runway.
 fn takes_off(view: &Inspection) -> bool {
     view.plan.stages.iter().any(|stage| stage.kind == StageKind::TakeOff)
 }

@@ -63,7 +63,7 @@ fn twice(again: &[Id], taken: impl Fn(&Id) -> bool, problems: &mut Vec<Problem>)
     }
 }
 
-/// An identifier that nobody has, made of one that somebody has. Variables may not have a `-`.
+/// A new identifier, derived from an existing one. Variables may not have a `-`.
 fn free(id: &Id, taken: impl Fn(&Id) -> bool) -> Option<Id> {
     let numbered = |n: usize| Id::new(&format!("{id}_{n}"));
     (2..MOST_NUMBERS).map(numbered).find(|id| !taken(id)).filter(|id| is_identifier(id.as_str()))

@@ -1,4 +1,4 @@
-//! What the rules look at: the plan's legs with their geometry at the variables' initial values.
+//! What the rules read: the plan's legs with their geometry at the variables' initial values.
 
 use super::incremental_cache::Recall;
 use super::step::{Marks, Point, Step};
@@ -93,7 +93,7 @@ impl<'a> Inspection<'a> {
         self.expressions.len() >= MOST_EXPRESSIONS
     }
 
-    /// Every leg in document order. A rule about one leg looks at its step, at the two before and at the one after it.
+    /// Every leg in document order. A rule about one leg reads its step, the two before it and the one after it.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -123,7 +123,7 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// Looks at what a leg has.
+    /// Records what a leg has.
     pub fn marks(&mut self, leg: &Leg) -> Marks {
         let mut marks = Marks { jumps: leg.jumps(), ..Marks::default() };
         leg.for_each_expression(&mut |source, _| {
@@ -139,7 +139,7 @@ impl<'a> Inspection<'a> {
         self.compiled(source)?.as_ref().ok()
     }
 
-    /// What became of an expression; `None`: the plan has too many to look at.
+    /// The result of compiling an expression; `None`: the plan has too many expressions.
     pub fn compiled(&self, source: &str) -> Option<&Result<Expression, ExpressionError>> {
         self.expressions.get(source)
     }
@@ -166,7 +166,7 @@ impl<'a> Inspection<'a> {
         })
     }
 
-    /// A value at the start, of whatever type.
+    /// A value at the start, of any type.
     pub fn value(&self, source: &str) -> Option<VariableValue> {
         self.expression(source)?.value(&self.env()).ok()
     }

@@ -1,4 +1,4 @@
-//! `unknown-branch`: the default is none of the branches; `no-default`: nobody decides, so the aircraft would hold and
+//! `unknown-branch`: the default is none of the branches; `no-default`: without a decision the aircraft would hold and
 //! ask; `bad-deadline`: decided after the intersection.
 
 use super::Inspection;

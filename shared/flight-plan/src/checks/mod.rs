@@ -1,4 +1,7 @@
 //! What must hold before a plan is flown: one rule a file, each with the codes it gives and its tests.
+//!
+//! The header of a rule names its codes in backticks; the tests hold them against the language reference and the faulty plans.
+//! Procedures are checked as they are called.
 
 mod actions;
 mod aircraft;
@@ -62,11 +65,11 @@ use std::sync::Arc;
 use step::Step;
 use terrain::Terrain;
 
-/// What has to hold, of what.
+/// A rule, by what it is about.
 enum Rule {
-    /// Of the plan: everything that is not a leg, or that legs have to do with each other wherever they are.
+    /// About the plan: everything that is not a leg, and relations between distant legs.
     Plan(fn(&Inspection, &mut Vec<Problem>)),
-    /// Of one leg. It looks at the leg's step, at two before it and at one after it, so that an edit elsewhere changes nothing.
+    /// About one leg. It reads the leg's step, the two before it and the one after it, so that an edit elsewhere changes nothing.
     Leg(fn(&Inspection, &Step, &mut Vec<Problem>)),
 }
 
@@ -118,19 +121,19 @@ const RULES: [Rule; 41] = {
     ]
 };
 
-/// Every problem of a plan for an aircraft over a terrain; empty: nothing to complain about.
+/// Every problem of a plan for an aircraft over a terrain.
 ///
-/// Calls are checked as the legs they stand for. Geometry that depends on variables is checked at their initial values.
+/// Calls are checked as the legs they expand to. Geometry that depends on variables is checked at their initial values.
 pub fn check(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Vec<Problem> {
     checked(plan, profile, terrain).problems
 }
 
-/// As [`check`], for a plan that is checked again and again while it is edited: much quicker where little has changed.
-pub fn check_again(plan: &FlightPlan, memory: &mut IncrementalCache) -> Vec<Problem> {
-    checked_again(plan, memory).problems
+/// As [`check`], for a plan that is checked repeatedly while it is edited: much faster if little has changed.
+pub fn check_again(plan: &FlightPlan, cache: &mut IncrementalCache) -> Vec<Problem> {
+    checked_again(plan, cache).problems
 }
 
-/// A plan that was checked, and what that found out.
+/// A checked plan, and the findings.
 pub(crate) struct Checked {
     /// The plan with its calls instantiated; `None`: it has none.
     pub flown: Option<FlightPlan>,
@@ -140,18 +143,18 @@ pub(crate) struct Checked {
 }
 
 pub(crate) fn checked(plan: &FlightPlan, profile: &Profile, terrain: &dyn Terrain) -> Checked {
-    look_at(plan, profile, terrain, None).0
+    run_checks(plan, profile, terrain, None).0
 }
 
-pub(crate) fn checked_again(plan: &FlightPlan, memory: &mut IncrementalCache) -> Checked {
-    let terrain = memory.terrain.clone();
-    let (checked, last) = look_at(plan, &memory.profile, terrain.as_ref(), Some(memory.last.take()));
-    memory.last = last;
+pub(crate) fn checked_again(plan: &FlightPlan, cache: &mut IncrementalCache) -> Checked {
+    let terrain = cache.terrain.clone();
+    let (checked, last) = run_checks(plan, &cache.profile, terrain.as_ref(), Some(cache.last.take()));
+    cache.last = last;
     checked
 }
 
-/// `last`: the last check, if there was one; `None`: nobody will ask again.
-fn look_at(
+/// `last`: the last check, if there was one; `None`: keep nothing for a next one.
+fn run_checks(
     plan: &FlightPlan,
     profile: &Profile,
     terrain: &dyn Terrain,
@@ -164,7 +167,7 @@ fn look_at(
     let mut recall = Recall::of(last.flatten(), &flown);
     let mut inspection = Inspection::new(&flown, profile, terrain, &mut recall);
     if inspection.is_full() && recall.is_useful() {
-        // expressions that are not there any more may have taken the room
+        // expressions that no longer exist may have taken the room
         recall = Recall::default();
         inspection = Inspection::new(&flown, profile, terrain, &mut recall);
     }
@@ -181,7 +184,7 @@ fn look_at(
     (Checked { flown, problems, expressions, ids }, last)
 }
 
-/// What each rule says, in the rules' order; what those about one leg said before, if it still holds.
+/// What each rule finds, in the order of the rules; for rules about one leg, what they found before if it still holds.
 fn apply_rules(view: &mut Inspection, recall: &Recall) -> Vec<Problem> {
     let mut said: [Vec<Problem>; RULES.len()] = std::array::from_fn(|_| Vec::new());
     for (rule, said) in RULES.iter().zip(&mut said) {
@@ -215,7 +218,7 @@ fn rules_about(view: &Inspection, step: &Step) -> Vec<(usize, Problem)> {
     found
 }
 
-/// Takes away the fixes of legs that calls have made: the plan as it is written has no such legs to edit.
+/// Removes the edits for legs that come from calls: the plan as written has no such legs.
 fn written_only(inspection: &Inspection, problems: &mut [Problem]) {
     let made = |step: &&Step| {
         let leg = step.leg.id.as_str();

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    // where nothing names its successor, each leg leads to the next
+    // a leg that names no successor leads to the next one
     view.lists.iter().for_each(|legs| list(legs, problems));
 }
 
@@ -26,18 +26,18 @@ fn list(legs: &[Arc<Leg>], problems: &mut Vec<Problem>) {
     let leaves = reach(legs.len(), &backward, legs.len() + 1);
     for ((leg, reached), leaves) in legs.iter().zip(&reached).zip(&leaves) {
         if !reached {
-            let message = "no leg leads here: remove it, or lead a `next` or a branch to it";
+            let message = "no path leads to this leg: remove it, or name it in a `next` or a branch";
             let fix = Edit::DeleteLeg { leg: leg.id.clone() };
             problems.push(Problem::warning("unreachable-leg", message).of(&leg.id).fixed_by(fix));
         } else if !leaves {
-            let message = "`next` leads back here for ever: lead one way out, or use an iterative leg with a count or condition";
+            let message = "`next` leads back here for ever: add a branch that leads out, or use an iterative leg with a count or condition";
             problems.push(Problem::error("endless-loop", message).of(&leg.id));
         }
     }
 }
 
 fn successors(index: usize, leg: &Leg, known: &HashMap<&str, usize>) -> Vec<usize> {
-    // an unknown target is another rule's business: it is taken for the leg that follows
+    // another rule reports an unknown target: here it counts as the leg that follows
     let target = |next: &Option<crate::Id>| {
         next.as_ref().and_then(|id| known.get(id.as_str()).copied()).unwrap_or(index + 1)
     };

@@ -81,7 +81,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// How far beside a route its passes are; a spacing of 0 m is another rule's business.
+    /// How far from a route its passes are; another rule reports a spacing of 0 m.
     fn beside(&mut self) {
         if spacing_m(self.view, self.step).is_some_and(|m| m > LARGEST_M) {
             self.report(format!("make the spacing at most {LARGEST_M:.0} m"));

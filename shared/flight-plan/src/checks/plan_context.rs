@@ -1,4 +1,4 @@
-//! What legs stand in: everything beside themselves and what is around them that the rules about one leg may look at.
+//! The context of legs: everything besides a leg and its neighbours that the rules about one leg may read.
 
 use super::inspection::Expressions;
 use super::step::Around;
@@ -8,7 +8,7 @@ use foldhash::HashSet;
 use std::mem::discriminant;
 use std::sync::Arc;
 
-/// The setting of a plan.
+/// The context of a plan.
 pub(super) struct PlanContext {
     fixes: Vec<Fix>,
     variables: Vec<Variable>,
@@ -19,7 +19,7 @@ pub(super) struct PlanContext {
     take_off: Option<Option<Id>>,
 }
 
-/// What is elsewhere in a setting that is the same otherwise: legs that don't read it are what they were.
+/// What differs between two contexts that are otherwise the same: legs that don't read it need no new check.
 #[derive(Default)]
 pub(super) struct Moved {
     /// Fixes with another position.
@@ -29,7 +29,7 @@ pub(super) struct Moved {
 }
 
 impl PlanContext {
-    /// That of a plan. What stayed in it since `last` is not copied again.
+    /// The context of a plan. What has not changed since `last` is not copied again.
     pub fn of(plan: &FlightPlan, last: Option<Self>) -> Self {
         let (fixes, variables) = last.map_or_else(Default::default, |last| (last.fixes, last.variables));
         Self {
@@ -42,7 +42,7 @@ impl PlanContext {
         }
     }
 
-    /// What is elsewhere in a plan; `None`: more than that is otherwise, and anything may be.
+    /// What has changed in a plan; `None`: more has changed, and every leg must be checked.
     pub fn moved(&self, plan: &FlightPlan, expressions: &Expressions) -> Option<Moved> {
         let kept = self.runways == plan.runways
             && self.emergency == plan.emergency

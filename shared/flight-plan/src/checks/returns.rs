@@ -43,7 +43,7 @@ fn back(
     let Some(before) = before.filter(|leg| only_place(leg).is_some()) else { return };
     for branch in branches.iter().filter(|b| b.next.as_ref() == Some(&before.id)) {
         let message = format!(
-            "lead the branch `{}` to another leg, or hold there with HM: `{}` ends where this intersection is, and nothing would be flown",
+            "let the branch `{}` lead to another leg, or hold there with HM: `{}` ends where this intersection is, and nothing would be flown",
             branch.id, before.id
         );
         let problem = if default == Some(&branch.id) { Problem::error } else { Problem::warning };
@@ -62,7 +62,7 @@ fn is_one_place(legs: &[Arc<Leg>]) -> bool {
     first.is_some() && places.all(|place| place == first)
 }
 
-/// The place to which a leg leads straight from anywhere, if it is the same each time and nobody waits there.
+/// The place to which a leg leads straight from anywhere, if it is the same each time and the leg does not wait there.
 fn only_place(leg: &Leg) -> Option<&Place> {
     let (LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, turn: None }) = &leg.kind else { return None };
     let waits = leg.actions.iter().any(|action| matches!(action.act, Act::Wait { .. }));

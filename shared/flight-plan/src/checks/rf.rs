@@ -63,7 +63,7 @@ fn circle(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<Prob
     }
 }
 
-/// Where this path meets the one before it, if one of the two is an arc.
+/// Where this path joins the one before it, if one of the two is an arc.
 fn tangent(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let Some(before) = view.before(step) else { return };
     let (Some(here), Some(there_deg)) = (step.directed(), before.course_end_deg()) else { return };
@@ -110,7 +110,7 @@ fn tangent_arc(view: &Inspection, step: &Step) -> Option<Edit> {
     moved_centre(step, centre)
 }
 
-/// The centre moved the shortest way to where it is equally far from both ends.
+/// The centre, moved by the shortest distance to where it is equally far from both ends.
 fn on_circle(view: &Inspection, step: &Step) -> Option<Edit> {
     let LegKind::Rf { centre, .. } = &step.leg.kind else { return None };
     let frame = LocalFrame::new(step.start?.position);

@@ -24,7 +24,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     }
     let needed_m = turns.start_m + turns.end_m;
     if length_m < needed_m {
-        // enough for whoever sees rounded metres, too
+        // still enough when the number is shown in whole metres
         let (wanted_m, shown_m) = ((needed_m + 0.5).ceil(), length_m.floor());
         let or_slower = if can_be_slow(view, step, length_m / needed_m) { ", or fly it slower" } else { "" };
         let message = format!(

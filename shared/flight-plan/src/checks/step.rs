@@ -12,11 +12,11 @@ pub(super) struct Step {
     pub around: Arc<Around>,
     /// Where it is entered; `None` when that is only known in flight.
     pub start: Option<Point>,
-    /// Where it ends, likewise.
+    /// Where it ends, as for the start.
     pub end: Option<Point>,
     /// What its entry is within, if not even that is known.
     pub start_within: Option<Region>,
-    /// What its end is within, likewise.
+    /// The circle that its end is within, as for the start.
     pub end_within: Option<Region>,
     /// Airspeed, m/s.
     pub speed_mps: f64,
@@ -24,14 +24,14 @@ pub(super) struct Step {
     pub path: Option<Path>,
     /// The step that is flown before it, if the document says so.
     pub before: Option<usize>,
-    /// The step with a direction that is flown after it, likewise.
+    /// The step with a direction that is flown after it.
     pub after: Option<usize>,
     pub marks: Marks,
     /// What the rules about one leg said, each with the number of the rule.
     pub found: Vec<(usize, Problem)>,
 }
 
-/// What a leg has, for rules that look at such legs only.
+/// What a leg has, for rules that only concern such legs.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Marks {
     /// It names its successor.
@@ -81,7 +81,7 @@ impl Step {
         self.path.filter(|path| path.length_m() >= super::path::SHORTEST_M)
     }
 
-    /// The course on which its path ends, degrees true: of an arc wherever it begins.
+    /// The course on which its path ends, degrees true; known for an arc even if its start is not.
     pub fn course_end_deg(&self) -> Option<f64> {
         let directed = self.directed().map(|path| path.course_end_deg());
         directed.or_else(|| match &self.leg.kind {

@@ -7,7 +7,7 @@ use crate::{Edit, LegKind, Problem, StageKind};
 
 /// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
 const MARGIN_M: f64 = 50.0;
-/// Distance between looks at the ground, metres: half of what 3″ data resolves.
+/// Distance between samples of the ground, metres: half of what 3″ data resolves.
 const SPACING_M: f64 = 45.0;
 /// Most looks on a leg.
 const MOST_LOOKS: f64 = 2_000.0;

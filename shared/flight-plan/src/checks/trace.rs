@@ -84,7 +84,7 @@ impl<'i, 'a> Trace<'i, 'a> {
             arrival = self.leg(leg, around, entry, &mut jumps);
             if let LegKind::Iterative { body, form, .. } = &leg.kind {
                 let inside = self.recall.around(around.inside(leg, *form));
-                // forth and back, too, is left at the end of the last leg
+                // a reverse loop, too, is left at the end of the last leg
                 arrival = self.list(body, &inside, Some(number), entry);
             }
         }

@@ -1,6 +1,6 @@
 //! What became of legs.
 
-use super::words::{self, told};
+use super::words::{self, change_of};
 use super::{Change, Fate, out_of_order};
 use crate::xml::Piece;
 use crate::{Altitude, FlightPlan, Id, Leg, LegContext, Place, Stage, Value};
@@ -126,11 +126,11 @@ fn properties((before, was): (&Legs, &At), (after, now): (&Legs, &At)) -> Vec<St
         let ((high, fast), (still_high, still_fast)) = (own(was), own(now));
         if !(high && still_high) && old.altitude != new.altitude {
             let of = |stage: &Stage| stage.altitude.as_ref().map(altitude);
-            words.extend(told("its stage's altitude", of(old).as_deref(), of(new).as_deref()));
+            words.extend(change_of("its stage's altitude", of(old).as_deref(), of(new).as_deref()));
         }
         if !(fast && still_fast) && old.speed_mps != new.speed_mps {
             let of = |stage: &Stage| stage.speed_mps.as_ref().map(number);
-            words.extend(told("its stage's speed", of(old).as_deref(), of(new).as_deref()));
+            words.extend(change_of("its stage's speed", of(old).as_deref(), of(new).as_deref()));
         }
     }
     words

@@ -132,7 +132,7 @@ fn called<'p>(legs: &'p [Arc<Leg>], found: &mut Vec<&'p Id>) {
     }
 }
 
-/// `read by a b c`; nothing for nobody.
+/// `read by a b c`; empty if nothing reads it.
 fn named(by: &str, ids: Vec<&Id>) -> Option<String> {
     let first: Vec<&str> = ids.iter().take(MOST).map(|id| id.as_str()).collect();
     let more = match ids.len().saturating_sub(MOST) {

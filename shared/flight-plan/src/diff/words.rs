@@ -3,11 +3,11 @@
 use crate::xml::{self, Piece};
 use std::collections::HashMap;
 
-/// So many things inside a part are told one by one, more only by their number.
+/// Up to so many changes inside a part are listed one by one, more only by their number.
 const MOST: usize = 4;
 /// Longest description of something that came or went, bytes.
 const LONGEST: usize = 120;
-/// What tells things of one name apart: branches, parameters and arguments, emergencies by cause.
+/// Attributes that distinguish elements of one name: branches, parameters and arguments, emergencies by cause.
 const KEYS: [&str; 3] = ["id", "name", "cause"];
 
 /// Empty: nothing.
@@ -29,8 +29,8 @@ pub(super) fn between(old: &Piece, new: &Piece) -> Vec<String> {
     words
 }
 
-/// What became of something that may be missing, by its name.
-pub(super) fn told(name: &str, old: Option<&str>, new: Option<&str>) -> Option<String> {
+/// How something that may be missing has changed, by its name.
+pub(super) fn change_of(name: &str, old: Option<&str>, new: Option<&str>) -> Option<String> {
     match (old, new) {
         (None, Some(new)) => Some(format!("{name} {new} added")),
         (Some(old), None) => Some(format!("{name} {old} removed")),
@@ -41,9 +41,10 @@ pub(super) fn told(name: &str, old: Option<&str>, new: Option<&str>) -> Option<S
 
 /// Of two elements: their attributes and what is in them.
 fn inside(old: &Element, new: &Element) -> Vec<String> {
-    let changed = new.attributes.iter().map(|(name, value)| told(name, old.attribute(name), Some(value)));
+    let changed =
+        new.attributes.iter().map(|(name, value)| change_of(name, old.attribute(name), Some(value)));
     let gone = old.attributes.iter().filter(|(name, _)| new.attribute(name).is_none());
-    let gone = gone.map(|(name, value)| told(name, Some(value), None));
+    let gone = gone.map(|(name, value)| change_of(name, Some(value), None));
     let mut words: Vec<String> = changed.chain(gone).flatten().collect();
     if let ([was], [now]) = (&old.children[..], &new.children[..])
         && was.name != now.name
@@ -78,7 +79,7 @@ fn children(name: &str, old: &Element, new: &Element) -> Vec<String> {
     }]
 }
 
-/// Elements by what tells them apart; `None`: nothing does.
+/// Elements by the attribute that distinguishes them; `None`: there is none.
 type Keys<'e, 'a> = HashMap<&'e str, &'e Element<'a>>;
 
 fn by_key<'e, 'a>(list: &[&'e Element<'a>]) -> Option<Keys<'e, 'a>> {
@@ -107,7 +108,7 @@ fn keyed(old: &[&Element], new: &[&Element], (before, after): (&Keys, &Keys)) ->
     words
 }
 
-/// What is the same at the beginning and at the end stays; the rest is told.
+/// Leaves out what is the same at the beginning and at the end.
 fn in_order(name: &str, old: &[&Element], new: &[&Element]) -> Vec<String> {
     let shorter = old.len().min(new.len());
     let first = old.iter().zip(new).take_while(|(was, now)| was == now).count();

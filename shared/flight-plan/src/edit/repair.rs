@@ -6,7 +6,7 @@ use crate::{Act, FlightPlan, Id, Leg, LegKind, Place, Stage};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Gives the last thing that is called `id` another identifier; what refers to `id` goes on meaning the first.
+/// Gives the last thing that is called `id` another identifier; references to `id` keep meaning the first.
 pub(super) fn distinguish(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
     let mut counts: HashMap<usize, usize> = HashMap::new();
     Walk::of(plan, &mut |group, found: &mut Id| {

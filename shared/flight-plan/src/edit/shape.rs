@@ -125,7 +125,7 @@ fn centre_mut(area: &mut Area) -> Option<&mut Place> {
     }
 }
 
-/// Moves points so that the first one comes to `to`; distances and bearings from there stay.
+/// Moves points so that the first one is at `to`; distances and bearings from there stay.
 fn shift<'a>(points: impl Iterator<Item = &'a mut LatLon>, to: LatLon) {
     let mut points = points.filter(|p| p.is_valid());
     let Some(first) = points.next() else { return };

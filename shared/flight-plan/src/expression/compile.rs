@@ -103,7 +103,7 @@ fn syntax_error(source: &str, errors: cel::ParseErrors) -> ExpressionError {
 
 type Checked = Result<(Node, Type), ExpressionError>;
 
-/// Walks the parser's tree with the plan's names at hand.
+/// Walks the parser's tree; knows the plan's names.
 struct Checker<'a> {
     names: &'a Names<'a>,
     source: &'a str,
@@ -219,7 +219,7 @@ impl Checker<'_> {
     fn expect(&mut self, at: &IdedExpr, wanted: Type, depth: usize) -> Result<Box<Node>, ExpressionError> {
         match self.check(at, depth)? {
             (node, kind) if kind == wanted => Ok(node.into()),
-            // an int stands for a number where nothing is computed with it
+            // an int counts as a number where nothing is computed with it
             (node, Type::Int) if wanted == Type::Number => {
                 Ok(Node::Call(Function::Double, vec![node]).into())
             }
@@ -309,7 +309,7 @@ impl Checker<'_> {
 
     fn function(&mut self, at: &IdedExpr, name: &str, arguments: &[&IdedExpr], depth: usize) -> Checked {
         use Type::{Bool, Number, Polygon, Position, Text};
-        // the one name with two meanings: told apart by what it is asked about
+        // the one name with two meanings: its argument decides
         let of_polygon = name == "contains" && self.is_polygon(arguments);
         let (function, parameters, result): (_, &[Type], _) = match name {
             "double" => (Function::Double, &[Number], Number),

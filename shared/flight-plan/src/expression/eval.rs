@@ -27,7 +27,7 @@ pub struct FlightState {
 }
 
 impl FlightState {
-    /// Before a plan's flight: on its [`home`](crate::FlightPlan::home), at 0, 0 without one, and in the first pass of whatever loop.
+    /// Before a plan's flight: on its [`home`](crate::FlightPlan::home), at 0, 0 without one, and in the first pass of any loop.
     pub fn at_start(home: Option<&Runway>) -> Self {
         let home = home.map_or(LatLon::new(0.0, 0.0), |runway| runway.threshold);
         Self { iteration: 1, ..Self::on_ground(home) }
@@ -123,7 +123,7 @@ impl Expression {
         }
     }
 
-    /// Its value, whatever the type; an int as a number.
+    /// Its value, of any type; an int as a number.
     pub fn value(&self, env: &Env) -> Result<VariableValue, EvalError> {
         Ok(match eval(&self.node, env)? {
             Scalar::Bool(b) => VariableValue::Bool(b),

@@ -3,7 +3,7 @@
 use super::{Id, Place, Value};
 use std::sync::Arc;
 
-/// Something that is done when a leg is flown: whatever the direction, once per passage (of an
+/// Something that is done when a leg is flown, in either direction, once per passage (of an
 /// [`Trigger::Every`]: once per multiple).
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegAction {

@@ -81,7 +81,7 @@ pub struct Scan {
     pub spacing: Spacing,
     /// Direction of the tracks, degrees true; `None`: the one with the fewest turns.
     pub heading_deg: Option<Value<f64>>,
-    /// How far each track goes on beyond the area's edge before its turn, metres.
+    /// How far each track continues beyond the area's edge before its turn, metres.
     pub overshoot_m: Value<f64>,
     /// Where it begins.
     pub entry: ScanEntry,
@@ -133,7 +133,7 @@ pub enum Pattern {
         /// Side of the turns.
         turn: TurnDirection,
     },
-    /// Along a route, half the spacing aside of it.
+    /// Parallel to a route, half the spacing to its side.
     TrackLine {
         /// The route's points, two or more.
         route: Vec<Place>,

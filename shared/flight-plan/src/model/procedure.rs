@@ -16,9 +16,9 @@ pub struct Procedure {
     pub name: String,
     /// Names that its expressions may read beside the plan's variables.
     pub parameters: Vec<Parameter>,
-    /// The point that a call's anchor stands for; `None`: it can't be moved.
+    /// The point that is moved to a call's anchor; `None`: the procedure can't be moved.
     pub reference: Option<LatLon>,
-    /// The direction that a call's bearing stands for, degrees true.
+    /// The direction that is turned to a call's bearing, degrees true.
     pub bearing_deg: f64,
     /// Its legs, in order.
     pub legs: Vec<Arc<Leg>>,
@@ -40,8 +40,8 @@ pub struct Call {
     pub procedure: Id,
     /// Parameter names and the CEL sources of their values.
     pub arguments: Vec<(Id, Arc<str>)>,
-    /// Where the procedure's reference point comes to be; `None`: where it is.
+    /// Where the procedure's reference point is moved to; `None`: not moved.
     pub anchor: Option<Place>,
-    /// Where its bearing comes to point, degrees true; `None`: where it does.
+    /// What its bearing is turned to, degrees true; `None`: not turned.
     pub bearing_deg: Option<Value<f64>>,
 }

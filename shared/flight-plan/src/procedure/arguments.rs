@@ -1,4 +1,4 @@
-//! Arguments of a call, as the sources that stand for its parameters.
+//! Arguments of a call, as the sources that replace its parameters.
 
 use super::Calls;
 use crate::expression::{self, Type};

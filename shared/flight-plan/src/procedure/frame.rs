@@ -12,14 +12,14 @@ use std::sync::Arc;
 pub(super) struct Frame {
     /// Of the legs' identifiers: the call's and a dot.
     pub prefix: String,
-    /// Sources that stand for parameters.
+    /// Sources that replace parameters.
     pub arguments: HashMap<Id, Arc<str>>,
     pub placing: Placing,
 }
 
 impl Frame {
     /// Makes a leg of the procedure one of the call (not the legs inside it). Answers how many bytes of text that took; beyond
-    /// `room` the rest stays as it is, and nobody will fly it.
+    /// `room` the rest stays as it is, and will not be flown.
     ///
     /// # Errors
     /// It has a position or number that can only be a constant, and the call's anchor or bearing is an expression.

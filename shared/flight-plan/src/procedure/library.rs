@@ -1,4 +1,4 @@
-//! The plan's procedures, each with what it comes to; those that can't be called are refused here.
+//! The plan's procedures, each with the size of its expansion; those that can't be called are refused here.
 
 use super::MAX_NESTING;
 use crate::{FlightPlan, Id, Leg, LegKind, Parameter, Problem, Procedure, expression, xml};
@@ -24,7 +24,7 @@ pub(super) struct Library<'p> {
 }
 
 impl<'p> Library<'p> {
-    /// The procedures of a plan; problems of their own are told whether they are called or not.
+    /// The procedures of a plan; their own problems are reported even if they are not called.
     pub fn of(plan: &'p FlightPlan, problems: &mut Vec<Problem>) -> Self {
         let mut waiting: HashMap<&Id, Waiting> = HashMap::new();
         for procedure in plan.procedures.iter().rev() {

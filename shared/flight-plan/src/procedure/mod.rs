@@ -1,9 +1,9 @@
-//! Calls, instantiated: what is flown, made of what was written.
+//! Calls, instantiated: the plan as flown, made from the plan as written.
 //!
-//! A call becomes a loop of one pass around the procedure's legs: it keeps the call's identifier, name, emergency plans,
+//! A call becomes a loop of one pass (`IterativeForm::Once`, which is no loop for `iteration`) around the procedure's legs: it keeps the call's identifier, name, emergency plans,
 //! altitude, speed and actions, and the legs inside it are called `call.leg`. In them, parameters are replaced by the
-//! call's arguments, and what is written as a constant position or course is moved and turned with the procedure. What a
-//! fix or an expression gives is where it is: it does not move. `iteration` inside a procedure is that of the innermost
+//! call's arguments, and what is written as a constant position or course is moved and turned with the procedure. A place
+//! given by a fix or an expression does not move. `iteration` inside a procedure is that of the innermost
 //! loop that somebody wrote, around the call or in the procedure: the one which the call has become doesn't count.
 
 mod arguments;
@@ -27,7 +27,7 @@ pub const MAX_BYTES: usize = crate::xml::MAX_BYTES;
 /// Deepest nesting of procedures.
 pub const MAX_NESTING: usize = 16;
 
-/// The plan with every call replaced by the legs it stands for, and what was wrong with the calls and procedures:
+/// The plan with every call replaced by the legs it expands to, and the problems of the calls and procedures:
 /// `procedure-cycle`, `unknown-procedure`, `unknown-argument`, `missing-argument`, `duplicate-argument`,
 /// `procedure-anchor`, `too-deep`, `too-large`, and those of expressions. A call that has a problem stays a call.
 ///
@@ -88,7 +88,7 @@ impl Calls<'_> {
             },
             LegKind::Call(_) => match self.call(leg, around) {
                 Ok(Some(kind)) => leg.kind = kind,
-                // its problem is told elsewhere: at the procedure, or by the checks
+                // its problem is reported elsewhere: at the procedure, or by the checks
                 Ok(None) => {}
                 Err(problem) => self.problems.push(problem.of(&leg.id)),
             },

@@ -14,7 +14,7 @@ pub(super) enum Placing {
     Moved {
         /// In the procedure.
         reference: LatLon,
-        /// Where it comes to be.
+        /// Where it is moved to.
         anchor: Value<LatLon>,
         /// Degrees, clockwise.
         turn_deg: Value<f64>,
@@ -75,7 +75,7 @@ impl Placing {
         }
     }
 
-    /// Where a position of the procedure comes to be; one that is invalid stays as it is.
+    /// Where a position of the procedure is moved to; an invalid one stays as it is.
     pub fn position(&self, p: LatLon) -> Value<LatLon> {
         let Placing::Moved { reference, anchor, turn_deg } = self else { return Value::Constant(p) };
         if !p.is_valid() {

@@ -1,4 +1,4 @@
-//! Actions of a document, both ways: `<action on="start">` (or `end`, or `abeam` with a place; or `afterDistance`,
+//! Actions of a document, read and written: `<action on="start">` (or `end`, or `abeam` with a place; or `afterDistance`,
 //! `afterTime`, `every` with a number) around one act.
 
 use super::cursor::Element;

@@ -1,4 +1,4 @@
-//! Attributes of an element, taken by name; what nobody takes is a problem.
+//! Attributes of an element, taken by name; an attribute that is never taken is a problem.
 
 use super::cursor::{MAX_ATTRIBUTES, Place, shown};
 use crate::{Location, Problem};
@@ -113,7 +113,7 @@ impl<'a> Attributes<'a> {
     }
 }
 
-/// A bit for a name, by its length and first letter: most names are told apart by it.
+/// A bit for a name, from its length and first letter: it distinguishes most names.
 #[inline]
 fn bit(name: &str) -> u64 {
     let first = name.as_bytes().first().map_or(0, |b| usize::from(*b));
@@ -174,7 +174,7 @@ fn entry<'a>(attribute: &Attribute<'a>, list: &[Entry<'a>]) -> Result<Entry<'a>,
         return Err(("duplicate-attribute", format!("`{}` is there twice", shown(name))));
     }
     let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| ("entity", e.to_string()))?;
-    // what stands there as it is has been looked at with the whole document
+    // text without references was validated with the whole document
     let made = matches!(value, Cow::Owned(_)).then(|| value.chars().find(|c| !allowed(*c)));
     match made.flatten() {
         Some(_) => {

@@ -106,13 +106,13 @@ impl<'a> Cursor<'a> {
         self.end(element);
     }
 
-    /// As [`Cursor::finish`], for an element that nobody needs any more.
+    /// As [`Cursor::finish`], for an element whose content is not needed.
     pub fn end(&mut self, element: Element<'a>) {
         self.finish(&element);
         self.memory = element.attributes.into_memory();
     }
 
-    /// Reports the attributes that nobody asked for.
+    /// Reports the attributes that were never taken.
     pub fn finish(&mut self, element: &Element<'a>) {
         for (attribute, location) in element.attributes.unused() {
             let message = format!(
@@ -247,7 +247,7 @@ pub(super) fn shown(text: &str) -> String {
     shown
 }
 
-/// Line and column, advanced with the reader so that every byte is looked at once.
+/// Line and column, advanced with the reader so that every byte is counted once.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
     text: &'a str,

@@ -1,4 +1,4 @@
-//! Patterns of a document, both ways.
+//! Patterns of a document, read and written.
 
 use super::cursor::Element;
 use super::read::Document;
@@ -244,7 +244,7 @@ impl<'a> Document<'a> {
         }
         if let Some(location) = element.attributes.location("spacing") {
             element.attributes.take("spacing");
-            let message = "remove `spacing`, or `fieldOfView` and what belongs to it: how far apart the tracks are is said in exactly one way";
+            let message = "remove `spacing`, or `fieldOfView` and what belongs to it: give the distance between the tracks in exactly one way";
             self.cursor.report(Problem::error("unknown-attribute", message).at(location));
         }
         Spacing::Camera {

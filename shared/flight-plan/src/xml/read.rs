@@ -27,7 +27,7 @@ pub struct Reading {
 /// Where the elements with identifiers stand in a document.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Places(
-    /// In the order of the document; most plans have no problems, and nobody asks.
+    /// In the order of the document; most plans have no problems, so that it is computed on request.
     Vec<(Id, Location)>,
 );
 
@@ -72,7 +72,7 @@ impl Reading {
 }
 
 /// Reads a document. Never fails as a whole: see [`Reading`]. Time and memory are bounded by the
-/// limits beside this function, whatever the bytes are.
+/// limits beside this function, for any bytes.
 pub fn read(document: impl AsRef<[u8]>) -> Reading {
     let bytes = document.as_ref();
     if bytes.len() > MAX_BYTES {
@@ -100,7 +100,7 @@ fn encoding_problem(bytes: &[u8], error: Utf8Error) -> Option<Problem> {
 }
 
 fn character_problem(text: &str) -> Option<Problem> {
-    // of ASCII, only control characters are not allowed: a quick look at all bytes at once
+    // of ASCII, only control characters are not allowed: a quick test of all bytes at once
     let harmless = |b: &u8| (b' '..0x80).contains(b) || matches!(b, b'\t' | b'\n' | b'\r');
     if text.as_bytes().chunks(1024).all(|chunk| chunk.iter().fold(true, |all, b| all & harmless(b))) {
         return None;

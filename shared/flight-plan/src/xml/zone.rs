@@ -1,4 +1,4 @@
-//! Zones of a document, both ways.
+//! Zones of a document, read and written.
 
 use super::cursor::Element;
 use super::patterns::corners;

@@ -20,7 +20,7 @@ pub fn ends(path: &Feature, last: &Vertex) -> bool {
     last.kind == "land" || path.mark(ENDS) == Some("land")
 }
 
-/// The stage for one of the ends; `None` if no runway is near. A runway whose direction nobody knows gets it from here.
+/// The stage for one of the ends; `None` if no runway is near. A runway whose direction is unknown gets it from here.
 pub fn stage(kind: StageKind, at: &Vertex, runways: &mut [Runway], names: &mut Names) -> Option<Stage> {
     let most_m = if kind == StageKind::TakeOff { TAKE_OFF_M } else { LAND_M };
     let distance_m = |r: &Runway| r.threshold.distance_m(at.position);

@@ -72,7 +72,9 @@ impl Importer<'_> {
         }
         for (id, place) in &self.made_up {
             let runway = self.plan.runways.iter().find(|runway| runway.id == *id);
-            runway.into_iter().for_each(|runway| synthetic::made_up(runway, place, &mut self.notes));
+            runway
+                .into_iter()
+                .for_each(|runway| synthetic::note_assumed_runway(runway, place, &mut self.notes));
         }
     }
 
@@ -186,7 +188,7 @@ impl Importer<'_> {
             synthetic::stage(self.names.take(&feature.name, "route"), &feature.name, StageKind::EnRoute);
         for (index, vertex) in line.iter().enumerate() {
             let to = waypoint(vertex.position, false);
-            // the way to a line begins anywhere
+            // the transit to a line begins anywhere
             let kind = if index == 0 { LegKind::Df { to, turn: None } } else { LegKind::Tf(to) };
             let wish = if vertex.name.is_empty() {
                 format!("{}.{}", stage.id, index + 1)

@@ -8,13 +8,13 @@ use crate::{Export, Format, csv};
 use flight_plan::{AltitudeReference, Fix, FlightPlan, Runway, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
 
-/// Corners that stand for a circle.
+/// Corners that approximate a circle.
 const CIRCLE_CORNERS: u32 = 72;
 
 /// The flown path as a line, fixes and runways as points, zones as areas. GPX knows no areas.
 pub fn of(export: &Export<'_>, format: Format, notes: &mut Notes) -> Drawing {
     let areas = format != Format::Gpx;
-    losses::tell(
+    losses::note_losses(
         export,
         Kept { fixes: true, runways: areas, zones: areas, ..Kept::default() },
         &|_| false,

@@ -1,4 +1,4 @@
-//! Numbers of MAVLink commands and frames that are understood here, and names of those that are only told about.
+//! Numbers of MAVLink commands and frames that are understood here, and names of those that are only mentioned in notes.
 //! Source: the `common` dialect, enums MAV_CMD and MAV_FRAME.
 
 /// Fly to a waypoint: hold s, acceptance radius m, pass radius m, yaw.

@@ -1,4 +1,4 @@
-//! Where a mission begins and ends: take-off, landing and what leads to it, with the runways they need.
+//! Where a mission begins and ends: take-off, approach and landing, with the runways they need.
 
 use super::commands as cmd;
 use super::import::Importer;
@@ -106,7 +106,7 @@ impl Importer<'_> {
             );
             self.home_amsl_m(at)
         };
-        // what lands on the spot goes on as it came there
+        // a landing on the spot continues in the direction of arrival
         let mut before = [self.last, self.passed].into_iter().flatten();
         let from = before.find(|p| p.distance_m(position) > SAME_M);
         let direction = Direction { heading_deg, towards: None, from };

@@ -126,7 +126,7 @@ impl<'a> Writer<'a> {
                 (Some((Trigger::End, command, params)), _) => {
                     self.push(of, cmd::FRAME_MISSION, command, params)
                 }
-                // a series that this leg alone asks for ends with it; that of a loop around it goes on
+                // a series that only this leg asks for ends with it; the series of a loop around it continues
                 (Some(_), Trigger::Every(_)) => {
                     let params = self.series_around().unwrap_or([0.0; 7]);
                     self.push(of, cmd::FRAME_MISSION, cmd::CAMERA_TRIGGER_DISTANCE, params);
@@ -164,8 +164,8 @@ impl<'a> Writer<'a> {
         }
         let at = (waypoint.position.lat_deg, waypoint.position.lon_deg, waypoint.altitude_amsl_m);
         let (command, [a, b, c, d]) = match waypoint.action {
-            Action::TakeOff { heading_deg } => (cmd::TAKEOFF, [15.0, 0.0, 0.0, told(heading_deg)]),
-            Action::Land { heading_deg } => (cmd::LAND, [0.0, 0.0, 0.0, told(heading_deg)]),
+            Action::TakeOff { heading_deg } => (cmd::TAKEOFF, [15.0, 0.0, 0.0, yaw_deg(heading_deg)]),
+            Action::Land { heading_deg } => (cmd::LAND, [0.0, 0.0, 0.0, yaw_deg(heading_deg)]),
             Action::Loiter { radius_m } => (cmd::LOITER_UNLIMITED, [0.0, 0.0, radius_m, f64::NAN]),
             Action::Fly => match wait_s {
                 Some(seconds) => (cmd::LOITER_TIME, [seconds, 0.0, 0.0, f64::NAN]),
@@ -182,7 +182,7 @@ impl<'a> Writer<'a> {
 }
 
 /// A yaw of 0 means none to most programs.
-fn told(heading_deg: f64) -> f64 {
+fn yaw_deg(heading_deg: f64) -> f64 {
     if heading_deg == 0.0 { 360.0 } else { heading_deg }
 }
 

@@ -236,7 +236,7 @@ impl Importer<'_> {
             self.notes.push("nested-jump", &item.place, message);
         }
         if made.leg.first_flown().speed_mps != self.speed_mps.map(Value::Constant) {
-            let message = "each pass begins at the speed of the first: an autopilot goes on at the speed that the pass before ended with";
+            let message = "each pass begins at the speed of the first: an autopilot continues at the speed at which the pass before ended";
             self.notes.push("speed-in-loop", &item.place, message);
         }
     }

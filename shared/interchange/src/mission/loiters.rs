@@ -8,7 +8,7 @@ use super::{Item, placed::Placed};
 use flight_plan::{Act, Altitude, Holding, HoldingLength, LegKind, TurnDirection, Value};
 use geometry::LatLon;
 
-/// Straight legs of the racetrack that stands for an endless circle, metres.
+/// Straight legs of the racetrack that replaces an endless circle, metres.
 const RACETRACK_M: f64 = 500.0;
 
 impl Importer<'_> {
@@ -70,7 +70,7 @@ impl Importer<'_> {
         );
     }
 
-    /// On the spot there is no way to fly: the leg before waits at its end, or a holding first leads to another altitude.
+    /// On the spot there is no track to fly: the leg before waits at its end, or a holding first leads to another altitude.
     fn timed(
         &mut self,
         item: &Item,

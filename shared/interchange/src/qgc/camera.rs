@@ -95,7 +95,7 @@ pub fn write(spacing_m: f64, every_m: Option<f64>, altitude: &Altitude) -> Optio
     }))
 }
 
-/// How closely the ground is followed, with what QGC sets where nobody says: without it, QGC refuses a pattern above terrain.
+/// How closely the ground is followed, with QGC's default values: without it, QGC refuses a pattern above terrain.
 pub fn terrain(reference: AltitudeReference) -> Map<String, Json> {
     let settings = [
         ("TerrainAdjustTolerance", 10.0),

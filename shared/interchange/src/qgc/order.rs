@@ -7,7 +7,7 @@ use geometry::{LatLon, LocalFrame, Vec2};
 
 /// From one track to the next it is a spacing or less; to the one after that, even of tracks that were drawn together, more than so many.
 const NEXT: f64 = 1.25;
-/// What is aside of a track by less of a spacing is on it.
+/// What is nearer to a track than this share of a spacing is on it.
 const ON_TRACK: f64 = 0.1;
 
 /// On this way over a scan or a corridor, tracks are passed over and flown later: interleaved, or part of the area by part.

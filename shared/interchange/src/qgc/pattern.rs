@@ -83,7 +83,7 @@ fn survey(
     let named = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
     let begun = way::ends(item).zip(angle_deg).and_then(|((first, _), deg)| way::entry(first, &corners, deg));
     if begun.is_none() && named.is_some() {
-        let message = "the file has no way for this survey: the corner where QGC would begin may be another";
+        let message = "the file has no transects for this survey: QGC might begin at another corner";
         notes.push("entry-point", place, message);
     }
     Scan {
@@ -119,8 +119,8 @@ fn along(
     Pattern::Corridor { route, width_m: Value::Constant(width_m), spacing }
 }
 
-/// What of a leg that is written as a pattern QGC has no word for.
-pub fn tell(leg: &Leg, notes: &mut Notes) {
+/// Notes what QGC cannot express of a leg that is written as a pattern.
+pub fn note_losses(leg: &Leg, notes: &mut Notes) {
     let spacing = match &leg.kind {
         LegKind::Scan(scan) => &scan.spacing,
         LegKind::Pattern(Pattern::Corridor { spacing, .. }) => spacing,
@@ -132,7 +132,7 @@ pub fn tell(leg: &Leg, notes: &mut Notes) {
         notes.push("camera", leg.id.as_str(), message);
     }
     if matches!(leg.kind, LegKind::Scan(_)) {
-        let message = "the way in the file begins where it is flown from now: if QGC works it out anew, it may begin at another corner";
+        let message = "the transects in the file begin where the flight enters now: if QGC computes them again, they may begin at another corner";
         notes.again("entry-point", leg.id.as_str(), message);
     }
 }
@@ -233,7 +233,7 @@ pub fn every_m(leg: &Leg) -> Option<f64> {
 
 fn area(scan: &Scan, transect: Json) -> Option<Json> {
     let Area::Polygon { corners, holes } = &scan.area else { return None };
-    // a direction that is found by ourselves, or tracks along the short side, is another survey in QGC
+    // a direction that we find, or tracks along the short side, would be a different survey in QGC
     let heading_deg = constant(scan.heading_deg.as_ref()?)?;
     if !holes.is_empty() || scan.style == ScanStyle::Creeping {
         return None;

@@ -149,7 +149,11 @@ impl Reader<'_> {
             (frame, params[6]) = (commands::FRAME_TERRAIN, height_m);
         }
         if item.get("autoContinue").and_then(Value::as_bool) == Some(false) {
-            self.notes.again("autocontinue", &place, "an item that waits for the operator goes on by itself");
+            self.notes.again(
+                "autocontinue",
+                &place,
+                "an item that waits for the operator continues by itself",
+            );
         }
         let number = item.get("doJumpId").and_then(Value::as_i64).unwrap_or(self.number + 1);
         self.number = number;
@@ -184,7 +188,7 @@ impl Reader<'_> {
         let radius_m = number(item, "loiterRadius").unwrap_or(self.assumptions.loiter_radius_m);
         let loiter_radius_m = circles.then_some(side * radius_m.abs());
         let (above_home, relative) = relative(item);
-        // without an altitude there is none, which is told where it is used
+        // without an altitude there is none, which is reported where it is used
         let (altitude_m, land) = (altitude_m.unwrap_or(f64::NAN), (land.0, land.1.unwrap_or(f64::NAN)));
         let approach = Approach { position, altitude_m, relative: above_home, loiter_radius_m };
         if item.get("complexItemType").and_then(Value::as_str) == Some("vtolLandingPattern") {

@@ -25,9 +25,9 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     let mut writer = Writer { legs: &legs, items: Vec::new(), number: 0, approach: None };
     let whole = |leg: &Leg| writer.pattern(leg.id.as_str(), &[], Vec::new()).is_some();
     let kept = Kept { zones: true, actions: true, speeds: true, rally: true, ..Kept::default() };
-    losses::tell(export, kept, &whole, notes);
-    contexts.iter().filter(|c| whole(c.leg)).for_each(|c| pattern::tell(c.leg, notes));
-    tell_order(export, &legs, &whole, notes);
+    losses::note_losses(export, kept, &whole, notes);
+    contexts.iter().filter(|c| whole(c.leg)).for_each(|c| pattern::note_losses(c.leg, notes));
+    note_track_order(export, &legs, &whole, notes);
     for passage in flown.chunk_by(|a, b| a.passage == b.passage && a.leg == b.leg) {
         writer.passage(passage);
     }
@@ -56,20 +56,20 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// Patterns whose tracks are not flown one beside the other.
-fn tell_order(
+/// Notes the patterns whose tracks are not flown in their order on the ground.
+fn note_track_order(
     export: &Export<'_>,
     legs: &HashMap<&str, &LegContext>,
     whole: &dyn Fn(&Leg) -> bool,
     notes: &mut Notes,
 ) {
-    let mut told: HashSet<&str> = HashSet::new();
+    let mut noted: HashSet<&str> = HashSet::new();
     let same = |a: &Step, b: &Step| a.passage == b.passage && a.waypoint.leg == b.waypoint.leg;
     for way in export.steps.chunk_by(same) {
         let leg = way.first().and_then(|first| legs.get(first.waypoint.leg.as_str()));
         let leg = leg.map(|context| context.leg).filter(|leg| whole(leg) && order::is_mixed(leg, way));
-        if let Some(leg) = leg.filter(|leg| told.insert(leg.id.as_str())) {
-            let message = "the tracks in the file are not flown one beside the other: if QGC works the pattern out anew, it flies them in its own order";
+        if let Some(leg) = leg.filter(|leg| noted.insert(leg.id.as_str())) {
+            let message = "neighbouring tracks in the file are not flown one after the other: if QGC computes the pattern again, it flies them in its own order";
             notes.again("track-order", leg.id.as_str(), message);
         }
     }
@@ -94,7 +94,7 @@ impl Writer<'_> {
         }
         let last = passage.iter().rposition(moves).unwrap_or(0);
         let pictures = self.legs.get(leg).is_some_and(|c| pattern::every_m(c.leg).is_some());
-        // behind the last place a series is one of a loop around, which goes on
+        // after the last place a series belongs to a loop around it, and continues
         let own = |(index, item): &(usize, &Flown)| {
             let goes_on = *index > last && item.params[0] > 0.0;
             moves(item) || pictures && item.command == commands::CAMERA_TRIGGER_DISTANCE && !goes_on
