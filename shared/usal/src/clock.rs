@@ -1,9 +1,17 @@
-//! The simulated clock of a lockstep flight: nobody goes on before everybody has acknowledged.
+//! The simulated clock of a lockstep flight: time goes on when every participant has acknowledged.
 //!
-//! The gateway holds the [`Conductor`]; FP Manager, tests and scripts hold [`Participant`]s.
-//! A tick that is not acknowledged is repeated (a participant answers a repetition of what it has
-//! done at once), a participant whose token is gone is not waited for, and a live one is
-//! waited for at most [`PATIENCE`] unless told otherwise.
+//! Before each step the simulator sends `TIMESYNC { tc1: 0, ts1: simulated ns }` and waits for
+//! `TIMESYNC { tc1: != 0, ts1: the same }`. The gateway answers when it has done what was due and every participant has
+//! acknowledged its tick of the variable `clock`. So a whole flight runs as fast as the machine allows, and a stall of the
+//! machine is not a stall of the flight.
+//!
+//! The gateway holds the [`Conductor`]; FP Manager, tests and scripts hold [`Participant`]s, which show a liveliness token.
+//! A tick that is not acknowledged is repeated (a participant answers a repetition of finished work
+//! at once). A participant whose token is gone is not waited for, and a live one is
+//! waited for at most [`PATIENCE`] by default.
+//!
+//! A test or a script that joins drives time: it holds its acknowledgement until it has seen and done what it wants. The FP
+//! Manager holds its own while it reviews a proposal or a command, for four of the five seconds.
 
 use crate::contract::{ClockAck, ClockTick};
 use crate::keys::{self, Key, Kind};

@@ -1,8 +1,9 @@
 //! One simulated flight: aircraft, guidance and a waypoint list in the place of gateway and autopilot.
 //!
-//! Time begins anew at each waypoint: the aircraft is there at the instant at which it reaches it and not at the end of a step,
-//! its motion is rounded (see [`Aircraft::settle`]), it is reported and its place recorded, and reports and track go on from then.
-//! So what follows doesn't depend on how the steps before happened to fall, which is what [`super::Rehearsal`] lives by.
+//! The simulation restarts at each waypoint: the aircraft is there at the instant at which it reaches it, not at the end of a step;
+//! its motion is rounded (see [`Aircraft::settle`]), its state reported and its place recorded, and reports and track continue
+//! from that instant. So what follows doesn't depend on how the steps before happened to fall, and [`super::Rehearsal`] can join a
+//! former flight exactly.
 //!
 //! [`Aircraft::settle`]: aircraft::Aircraft::settle
 

@@ -1,14 +1,15 @@
 //! The preview of a plan that is being edited: what an edit doesn't reach is not flown again.
 //!
-//! A flight is remembered in stretches: the situation in which each begins, and which stages and legs were read on it. A
-//! stretch is flown as before as long as it begins alike and what it read has stayed as it was. So after an edit the flight is
-//! resumed at the beginning of the first stretch that read something else, and flown until a leg begins just as it did
-//! before ([`are_alike`]); from there on the former flight is taken over, its times and numbers shifted. What comes out
-//! is what a whole new preview would give: the same waypoints at the same times, distances and energy but for the rounding of
-//! sums.
+//! A flight is kept in stretches: the situation in which each begins, and which stages and legs were read on it. A stretch
+//! stays valid as long as it begins in the same situation and what it read is unchanged. So after an edit the flight is
+//! resumed at the beginning of the first stretch that read something that has changed, and flown until a leg begins just as it did
+//! before ([`are_alike`]). From there on the former flight is taken over, with its times and numbers shifted. The result
+//! is what a whole new preview would give: the same waypoints at the same times, distances and energy, except for the rounding of
+//! sums. The path rejoins quickly because the preview restarts at every waypoint (see `flight`).
 //!
-//! A plan with conditions that depend on time, energy, motion or place is only taken over up to the edit; one in which a
-//! runway, a variable or the order of stages is another is flown as a whole.
+//! If conditions depend on time, energy, motion or place, the former flight is only kept up to the edit. If a
+//! runway, a variable or the order of stages has changed, the plan is flown as a whole. The window works like this at each frame of
+//! a drag; hash and review follow when the plan is left alone.
 
 use super::changes::{Changes, reads_flight};
 use super::equivalence::are_alike;

@@ -1,8 +1,23 @@
-//! What is ahead of a flight under way, held against the same rules as a whole plan: from where the aircraft is, with the
+//! What is ahead of a flight under way, judged by the same rules as a whole plan: from the aircraft's position, with the
 //! present values of the variables, the energy that is left, the wind and the time of day.
 //!
-//! So a change in flight is looked at before it takes effect: tried on a copy of the executor, which is then flown ahead. What is
-//! wrong with the present flight just as much is not the change's fault: it is told as a warning.
+//! A change is tried on a copy of the executor first, which is then flown ahead:
+//!
+//! - A proposal, when it is put forward ([`compile_and_review_ahead`]) and again when it is committed, because the flight has gone on
+//!   meanwhile.
+//! - A variable that some leg is laid out from, or from which an action computes such a one, when it is written
+//!   ([`review_command`]).
+//!
+//! The FP Manager does this on a thread (`fp_manager/command_review`), one command after the other. Only what passes becomes an input
+//! of the executor, so the journal knows nothing of the rest. An error refuses the command with its code; value and path stay. An error
+//! that the present flight has as well, word for word, is no reason to refuse: it becomes a warning. If another command turns the
+//! flight meanwhile, the review is repeated.
+//!
+//! A go-to, a skip and a return to the main plan take effect at once, because whoever gives one may be in a hurry to get out of
+//! somewhere. The direct track that they take is reviewed right afterwards ([`review_turn`], `fp_manager/background_review`), and what is
+//! wrong with it is reported (`problem-ahead`). Variables that no leg is laid out from take effect at once; the review before the flight has
+//! flown what the plan's own actions write. A plan that was reviewed only ahead, or that came between a start without effect and
+//! the next start, is reviewed whole before it is started on the ground.
 
 use super::flights::Flights;
 use super::{Conditions, View, reviewed};

@@ -1,11 +1,20 @@
 //! What must hold of the path as it is flown: turns, holdings, patterns and the wind included.
 //!
-//! `flight_plan::check` looks at a plan's text and legs; here the compiled plan is laid out by the executor's own cursor and flown by
-//! the simulated aircraft: every branch of every intersection, loops for two passes (the first from outside, the second from
-//! their own end), each emergency plan from the point that is worst for it, and the plan as it stands by the preview. Then
-//! each rule looks at those flights: one rule a file, each with the codes it gives.
+//! `flight_plan::check` reads a plan's text and legs. Here the executor's own cursor lays the compiled plan out and the simulated
+//! aircraft flies it: every branch of every intersection, loops for two passes (the first from outside, the second from
+//! their own end), each emergency plan from the point that is worst for it. The preview then flies, with real counts, times and
+//! energy: the plan as it stands, the plan with each other branch, and each emergency plan without help from anybody. Then
+//! each rule judges those flights: one rule a file, each with the codes it gives.
 //!
-//! The work is bounded: the module `flights` says by what. What was not seen is told (`not-reviewed`).
+//! The work is bounded: the module `flights` says by what. What was not reviewed is reported (`not-reviewed`).
+//!
+//! # Who reviews what, and when
+//!
+//! [`compile_and_review`] is check and review together. The FP Manager runs it for each proposal on a thread of its own, with the
+//! wind and the time of day of now; `legwork check` and the window run it for each edit. The last two then try the extremes of the
+//! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MOST_TRIALS`] times). On board a proposal
+//! is answered without the extremes. A plan that was accepted is not reviewed again after a restart. For a flight under way see
+//! the module `ahead`.
 
 mod ahead;
 mod alternates;

@@ -3,8 +3,9 @@
 //! Each track gives two fly-by points: one before the area, one beyond it, so far out that the turns between tracks stay outside
 //! and every metre inside is flown on the line. The points of a turn lie side by side, so that it is made of two right angles.
 //!
-//! A concave area is flown cell by cell, and what leads from one cell to the next has points of its own: the corners of the shortest
-//! way inside.
+//! A concave area is flown cell by cell (`geometry::scan::CellScan`). Tracks come in *stretches* of neighbours; before each stretch come
+//! the corners of the shortest path inside that leads there. So every point can be addressed by number: a scan can be resumed, flown
+//! backwards and regenerated.
 
 mod layout;
 mod recipe;
