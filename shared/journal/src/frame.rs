@@ -4,7 +4,7 @@
 /// First bytes of every segment.
 const MAGIC: [u8; 8] = *b"LEGWORKJ";
 /// Version of the format; others are not read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes of a segment's header: magic, version, checksum, number.
 pub const HEADER_BYTES: usize = 24;
 /// Bytes before a frame's payload: length, its complement, index, checksum.
@@ -260,11 +260,13 @@ mod tests {
     }
 
     #[test]
-    fn version_to_come_is_named() {
-        let mut bytes = header(7);
-        bytes[8] = 2;
-        let check = checksum(&[&bytes[..8], &bytes[8..12], &bytes[16..]]);
-        bytes[12..16].copy_from_slice(&check.to_le_bytes());
-        assert_eq!(scan(&bytes), Err(NoSegment::Version(2)));
+    fn versions_before_and_to_come_are_named() {
+        for version in [VERSION - 1, VERSION + 1] {
+            let mut bytes = header(7);
+            bytes[8..12].copy_from_slice(&version.to_le_bytes());
+            let check = checksum(&[&bytes[..8], &bytes[8..12], &bytes[16..]]);
+            bytes[12..16].copy_from_slice(&check.to_le_bytes());
+            assert_eq!(scan(&bytes), Err(NoSegment::Version(version)));
+        }
     }
 }

@@ -6,7 +6,7 @@
 //! All numbers little-endian.
 //!
 //! ```text
-//! header  "LEGWORKJ" | version u32 = 1 | CRC-32 of magic, version and number | number u64
+//! header  "LEGWORKJ" | version u32 = 2 | CRC-32 of magic, version and number | number u64
 //! frame   length u32 | !length u32 | index u32 | CRC-32 of number, index and payload | payload (CBOR)
 //! ```
 //!
