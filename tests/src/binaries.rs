@@ -1,5 +1,6 @@
 //! The real programs: built once, started, listened to, ended.
 
+use crate::logs::Logs;
 use anyhow::{Context, bail};
 use std::{
     io::{BufRead, BufReader},
@@ -36,13 +37,14 @@ pub struct Program {
 }
 
 impl Program {
-    /// Starts a binary. Its standard error goes to the test's.
-    pub fn start(name: &'static str, arguments: &[&str]) -> anyhow::Result<Self> {
+    /// Starts a binary, which logs as `log`.
+    pub fn start(name: &'static str, arguments: &[&str], logs: &Logs, log: &str) -> anyhow::Result<Self> {
         let folder = BINARIES.as_ref().map_err(|e| anyhow::anyhow!("{e}"))?;
         let mut child = Command::new(folder.join(name))
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
+            .stderr(logs.of(log).context("its log")?)
             .spawn()
             .with_context(|| format!("starting {name}"))?;
         let output = child.stdout.take().context("standard output")?;

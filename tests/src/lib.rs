@@ -1,5 +1,6 @@
 //! System tests over the real binaries: what the tests in `tests/` share.
 
 pub mod binaries;
+pub mod logs;
 pub mod plans;
 pub mod rig;

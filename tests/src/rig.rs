@@ -1,6 +1,7 @@
 //! A whole system on loopback, whose time goes on only when the test says so.
 
 use crate::binaries::Program;
+use crate::logs::Logs;
 use crate::plans::Field;
 use anyhow::{Context, bail, ensure};
 use geometry::LatLon;
@@ -81,6 +82,7 @@ pub struct Rig {
     state: tempfile::TempDir,
     pace: Pace,
     ground: Option<Ground>,
+    logs: Logs,
 }
 
 /// How time passes.
@@ -144,14 +146,15 @@ impl Rig {
         );
         let mut arguments = vec!["--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", &home];
         arguments.extend(simulator_arguments);
-        let simulator = Program::start("legwork-sim", &arguments)?;
-        let autopilot = format!("tcp:{}", simulator.wait_for("listening on tcp ")?);
-        Self::assemble(Some(simulator), &autopilot, Pace::Lockstep).await
+        let logs = Logs::new()?;
+        let simulator = Program::start("legwork-sim", &arguments, &logs, "simulator")?;
+        let said = simulator.wait_for("listening on tcp ").with_context(|| logs.ends())?;
+        Self::assemble(Some(simulator), &format!("tcp:{said}"), Pace::Lockstep, logs).await
     }
 
     /// Starts the agent on somebody else's autopilot (`tcp:HOST:PORT`, …), around the place where it stands.
     pub async fn attach(autopilot: &str) -> anyhow::Result<Self> {
-        let mut rig = Self::assemble(None, autopilot, Pace::Free).await?;
+        let mut rig = Self::assemble(None, autopilot, Pace::Free, Logs::new()?).await?;
         rig.until("a position on the ground", 120.0, |rig, _| {
             rig.attitude().is_some() && rig.position().is_some_and(|p| p.on_ground)
         })
@@ -165,18 +168,23 @@ impl Rig {
         Ok(rig)
     }
 
-    async fn assemble(simulator: Option<Program>, autopilot: &str, pace: Pace) -> anyhow::Result<Self> {
+    async fn assemble(
+        simulator: Option<Program>,
+        autopilot: &str,
+        pace: Pace,
+        logs: Logs,
+    ) -> anyhow::Result<Self> {
         let state = tempfile::tempdir()?;
         let folder = state.path().join("gateway").display().to_string();
         let endpoint = format!("tcp/127.0.0.1:{}", free_port()?);
         let mut arguments = vec!["gateway", "--vehicle", VEHICLE, "--listen", &endpoint];
         arguments.extend(["--autopilot", autopilot, "--state-dir", &folder]);
         arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
-        let gateway = Program::start("onboard-agent", &arguments)?;
-        let fp_manager = start_fp_manager(&endpoint, state.path(), pace)?;
-        let ground = Some(Ground::open(&endpoint, pace).await?);
+        let gateway = Program::start("onboard-agent", &arguments, &logs, "gateway")?;
+        let fp_manager = start_fp_manager(&endpoint, state.path(), pace, &logs)?;
+        let ground = Some(Ground::open(&endpoint, pace).await.with_context(|| logs.ends())?);
         let seen = Seen::default();
-        Ok(Self { simulator, gateway, fp_manager, seen, field: FIELD, endpoint, state, pace, ground })
+        Ok(Self { simulator, gateway, fp_manager, seen, field: FIELD, endpoint, state, pace, ground, logs })
     }
 
     /// Puts a plan forward and makes it the active one.
@@ -273,7 +281,7 @@ impl Rig {
 
     /// Starts the FP Manager anew over the state it left.
     pub fn restart_fp_manager(&mut self) -> anyhow::Result<()> {
-        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path(), self.pace)?;
+        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path(), self.pace, &self.logs)?;
         Ok(())
     }
 
@@ -349,12 +357,12 @@ fn free_port() -> anyhow::Result<u16> {
     Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port())
 }
 
-fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace) -> anyhow::Result<Program> {
+fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace, logs: &Logs) -> anyhow::Result<Program> {
     let folder = state.join("fp-manager").display().to_string();
     let mut arguments =
         vec!["fp-manager", "--vehicle", VEHICLE, "--connect", endpoint, "--state-dir", &folder];
     arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
-    Program::start("onboard-agent", &arguments)
+    Program::start("onboard-agent", &arguments, logs, "fp-manager")
 }
 
 /// A value of the plan's `number` type.

@@ -10,6 +10,7 @@ use onboard_agent::{Trigger, fp_manager, shutdown};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
+use system_tests::logs::Logs;
 use tokio::process::Child;
 use tokio::task::JoinHandle;
 use usal::contract::*;
@@ -25,7 +26,7 @@ enum Manager {
 }
 
 impl Manager {
-    fn start(config: &fp_manager::Config) -> Self {
+    fn start(config: &fp_manager::Config, logs: &Logs) -> Self {
         let Some(directory) = &config.state_dir else {
             let (trigger, shutdown) = shutdown();
             let task = tokio::spawn(fp_manager::run(config.clone(), shutdown));
@@ -34,7 +35,8 @@ impl Manager {
         let mut command = tokio::process::Command::new(env!("CARGO_BIN_EXE_onboard-agent"));
         command
             .args(["fp-manager", "--simulated", "--connect", &config.connect, "--state-dir"])
-            .arg(directory);
+            .arg(directory)
+            .stderr(logs.of("fp-manager").unwrap());
         Self::Process(command.kill_on_drop(true).spawn().unwrap())
     }
 }
@@ -45,6 +47,7 @@ struct Flight {
     client: Session,
     manager: Option<Manager>,
     config: fp_manager::Config,
+    logs: Logs,
 }
 
 impl Flight {
@@ -63,13 +66,13 @@ impl Flight {
             state_dir: state_dir.map(Into::into),
             ..fp_manager::Config::new("uav1", &endpoint)
         };
-        let mut flight = Self { gateway, client, manager: None, config };
+        let mut flight = Self { gateway, client, manager: None, config, logs: Logs::new().unwrap() };
         flight.start_manager().await;
         flight
     }
 
     async fn start_manager(&mut self) {
-        self.manager = Some(Manager::start(&self.config));
+        self.manager = Some(Manager::start(&self.config, &self.logs));
         self.gateway.participants(1).await;
     }
 
@@ -470,7 +473,7 @@ async fn second_manager_of_a_vehicle_or_a_state_directory_does_not_start() {
     assert!(refused.is::<AlreadyRunning>() && refused.to_string().contains("uav1"), "{refused:#}");
     let endpoint = free_endpoint();
     let Manager::Process(mut second) =
-        Manager::start(&fp_manager::Config { connect: endpoint, ..flight.config.clone() })
+        Manager::start(&fp_manager::Config { connect: endpoint, ..flight.config.clone() }, &flight.logs)
     else {
         panic!("no process")
     };

@@ -4,6 +4,7 @@
 use mavlink::dialects::ardupilotmega::*;
 use sim::frame::{Body, Decoder, Sender, encode_from, take_frames};
 use sim::{Config, Control, Handle, Link, Mode};
+use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::process::{Command, Stdio};
@@ -256,6 +257,8 @@ fn the_binary_prints_its_address_and_obeys_lines() {
         .args(["--tcp", "127.0.0.1:0", "--wind", "270,5", "--seed", "9", "--fault", "gps-loss"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
+        // a file, so that its log is not in the way of what the tests tell
+        .stderr(File::create(concat!(env!("CARGO_TARGET_TMPDIR"), "/legwork-sim.log")).unwrap())
         .spawn()
         .unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);

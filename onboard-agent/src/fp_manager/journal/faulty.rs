@@ -23,7 +23,6 @@ struct Disk {
     faults: Vec<(Operation, ErrorKind)>,
     /// Bytes that fit.
     capacity: Option<usize>,
-    operations: u64,
 }
 
 #[derive(Default)]
@@ -152,7 +151,6 @@ impl Content {
 impl Disk {
     /// Pays for something; on death, with how much is still done.
     fn burn(&mut self, units: u64) -> Result<(), u64> {
-        self.operations += 1;
         let Some(left) = self.fuse else { return Ok(()) };
         self.fuse = Some(left.saturating_sub(units));
         if left <= units { Err(left) } else { Ok(()) }
