@@ -181,3 +181,63 @@ fn only_the_demo_sees_agent_and_simulator() {
         }
     }
 }
+
+/// Where an autopilot's protocol may be spoken. The bench plays an autopilot.
+const SPEAK_MAVLINK: &[&str] = &[
+    "onboard-agent/src/gateway/driver/",
+    "onboard-agent/benches/frame_to_subscriber.rs",
+    "shared/autopilot-link/",
+    "shared/sim/",
+    "tests/tests/architecture.rs",
+];
+
+/// Every Rust file of the workspace: its path from the root, and its code without comments.
+fn sources() -> Vec<(String, String)> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut folders: Vec<_> =
+        ["gcs-app", "onboard-agent", "shared", "tests"].iter().map(|f| root.join(f)).collect();
+    let mut found = vec![];
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(&folder).expect("folder").flatten().map(|entry| entry.path()) {
+            if path.is_dir() && !path.ends_with("target") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(&path).expect("source");
+                let code: Vec<&str> = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+                let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().into_owned();
+                found.push((name, code.join("\n")));
+            }
+        }
+    }
+    found
+}
+
+/// `MavMessage`, `MavCmd` and their like, or the crate itself.
+fn names_mavlink(code: &str) -> bool {
+    let follows = |after: &str| after.chars().next().is_some_and(char::is_uppercase);
+    code.contains("mavlink::")
+        || code.match_indices("Mav").any(|(i, found)| follows(&code[i + found.len()..]))
+}
+
+#[test]
+fn only_drivers_links_and_the_simulator_name_mavlink() {
+    let sources = sources();
+    for (name, code) in &sources {
+        let may = SPEAK_MAVLINK.iter().any(|place| name.starts_with(place));
+        assert!(may || !names_mavlink(code), "{name} names MAVLink; that is for {SPEAK_MAVLINK:?}");
+    }
+    // none of these places is there for nothing
+    for place in SPEAK_MAVLINK {
+        let used = sources.iter().any(|(name, code)| name.starts_with(place) && names_mavlink(code));
+        assert!(used, "{place} names no MAVLink");
+    }
+}
+
+#[test]
+fn the_gateways_core_knows_no_driver() {
+    for (name, code) in
+        sources().iter().filter(|(name, _)| name.starts_with("onboard-agent/src/gateway/core/"))
+    {
+        assert!(!code.contains("driver::"), "{name} knows a driver");
+    }
+}

@@ -15,7 +15,6 @@ mod station;
 mod store;
 #[cfg(test)]
 mod tests;
-pub mod window;
 
 pub use autopilot_link::{Address, AddressError};
 pub use config::Config;

@@ -1,8 +1,11 @@
 //! Pure: what the gateway asks of a driver and what a driver reports, whatever the autopilot.
+//!
+//! The core speaks of waypoints and of what it wants flown; how an autopilot is brought to do so (its list, its
+//! modes, its messages) is the driver's own business.
 
 use geometry::LatLon;
-use serde::{Deserialize, Serialize};
-use usal::contract::{Air, Attitude, Engine, Gps, Power};
+use std::borrow::Cow;
+use usal::contract::{Air, Attitude, Engine, Gps, Power, Waypoint};
 
 /// Monotonic time since an arbitrary start; in simulation, simulated time.
 pub type Time = std::time::Duration;
@@ -11,127 +14,96 @@ pub type Time = std::time::Duration;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct OrderId(pub u64);
 
-/// One entry of the autopilot's list.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Item {
-    /// Where.
-    pub position: LatLon,
-    /// Metres above mean sea level.
-    pub altitude_amsl_m: f64,
-    /// What to do there.
-    pub kind: ItemKind,
-}
+/// Number of a waypoint between core and driver: counts up from 1, and none is used twice. (Tokens belong to
+/// the FP Manager; the gateway's own waypoints all have token 0.)
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Serial(pub u64);
 
-/// What an entry of the autopilot's list does.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum ItemKind {
-    /// The take-off place, entry 0.
-    Home,
-    /// Take off and climb to the altitude.
-    TakeOff,
-    /// Fly to it.
-    Fly {
-        /// Cross it before turning.
-        over: bool,
-    },
-    /// Circle it for ever; positive radius clockwise, metres; 0: the autopilot's own radius.
-    Loiter {
-        /// Signed radius, metres.
-        radius_m: f64,
-    },
-    /// Touch down there.
-    Land,
-    /// Go on at another entry, for ever.
-    Jump {
-        /// That entry.
-        to: u16,
-    },
-    /// An entry that we did not write and do not understand.
-    Foreign,
+/// A waypoint with its number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fed {
+    /// Its number.
+    pub serial: Serial,
+    /// The waypoint.
+    pub waypoint: Waypoint,
 }
 
 /// Who steers, as far as the gateway needs to know.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// The list is flown.
-    Auto,
+    /// The waypoints are flown.
+    Waypoints,
     /// It circles where it is.
-    Loiter,
+    Hold,
     /// It goes to a place that was commanded.
-    Guided,
+    Direct,
     /// It returns home by itself.
     Return,
     /// Anything else (a pilot's mode), by the autopilot's own number.
     Other(u32),
 }
 
-/// ArduPlane's numbers and names of the modes that the gateway never orders.
-const OTHER_MODES: [(u32, &str); 15] = [
-    (0, "MANUAL"),
-    (1, "CIRCLE"),
-    (2, "STABILIZE"),
-    (3, "TRAINING"),
-    (4, "ACRO"),
-    (5, "FBWA"),
-    (6, "FBWB"),
-    (7, "CRUISE"),
-    (8, "AUTOTUNE"),
-    (13, "TAKEOFF"),
-    (14, "AVOID_ADSB"),
-    (16, "INITIALISING"),
-    (24, "THERMAL"),
-    (25, "LOITER_ALT_QLAND"),
-    (26, "AUTOLAND"),
-];
-
-impl std::fmt::Display for Mode {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Mode::Auto => f.write_str("AUTO"),
-            Mode::Loiter => f.write_str("LOITER"),
-            Mode::Guided => f.write_str("GUIDED"),
-            Mode::Return => f.write_str("RTL"),
-            Mode::Other(n) => match OTHER_MODES.iter().find(|(number, _)| number == n) {
-                Some((_, name)) => f.write_str(name),
-                None => write!(f, "mode {n}"),
-            },
-        }
-    }
-}
-
-/// What a driver is asked to do. Each is answered by exactly one [`Report::Done`],
-/// [`Report::Failed`] or [`Report::List`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum Order {
-    /// Overwrite entries from `start` on, and verify them.
-    Write {
-        /// First entry.
-        start: u16,
-        /// What comes there.
-        items: Vec<Item>,
-    },
-    /// Replace the whole list, and verify it.
-    Upload {
-        /// The list, entry 0 (home) first.
-        items: Vec<Item>,
-    },
-    /// Read the whole list.
-    Read,
-    /// Steer to this entry.
-    SetCurrent(u16),
-    /// Change mode.
-    SetMode(Mode),
-    /// Arm.
-    Arm,
-    /// Airspeed from now on, m/s.
-    Speed(f64),
-    /// Go there, in [`Mode::Guided`].
-    GoTo {
+/// What the autopilot is to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Aim {
+    /// Fly the waypoints that were fed.
+    Waypoints,
+    /// Circle.
+    Hold,
+    /// Go to a place, and circle there.
+    Direct {
         /// Where.
         position: LatLon,
         /// Metres AMSL.
         altitude_amsl_m: f64,
     },
+    /// Go home by its own means.
+    Return,
+}
+
+impl Aim {
+    /// What is reported when it is done.
+    pub fn mode(&self) -> Mode {
+        match self {
+            Aim::Waypoints => Mode::Waypoints,
+            Aim::Hold => Mode::Hold,
+            Aim::Direct { .. } => Mode::Direct,
+            Aim::Return => Mode::Return,
+        }
+    }
+}
+
+/// What a driver is asked to do.
+///
+/// Those about waypoints (the first four) are not answered: what came of them is seen in [`Report::Course`]. A
+/// driver goes on trying until the autopilot has what was fed. Take-off and landing are waypoints.
+/// The others are answered by exactly one [`Report::Done`], [`Report::Failed`] or [`Report::Adopted`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Order {
+    /// What was fed behind the waypoint `after` is cancelled (0: everything), and these follow. One
+    /// transaction, as seen by the aircraft: it never steers to a cancelled waypoint that it was not already
+    /// steering to, and behind the last one it circles.
+    Feed {
+        /// The last one that stays.
+        after: Serial,
+        /// What follows it.
+        waypoints: Vec<Fed>,
+    },
+    /// Leave this waypoint, which is being circled, for the one after it.
+    Leave(Serial),
+    /// The flight is over: the waypoints mean nothing any more.
+    Forget,
+    /// The pilot flies, or the flight was ended by force: change nothing aboard until that is over.
+    HandsOff(bool),
+    /// The aircraft was met in flight: find out whether it flies waypoints of ours. These are known of an
+    /// earlier gateway, the one steered to first.
+    Adopt(Vec<Fed>),
+    /// Change what is done.
+    Steer(Aim),
+    /// Arm.
+    Arm,
+    /// Airspeed from now on, m/s.
+    Speed(f64),
     /// End the flight by force: stop the engine now.
     Terminate,
 }
@@ -143,15 +115,21 @@ pub enum Report {
     Done(OrderId),
     /// An order was refused or never confirmed; what it was about is in an unknown condition.
     Failed(OrderId, String),
-    /// The list that was asked for.
-    List(OrderId, Vec<Item>),
+    /// Of the waypoints to be adopted, so many are really aboard. `None`: it flies none of ours.
+    Adopted(OrderId, Option<usize>),
     /// Sign of life.
     Heard {
-        /// The autopilot's mode.
+        /// Who steers.
         mode: Mode,
+        /// What the autopilot calls that.
+        name: Cow<'static, str>,
         /// Engine may run.
         armed: bool,
     },
+    /// Another sign of life, without news.
+    Alive,
+    /// How far it is with the waypoints; told when it changes.
+    Course(Course),
     /// Where it is.
     Fix(Fix),
     /// Attitude.
@@ -164,8 +142,6 @@ pub enum Report {
     Engine(Engine),
     /// Energy.
     Power(Power),
-    /// The entry it says it is steering to.
-    Current(u16),
     /// The take-off place.
     Home {
         /// Where.
@@ -179,6 +155,43 @@ pub enum Report {
     Rebooted,
     /// What kind of autopilot it is, and why it can't be flown if it can't.
     Capability(Result<&'static str, String>),
+}
+
+/// How far the autopilot is with the waypoints that were fed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Course {
+    /// Waypoints of ours are aboard.
+    pub aboard: bool,
+    /// All that has to be aboard is, and the aircraft may be let loose on it.
+    pub ready: bool,
+    /// What it steers to, or will when it flies the waypoints.
+    pub target: Target,
+}
+
+/// What the autopilot steers to, as it says itself.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Target {
+    /// Nothing that we told it.
+    #[default]
+    None,
+    /// This waypoint; it may have been cancelled meanwhile. Those before it were flown.
+    Waypoint(Serial),
+    /// Something that was never fed, or is no longer known; it is left for `next` as soon as possible.
+    Elsewhere {
+        /// Those before this one were flown.
+        next: Serial,
+        /// Where it is.
+        position: LatLon,
+        /// Metres AMSL.
+        altitude_amsl_m: f64,
+    },
+    /// It is not certain.
+    Unknown {
+        /// Those before this one were flown.
+        next: Serial,
+    },
+    /// Every waypoint was flown, and it circles behind the last.
+    End,
 }
 
 /// Position and velocity as measured.

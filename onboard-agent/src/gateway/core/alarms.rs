@@ -143,7 +143,7 @@ impl Alarms {
         self.raised.iter().map(|w| w.alarm()).collect()
     }
 
-    /// CommandReview at everything once; events go to `out`.
+    /// Looks at everything once; events go to `out`.
     pub fn update(&mut self, now: Time, t: &Telemetry, conduct: AlarmInputs, out: &mut Vec<GatewayEvent>) {
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
@@ -248,7 +248,7 @@ mod tests {
     fn good(tenth: i64) -> Vec<Report> {
         let lat = 36.0 + tenth as f64 * 2e-5;
         vec![
-            Report::Heard { mode: Mode::Auto, armed: true },
+            Report::Heard { mode: Mode::Waypoints, name: "AUTO".into(), armed: true },
             Report::OnGround(false),
             Report::Fix(Fix {
                 position: LatLon::new(lat, -84.0),

@@ -1,7 +1,7 @@
 //! Is a batch of waypoints fit to be taken? Its length and its tokens are judged here, each waypoint by the rules that the
 //! review of a plan shares ([`plausibility`]).
 
-use crate::gateway::window::CAPACITY;
+use super::buffer::CAPACITY;
 use flight_exec::review::plausibility::{self, Context};
 use usal::contract::{Token, Waypoint};
 

@@ -3,8 +3,7 @@
 use super::Gateway;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_flying};
-use crate::gateway::order::{Item, ItemKind, Mode, Order, OrderId, Time};
-use crate::gateway::window::Window;
+use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
 use usal::contract::{Action, GatewayState};
@@ -36,15 +35,16 @@ pub struct Control {
     pub safe_since: Option<Time>,
     /// Safe mode was commanded, or the FP Manager could not fly on: only a command ends it.
     pub safe_until_command: bool,
-    /// The entry that the autopilot last said it steers to.
-    pub current_seq: Option<u16>,
     /// What the driver said of this autopilot.
     pub capability: Option<Result<(), String>>,
     /// Place and height of a direct command.
     pub direct: Option<(LatLon, f64)>,
+    /// It has not been carried out yet.
+    pub direct_due: bool,
+    /// Waypoints that may be aboard of a flight that was met in the air.
+    pub adopting: Vec<Fed>,
     speed_mps: Option<f64>,
     last_id: u64,
-    list: Option<OrderId>,
     mode: Option<(OrderId, Mode)>,
     /// The mode last ordered, while it may still come into effect.
     ordered: Option<Mode>,
@@ -52,8 +52,7 @@ pub struct Control {
     confirmed_at: Option<Time>,
     arm: Option<OrderId>,
     speed: Option<(OrderId, f64)>,
-    goto: Option<OrderId>,
-    read: Option<OrderId>,
+    adopt: Option<OrderId>,
 }
 
 impl Default for Control {
@@ -66,19 +65,18 @@ impl Default for Control {
             retry_at: None,
             safe_since: None,
             safe_until_command: false,
-            current_seq: None,
             capability: None,
             direct: None,
+            direct_due: false,
+            adopting: vec![],
             speed_mps: None,
             last_id: 0,
-            list: None,
             mode: None,
             ordered: None,
             confirmed_at: None,
             arm: None,
             speed: None,
-            goto: None,
-            read: None,
+            adopt: None,
         }
     }
 }
@@ -92,12 +90,7 @@ impl Control {
 
     /// The flight is over: want nothing, expect nothing.
     pub fn reset(&mut self) {
-        *self = Self {
-            last_id: self.last_id,
-            capability: self.capability.take(),
-            list: self.list,
-            ..Self::default()
-        };
+        *self = Self { last_id: self.last_id, capability: self.capability.take(), ..Self::default() };
     }
 
     /// Changes what is wanted.
@@ -116,10 +109,9 @@ impl Control {
     }
 
     /// An order was carried out.
-    pub fn done(&mut self, id: OrderId, window: &mut Window) {
-        if self.list == Some(id) {
-            self.list = None;
-            window.done();
+    pub fn done(&mut self, id: OrderId) {
+        if self.mode == Some((id, Mode::Direct)) {
+            self.direct_due = false;
         }
         if let Some((speed, mps)) = self.speed
             && speed == id
@@ -131,11 +123,7 @@ impl Control {
     }
 
     /// An order failed. True: it was the arming of a launch.
-    pub fn failed(&mut self, now: Time, id: OrderId, window: &mut Window) -> bool {
-        if self.list == Some(id) {
-            self.list = None;
-            window.failed();
-        }
+    pub fn failed(&mut self, now: Time, id: OrderId) -> bool {
         let arming = self.arm == Some(id);
         self.retry_at = Some(now + RETRY);
         self.forget(id);
@@ -147,7 +135,7 @@ impl Control {
         if self.mode.is_some_and(|(mode, _)| mode == id) {
             self.mode = None;
         }
-        for lane in [&mut self.arm, &mut self.goto, &mut self.read] {
+        for lane in [&mut self.arm, &mut self.adopt] {
             if *lane == Some(id) {
                 *lane = None;
             }
@@ -160,9 +148,9 @@ impl Control {
     fn wanted_mode(&self) -> Option<Mode> {
         match self.intent {
             Intent::Nothing => None,
-            Intent::Fly => Some(Mode::Auto),
-            Intent::Hold => Some(Mode::Loiter),
-            Intent::Direct => Some(Mode::Guided),
+            Intent::Fly => Some(Mode::Waypoints),
+            Intent::Hold => Some(Mode::Hold),
+            Intent::Direct => Some(Mode::Direct),
             Intent::Return => Some(Mode::Return),
         }
     }
@@ -201,25 +189,24 @@ impl Gateway {
         if !self.control.may_retry(now) {
             return;
         }
-        self.steer_list(out);
         self.steer_mode(now, out);
         self.steer_speed(out);
-        self.leave_loiter();
+        self.leave_loiter(out);
     }
 
     /// A gateway that starts while the aircraft flies: it looks what is flown before it acts.
     fn meet_in_flight(&mut self, out: &mut Vec<Output>) {
-        let unknown = !self.window.installed() && self.control.intent == Intent::Nothing;
+        let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
         let aloft = self.telemetry.is_airborne() && self.telemetry.on_ground == Some(false);
-        if self.state != GatewayState::Stop || !unknown || !aloft || self.control.current_seq.is_none() {
-            return;
-        }
-        if self.control.list.is_some() || self.control.read.is_some() {
+        if self.state != GatewayState::Stop || !unknown || !aloft || self.control.adopt.is_some() {
             return;
         }
         match self.telemetry.mode {
-            Some(Mode::Auto | Mode::Loiter | Mode::Guided) => {
-                self.control.read = Some(self.order(Order::Read, out));
+            Some(Mode::Waypoints | Mode::Hold | Mode::Direct) => {
+                let known = self.adopting.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
+                self.control.adopting = self.buffer.number(known);
+                let order = Order::Adopt(self.control.adopting.clone());
+                self.control.adopt = Some(self.order(order, out));
             }
             Some(_) => self.change(Trigger::PilotTook, "met in flight under a pilot's control", out),
             None => {}
@@ -229,7 +216,7 @@ impl Gateway {
     /// The human pilot has priority: a mode that we did not ask for is respected.
     fn yield_to_pilot(&mut self, now: Time, out: &mut Vec<Output>) {
         let (Some(mode), armed) = (self.telemetry.mode, self.telemetry.armed) else { return };
-        if self.state == GatewayState::Manual && mode == Mode::Auto && armed && self.window.installed() {
+        if self.state == GatewayState::Manual && self.flies_waypoints() && self.buffer.course().aboard {
             self.control.set_intent(Intent::Fly, Some(mode));
         }
         let Some(wanted) = self.control.wanted_mode().filter(|_| armed) else {
@@ -242,7 +229,8 @@ impl Gateway {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);
         } else if self.control.confirmed || Some(mode) != self.control.mode_before {
-            let cause = format!("the autopilot was switched to {mode}, and not by the gateway");
+            let cause =
+                format!("the autopilot was switched to {}, and not by the gateway", self.telemetry.mode_name);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.change(Trigger::PilotTook, &cause, out);
             out.push(Output::Save);
@@ -251,60 +239,56 @@ impl Gateway {
         }
     }
 
-    fn steer_list(&mut self, out: &mut Vec<Output>) {
-        let supported = matches!(self.control.capability, Some(Ok(())));
-        let pilot = self.state == GatewayState::Manual || self.state == GatewayState::Terminate;
-        if self.control.list.is_some() || self.control.read.is_some() || !supported || pilot {
-            return;
-        }
-        let may_install = !self.is_in_auto();
-        let home = self.home_item();
-        if let Some(order) = self.window.next_order(may_install, home) {
-            self.control.list = Some(self.order(order, out));
-        }
-    }
-
-    fn home_item(&self) -> Option<Item> {
-        let fix = self.telemetry.fix.map(|(_, f)| (f.position, f.altitude_amsl_m - f.altitude_home_m));
-        let (position, altitude_amsl_m) = self.telemetry.home.or(fix)?;
-        Some(Item { position, altitude_amsl_m, kind: ItemKind::Home })
-    }
-
     fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
         let Some(wanted) = self.control.wanted_mode() else { return };
-        let flies_list = wanted == Mode::Auto;
-        if flies_list && !self.window.ready() && !self.is_in_auto() {
+        let flies = wanted == Mode::Waypoints;
+        if flies && !self.buffer.course().ready && !self.flies_waypoints() {
             return;
         }
         if !self.telemetry.armed {
-            if flies_list && self.state == GatewayState::Stop && self.control.arm.is_none() {
+            if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
                 self.control.arm = Some(self.order(Order::Arm, out));
                 self.control.retry_at = Some(now + RETRY);
             }
             return;
         }
-        if self.telemetry.mode != Some(wanted) && self.control.mode.is_none() {
-            let id = self.order(Order::SetMode(wanted), out);
+        let due = self.telemetry.mode != Some(wanted) || (wanted == Mode::Direct && self.control.direct_due);
+        if due
+            && !self.is_steering(wanted)
+            && let Some(aim) = self.aim()
+        {
+            let id = self.order(Order::Steer(aim), out);
             self.control.mode = Some((id, wanted));
             self.control.ordered = Some(wanted);
         }
-        self.steer_direct(wanted, out);
     }
 
-    fn steer_direct(&mut self, wanted: Mode, out: &mut Vec<Output>) {
-        if wanted != Mode::Guided || self.telemetry.mode != Some(Mode::Guided) || self.control.goto.is_some()
-        {
-            return;
-        }
-        if let Some((position, altitude_amsl_m)) = self.control.direct.take() {
-            self.control.goto = Some(self.order(Order::GoTo { position, altitude_amsl_m }, out));
-        }
+    /// An order to steer is in flight. One that was confirmed by the mode need not be waited for by another.
+    fn is_steering(&self, wanted: Mode) -> bool {
+        let overtaken = |ordered| ordered != wanted && self.telemetry.mode == Some(ordered);
+        self.control.mode.is_some_and(|(_, ordered)| !overtaken(ordered))
+    }
+
+    fn aim(&self) -> Option<Aim> {
+        Some(match self.control.intent {
+            Intent::Nothing => return None,
+            Intent::Fly => Aim::Waypoints,
+            Intent::Hold => Aim::Hold,
+            Intent::Direct => {
+                // one that was given to an earlier gateway is not known: stay here
+                let here = self.telemetry.fix.map(|(_, f)| (f.position, f.altitude_amsl_m));
+                let (position, altitude_amsl_m) = self.control.direct.or(here)?;
+                Aim::Direct { position, altitude_amsl_m }
+            }
+            Intent::Return => Aim::Return,
+        })
     }
 
     fn steer_speed(&mut self, out: &mut Vec<Output>) {
-        let wanted = match self.window.current() {
+        let wanted = match self.buffer.current() {
             Some(w)
-                if self.is_in_auto() && !matches!(w.action, Action::TakeOff { .. } | Action::Land { .. }) =>
+                if self.flies_waypoints()
+                    && !matches!(w.action, Action::TakeOff { .. } | Action::Land { .. }) =>
             {
                 w.airspeed_mps
             }
@@ -324,13 +308,16 @@ impl Gateway {
     }
 
     /// A loiter lasts until something follows it.
-    fn leave_loiter(&mut self) {
-        let Some(waypoint) = self.window.current() else { return };
+    fn leave_loiter(&mut self, out: &mut Vec<Output>) {
+        let Some(waypoint) = self.buffer.current() else { return };
         let Action::Loiter { radius_m } = waypoint.action else { return };
         let Some(place) = self.place() else { return };
         let reached = place.distance_m(waypoint.position) < LOITER_REACHED * radius_m.abs();
-        if reached && self.is_in_auto() {
-            self.window.leave_loiter();
+        if reached
+            && self.flies_waypoints()
+            && let Some(order) = self.buffer.leave()
+        {
+            self.order(order, out);
         }
     }
 }

@@ -19,7 +19,7 @@ impl Gateway {
         if self.state == GatewayState::Stop && join.last_token < self.highest {
             // a new FP Manager on the ground: a new flight
             self.highest = join.last_token;
-            self.window.clear();
+            self.forget_waypoints(out);
         }
         self.recover(now, out);
         out.push(Output::Save);
@@ -62,8 +62,8 @@ impl Gateway {
         JoinAnswer {
             accepted,
             reason,
-            current: self.window.current().and_then(|w| own(w.token)),
-            last: self.window.chain().last().and_then(|w| own(w.token)),
+            current: self.buffer.current().and_then(|w| own(w.token)),
+            last: self.buffer.last().and_then(|w| own(w.token)),
             highest: self.highest,
             finished: self.finished,
         }
@@ -72,14 +72,14 @@ impl Gateway {
     /// Gives the aircraft back to the FP Manager: on with the waypoints aboard, or holding until
     /// it sends some.
     pub(super) fn recover(&mut self, now: Time, out: &mut Vec<Output>) {
-        let theirs = self.window.chain().waypoints().any(|w| w.token.0 > 0);
+        let theirs = self.buffer.waypoints().any(|w| w.token.0 > 0);
         match self.state {
             GatewayState::SafeHold if theirs => {
                 self.control.set_intent(Intent::Fly, self.telemetry.mode);
                 self.change(Trigger::Recovered, "the FP Manager is back", out);
             }
             GatewayState::SafeHold | GatewayState::SafeReturn => {
-                self.window.feed(Some(Token(0)), vec![]);
+                self.feed_driver(Some(Token(0)), vec![], out);
                 self.control.set_intent(Intent::Hold, self.telemetry.mode);
                 self.fp_manager.awaited_since = Some(now);
                 self.change(Trigger::RecoveredDry, "the FP Manager is back; waiting for its waypoints", out);
@@ -98,7 +98,7 @@ impl Gateway {
         if !faults.is_empty() {
             return FeedAnswer::Refused { faults };
         }
-        if feed.waypoints.len() > self.window.chain().room(feed.cancel_after) {
+        if feed.waypoints.len() > self.buffer.room(feed.cancel_after) {
             return FeedAnswer::Full;
         }
         self.take(feed, out);
@@ -121,12 +121,11 @@ impl Gateway {
     }
 
     fn faults(&self, feed: &Feed) -> Vec<batch::Fault> {
-        let chain = self.window.chain();
         let terrain = self.settings.terrain.as_deref();
         let context =
             Context { profile: &self.settings.profile, terrain, wind_mps: self.telemetry.wind_mps() };
         let here = self.here(feed);
-        let previous = chain.predecessor(feed.cancel_after).or(here.as_ref());
+        let previous = self.buffer.predecessor(feed.cancel_after).or(here.as_ref());
         batch::faults(&context, self.highest, previous, &feed.waypoints)
     }
 
@@ -140,7 +139,7 @@ impl Gateway {
     fn take(&mut self, feed: Feed, out: &mut Vec<Output>) {
         let last = feed.waypoints.last().map(|w| w.token);
         self.highest = self.highest.max(last.unwrap_or(Token(0)));
-        self.window.feed(feed.cancel_after, feed.waypoints);
+        self.feed_driver(feed.cancel_after, feed.waypoints, out);
         self.ended = false;
         self.finished = false;
         self.low_told = false;

@@ -6,6 +6,7 @@
 
 mod alarms;
 mod batch;
+mod buffer;
 mod control;
 mod feeding;
 mod io;
@@ -16,12 +17,14 @@ mod supervise;
 mod telemetry;
 mod views;
 
+#[cfg(test)]
+pub use buffer::CAPACITY;
 pub use io::{Answer, Input, Intent, Output, Settings, Snapshot};
 pub use telemetry::{Telemetry, Timed};
 
-use super::order::{Mode, Order, OrderId, Report, Time};
-use super::window::Window;
+use super::order::{Course, Mode, Order, OrderId, Report, Time};
 use alarms::{AlarmInputs, Alarms};
+use buffer::Buffer;
 use control::Control;
 use geometry::LatLon;
 use states::{Trigger, is_flying, is_safe};
@@ -31,8 +34,6 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
-/// The list may be flown elsewhere for so long before the aircraft is brought back.
-const ASTRAY_FOR: Duration = Duration::from_secs(2);
 /// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
 const MISSING_M: f64 = 3.0;
 const SINKING_MPS: f64 = 0.5;
@@ -44,7 +45,7 @@ pub struct Gateway {
     cause: String,
     telemetry: Telemetry,
     alarms: Alarms,
-    window: Window,
+    buffer: Buffer,
     control: Control,
     fp_manager: FpManager,
     safe: SafeParameters,
@@ -59,7 +60,6 @@ pub struct Gateway {
     low_told: bool,
     /// What must survive a restart can't be written.
     not_stored: bool,
-    astray_since: Option<Time>,
     /// The flight was ended by force, perhaps before a restart; until it is on the ground.
     terminated: bool,
     /// A flight was met in the air: what was known of it.
@@ -76,7 +76,7 @@ impl Gateway {
             cause: "the autopilot was not heard yet".into(),
             telemetry: Telemetry::default(),
             alarms: Alarms::default(),
-            window: Window::default(),
+            buffer: Buffer::default(),
             control: Control::default(),
             fp_manager: FpManager::default(),
             safe: known.as_ref().map_or_else(SafeParameters::default, |k| k.safe),
@@ -87,7 +87,6 @@ impl Gateway {
             told: None,
             low_told: false,
             not_stored: false,
-            astray_since: None,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
         }
@@ -144,7 +143,7 @@ impl Gateway {
             safe: self.safe,
             highest: self.highest,
             intent: self.control.intent,
-            waypoints: self.window.chain().waypoints().cloned().collect(),
+            waypoints: self.buffer.waypoints().cloned().collect(),
             plan: self.fp_manager.plan.clone(),
             terminated: self.terminated,
         }
@@ -153,34 +152,23 @@ impl Gateway {
     fn report(&mut self, now: Time, report: Report, out: &mut Vec<Output>) {
         self.telemetry.take(now, &report);
         match report {
-            Report::Current(seq) => self.current(now, seq),
-            Report::Done(id) => self.control.done(id, &mut self.window),
+            Report::Course(course) => self.heard(course),
+            Report::Done(id) => self.control.done(id),
             Report::Failed(id, why) => self.failed(now, id, why, out),
-            Report::List(id, list) => self.adopt(id, &list, out),
-            Report::Rebooted => self.window.invalidate(),
+            Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
             _ => {}
         }
     }
 
-    fn current(&mut self, now: Time, seq: u16) {
-        self.control.current_seq = Some(seq);
-        let ends = self.window.chain().last().is_some_and(|w| w.end_of_plan);
-        self.window.reported(seq);
-        self.ended |= ends && self.window.at_end_loiter();
-        if !self.window.is_astray(seq) || !self.is_in_auto() {
-            self.astray_since = None;
-            return;
-        }
-        let since = *self.astray_since.get_or_insert(now);
-        if now.saturating_sub(since) > ASTRAY_FOR {
-            self.astray_since = None;
-            self.window.bring_back();
-        }
+    fn heard(&mut self, course: Course) {
+        let ends = self.buffer.last().is_some_and(|w| w.end_of_plan);
+        self.buffer.heard(course);
+        self.ended |= ends && self.buffer.at_end();
     }
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
-        let launch = self.control.failed(now, id, &mut self.window);
+        let launch = self.control.failed(now, id);
         if launch && self.state == GatewayState::Stop {
             self.control.set_intent(Intent::Nothing, self.telemetry.mode);
             self.cause = format!("launch refused by the autopilot: {why}");
@@ -188,15 +176,16 @@ impl Gateway {
         }
     }
 
-    /// Takes over a flight that was met in the air, if the list that it flies is one of ours.
-    fn adopt(&mut self, id: OrderId, list: &[super::order::Item], out: &mut Vec<Output>) {
+    /// Takes over a flight that was met in the air, if it flies waypoints of ours.
+    fn adopt(&mut self, id: OrderId, aboard: Option<usize>, out: &mut Vec<Output>) {
         self.control.forget(id);
+        let mut waypoints = std::mem::take(&mut self.control.adopting);
         let known = self.adopting.take();
         let intent = known.as_ref().map_or(Intent::Fly, |k| k.intent);
-        let waypoints = known.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
         self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
-        let current = self.control.current_seq.unwrap_or(0);
-        if self.window.adopt(list, current, waypoints) {
+        if let Some(count) = aboard {
+            waypoints.truncate(count);
+            self.buffer.adopt(waypoints);
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(intent, self.telemetry.mode);
             out.push(Output::Save);
@@ -216,15 +205,15 @@ impl Gateway {
     }
 
     fn sinks_below_target(&self) -> bool {
-        let Some((_, fix)) = self.telemetry.fix.filter(|_| self.is_in_auto()) else { return false };
-        let target = self.window.current().filter(|w| matches!(w.action, Action::Fly));
+        let Some((_, fix)) = self.telemetry.fix.filter(|_| self.flies_waypoints()) else { return false };
+        let target = self.buffer.current().filter(|w| matches!(w.action, Action::Fly));
         target.is_some_and(|w| {
             fix.altitude_amsl_m < w.altitude_amsl_m - MISSING_M && fix.down_mps > SINKING_MPS
         })
     }
 
-    fn is_in_auto(&self) -> bool {
-        self.telemetry.armed && self.telemetry.mode == Some(Mode::Auto)
+    fn flies_waypoints(&self) -> bool {
+        self.telemetry.armed && self.telemetry.mode == Some(Mode::Waypoints)
     }
 
     /// What the autopilot is seen to do.
@@ -247,45 +236,49 @@ impl Gateway {
         let (mode, intent) = (self.telemetry.mode?, self.control.intent);
         let aloft = is_flying(self.state) || self.telemetry.is_airborne();
         match mode {
-            Mode::Auto if self.is_in_auto() && self.window.installed() => self.seen_in_auto(),
-            Mode::Loiter if intent == Intent::Hold && aloft => {
+            Mode::Waypoints if self.flies_waypoints() && self.buffer.course().aboard => self.seen_on_course(),
+            Mode::Hold if intent == Intent::Hold && aloft => {
                 Some((Trigger::HoldConfirmed, "holding as asked"))
             }
-            Mode::Guided if intent == Intent::Direct && aloft => {
+            Mode::Direct if intent == Intent::Direct && aloft => {
                 Some((Trigger::DirectConfirmed, "following a direct command"))
             }
             _ => None,
         }
     }
 
-    fn seen_in_auto(&self) -> Option<(Trigger, &'static str)> {
+    fn seen_on_course(&self) -> Option<(Trigger, &'static str)> {
         if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
             return None;
         }
-        let Some(waypoint) = self.window.current() else {
+        let Some(waypoint) = self.buffer.current() else {
             // adopted, and nothing is known of what it flies: Safe mode will see to it
-            let unknown = self.state == GatewayState::Stop && self.window.at_end_loiter();
+            let unknown = self.state == GatewayState::Stop && self.buffer.at_end();
             return unknown.then_some((Trigger::Cruising, "met in flight"));
         };
         let seen = match waypoint.action {
             Action::TakeOff { .. } => (Trigger::Departing, "taking off"),
             Action::Land { .. } => (Trigger::Landing, "steering to the touch-down"),
-            _ if self.window.next_is_land() => (Trigger::Approaching, "the landing comes next"),
+            _ if self.is_landing_next() => (Trigger::Approaching, "the landing comes next"),
             _ => (Trigger::Cruising, "flying waypoints"),
         };
         Some(seen)
     }
 
+    fn is_landing_next(&self) -> bool {
+        self.buffer.next().is_some_and(|w| matches!(w.action, Action::Land { .. }))
+    }
+
     fn land(&mut self, out: &mut Vec<Output>) {
         // the way home of Safe mode has tokens 0: with it nothing of the plan was flown
         let theirs = |w: &Waypoint| matches!(w.action, Action::Land { .. }) && w.token > Token(0);
-        self.finished = self.window.current().is_some_and(theirs) && self.told.is_some();
+        self.finished = self.buffer.current().is_some_and(theirs) && self.told.is_some();
         if self.finished {
             self.told = Some(None);
             out.push(Output::Event(GatewayEvent::Progress { current: None, taken: self.highest }));
         }
         self.change(Trigger::Landed, "landed and disarmed", out);
-        self.window.clear();
+        self.forget_waypoints(out);
         self.control.reset();
         self.told = None;
         self.ended = false;
@@ -303,19 +296,22 @@ impl Gateway {
         if to != GatewayState::Hold {
             self.fp_manager.awaited_since = None;
         }
+        if hands_off(from) != hands_off(to) {
+            self.order(Order::HandsOff(hands_off(to)), out);
+        }
         out.push(Output::Event(GatewayEvent::StateChanged { from, to, cause: cause.to_owned() }));
     }
 
     /// Progress, and the level of the buffer.
     fn tell(&mut self, out: &mut Vec<Output>) {
-        if !is_flying(self.state) || !self.window.installed() {
+        if !is_flying(self.state) || !self.buffer.course().aboard {
             return;
         }
-        let current = match self.window.current() {
+        let current = match self.buffer.current() {
             // our own waypoints are nobody else's business
             Some(w) if w.token == Token(0) => return,
             Some(w) => Some(w.token),
-            None if self.window.at_end_loiter() && !is_safe(self.state) => None,
+            None if self.buffer.at_end() && !is_safe(self.state) => None,
             None => return,
         };
         if self.told == Some(current) || (self.told.is_none() && current.is_none()) {
@@ -336,6 +332,17 @@ impl Gateway {
         self.low_told = low;
     }
 
+    /// Cancels and appends, as one transaction.
+    fn feed_driver(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>, out: &mut Vec<Output>) {
+        let order = self.buffer.feed(cancel_after, waypoints);
+        self.order(order, out);
+    }
+
+    fn forget_waypoints(&mut self, out: &mut Vec<Output>) {
+        self.buffer.clear();
+        self.order(Order::Forget, out);
+    }
+
     fn place(&self) -> Option<LatLon> {
         self.telemetry.fix.map(|(_, f)| f.position)
     }
@@ -345,6 +352,11 @@ impl Gateway {
         out.push(Output::Order(id, order));
         id
     }
+}
+
+/// Nothing aboard is to be changed by us.
+fn hands_off(state: GatewayState) -> bool {
+    matches!(state, GatewayState::Manual | GatewayState::Terminate)
 }
 
 /// Seconds as a duration; nonsense gives zero.

@@ -46,7 +46,7 @@ impl Gateway {
             Some(Err(why)) => return Err(why.clone()),
             None => return Err("The autopilot has not said yet what it is; try again.".into()),
         }
-        if self.window.chain().is_empty() {
+        if self.buffer.is_empty() {
             return Err("There is nothing to fly; start a plan first.".into());
         }
         if !self.telemetry.gps.is_some_and(|(_, g)| g.fix_3d) {
@@ -83,7 +83,7 @@ impl Gateway {
         if self.state != GatewayState::Manual {
             self.is_free()?;
         }
-        if self.window.chain().is_empty() {
+        if self.buffer.is_empty() {
             return Err("There are no waypoints to go on with.".into());
         }
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
@@ -114,6 +114,7 @@ impl Gateway {
             ));
         }
         self.control.direct = Some((place.destination(heading_deg, DIRECT_M), altitude_amsl_m));
+        self.control.direct_due = true;
         self.control.set_intent(Intent::Direct, self.telemetry.mode);
         self.order_speed(airspeed_mps, out);
         out.push(Output::Save);

@@ -175,6 +175,68 @@ mod tests {
         }
     }
 
+    /// A trigger in words.
+    fn explained(trigger: Trigger) -> &'static str {
+        match trigger {
+            Trigger::Heard => "the autopilot is heard",
+            Trigger::Lost => "the autopilot is silent for 10 s",
+            Trigger::Departing => "it steers to a take-off",
+            Trigger::Cruising => "it steers to a waypoint",
+            Trigger::Approaching => "a landing follows the waypoint it steers to",
+            Trigger::Landing => "it steers to a landing",
+            Trigger::Landed => "on the ground and disarmed",
+            Trigger::HoldConfirmed => "it circles, as we asked",
+            Trigger::DirectConfirmed => "it follows our direct command",
+            Trigger::PilotTook => "its mode was changed, and not by us",
+            Trigger::SafeNeeded => {
+                "FP Manager silent (T1), waypoints run dry, its waypoints do not come (T2), or by command"
+            }
+            Trigger::ReturnDue => "Safe.Hold has lasted T2",
+            Trigger::Recovered => "the FP Manager is back and has waypoints aboard",
+            Trigger::RecoveredDry => "the FP Manager is back and has to send waypoints first",
+            Trigger::Terminated => "by command, confirmed with the vehicle's name",
+        }
+    }
+
+    /// Where a trigger leads to, if that is the same wherever it means something in flight.
+    fn common(trigger: Trigger) -> Option<GatewayState> {
+        let to: Vec<_> = STATES.iter().filter_map(|from| next(*from, trigger)).collect();
+        let same = to.windows(2).all(|w| w[0] == w[1]);
+        to.first().copied().filter(|_| same && to.len() > STATES.len() / 2)
+    }
+
+    /// The table for people.
+    fn markdown() -> String {
+        let mut text = "# The gateway's states\n\nGenerated from the transition table of the gateway \
+            (`onboard-agent/src/gateway/core/states.rs`).\n`LEGWORK_BLESS=1 cargo test -p onboard-agent --lib \
+            gateway::core::states` writes it anew.\n\n## From almost everywhere\n\n\
+            | when | to | not from |\n|---|---|---|\n"
+            .to_owned();
+        for (trigger, to) in TRIGGERS.iter().filter_map(|t| Some((*t, common(*t)?))) {
+            let not: Vec<String> =
+                STATES.iter().filter(|s| next(**s, trigger).is_none()).map(|s| format!("{s:?}")).collect();
+            text += &format!("| {} | {to:?} | {} |\n", explained(trigger), not.join(", "));
+        }
+        text += "\n## Otherwise\n\n| from | when | to |\n|---|---|---|\n";
+        for (from, trigger) in STATES.iter().flat_map(|s| TRIGGERS.map(|t| (*s, t))) {
+            if let Some(to) = next(from, trigger).filter(|_| common(trigger).is_none()) {
+                text += &format!("| {from:?} | {} | {to:?} |\n", explained(trigger));
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn the_table_for_people_is_this_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/docs/gateway-states.md");
+        let text = markdown();
+        if std::env::var_os("LEGWORK_BLESS").is_some() {
+            std::fs::write(path, &text).unwrap();
+        }
+        let golden = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(golden == text, "{path} is out of date; write it anew with LEGWORK_BLESS=1");
+    }
+
     #[test]
     fn every_state_can_be_reached_and_every_airborne_one_can_be_left_by_the_pilot() {
         let mut reached = BTreeSet::from(["Off".to_owned()]);

@@ -4,7 +4,7 @@ use super::io::{Intent, Output};
 use super::safe::{self, Situation};
 use super::states::Trigger;
 use super::{Gateway, seconds};
-use crate::gateway::order::{Mode, Time};
+use crate::gateway::order::Time;
 use usal::contract::{GatewayState, SafeParameters, Token};
 
 /// Height above the take-off place from which a climbing aircraft may circle, metres.
@@ -110,7 +110,7 @@ impl Gateway {
 
     /// The end of the plan is in the buffer, or was flown.
     pub(super) fn is_complete(&self) -> bool {
-        self.ended || self.window.chain().last().is_some_and(|w| w.end_of_plan)
+        self.ended || self.buffer.last().is_some_and(|w| w.end_of_plan)
     }
 
     /// High enough to turn: a take-off is not interrupted before, unless it is over.
@@ -121,7 +121,7 @@ impl Gateway {
 
     /// The end loiter is circled although the plan did not end.
     fn is_dry(&self) -> bool {
-        self.window.at_end_loiter() && !self.ended && self.control.intent == Intent::Fly && self.is_in_auto()
+        self.buffer.at_end() && !self.ended && self.control.intent == Intent::Fly && self.flies_waypoints()
     }
 
     /// Safe.Hold, if the state allows it.
@@ -156,7 +156,7 @@ impl Gateway {
         };
         let cause = format!("returning to runway {}", runway.id);
         let path = safe::path(runway, &self.safe, &situation);
-        self.window.feed(Some(Token(0)), path);
+        self.feed_driver(Some(Token(0)), path, out);
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
         self.change(Trigger::ReturnDue, &cause, out);
         out.push(Output::Save);
@@ -165,8 +165,8 @@ impl Gateway {
     /// No runway is known within reach (or no position): the autopilot's own return.
     fn return_by_itself(&mut self, out: &mut Vec<Output>) {
         self.control.set_intent(Intent::Return, self.telemetry.mode);
-        let cause = format!("no runway known within reach: {} by the autopilot", Mode::Return);
-        self.change(Trigger::ReturnDue, &cause, out);
+        let cause = "no runway known within reach: the autopilot returns by its own means";
+        self.change(Trigger::ReturnDue, cause, out);
         out.push(Output::Save);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::gateway::order::{Fix, Mode, Report, Time};
 use geometry::LatLon;
+use std::borrow::Cow;
 use usal::contract::{Air, Attitude, Engine, Gps, Position, Power};
 
 /// A value and when it came.
@@ -11,12 +12,14 @@ pub type Timed<T> = Option<(Time, T)>;
 const STANDING_MPS: f64 = 0.5;
 
 /// See the module's text.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Telemetry {
     /// Last sign of life.
     pub heard: Option<Time>,
     /// Mode, once heard.
     pub mode: Option<Mode>,
+    /// What the autopilot calls it.
+    pub mode_name: Cow<'static, str>,
     /// Armed.
     pub armed: bool,
     /// Position and velocity.
@@ -44,8 +47,33 @@ pub struct Telemetry {
 fn is_voice(report: &Report) -> bool {
     !matches!(
         report,
-        Report::Done(_) | Report::Failed(..) | Report::List(..) | Report::Rebooted | Report::Capability(_)
+        Report::Done(_)
+            | Report::Failed(..)
+            | Report::Adopted(..)
+            | Report::Course(_)
+            | Report::Rebooted
+            | Report::Capability(_)
     )
+}
+
+impl Default for Telemetry {
+    fn default() -> Self {
+        Self {
+            heard: None,
+            mode: None,
+            mode_name: Cow::Borrowed("unknown"),
+            armed: false,
+            fix: None,
+            moved: None,
+            attitude: None,
+            air: None,
+            gps: None,
+            engine: None,
+            power: None,
+            home: None,
+            on_ground: None,
+        }
+    }
 }
 
 impl Telemetry {
@@ -55,8 +83,9 @@ impl Telemetry {
             self.heard = Some(now);
         }
         match report {
-            Report::Heard { mode, armed } => {
+            Report::Heard { mode, name, armed } => {
                 self.mode = Some(*mode);
+                self.mode_name.clone_from(name);
                 self.armed = *armed;
             }
             Report::Fix(fix) => {

@@ -1,9 +1,9 @@
 //! What the gateway publishes about itself.
 
+use super::buffer::CAPACITY;
 use super::telemetry::Telemetry;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
-use crate::gateway::window::CAPACITY;
 use geometry::{LatLon, LocalFrame};
 use usal::contract::{GatewayState, GatewayStatus, Navigation, Token};
 
@@ -27,7 +27,7 @@ impl Gateway {
 
     /// What has to be told at once when it changes: waypoint steered to, state, armed, alarms.
     pub fn conduct(&self) -> (Option<Token>, GatewayState, bool, usize) {
-        let current = self.window.current().map(|w| w.token);
+        let current = self.buffer.current().map(|w| w.token);
         (current, self.state, self.telemetry.armed, self.alarms.raised().len())
     }
 
@@ -39,7 +39,7 @@ impl Gateway {
             state: self.state,
             cause: self.cause.clone(),
             armed: self.telemetry.armed,
-            autopilot_mode: self.telemetry.mode.map_or("unknown".into(), |m| m.to_string()),
+            autopilot_mode: self.telemetry.mode_name.clone().into_owned(),
             autopilot_age_s: age(self.telemetry.heard).unwrap_or(f64::MAX),
             fp_manager_age_s: self.fp_manager.age_s(now),
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
@@ -49,15 +49,14 @@ impl Gateway {
 
     /// The variable `navigation`.
     pub fn navigation(&self) -> Navigation {
-        let chain = self.window.chain();
         let own = |t: Token| (t.0 > 0).then_some(t);
         let (buffer_waypoints, buffer_s) = self.level();
-        let to = self.window.current().map(|w| w.position);
+        let to = self.buffer.current().map(|w| w.position);
         let distance_m = to.zip(self.place()).map_or(0.0, |(a, b)| a.distance_m(b));
         Navigation {
-            current: self.window.current().and_then(|w| own(w.token)),
-            next: chain.second().and_then(|w| own(w.token)),
-            last: chain.last().and_then(|w| own(w.token)),
+            current: self.buffer.current().and_then(|w| own(w.token)),
+            next: self.buffer.next().and_then(|w| own(w.token)),
+            last: self.buffer.last().and_then(|w| own(w.token)),
             distance_m,
             eta_s: distance_m / self.speed_mps(),
             cross_track_m: self.cross_track_m(to),
@@ -78,7 +77,7 @@ impl Gateway {
     pub(super) fn level(&self) -> (usize, f64) {
         let mut from = self.place();
         let (mut count, mut length_m) = (0, 0.0);
-        for w in self.window.chain().waypoints() {
+        for w in self.buffer.waypoints() {
             length_m += from.map_or(0.0, |f| flat_distance_m(f, w.position));
             from = Some(w.position);
             count += 1;
@@ -88,10 +87,9 @@ impl Gateway {
 
     /// Right of the line from the waypoint before to the one steered to, metres.
     fn cross_track_m(&self, to: Option<LatLon>) -> f64 {
-        let before = self.window.chain().before(self.window.chain().first());
-        let (Some(to), Some(from), Some(here)) = (to, before, self.place()) else { return 0.0 };
+        let (Some(to), Some(from), Some(here)) = (to, self.buffer.passed(), self.place()) else { return 0.0 };
         let frame = LocalFrame::new(here);
-        let (a, b) = (frame.to_local(from.position), frame.to_local(to));
+        let (a, b) = (frame.to_local(from), frame.to_local(to));
         let along = b - a;
         if along.length() < 1.0 { 0.0 } else { along.cross(a) / along.length() }
     }

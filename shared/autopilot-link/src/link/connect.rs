@@ -112,6 +112,6 @@ impl Drop for Connect {
 fn attempt(to: String, after: Duration) -> State {
     State::Connecting(tokio::spawn(async move {
         tokio::time::sleep(after).await;
-        Ok(tokio::time::timeout(CONNECT_WITHIN, TcpStream::connect(&to)).await??)
+        tokio::time::timeout(CONNECT_WITHIN, TcpStream::connect(&to)).await?
     }))
 }

@@ -1,337 +1,226 @@
 //! Pure: the driver of ArduPlane.
 //!
-//! It binds to the first autopilot it hears and ignores every other system; a message with nonsense
-//! in it loses that message and nothing else. Other autopilots are refused in plain words.
+//! It keeps a small list of the autopilot topped up from the waypoints it is fed (`window`: a ring closed by a
+//! jump), knows the autopilot's modes (`modes`) and how it writes an entry of its list (`items`). What it shares
+//! with other MAVLink autopilots is in [`super::mavlink`]. Other autopilots are refused in plain words.
 
+mod items;
+mod list;
+mod modes;
 #[cfg(test)]
 mod tests;
+mod window;
 
-use super::mavlink::commands::{self, Commands, Ended, Shown, Wish};
-use super::mavlink::partial_write::PartialWrite;
-use super::mavlink::rto::Rto;
-use super::mavlink::streams::Streams;
-use super::mavlink::telemetry::Readings;
-use super::mavlink::transfer::{Job, Outcome, Transfer};
-use super::mavlink::{Peer, mission_type};
+use super::mavlink::Peer;
+use super::mavlink::commands::{Client, Wish};
+use super::mavlink::mission::Outcome;
+use super::mavlink::session::{self, News, Session};
 use super::{Driver, FromLink};
-use crate::gateway::order::{Item, Order, OrderId, Report, Time};
+use crate::gateway::order::{Aim, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
-use autopilot_link::frame::{Decoder, Sender, encode_into};
-use mavlink::dialects::ardupilotmega::*;
+use geometry::LatLon;
+use list::{List, Step};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
 use std::collections::VecDeque;
-use std::time::Duration;
-
-/// Our heartbeat's period.
-const HEARTBEAT: Duration = Duration::from_secs(1);
-/// Our component: onboard computer.
-const OWN_COMPONENT: u8 = 191;
-/// Until a vehicle is heard we speak as system 1, the usual number of a single vehicle.
-const FIRST_SYSTEM: u8 = 1;
-/// Bytes that are no frames are logged at most this often.
-const LOG_EVERY: Duration = Duration::from_secs(10);
-/// Transfers that wait; the core gives one at a time.
-const LONGEST_QUEUE: usize = 8;
+use window::Change;
 
 /// The driver. See the module's text.
 #[derive(Debug, Default)]
 pub struct ArduPlane {
-    lockstep: bool,
-    decoder: Decoder,
-    /// When bytes that were no frames were logged, and how many there were.
-    logged: (Time, u64),
-    /// Number of the last frame that was sent.
-    sequence: u8,
-    peer: Option<Peer>,
-    /// Messages of other systems, and such without sense.
-    pub ignored: u64,
-    transfer: Option<(OrderId, Transfer)>,
-    partial_write: Option<(OrderId, PartialWrite)>,
-    waiting: VecDeque<(OrderId, Order)>,
-    link: Rto,
-    commands: Commands,
-    streams: Streams,
-    readings: Readings,
-    beat_at: Time,
-    stepped: Option<i64>,
-    out: Vec<MavMessage>,
+    session: Session,
+    list: List,
+    /// The mode it was in last.
+    mode: Option<u32>,
+    /// A place to go to as soon as the mode for that is confirmed.
+    direct: Option<(OrderId, LatLon, f64)>,
+    /// Something happened that may concern the list.
+    stirred: bool,
     reports: VecDeque<Report>,
+    /// Always empty between calls; kept for its memory.
+    news: Vec<News>,
 }
 
 impl ArduPlane {
     /// A driver that has heard nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
     pub fn new(lockstep: bool) -> Self {
-        Self { lockstep, ..Self::default() }
+        Self { session: Session::new(lockstep), ..Self::default() }
     }
 
-    fn enqueue(&mut self, now: Time, id: OrderId, order: Order) {
-        if self.waiting.len() >= LONGEST_QUEUE {
-            let why = "too many transfers are waiting".to_owned();
-            return self.reports.push_back(Report::Failed(id, why));
-        }
-        self.waiting.push_back((id, order));
-        self.tick(now);
-    }
-
-    /// Who we say that we are.
-    fn own(&self) -> Sender {
-        Sender { system: self.peer.map_or(FIRST_SYSTEM, |p| p.system), component: OWN_COMPONENT }
-    }
-
-    fn log_garbage(&mut self, now: Time) {
-        let bytes = self.decoder.ignored_bytes;
-        if bytes > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
-            tracing::warn!(bytes, "bytes that are no MAVLink were ignored on the autopilot's link");
-            self.logged = (now, bytes);
-        }
-    }
-
-    fn next_transfer(&mut self, now: Time, peer: Peer) {
-        if self.transfer.is_some() || self.partial_write.is_some() {
-            return;
-        }
-        let Some((id, order)) = self.waiting.pop_front() else { return };
-        let (job, items) = match order {
-            Order::Write { start, items } => return self.begin_write(now, id, start, items, peer),
-            Order::Upload { items } => (Job::Whole, items),
-            _ => (Job::Read, vec![]),
-        };
-        let rto = std::mem::take(&mut self.link);
-        let transfer = Transfer::begin(now, job, items, rto, peer, &mut self.out);
-        self.transfer = Some((id, transfer));
-    }
-
-    fn begin_write(&mut self, now: Time, id: OrderId, start: u16, items: Vec<Item>, peer: Peer) {
-        let rto = std::mem::take(&mut self.link);
-        self.partial_write = Some((id, PartialWrite::begin(now, start, items, rto, peer, &mut self.out)));
-    }
-
-    /// Ends the partial write if it is complete or failed.
-    fn finish_write(&mut self, failed: Option<String>) {
-        let over = |(_, s): &mut (OrderId, PartialWrite)| failed.is_some() || s.is_complete();
-        let Some((id, partial_write)) = self.partial_write.take_if(over) else { return };
-        self.link = partial_write.into_rto();
-        self.reports.push_back(match failed {
-            None => Report::Done(id),
-            Some(why) => Report::Failed(id, why),
-        });
-    }
-
-    fn finish(&mut self, outcome: Option<Outcome>) {
-        let Some(outcome) = outcome else { return };
-        let Some((id, transfer)) = self.transfer.take() else { return };
-        self.link = transfer.into_rto();
-        self.reports.push_back(match outcome {
-            Outcome::Verified => Report::Done(id),
-            Outcome::List(items) => Report::List(id, items),
-            Outcome::Failed(why) => Report::Failed(id, why),
-        });
-    }
-
-    fn ended(&mut self, ended: Option<Ended>) {
-        self.reports.extend(ended.map(|(id, result)| match result {
-            Ok(()) => Report::Done(id),
-            Err(why) => Report::Failed(id, why),
-        }));
-    }
-
-    /// A message came in.
-    fn hear(&mut self, now: Time, sender: Sender, message: &MavMessage) {
-        if let MavMessage::HEARTBEAT(beat) = message {
-            self.bind(sender, beat);
-        }
-        // a simulator's clock goes on before it has said who it is
-        if let (None, MavMessage::TIMESYNC(sync)) = (self.peer, message) {
-            if sync.tc1 == 0 {
-                self.synchronise(now, sync.ts1);
+    fn steer(&mut self, now: Time, id: OrderId, aim: Aim, news: &mut Vec<News>) {
+        self.direct = None;
+        let wish = match aim {
+            Aim::Direct { position, altitude_amsl_m } if self.mode == Some(modes::GUIDED) => {
+                Wish::GoTo(position, altitude_amsl_m)
             }
-            return self.tick(now);
-        }
-        let Some(peer) = self.peer.filter(|p| *p == sender) else {
-            self.ignored += 1;
-            return;
-        };
-        self.streams.seen(mavlink::Message::message_id(message));
-        match message {
-            MavMessage::HEARTBEAT(beat) => self.heard(now, beat),
-            MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
-            MavMessage::COMMAND_ACK(ack) => {
-                let ended = self.commands.acked(now, ack);
-                self.ended(ended);
+            Aim::Direct { position, altitude_amsl_m } => {
+                self.direct = Some((id, position, altitude_amsl_m));
+                Wish::Mode(modes::GUIDED)
             }
-            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq),
-            _ => self.receive_mission(now, peer, message),
-        }
-        self.tick(now);
+            Aim::Waypoints | Aim::Hold | Aim::Return => Wish::Mode(modes::number(&aim)),
+        };
+        self.session.command(now, Client::Order(id), wish, news);
     }
 
-    #[expect(deprecated, reason = "ArduPilot asks by the deprecated message, and has to be answered")]
-    fn receive_mission(&mut self, now: Time, peer: Peer, message: &MavMessage) {
-        if self.partial_write.is_some() {
-            return self.receive_write(now, message);
+    /// Does what follows from the news, until nothing more follows.
+    fn settle(&mut self, now: Time, mut news: Vec<News>) {
+        loop {
+            let mut more = vec![];
+            for item in news.drain(..) {
+                self.hear(now, item, &mut more);
+            }
+            if std::mem::take(&mut self.stirred) {
+                self.work(now, &mut more);
+            }
+            news.append(&mut more);
+            if news.is_empty() {
+                break;
+            }
         }
-        let Some((_, transfer)) = &mut self.transfer else {
-            return self.readings.take(now, message, &mut self.reports, &mut self.ignored);
-        };
-        let out = &mut self.out;
-        let plan = MavMissionType::MAV_MISSION_TYPE_MISSION;
-        let outcome = match message {
-            MavMessage::MISSION_REQUEST(r) if r.mission_type == plan => {
-                transfer.requested(now, r.seq, peer, out);
+        self.news = news;
+    }
+
+    fn hear(&mut self, now: Time, news: News, more: &mut Vec<News>) {
+        if let News::Telemetry(report) = news {
+            self.look_at(&report);
+            return self.reports.push_back(report);
+        }
+        self.stirred = true;
+        match news {
+            News::Bound(beat) => {
+                let capability = capability(&beat);
+                self.list.supported = capability.is_ok();
+                self.reports.push_back(Report::Capability(capability));
+            }
+            News::Heartbeat { mode, armed } => {
+                self.mode = Some(mode);
+                self.list.flown = armed && mode == modes::AUTO;
+                let report = Report::Heard { mode: modes::meaning(mode), name: modes::name(mode), armed };
+                self.reports.push_back(report);
+            }
+            News::Current(seq) => {
+                self.reports.push_back(Report::Alive);
+                self.list.steers_to(now, seq);
+            }
+            News::Mission(outcome) => self.list_ended(now, outcome),
+            News::Command(Client::List, Ok(())) => self.list.done(),
+            News::Command(Client::List, Err(why)) => self.list_ended(now, Outcome::Failed(why)),
+            News::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
+            News::Telemetry(_) => {}
+        }
+    }
+
+    /// What telemetry means to the list.
+    fn look_at(&mut self, report: &Report) {
+        match report {
+            Report::Home { position, altitude_amsl_m } => {
+                self.list.set_home(*position, *altitude_amsl_m);
+                self.stirred = true;
+            }
+            Report::Fix(fix) => {
+                self.list.set_ground(fix.position, fix.altitude_amsl_m - fix.altitude_home_m);
+            }
+            Report::Rebooted => {
+                self.list.rebooted();
+                self.stirred = true;
+            }
+            _ => {}
+        }
+    }
+
+    fn list_ended(&mut self, now: Time, outcome: Outcome) {
+        let report = match outcome {
+            Outcome::Verified => {
+                self.list.done();
                 None
             }
-            MavMessage::MISSION_REQUEST_INT(r) if r.mission_type == plan => {
-                transfer.requested(now, r.seq, peer, out);
-                None
-            }
-            MavMessage::MISSION_ACK(a) if a.mission_type == plan => transfer.acked(now, a.mavtype, peer, out),
-            MavMessage::MISSION_COUNT(c) if c.mission_type == plan => {
-                transfer.counted(now, c.count, peer, out)
-            }
-            MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => transfer.item(now, i, peer, out),
-            _ => return self.readings.take(now, message, &mut self.reports, &mut self.ignored),
+            Outcome::List(entries) => self.list.read(&entries.iter().map(items::decode).collect::<Vec<_>>()),
+            Outcome::Failed(why) => self.list.failed(now, why),
         };
-        self.finish(outcome);
+        self.reports.extend(report);
     }
 
-    fn receive_write(&mut self, now: Time, message: &MavMessage) {
-        let Some((_, partial_write)) = &mut self.partial_write else { return };
-        let plan = mission_type();
-        let failed = match message {
-            MavMessage::MISSION_ACK(a) if a.mission_type == plan => partial_write.acked(a.mavtype),
-            MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => {
-                partial_write.item(now, i);
-                None
+    fn command_ended(&mut self, now: Time, id: OrderId, result: Result<(), String>, more: &mut Vec<News>) {
+        let direct = self.direct.take_if(|(of, ..)| *of == id);
+        match (result, direct) {
+            (Ok(()), Some((_, position, altitude_amsl_m))) => {
+                self.session.command(now, Client::Order(id), Wish::GoTo(position, altitude_amsl_m), more);
             }
-            _ => return self.readings.take(now, message, &mut self.reports, &mut self.ignored),
-        };
-        self.finish_write(failed);
-    }
-
-    /// The first autopilot that is heard is ours; the rest are strangers.
-    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA) {
-        if self.peer.is_some() || sender.system == 0 || !is_autopilot(beat) {
-            return;
-        }
-        self.peer = Some(sender);
-        self.reports.push_back(Report::Capability(capability(beat)));
-    }
-
-    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA) {
-        let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
-        let mode = commands::mode_of(beat.custom_mode);
-        self.reports.push_back(Report::Heard { mode, armed });
-        let ended = self.commands.shown(now, Shown::Mode(mode, armed));
-        self.ended(ended);
-    }
-
-    fn current(&mut self, now: Time, seq: u16) {
-        // 65535: no current entry
-        if seq == u16::MAX {
-            return;
-        }
-        self.reports.push_back(Report::Current(seq));
-        let ended = self.commands.shown(now, Shown::Current(seq));
-        self.ended(ended);
-    }
-
-    fn synchronise(&mut self, now: Time, their_ns: i64) {
-        if self.lockstep {
-            self.stepped = Some(their_ns);
-        } else {
-            let own_ns = i64::try_from(now.as_nanos()).unwrap_or(i64::MAX);
-            self.answer_time(own_ns.max(1), their_ns);
+            (Ok(()), None) => self.reports.push_back(Report::Done(id)),
+            (Err(why), _) => self.reports.push_back(Report::Failed(id, why)),
         }
     }
 
-    fn answer_time(&mut self, own_ns: i64, their_ns: i64) {
-        let (target_system, target_component) = self.peer.map_or((0, 0), |p| (p.system, p.component));
-        self.out.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
-            tc1: own_ns,
-            ts1: their_ns,
-            target_system,
-            target_component,
-        }));
+    /// Goes on with the list, and tells how far it is.
+    fn work(&mut self, now: Time, news: &mut Vec<News>) {
+        if let Some(peer) = self.session.peer()
+            && let Some(step) = self.list.next(now)
+        {
+            self.begin(now, step, peer, news);
+        }
+        self.reports.extend(self.list.news().map(Report::Course));
+    }
+
+    fn begin(&mut self, now: Time, step: Step, peer: Peer, news: &mut Vec<News>) {
+        let (mission, out) = self.session.mission();
+        match step {
+            Step::Read => mission.read(now, peer, out),
+            Step::Change(Change::Upload { items }) => {
+                mission.upload(now, items::entries(0, &items, peer), items::same, peer, out);
+            }
+            Step::Change(Change::Overwrite { start, items }) => {
+                mission.overwrite(now, items::entries(start, &items, peer), items::same, peer, out);
+            }
+            Step::Change(Change::SetCurrent(seq)) => {
+                self.session.command(now, Client::List, Wish::Current(seq), news);
+            }
+        }
     }
 }
 
 impl Driver for ArduPlane {
     fn recognises(&self, datagram: &[u8]) -> bool {
-        let mut decoder = Decoder::default();
-        decoder.push_datagram(datagram);
-        while let Some(frame) = decoder.next_frame() {
-            if let Some(MavMessage::HEARTBEAT(beat)) = frame.message()
-                && is_autopilot(&beat)
-            {
-                return true;
-            }
-        }
-        false
+        session::recognises(datagram)
     }
 
-    fn receive(&mut self, incoming: FromLink<'_>) {
-        match incoming {
-            FromLink::Connected => self.decoder.restart(),
-            FromLink::Stream(bytes) => self.decoder.push(bytes),
-            FromLink::Datagram(bytes) => self.decoder.push_datagram(bytes),
-        }
+    fn receive(&mut self, from: FromLink<'_>) {
+        self.session.receive(from);
     }
 
     fn process(&mut self, now: Time) -> bool {
-        let Some(frame) = self.decoder.next_frame() else { return false };
-        let (sender, message) = (frame.sender, frame.message());
-        match message {
-            Some(message) => self.hear(now, sender, &message),
-            // an unknown value in an enumeration loses this message only
-            None => self.ignored += 1,
-        }
-        true
+        let mut news = std::mem::take(&mut self.news);
+        let more = self.session.process(now, &mut news);
+        self.settle(now, news);
+        more
     }
 
     fn order(&mut self, now: Time, id: OrderId, order: Order) {
-        let wish = match order {
-            Order::SetCurrent(seq) => Wish::Current(seq),
-            Order::SetMode(mode) => Wish::Mode(mode),
-            Order::Arm => Wish::Arm,
-            Order::Speed(mps) => Wish::Speed(mps),
-            Order::GoTo { position, altitude_amsl_m } => Wish::GoTo(position, altitude_amsl_m),
-            Order::Terminate => Wish::Terminate,
-            Order::Write { .. } | Order::Upload { .. } | Order::Read => {
-                return self.enqueue(now, id, order);
-            }
-        };
-        let refused = self.commands.give(id, wish);
-        self.ended(refused);
-        self.tick(now);
-    }
-
-    fn deadline(&self) -> Time {
-        let transfer = self.transfer.as_ref().and_then(|(_, t)| t.deadline());
-        let partial_write = self.partial_write.as_ref().and_then(|(_, s)| s.deadline());
-        [transfer, partial_write, self.commands.deadline()]
-            .into_iter()
-            .flatten()
-            .fold(self.beat_at, Time::min)
+        let mut news = std::mem::take(&mut self.news);
+        let mut command = |wish| self.session.command(now, Client::Order(id), wish, &mut news);
+        match order {
+            Order::Feed { after, waypoints } => self.list.feed(after, waypoints),
+            Order::Leave(serial) => self.list.leave(serial),
+            Order::Forget => self.list.forget(),
+            Order::HandsOff(off) => self.list.hands_off = off,
+            Order::Adopt(known) => self.list.adopt(id, known),
+            Order::Steer(aim) => self.steer(now, id, aim, &mut news),
+            Order::Arm => command(Wish::Arm),
+            Order::Speed(mps) => command(Wish::Speed(mps)),
+            Order::Terminate => command(Wish::Terminate),
+        }
+        self.stirred = true;
+        self.settle(now, news);
     }
 
     fn tick(&mut self, now: Time) {
-        if now >= self.beat_at {
-            self.beat_at = now + HEARTBEAT;
-            self.out.push(heartbeat());
-        }
-        let Some(peer) = self.peer else { return };
-        self.streams.tick(now, peer, &mut self.out);
-        let ended = self.commands.tick(now, peer, &mut self.out);
-        self.ended(ended);
-        if let Some((_, transfer)) = &mut self.transfer {
-            let outcome = transfer.tick(now, peer, &mut self.out);
-            self.finish(outcome);
-        }
-        if let Some((_, partial_write)) = &mut self.partial_write {
-            let failed = partial_write.tick(now, peer, &mut self.out);
-            self.finish_write(failed);
-        }
-        self.next_transfer(now, peer);
-        self.log_garbage(now);
+        let mut news = std::mem::take(&mut self.news);
+        self.session.tick(now, &mut news);
+        self.stirred = true;
+        self.settle(now, news);
+    }
+
+    fn deadline(&self) -> Time {
+        let session = self.session.deadline();
+        self.list.deadline().map_or(session, |list| list.min(session))
     }
 
     fn next_report(&mut self) -> Option<Report> {
@@ -339,28 +228,20 @@ impl Driver for ArduPlane {
     }
 
     fn send(&mut self, outbox: &mut Outbox) {
-        let own = self.own();
-        for message in self.out.drain(..) {
-            outbox.push(|bytes| encode_into(own, self.sequence, &message, bytes));
-            self.sequence = self.sequence.wrapping_add(1);
-        }
+        self.session.send(outbox);
     }
 
     fn take_step(&mut self) -> Option<i64> {
-        self.stepped.take()
+        self.session.take_step()
     }
 
     fn answer_step(&mut self, step_ns: i64) {
-        self.answer_time(step_ns.max(1), step_ns);
+        self.session.answer_step(step_ns);
     }
 
     fn hello(&mut self) {
-        self.out.push(heartbeat());
+        self.session.hello();
     }
-}
-
-fn is_autopilot(beat: &HEARTBEAT_DATA) -> bool {
-    beat.autopilot != MavAutopilot::MAV_AUTOPILOT_INVALID
 }
 
 fn capability(beat: &HEARTBEAT_DATA) -> Result<&'static str, String> {
@@ -369,15 +250,4 @@ fn capability(beat: &HEARTBEAT_DATA) -> Result<&'static str, String> {
         (MavAutopilot::MAV_AUTOPILOT_PX4, _) => Err("This is a PX4 autopilot. It takes no partial lists, and whole uploads in flight are not supported yet: connect an ArduPlane autopilot.".into()),
         (autopilot, kind) => Err(format!("{autopilot:?} on {kind:?} is not supported: connect an ArduPlane autopilot.")),
     }
-}
-
-fn heartbeat() -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: 0,
-        mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
-        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
-        base_mode: MavModeFlag::empty(),
-        system_status: MavState::MAV_STATE_ACTIVE,
-        mavlink_version: 3,
-    })
 }

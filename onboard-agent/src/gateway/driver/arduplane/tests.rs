@@ -1,19 +1,39 @@
 //! Transfers against the simulator's mission protocol, with what happens on bad links.
 
+use super::items::{Item, ItemKind, matches};
 use super::*;
-use crate::gateway::order::ItemKind;
-use crate::gateway::window::matches;
-use autopilot_link::frame::encode;
-use geometry::LatLon;
+use autopilot_link::frame::{Decoder, Sender, encode};
+use mavlink::dialects::ardupilotmega::*;
 use sim::core::{Peer as SimPeer, Simulator};
+use std::time::Duration;
 
 const PEER: SimPeer = SimPeer(1);
+const AUTOPILOT: Sender = Sender { system: 1, component: 1 };
+const LOITER: u32 = 12;
+
+/// Something to be done.
+enum Task {
+    Upload(Vec<Item>),
+    Write(u16, Vec<Item>),
+    Read,
+    Current(u16),
+    Mode(u32),
+}
+
+/// How it ended.
+#[derive(Debug, PartialEq)]
+enum Ended {
+    Done,
+    Failed(String),
+    List(Vec<Item>),
+}
 
 struct Rig {
     sim: Simulator,
-    driver: ArduPlane,
+    session: Session,
+    news: Vec<News>,
     decoder: Decoder,
-    sim_decoder: sim::frame::Decoder,
+    sim_decoder: Decoder,
     now: Time,
 }
 
@@ -29,18 +49,18 @@ impl Rig {
         let c = sim::Config::default();
         let mut sim = Simulator::new(c.profile, c.home, c.wind, 1);
         sim.connect(PEER);
-        let driver = ArduPlane::new(false);
         let mut rig = Self {
             sim,
-            driver,
+            session: Session::new(false),
+            news: vec![],
             decoder: Decoder::default(),
-            sim_decoder: sim::frame::Decoder::default(),
+            sim_decoder: Decoder::default(),
             now: Time::ZERO,
         };
-        while rig.driver.peer.is_none() {
+        while rig.session.peer().is_none() {
             rig.step(&mut |_, _| true);
         }
-        rig.driver.reports.clear();
+        rig.news.clear();
         rig
     }
 
@@ -53,13 +73,13 @@ impl Rig {
             while let Some(frame) = self.decoder.next_frame() {
                 let (sender, message) = (frame.sender, frame.message().unwrap());
                 if pass(To::Driver, &message) {
-                    self.driver.hear(self.now, sender, &message);
+                    self.session.hear(self.now, sender, &message, &mut self.news);
                 }
             }
         }
-        self.driver.tick(self.now);
-        let own = self.driver.own();
-        for message in std::mem::take(&mut self.driver.out) {
+        self.session.tick(self.now, &mut self.news);
+        let own = self.session.own();
+        for message in std::mem::take(&mut self.session.out) {
             if pass(To::Autopilot, &message) {
                 let bytes = encode(own, 0, &message);
                 self.sim_decoder.push(&bytes);
@@ -70,17 +90,43 @@ impl Rig {
         }
     }
 
-    /// Gives an order and waits for its outcome; the time it took.
-    fn carry_out(&mut self, order: Order, mut pass: impl FnMut(To, &MavMessage) -> bool) -> (Report, f64) {
-        let (id, begun) = (OrderId(77), self.now);
-        self.driver.order(self.now, id, order);
+    fn begin(&mut self, task: Task) {
+        let (now, peer) = (self.now, self.session.peer().unwrap());
+        let (mission, out) = self.session.mission();
+        match task {
+            Task::Upload(items) => {
+                mission.upload(now, items::entries(0, &items, peer), items::same, peer, out)
+            }
+            Task::Write(start, items) => {
+                mission.overwrite(now, items::entries(start, &items, peer), items::same, peer, out);
+            }
+            Task::Read => mission.read(now, peer, out),
+            Task::Current(seq) => self.command(Wish::Current(seq)),
+            Task::Mode(mode) => self.command(Wish::Mode(mode)),
+        }
+    }
+
+    fn command(&mut self, wish: Wish) {
+        self.session.command(self.now, Client::List, wish, &mut self.news);
+    }
+
+    fn ended(&mut self) -> Option<Ended> {
+        self.news.drain(..).find_map(|news| match news {
+            News::Mission(Outcome::Verified) | News::Command(_, Ok(())) => Some(Ended::Done),
+            News::Mission(Outcome::Failed(why)) | News::Command(_, Err(why)) => Some(Ended::Failed(why)),
+            News::Mission(Outcome::List(list)) => Some(Ended::List(list.iter().map(items::decode).collect())),
+            _ => None,
+        })
+    }
+
+    /// Does something and waits for its outcome; the time it took.
+    fn carry_out(&mut self, task: Task, mut pass: impl FnMut(To, &MavMessage) -> bool) -> (Ended, f64) {
+        let begun = self.now;
+        self.begin(task);
         for _ in 0..3000 {
             self.step(&mut pass);
-            let ended = self.driver.reports.drain(..).find(
-                |r| matches!(r, Report::Done(i) | Report::Failed(i, _) | Report::List(i, _) if *i == id),
-            );
-            if let Some(report) = ended {
-                return (report, (self.now - begun).as_secs_f64());
+            if let Some(ended) = self.ended() {
+                return (ended, (self.now - begun).as_secs_f64());
             }
         }
         panic!("no outcome within five minutes");
@@ -118,11 +164,11 @@ fn losing(lost: fn(To, &MavMessage) -> bool, mut times: u32) -> impl FnMut(To, &
 fn a_hundred_entries_go_up_quickly_and_come_back_the_same() {
     let mut rig = Rig::new();
     let list = items(100);
-    let (report, seconds) = rig.carry_out(Order::Upload { items: list.clone() }, |_, _| true);
-    assert_eq!(report, Report::Done(OrderId(77)));
+    let (report, seconds) = rig.carry_out(Task::Upload(list.clone()), |_, _| true);
+    assert_eq!(report, Ended::Done);
     assert!(seconds < 3.0, "{seconds} s");
-    let (report, _) = rig.carry_out(Order::Read, |_, _| true);
-    let Report::List(_, read) = report else { panic!("{report:?}") };
+    let (report, _) = rig.carry_out(Task::Read, |_, _| true);
+    let Ended::List(read) = report else { panic!("{report:?}") };
     assert!(read.len() == 100 && read.iter().zip(&list).skip(1).all(|(a, b)| matches(a, b)));
 }
 
@@ -147,9 +193,9 @@ fn each_single_loss_is_made_good() {
     for (name, times, lost) in cases {
         let mut rig = Rig::new();
         let list = items(30);
-        let (report, seconds) = rig.carry_out(Order::Upload { items: list.clone() }, losing(lost, times));
+        let (report, seconds) = rig.carry_out(Task::Upload(list.clone()), losing(lost, times));
         println!("{name}: {seconds} s");
-        assert_eq!(report, Report::Done(OrderId(77)), "{name}");
+        assert_eq!(report, Ended::Done, "{name}");
         assert!(is_on_board(&rig, &list, 0), "{name}");
     }
 }
@@ -169,11 +215,10 @@ fn each_single_loss_of_a_short_write_is_made_good_within_a_second() {
     ];
     for (name, times, lost) in cases {
         let mut rig = Rig::new();
-        rig.carry_out(Order::Upload { items: items(44) }, |_, _| true);
+        rig.carry_out(Task::Upload(items(44)), |_, _| true);
         let part = items(60)[40..44].to_vec();
-        let (report, seconds) =
-            rig.carry_out(Order::Write { start: 7, items: part.clone() }, losing(lost, times));
-        assert_eq!(report, Report::Done(OrderId(77)), "{name}");
+        let (report, seconds) = rig.carry_out(Task::Write(7, part.clone()), losing(lost, times));
+        assert_eq!(report, Ended::Done, "{name}");
         assert!(is_on_board(&rig, &part, 7), "{name}");
         assert!(seconds < 1.0, "{name}: {seconds} s");
     }
@@ -182,16 +227,13 @@ fn each_single_loss_of_a_short_write_is_made_good_within_a_second() {
 #[test]
 fn an_entry_that_is_never_kept_is_never_claimed() {
     let mut rig = Rig::new();
-    rig.carry_out(Order::Upload { items: items(44) }, |_, _| true);
+    rig.carry_out(Task::Upload(items(44)), |_, _| true);
     let part = items(60)[40..44].to_vec();
     let never = |t: To, m: &MavMessage| {
         !(t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq == 9))
     };
-    let (report, _) = rig.carry_out(Order::Write { start: 7, items: part }, never);
-    assert!(
-        matches!(&report, Report::Failed(_, why) if why.contains("reads back differently")),
-        "{report:?}"
-    );
+    let (report, _) = rig.carry_out(Task::Write(7, part), never);
+    assert!(matches!(&report, Ended::Failed(why) if why.contains("reads back differently")), "{report:?}");
 }
 
 #[test]
@@ -205,13 +247,12 @@ fn packets_lost_0_to_30_percent_every_write_completes_and_is_true() {
         };
         let mut rig = Rig::new();
         let list = items(44);
-        let (report, _) = rig.carry_out(Order::Upload { items: list.clone() }, &mut pass);
-        assert_eq!(report, Report::Done(OrderId(77)));
+        let (report, _) = rig.carry_out(Task::Upload(list.clone()), &mut pass);
+        assert_eq!(report, Ended::Done);
         for start in [2_usize, 30, 17] {
             let part = items(60)[40..52].to_vec();
-            let (report, seconds) =
-                rig.carry_out(Order::Write { start: start as u16, items: part.clone() }, &mut pass);
-            assert_eq!(report, Report::Done(OrderId(77)), "loss {percent} %");
+            let (report, seconds) = rig.carry_out(Task::Write(start as u16, part.clone()), &mut pass);
+            assert_eq!(report, Ended::Done, "loss {percent} %");
             assert!(is_on_board(&rig, &part, start), "a false claim at {percent} %");
             slowest = slowest.max(seconds);
         }
@@ -224,29 +265,28 @@ fn packets_lost_0_to_30_percent_every_write_completes_and_is_true() {
 fn link_cut_at_item_k_fails_in_plain_words_and_claims_nothing() {
     let mut rig = Rig::new();
     let (report, _) = rig.carry_out(
-        Order::Upload { items: items(44) },
+        Task::Upload(items(44)),
         |_, m| !matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq >= 20),
     );
-    assert!(matches!(&report, Report::Failed(_, why) if why.contains("does not answer")), "{report:?}");
+    assert!(matches!(&report, Ended::Failed(why) if why.contains("does not answer")), "{report:?}");
 }
 
 #[test]
 fn acks_left_over_from_another_transfer_prove_nothing() {
     let mut rig = Rig::new();
     let list = items(30);
-    let header = Sender { system: 1, component: 1 };
     let ack = MavMessage::MISSION_ACK(MISSION_ACK_DATA {
         target_system: 1,
-        target_component: OWN_COMPONENT,
+        target_component: rig.session.own().component,
         mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
-        mission_type: mission_type(),
+        mission_type: MavMissionType::MAV_MISSION_TYPE_MISSION,
         opaque_id: 0,
     });
     // a quarter of the items is lost, and every step brings an early "accepted"
-    let (mut seed, mut tried) = (5_u32, 1);
-    rig.driver.order(rig.now, OrderId(tried), Order::Upload { items: list.clone() });
+    let mut seed = 5_u32;
+    rig.begin(Task::Upload(list.clone()));
     for _ in 0..3000 {
-        rig.driver.hear(rig.now, header, &ack);
+        rig.session.hear(rig.now, AUTOPILOT, &ack, &mut rig.news);
         rig.step(&mut |t, m| {
             let is_item = t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_));
             if is_item {
@@ -254,15 +294,14 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
             }
             !is_item || seed >> 30 != 0
         });
-        let reports = std::mem::take(&mut rig.driver.reports);
-        if reports.contains(&Report::Done(OrderId(tried))) {
-            assert!(is_on_board(&rig, &list, 0), "a false claim");
-            return;
-        }
-        // one that lost too much says so
-        if reports.iter().any(|r| matches!(r, Report::Failed(id, _) if id.0 == tried)) {
-            tried += 1;
-            rig.driver.order(rig.now, OrderId(tried), Order::Upload { items: list.clone() });
+        match rig.ended() {
+            Some(Ended::Done) => {
+                assert!(is_on_board(&rig, &list, 0), "a false claim");
+                return;
+            }
+            // one that lost too much says so
+            Some(Ended::Failed(_)) => rig.begin(Task::Upload(list.clone())),
+            _ => {}
         }
     }
     panic!("no outcome");
@@ -272,7 +311,7 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
 fn another_system_and_nonsense_in_fields_change_nothing() {
     let mut rig = Rig::new();
     let stranger = Sender { system: 9, component: 1 };
-    let own = Sender { system: 1, component: 1 };
+    let own = AUTOPILOT;
     let position = |lat: i32| {
         MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
             time_boot_ms: 1_000_000,
@@ -294,13 +333,13 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
         (own, position(380_000_000)),
         (own, nan),
     ];
-    rig.driver.hear(rig.now, own, &position(364_905_000));
-    rig.driver.reports.clear();
-    for (i, (header, message)) in cases.into_iter().enumerate() {
-        let ignored = rig.driver.ignored;
-        rig.driver.hear(rig.now, header, &message);
-        assert_eq!(rig.driver.reports, [], "case {i}");
-        assert_eq!(rig.driver.ignored, ignored + 1, "case {i}");
+    rig.session.hear(rig.now, own, &position(364_905_000), &mut rig.news);
+    rig.news.clear();
+    for (i, (sender, message)) in cases.into_iter().enumerate() {
+        let ignored = rig.session.ignored;
+        rig.session.hear(rig.now, sender, &message, &mut rig.news);
+        assert_eq!(rig.news, [], "case {i}");
+        assert_eq!(rig.session.ignored, ignored + 1, "case {i}");
     }
 }
 
@@ -308,28 +347,30 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
 fn commands_are_repeated_until_they_are_seen_to_work() {
     let mut rig = Rig::new();
     let mut drops = 3;
-    let (report, _) = rig.carry_out(Order::SetMode(crate::gateway::order::Mode::Loiter), move |_, m| {
+    let (report, _) = rig.carry_out(Task::Mode(LOITER), move |_, m| {
         let hit = drops > 0 && matches!(m, MavMessage::COMMAND_LONG(_) | MavMessage::COMMAND_ACK(_));
         drops -= i32::from(hit);
         !hit
     });
-    assert_eq!(report, Report::Done(OrderId(77)));
+    assert_eq!(report, Ended::Done);
     assert_eq!(rig.sim.autopilot.mode(), sim::Mode::Loiter);
-    let (report, _) = rig.carry_out(Order::SetCurrent(5), |_, _| true);
-    assert!(matches!(report, Report::Failed(..)), "there is no entry 5: {report:?}");
+    let (report, _) = rig.carry_out(Task::Current(5), |_, _| true);
+    assert!(matches!(report, Ended::Failed(_)), "there is no entry 5: {report:?}");
 }
 
 #[test]
 fn an_autopilot_that_is_not_supported_is_refused_in_plain_words() {
     let mut driver = ArduPlane::new(false);
-    let header = Sender { system: 1, component: 1 };
     let beat = HEARTBEAT_DATA {
         autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
         mavtype: MavType::MAV_TYPE_FIXED_WING,
         ..HEARTBEAT_DATA::DEFAULT
     };
-    driver.hear(Time::ZERO, header, &MavMessage::HEARTBEAT(beat));
-    let told = driver.reports.drain(..).find_map(|r| match r {
+    let bytes = encode(AUTOPILOT, 0, &MavMessage::HEARTBEAT(beat));
+    assert!(driver.recognises(&bytes) && !driver.recognises(b"hello"));
+    driver.receive(FromLink::Datagram(&bytes));
+    assert!(driver.process(Time::ZERO));
+    let told = std::iter::from_fn(|| driver.next_report()).find_map(|r| match r {
         Report::Capability(Err(why)) => Some(why),
         _ => None,
     });

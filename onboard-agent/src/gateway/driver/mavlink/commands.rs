@@ -2,7 +2,7 @@
 
 use super::Peer;
 use super::rto::Rto;
-use crate::gateway::order::{Mode, OrderId, Time};
+use crate::gateway::order::{OrderId, Time};
 use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::*;
 use std::collections::VecDeque;
@@ -19,13 +19,22 @@ const LONGEST_QUEUE: usize = 32;
 /// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
 const FORCE: f32 = 21_196.0;
 
+/// Who is told how a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Client {
+    /// The core, which gave this order.
+    Order(OrderId),
+    /// The driver itself, for the list.
+    List,
+}
+
 /// A command to be given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wish {
     /// Steer to an entry of the list.
     Current(u16),
-    /// Change mode.
-    Mode(Mode),
+    /// Change mode, by the autopilot's own number.
+    Mode(u32),
     /// Arm.
     Arm,
     /// Airspeed, m/s.
@@ -44,12 +53,12 @@ pub enum Shown {
     /// The entry it steers to.
     Current(u16),
     /// Mode and arming.
-    Mode(Mode, bool),
+    Mode(u32, bool),
 }
 
 #[derive(Debug, Clone)]
 struct Given {
-    id: OrderId,
+    client: Client,
     wish: Wish,
     tries: u32,
     acked: Option<Time>,
@@ -59,24 +68,24 @@ struct Given {
 /// The queue of commands; one is in flight at a time.
 #[derive(Debug, Clone, Default)]
 pub struct Commands {
-    queue: VecDeque<(OrderId, Wish)>,
+    queue: VecDeque<(Client, Wish)>,
     flight: Option<Given>,
     rto: Rto,
 }
 
 /// How a command ended.
-pub type Ended = (OrderId, Result<(), String>);
+pub type Ended = (Client, Result<(), String>);
 
 impl Commands {
     /// Takes a command.
-    pub fn give(&mut self, id: OrderId, wish: Wish) -> Option<Ended> {
+    pub fn give(&mut self, client: Client, wish: Wish) -> Option<Ended> {
         if self.queue.len() >= LONGEST_QUEUE {
-            return Some((id, Err("too many commands are waiting".into())));
+            return Some((client, Err("too many commands are waiting".into())));
         }
         match wish {
             // what is urgent does not wait behind what is not
-            Wish::Terminate | Wish::ForceDisarm => self.queue.push_front((id, wish)),
-            _ => self.queue.push_back((id, wish)),
+            Wish::Terminate | Wish::ForceDisarm => self.queue.push_front((client, wish)),
+            _ => self.queue.push_back((client, wish)),
         }
         None
     }
@@ -96,9 +105,9 @@ impl Commands {
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
         let ended = self.check(now, peer, out);
         if self.flight.is_none()
-            && let Some((id, wish)) = self.queue.pop_front()
+            && let Some((client, wish)) = self.queue.pop_front()
         {
-            self.flight = Some(Given { id, wish, tries: 1, acked: None, sent: now });
+            self.flight = Some(Given { client, wish, tries: 1, acked: None, sent: now });
             out.extend((0..self.rto.copies()).map(|_| encode(wish, 0, peer)));
             self.rto.start(now);
         }
@@ -131,7 +140,7 @@ impl Commands {
     }
 
     fn end(&mut self, result: Result<(), String>) -> Option<Ended> {
-        self.flight.take().map(|g| (g.id, result))
+        self.flight.take().map(|g| (g.client, result))
     }
 
     /// The autopilot answers a command.
@@ -197,33 +206,11 @@ fn command(wish: Wish) -> MavCmd {
     }
 }
 
-/// ArduPlane's number of a mode.
-pub fn mode_number(mode: Mode) -> u32 {
-    match mode {
-        Mode::Auto => 10,
-        Mode::Return => 11,
-        Mode::Loiter => 12,
-        Mode::Guided => 15,
-        Mode::Other(n) => n,
-    }
-}
-
-/// The mode of ArduPlane's number.
-pub fn mode_of(number: u32) -> Mode {
-    match number {
-        10 => Mode::Auto,
-        11 => Mode::Return,
-        12 => Mode::Loiter,
-        15 => Mode::Guided,
-        n => Mode::Other(n),
-    }
-}
-
 fn encode(wish: Wish, confirmation: u8, peer: Peer) -> MavMessage {
     let (param1, param2, param3) = match wish {
         Wish::Current(seq) => (f32::from(seq), 0.0, 0.0),
         // 1: the number is the autopilot's own
-        Wish::Mode(mode) => (1.0, mode_number(mode) as f32, 0.0),
+        Wish::Mode(mode) => (1.0, mode as f32, 0.0),
         Wish::Arm | Wish::Terminate => (1.0, 0.0, 0.0),
         Wish::ForceDisarm => (0.0, FORCE, 0.0),
         // 0: airspeed; throttle −1: as it is

@@ -1,12 +1,14 @@
-//! What drivers of MAVLink autopilots share: mission transfer, commands, streams, telemetry, timeouts.
+//! What drivers of MAVLink autopilots share: the conversation (`session`), what is done to a list (`mission`, by
+//! `transfer` and `partial_write`), commands, streams, telemetry and timeouts. It knows no autopilot's habits.
 
 pub mod commands;
-pub mod items;
-pub mod partial_write;
-pub mod rto;
-pub mod streams;
-pub mod telemetry;
-pub mod transfer;
+pub mod mission;
+mod partial_write;
+mod rto;
+pub mod session;
+mod streams;
+mod telemetry;
+mod transfer;
 
 use mavlink::dialects::ardupilotmega::MavMissionType;
 
@@ -14,6 +16,6 @@ use mavlink::dialects::ardupilotmega::MavMissionType;
 pub use autopilot_link::frame::Sender as Peer;
 
 /// The list of waypoints, beside those of fences and rally points.
-pub fn mission_type() -> MavMissionType {
+fn mission_type() -> MavMissionType {
     MavMissionType::MAV_MISSION_TYPE_MISSION
 }

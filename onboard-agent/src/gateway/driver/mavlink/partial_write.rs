@@ -7,11 +7,10 @@
 //!
 //! Entries are written in order: an entry is on board only when those before it are.
 
-use super::items::{decode, encode};
+use super::mission::{Entry, Same};
 use super::rto::Rto;
 use super::{Peer, mission_type};
-use crate::gateway::order::{Item, Time};
-use crate::gateway::window::matches;
+use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
 
 /// Rounds without any progress before a write is given up.
@@ -20,8 +19,9 @@ const PATIENCE: u32 = 30;
 /// One write.
 #[derive(Debug, Clone)]
 pub struct PartialWrite {
-    start: u16,
-    items: Vec<Item>,
+    /// Entries that follow each other.
+    items: Vec<Entry>,
+    same: Same,
     /// Read back as wanted.
     confirmed: Vec<bool>,
     /// An entry that read back differently, since the last progress.
@@ -36,15 +36,15 @@ impl PartialWrite {
     /// Begins a write; `rto` carries over what is known of the link.
     pub fn begin(
         now: Time,
-        start: u16,
-        items: Vec<Item>,
+        items: Vec<Entry>,
+        same: Same,
         rto: Rto,
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Self {
         let confirmed = vec![false; items.len()];
         let mut partial_write =
-            Self { start, items, confirmed, differs: None, rounds: 0, rto, probe: Some(now) };
+            Self { items, same, confirmed, differs: None, rounds: 0, rto, probe: Some(now) };
         partial_write.rto.start(now);
         partial_write.round(peer, out);
         partial_write
@@ -74,7 +74,8 @@ impl PartialWrite {
             out.push(self.opening(first, last, peer));
         }
         for _ in 0..copies {
-            out.extend((first..=last).filter_map(|i| self.entry(i, peer)));
+            let entries = self.items.iter().take(last + 1).skip(first);
+            out.extend(entries.cloned().map(MavMessage::MISSION_ITEM_INT));
         }
         for _ in 0..copies {
             let missing = (first..=last).filter(|i| self.confirmed.get(*i) == Some(&false));
@@ -84,22 +85,22 @@ impl PartialWrite {
 
     fn opening(&self, first: usize, last: usize, peer: Peer) -> MavMessage {
         MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
-            start_index: (self.start + first as u16) as i16,
-            end_index: (self.start + last as u16) as i16,
+            start_index: (self.start() + first as u16) as i16,
+            end_index: (self.start() + last as u16) as i16,
             target_system: peer.system,
             target_component: peer.component,
             mission_type: mission_type(),
         })
     }
 
-    fn entry(&self, index: usize, peer: Peer) -> Option<MavMessage> {
-        let item = self.items.get(index)?;
-        Some(MavMessage::MISSION_ITEM_INT(encode(self.start + index as u16, item, peer)))
+    /// Number of the first entry.
+    fn start(&self) -> u16 {
+        self.items.first().map_or(0, |i| i.seq)
     }
 
     fn question(&self, index: usize, peer: Peer) -> MavMessage {
         MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
-            seq: self.start + index as u16,
+            seq: self.start() + index as u16,
             target_system: peer.system,
             target_component: peer.component,
             mission_type: mission_type(),
@@ -108,11 +109,11 @@ impl PartialWrite {
 
     /// An entry was read back.
     pub fn item(&mut self, now: Time, data: &MISSION_ITEM_INT_DATA) {
-        let Some(index) = data.seq.checked_sub(self.start).map(usize::from) else { return };
+        let Some(index) = data.seq.checked_sub(self.start()).map(usize::from) else { return };
         let (Some(wanted), Some(confirmed)) = (self.items.get(index), self.confirmed.get_mut(index)) else {
             return;
         };
-        if !matches(wanted, &decode(data)) {
+        if !(self.same)(wanted, data) {
             self.differs = Some(data.seq);
             return;
         }

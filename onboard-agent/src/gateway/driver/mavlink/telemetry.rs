@@ -1,10 +1,10 @@
 //! Telemetry messages to contract values. No field is trusted.
 
+use super::session::News;
 use crate::gateway::order::{Fix, Report, Time};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 use mavlink::dialects::ardupilotmega::*;
-use std::collections::VecDeque;
 use usal::contract::{Air, Attitude, Engine, Gps, Power};
 
 /// A position that is farther from the last one than this could have been flown, m/s.
@@ -37,18 +37,18 @@ pub struct Readings {
 
 impl Readings {
     /// Takes in a message. What makes no sense is counted in `ignored`.
-    pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut VecDeque<Report>, ignored: &mut u64) {
+    pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<News>, ignored: &mut u64) {
         let sense = match message {
             MavMessage::GLOBAL_POSITION_INT(m) => {
                 self.boot(m.time_boot_ms, out);
-                self.fix(now, m).map(|f| out.push_back(Report::Fix(f)))
+                self.fix(now, m).map(|f| out.push(News::Telemetry(Report::Fix(f))))
             }
-            MavMessage::ATTITUDE(m) => attitude(m).map(|a| out.push_back(Report::Attitude(a))),
-            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push_back(Report::Air(a))),
+            MavMessage::ATTITUDE(m) => attitude(m).map(|a| out.push(News::Telemetry(Report::Attitude(a)))),
+            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(News::Telemetry(Report::Air(a)))),
             MavMessage::WIND(m) => self.wind(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
             MavMessage::GPS_RAW_INT(m) => {
-                out.push_back(Report::Gps(gps(m, self.unix_s(now))));
+                out.push(News::Telemetry(Report::Gps(gps(m, self.unix_s(now)))));
                 Some(())
             }
             MavMessage::SYSTEM_TIME(m) => {
@@ -57,21 +57,21 @@ impl Readings {
                 self.day = unix_s.map(|unix_s| (now, unix_s));
                 Some(())
             }
-            MavMessage::SYS_STATUS(m) => self.power(m).map(|p| out.push_back(Report::Power(p))),
+            MavMessage::SYS_STATUS(m) => self.power(m).map(|p| out.push(News::Telemetry(Report::Power(p)))),
             MavMessage::FUEL_STATUS(m) => self.tank(m),
-            MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push_back(Report::Engine(e))),
+            MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push(News::Telemetry(Report::Engine(e)))),
             MavMessage::EFI_STATUS(m) => self.efi(m),
-            MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push_back(h)),
-            MavMessage::EXTENDED_SYS_STATE(m) => landed(m.landed_state).map(|r| out.push_back(r)),
+            MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(News::Telemetry(h))),
+            MavMessage::EXTENDED_SYS_STATE(m) => landed(m.landed_state).map(|r| out.push(News::Telemetry(r))),
             _ => Some(()),
         };
         *ignored += u64::from(sense.is_none());
     }
 
-    fn boot(&mut self, ms: u32, out: &mut VecDeque<Report>) {
+    fn boot(&mut self, ms: u32, out: &mut Vec<News>) {
         let before = self.boot_ms.replace(ms);
         if before.is_some_and(|b| ms.saturating_add(REBOOT_MS) < b) {
-            out.push_back(Report::Rebooted);
+            out.push(News::Telemetry(Report::Rebooted));
         }
     }
 

@@ -5,11 +5,10 @@
 //! over from an earlier transfer, so it proves nothing: every write is read back, and only what was
 //! read back is claimed.
 
-use super::items::{decode, encode};
+use super::mission::{Entry, Outcome, Same};
 use super::rto::Rto;
 use super::{Peer, mission_type};
-use crate::gateway::order::{Item, ItemKind, Time};
-use crate::gateway::window::matches;
+use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
 
 /// Items in flight.
@@ -21,15 +20,6 @@ const REWRITES: u32 = 5;
 /// More entries than this is no list.
 const MOST_ITEMS: u16 = 2000;
 
-/// What a transfer is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Job {
-    /// Replace the list.
-    Whole,
-    /// Read the list.
-    Read,
-}
-
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     /// Items `..acked` were received; `..sent` were sent.
@@ -37,25 +27,15 @@ enum Phase {
     /// How long is the list?
     Counting,
     /// Entries are read; those that have come.
-    Reading { got: Vec<Option<Item>>, next: usize },
-}
-
-/// How a transfer ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
-    /// Written and read back alike.
-    Verified,
-    /// The list.
-    List(Vec<Item>),
-    /// Given up; what is on board is unknown.
-    Failed(String),
+    Reading { got: Vec<Option<Entry>>, next: usize },
 }
 
 /// One transfer.
 #[derive(Debug, Clone)]
 pub struct Transfer {
-    job: Job,
-    items: Vec<Item>,
+    /// How what is read back is compared; `None`: the list is only read.
+    same: Option<Same>,
+    items: Vec<Entry>,
     phase: Phase,
     rto: Rto,
     silent: u32,
@@ -68,33 +48,39 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Begins a transfer; `rto` carries over what is known of the link.
-    pub fn begin(
+    /// Begins to replace the list; `rto` carries over what is known of the link.
+    pub fn upload(
         now: Time,
-        job: Job,
-        items: Vec<Item>,
+        items: Vec<Entry>,
+        same: Same,
         rto: Rto,
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Self {
-        let phase = Phase::Counting;
-        let mut t = Self {
-            job,
+        let mut transfer = Self::new(now, items, Some(same), rto);
+        transfer.send_from_start(peer, out);
+        transfer
+    }
+
+    /// Begins to read the list.
+    pub fn read_list(now: Time, rto: Rto, peer: Peer, out: &mut Vec<MavMessage>) -> Self {
+        out.push(request_list(peer));
+        Self::new(now, vec![], None, rto)
+    }
+
+    fn new(now: Time, items: Vec<Entry>, same: Option<Same>, mut rto: Rto) -> Self {
+        rto.start(now);
+        Self {
+            same,
             items,
-            phase,
+            phase: Phase::Counting,
             rto,
             silent: 0,
             best: 0,
             rewrites: 0,
             went_back: None,
             probe: Some(now),
-        };
-        match job {
-            Job::Read => out.push(request_list(peer)),
-            _ => t.send_from_start(peer, out),
         }
-        t.rto.start(now);
-        t
     }
 
     /// What was learnt of the link.
@@ -110,7 +96,7 @@ impl Transfer {
     fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
         self.phase = Phase::Sending { acked: 0, sent: 0, asked: 0 };
         out.push(self.opening(peer));
-        self.send_window(peer, out);
+        self.send_window(out);
     }
 
     fn opening(&self, peer: Peer) -> MavMessage {
@@ -123,17 +109,17 @@ impl Transfer {
         })
     }
 
-    fn send_window(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+    fn send_window(&mut self, out: &mut Vec<MavMessage>) {
         let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
         let end = (*acked + WINDOW).min(self.items.len());
-        for (i, item) in self.items.iter().enumerate().take(end).skip(*sent) {
-            out.push(MavMessage::MISSION_ITEM_INT(encode(i as u16, item, peer)));
+        for item in self.items.iter().take(end).skip(*sent) {
+            out.push(MavMessage::MISSION_ITEM_INT(item.clone()));
         }
         *sent = end.max(*sent);
     }
 
     /// The autopilot asks for an entry.
-    pub fn requested(&mut self, now: Time, seq: u16, peer: Peer, out: &mut Vec<MavMessage>) {
+    pub fn requested(&mut self, now: Time, seq: u16, out: &mut Vec<MavMessage>) {
         let index = usize::from(seq);
         let Phase::Sending { acked, asked, .. } = &mut self.phase else { return };
         if index >= self.items.len() || index < *acked {
@@ -142,7 +128,7 @@ impl Transfer {
         if index > *acked {
             (*acked, *asked) = (index, 1);
             self.progressed(now);
-            self.send_window(peer, out);
+            self.send_window(out);
             return;
         }
         *asked += 1;
@@ -150,7 +136,7 @@ impl Transfer {
         if !again {
             self.progressed(now);
         } else {
-            self.go_back(now, peer, out);
+            self.go_back(now, out);
         }
     }
 
@@ -171,7 +157,7 @@ impl Transfer {
 
     /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
     /// each of a window's remaining items is answered with the same complaint.
-    fn go_back(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+    fn go_back(&mut self, now: Time, out: &mut Vec<MavMessage>) {
         if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 3) {
             return;
         }
@@ -181,7 +167,7 @@ impl Transfer {
         if let Phase::Sending { acked, sent, .. } = &mut self.phase {
             *sent = *acked;
         }
-        self.send_window(peer, out);
+        self.send_window(out);
         self.rto.start(now);
     }
 
@@ -212,7 +198,7 @@ impl Transfer {
             (Phase::Sending { acked, asked, .. }, MAV_MISSION_INVALID_SEQUENCE)
                 if *acked > 0 || *asked > 0 =>
             {
-                self.go_back(now, peer, out);
+                self.go_back(now, out);
                 None
             }
             (
@@ -288,7 +274,7 @@ impl Transfer {
         if slot.is_some() {
             return None;
         }
-        *slot = Some(decode(data));
+        *slot = Some(data.clone());
         self.progressed(now);
         self.ask(peer, out);
         self.complete(now, peer, out)
@@ -296,12 +282,10 @@ impl Transfer {
 
     fn complete(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
         let Phase::Reading { got, .. } = &self.phase else { return None };
-        let list: Vec<Item> = got.iter().copied().collect::<Option<_>>()?;
+        let list: Vec<Entry> = got.iter().cloned().collect::<Option<_>>()?;
         out.push(thanks(peer));
-        if self.job == Job::Read {
-            return Some(Outcome::List(list));
-        }
-        let differs = self.items.iter().zip(&list).position(|(a, b)| !is_same(a, b));
+        let Some(same) = self.same else { return Some(Outcome::List(list)) };
+        let differs = self.items.iter().zip(&list).position(|(a, b)| !same(a, b));
         let Some(entry) = differs else { return Some(Outcome::Verified) };
         self.rewrites += 1;
         if self.rewrites > REWRITES {
@@ -337,11 +321,11 @@ impl Transfer {
             Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_from_start(peer, out),
             Phase::Sending { acked, sent, .. } => {
                 *sent = *acked;
-                self.send_window(peer, out);
+                self.send_window(out);
             }
             // it may still be waiting for items: then it does not let us read
             Phase::Reading { got, .. }
-                if self.job != Job::Read && self.silent >= 3 && got.iter().all(Option::is_none) =>
+                if self.same.is_some() && self.silent >= 3 && got.iter().all(Option::is_none) =>
             {
                 self.send_from_start(peer, out);
             }
@@ -352,11 +336,6 @@ impl Transfer {
         }
         None
     }
-}
-
-/// Alike, as far as an autopilot keeps it; it puts its own home into entry 0.
-fn is_same(wanted: &Item, read: &Item) -> bool {
-    wanted.kind == ItemKind::Home || matches(wanted, read)
 }
 
 fn request_list(peer: Peer) -> MavMessage {

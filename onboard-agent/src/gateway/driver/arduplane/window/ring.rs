@@ -1,6 +1,7 @@
 //! The ring of slots on board: how positions, slots and list entries go together.
 
-use crate::gateway::order::{Item, ItemKind};
+use super::super::items::{Item, ItemKind, matches};
+use crate::gateway::order::Fed;
 use geometry::LatLon;
 use usal::contract::{Action, Waypoint};
 
@@ -12,9 +13,6 @@ pub const LAST_SLOT: u16 = 1 + RING as u16;
 pub const JUMP_SLOT: u16 = LAST_SLOT + 1;
 /// Height above home of the loiter at entry 1, metres.
 const HOME_LOITER_M: f64 = 100.0;
-/// Read-back may differ by this much: the list holds degrees × 10⁷, centimetres and whole metres.
-const POSITION_TOLERANCE_DEG: f64 = 3e-7;
-const ALTITUDE_TOLERANCE_M: f64 = 0.5;
 
 /// The entry of a position.
 pub fn slot(position: u64) -> u16 {
@@ -42,22 +40,6 @@ pub fn end_loiter_after(item: &Item) -> Item {
     Item { kind: ItemKind::Loiter { radius_m: 0.0 }, ..*item }
 }
 
-/// The same within what an autopilot keeps of it.
-pub fn matches(a: &Item, b: &Item) -> bool {
-    let here = (a.position.lat_deg - b.position.lat_deg).abs() <= POSITION_TOLERANCE_DEG
-        && (a.position.lon_deg - b.position.lon_deg).abs() <= POSITION_TOLERANCE_DEG
-        && (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M;
-    match (a.kind, b.kind) {
-        (ItemKind::Jump { to: x }, ItemKind::Jump { to: y }) => x == y,
-        (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => here && (x - y).abs() <= 1.0,
-        // where a take-off goes is the runway's business: autopilots keep its altitude only
-        (ItemKind::TakeOff, ItemKind::TakeOff) => {
-            (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
-        }
-        (x, y) => here && x == y,
-    }
-}
-
 /// The whole list for a fresh ring: `items` from slot 2 on, the last of them (the end loiter) in every
 /// slot that is left.
 pub fn initial_list(home: Item, items: &[Item]) -> Vec<Item> {
@@ -77,12 +59,12 @@ pub fn is_ours(list: &[Item]) -> bool {
 }
 
 /// Of the waypoints known before, those that are really on board from `first` on.
-pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Waypoint>) -> Vec<Waypoint> {
+pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> Vec<Fed> {
     let at = |p: u64| list.get(usize::from(slot(p)));
     waypoints
         .into_iter()
         .zip(first..)
-        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &item(w))))
+        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &item(&w.waypoint))))
         .map(|(w, _)| w)
         .collect()
 }

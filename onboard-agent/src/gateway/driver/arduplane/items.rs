@@ -1,9 +1,47 @@
-//! List entries as MAVLink items, and back.
+//! Entries of ArduPlane's list: what they say, how they are written, and what comes back of them.
 
 use super::Peer;
-use crate::gateway::order::{Item, ItemKind};
 use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionType};
+
+/// One entry of the list.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Item {
+    /// Where.
+    pub position: LatLon,
+    /// Metres above mean sea level.
+    pub altitude_amsl_m: f64,
+    /// What to do there.
+    pub kind: ItemKind,
+}
+
+/// What an entry does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ItemKind {
+    /// The take-off place, entry 0.
+    Home,
+    /// Take off and climb to the altitude.
+    TakeOff,
+    /// Fly to it.
+    Fly {
+        /// Cross it before turning.
+        over: bool,
+    },
+    /// Circle it for ever; positive radius clockwise, metres; 0: the autopilot's own radius.
+    Loiter {
+        /// Signed radius, metres.
+        radius_m: f64,
+    },
+    /// Touch down there.
+    Land,
+    /// Go on at another entry, for ever.
+    Jump {
+        /// That entry.
+        to: u16,
+    },
+    /// An entry that we did not write and do not understand.
+    Foreign,
+}
 
 /// ArduPlane counts a waypoint with an acceptance radius (param2) as reached only when that near,
 /// instead of turning early; metres.
@@ -11,9 +49,38 @@ const FLY_OVER_M: f32 = 5.0;
 /// Pitch during take-off, degrees (ArduPlane's param1).
 const TAKE_OFF_PITCH_DEG: f32 = 15.0;
 const DEGREES: f64 = 1e7;
+/// Read-back may differ by this much: the list holds degrees × 10⁷, centimetres and whole metres.
+const POSITION_TOLERANCE_DEG: f64 = 3e-7;
+const ALTITUDE_TOLERANCE_M: f64 = 0.5;
+
+/// The same within what an autopilot keeps of it.
+pub fn matches(a: &Item, b: &Item) -> bool {
+    let here = (a.position.lat_deg - b.position.lat_deg).abs() <= POSITION_TOLERANCE_DEG
+        && (a.position.lon_deg - b.position.lon_deg).abs() <= POSITION_TOLERANCE_DEG
+        && (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M;
+    match (a.kind, b.kind) {
+        (ItemKind::Jump { to: x }, ItemKind::Jump { to: y }) => x == y,
+        (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => here && (x - y).abs() <= 1.0,
+        // where a take-off goes is the runway's business: autopilots keep its altitude only
+        (ItemKind::TakeOff, ItemKind::TakeOff) => {
+            (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
+        }
+        (x, y) => here && x == y,
+    }
+}
+
+/// The entries from `start` on.
+pub fn entries(start: u16, items: &[Item], peer: Peer) -> Vec<MISSION_ITEM_INT_DATA> {
+    (start..).zip(items).map(|(seq, item)| encode(seq, item, peer)).collect()
+}
+
+/// What was read back is what was written; the autopilot puts its own home into entry 0.
+pub fn same(wanted: &MISSION_ITEM_INT_DATA, read: &MISSION_ITEM_INT_DATA) -> bool {
+    wanted.seq == 0 || matches(&decode(wanted), &decode(read))
+}
 
 /// The message for entry `seq`.
-pub fn encode(seq: u16, item: &Item, peer: Peer) -> MISSION_ITEM_INT_DATA {
+fn encode(seq: u16, item: &Item, peer: Peer) -> MISSION_ITEM_INT_DATA {
     let mut data = MISSION_ITEM_INT_DATA {
         param1: 0.0,
         param2: 0.0,
@@ -77,7 +144,6 @@ pub fn decode(data: &MISSION_ITEM_INT_DATA) -> Item {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gateway::window::matches;
 
     #[test]
     fn every_kind_comes_back_as_it_went() {

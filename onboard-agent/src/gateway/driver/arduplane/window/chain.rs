@@ -1,17 +1,15 @@
 //! The waypoints that are still to be flown, by position.
 
+use super::super::items::Item;
 use super::ring;
-use crate::gateway::order::Item;
+use crate::gateway::order::{Fed, Serial};
 use std::collections::VecDeque;
 use usal::contract::{Action, Token, Waypoint};
-
-/// The buffer never holds more waypoints.
-pub const CAPACITY: usize = 256;
 
 /// The chain: entry `i` is at position `first + i`.
 #[derive(Debug, Clone, Default)]
 pub struct Chain {
-    entries: VecDeque<Waypoint>,
+    entries: VecDeque<Fed>,
     first: u64,
     /// The first entry was cancelled while the aircraft steered to it: it is left as soon as the
     /// autopilot can be made to jump to the entry after it.
@@ -22,7 +20,7 @@ pub struct Chain {
 
 impl Chain {
     /// A chain whose first waypoint is being steered to.
-    pub fn resumed(first: u64, waypoints: Vec<Waypoint>) -> Self {
+    pub fn resumed(first: u64, waypoints: Vec<Fed>) -> Self {
         Self { entries: waypoints.into(), first, left_behind: false, passed: None }
     }
 
@@ -41,47 +39,20 @@ impl Chain {
         self.entries.is_empty()
     }
 
-    /// How many more waypoints can be taken, after cancelling.
-    pub fn room(&self, cancel_after: Option<Token>) -> usize {
-        let kept = match cancel_after {
-            Some(token) => self.entries.iter().filter(|w| w.token <= token).count() + 1,
-            None => self.entries.len(),
-        };
-        CAPACITY.saturating_sub(kept)
-    }
-
-    /// Waypoints in the buffer, without one that is being left behind.
-    pub fn waypoints(&self) -> impl Iterator<Item = &Waypoint> {
-        self.entries.iter().skip(usize::from(self.left_behind))
-    }
-
     /// The waypoint being steered to.
-    pub fn active(&self) -> Option<&Waypoint> {
+    pub fn active(&self) -> Option<&Fed> {
         self.entries.front()
     }
 
-    /// The one after it.
-    pub fn second(&self) -> Option<&Waypoint> {
-        self.entries.get(1)
-    }
-
-    /// The last.
-    pub fn last(&self) -> Option<&Waypoint> {
-        self.waypoints().last()
-    }
-
-    /// The waypoint that a feed with this `cancel_after` would follow on.
-    pub fn predecessor(&self, cancel_after: Option<Token>) -> Option<&Waypoint> {
-        match cancel_after {
-            Some(token) => self.waypoints().filter(|w| w.token <= token).last(),
-            None => self.last(),
-        }
+    /// The first waypoint that was not flown yet; 0: there is none.
+    pub fn next(&self) -> Serial {
+        self.entries.iter().map(|f| f.serial).find(|s| s.0 > 0).unwrap_or_default()
     }
 
     /// The waypoint at a position.
     pub fn at(&self, position: u64) -> Option<&Waypoint> {
         let index = position.checked_sub(self.first)?;
-        self.entries.get(usize::try_from(index).ok()?)
+        self.entries.get(usize::try_from(index).ok()?).map(|f| &f.waypoint)
     }
 
     /// What comes before a position.
@@ -102,17 +73,15 @@ impl Chain {
         (self.left_behind && self.entries.len() > 1).then_some(self.first + 1)
     }
 
-    /// Cancel and append. `flying`: the autopilot steers to the first entry, which then can't just
-    /// vanish.
-    pub fn feed(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>, flying: bool) {
-        if let Some(token) = cancel_after {
-            self.cancel(token, flying);
-        }
+    /// Cancels what is behind `after`, and appends. `flying`: the autopilot steers to the first entry, which
+    /// then can't just vanish.
+    pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>, flying: bool) {
+        self.cancel(after, flying);
         self.entries.extend(waypoints);
     }
 
-    fn cancel(&mut self, after: Token, flying: bool) {
-        let keep = self.entries.iter().take_while(|w| w.token <= after && w.token.0 > 0).count();
+    fn cancel(&mut self, after: Serial, flying: bool) {
+        let keep = self.entries.iter().take_while(|f| f.serial <= after).count();
         if keep > 0 && !(self.left_behind && keep == 1) {
             self.entries.truncate(keep);
             return;
@@ -125,15 +94,15 @@ impl Chain {
     /// The aircraft steers to something that is not in the chain; the chain begins behind it.
     pub fn begin_with_foreign(&mut self, item: &Item) {
         let Some(first) = self.entries.front() else { return };
-        let foreign = Waypoint {
+        let waypoint = Waypoint {
             token: Token(0),
             position: item.position,
             altitude_amsl_m: item.altitude_amsl_m,
             action: Action::Fly,
             end_of_plan: false,
-            ..first.clone()
+            ..first.waypoint.clone()
         };
-        self.entries.push_front(foreign);
+        self.entries.push_front(Fed { serial: Serial(0), waypoint });
         self.left_behind = true;
     }
 
@@ -145,8 +114,8 @@ impl Chain {
     /// The aircraft steers to `position` now.
     pub fn advance_to(&mut self, position: u64) {
         while self.first < position {
-            if let Some(waypoint) = self.entries.pop_front() {
-                self.passed = Some(ring::item(&waypoint));
+            if let Some(fed) = self.entries.pop_front() {
+                self.passed = Some(ring::item(&fed.waypoint));
             }
             self.first += 1;
             self.left_behind = false;

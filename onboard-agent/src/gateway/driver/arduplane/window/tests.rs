@@ -1,11 +1,12 @@
 //! The window against a small model of an autopilot's list.
 
+use super::ring::JUMP_SLOT;
 use super::*;
-use crate::gateway::order::ItemKind;
+use crate::gateway::core::CAPACITY;
 use geometry::LatLon;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
-use usal::contract::Id;
+use usal::contract::{Action, Id, Token, Waypoint};
 
 const HOME: Item = Item { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 300.0, kind: ItemKind::Home };
 
@@ -23,9 +24,12 @@ fn waypoint(n: u64) -> Waypoint {
     }
 }
 
-fn waypoints(from: u64, count: u64) -> Vec<Waypoint> {
-    (from..from + count).map(waypoint).collect()
+fn waypoints(from: u64, count: u64) -> Vec<Fed> {
+    (from..from + count).map(|n| Fed { serial: Serial(n), waypoint: waypoint(n) }).collect()
 }
+
+/// Appends: nothing is cancelled.
+const ALL: Serial = Serial(u64::MAX);
 
 /// As ArduPlane: overwriting the active entry changes nothing until it is made current.
 #[derive(Default)]
@@ -54,26 +58,25 @@ impl Autopilot {
         }
     }
 
-    /// Does the first `items` of an order's entries; all: true.
-    fn obey(&mut self, order: &Order, most: usize) -> bool {
-        match order {
-            Order::Upload { items } => {
+    /// Does the first `most` of a change's entries; all: true.
+    fn obey(&mut self, change: &Change, most: usize) -> bool {
+        match change {
+            Change::Upload { items } => {
                 self.list = items.clone();
                 true
             }
-            Order::Write { start, items } => {
+            Change::Overwrite { start, items } => {
                 for (i, item) in items.iter().enumerate().take(most) {
                     self.list[usize::from(*start) + i] = *item;
                 }
                 most >= items.len()
             }
-            Order::SetCurrent(seq) => {
+            Change::SetCurrent(seq) => {
                 if most > 0 {
                     self.load(*seq);
                 }
                 most > 0
             }
-            other => panic!("{other:?}"),
         }
     }
 }
@@ -87,17 +90,17 @@ struct Rig {
 impl Rig {
     fn new(count: u64) -> Self {
         let mut rig = Self { window: Window::default(), autopilot: Autopilot::default(), flying: false };
-        rig.window.feed(None, waypoints(1, count));
+        rig.window.feed(ALL, waypoints(1, count));
         rig.settle();
         rig.flying = true;
         assert!(rig.window.ready());
         rig
     }
 
-    /// One order, of which only so many entries come through.
-    fn order(&mut self, most: usize) -> bool {
-        let Some(order) = self.window.next_order(!self.flying, Some(HOME)) else { return false };
-        if self.autopilot.obey(&order, most) {
+    /// One change, of which only so many entries come through.
+    fn change(&mut self, most: usize) -> bool {
+        let Some(change) = self.window.next_change(!self.flying, Some(HOME)) else { return false };
+        if self.autopilot.obey(&change, most) {
             self.window.done();
         } else {
             self.window.failed();
@@ -113,14 +116,14 @@ impl Rig {
 
     /// What is claimed to be steered to is what is steered to.
     fn check_claim(&self) {
-        if let (Some(claimed), Some(target)) = (self.window.current(), self.autopilot.target) {
-            assert!(matches(&ring::item(claimed), &target), "claims {:?}, is {target:?}", claimed.token);
+        if let (Target::Waypoint(claimed), Some(target)) = (self.window.target(), self.autopilot.target) {
+            assert!(matches(&ring::item(&waypoint(claimed.0)), &target), "claims {claimed:?}, is {target:?}");
         }
     }
 
     fn settle(&mut self) {
         for _ in 0..200 {
-            if !self.order(usize::MAX) {
+            if !self.change(usize::MAX) {
                 return;
             }
         }
@@ -130,6 +133,18 @@ impl Rig {
     fn reach(&mut self) {
         self.autopilot.reach();
         self.report();
+    }
+
+    /// Waypoints not flown yet, without one that is being left.
+    fn ahead(&self) -> Vec<u64> {
+        let chain = &self.window.chain;
+        let places = chain.first()..chain.end();
+        places.filter(|p| !chain.is_left_behind(*p)).filter_map(|p| chain.at(p)).map(|w| w.token.0).collect()
+    }
+
+    /// The waypoint steered to.
+    fn active(&self) -> u64 {
+        self.window.chain.active().map_or(0, |f| f.serial.0)
     }
 
     fn tokens_steered(&self) -> Vec<u64> {
@@ -144,9 +159,8 @@ fn far_more_waypoints_than_slots_are_flown_in_order_and_memory_stays() {
     let mut rig = Rig::new(20);
     let mut next = 21;
     for _ in 0..5000 {
-        let room = rig.window.chain().room(None) as u64;
-        if room >= 10 {
-            rig.window.feed(None, waypoints(next, 10));
+        if rig.ahead().len() + 10 <= CAPACITY {
+            rig.window.feed(ALL, waypoints(next, 10));
             next += 10;
         }
         rig.settle();
@@ -155,7 +169,7 @@ fn far_more_waypoints_than_slots_are_flown_in_order_and_memory_stays() {
     let steered = rig.tokens_steered();
     assert!(steered.len() > 4000 && steered.windows(2).all(|w| w[1] == w[0] + 1));
     assert_eq!(rig.autopilot.list.len(), usize::from(JUMP_SLOT) + 1);
-    assert!(rig.window.chain().waypoints().count() <= CAPACITY);
+    assert!(rig.ahead().len() <= CAPACITY);
 }
 
 #[test]
@@ -167,9 +181,9 @@ fn cancel_and_replace_at_every_position_of_the_active_entry() {
                 rig.reach();
                 rig.settle();
             }
-            let after = if keep == 0 { 0 } else { rig.window.current().unwrap().token.0 + keep - 1 };
+            let after = if keep == 0 { 0 } else { rig.active() + keep - 1 };
             rig.autopilot.steered.clear();
-            rig.window.feed(Some(Token(after)), waypoints(1000, 12));
+            rig.window.feed(Serial(after), waypoints(1000, 12));
             rig.settle();
             for _ in 0..20 {
                 rig.reach();
@@ -180,7 +194,7 @@ fn cancel_and_replace_at_every_position_of_the_active_entry() {
             assert_eq!(stale, 0, "flown {flown}, keep {keep}: {:?}", rig.tokens_steered());
             let new: Vec<u64> = rig.tokens_steered().into_iter().filter(|t| *t >= 1000).collect();
             assert_eq!(new, (1000..1012).collect::<Vec<_>>(), "flown {flown}, keep {keep}");
-            assert!(rig.window.at_end_loiter());
+            assert_eq!(rig.window.target(), Target::End);
         }
     }
 }
@@ -189,12 +203,12 @@ fn cancel_and_replace_at_every_position_of_the_active_entry() {
 fn starving_it_circles_the_last_waypoint_and_goes_on_when_fed() {
     let mut rig = Rig::new(3);
     (0..5).for_each(|_| rig.reach());
-    assert!(rig.window.at_end_loiter());
+    assert_eq!(rig.window.target(), Target::End);
     let target = rig.autopilot.target.unwrap();
     assert_eq!(target, end_loiter_after(&ring::item(&waypoint(3))));
-    rig.window.feed(None, waypoints(4, 2));
+    rig.window.feed(ALL, waypoints(4, 2));
     rig.settle();
-    assert_eq!(rig.window.current().unwrap().token, Token(4));
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(4)));
     assert_eq!(rig.tokens_steered(), [1, 2, 3, 4]);
 }
 
@@ -203,13 +217,13 @@ fn a_list_met_in_flight_is_adopted_and_its_unknown_rest_cut_off() {
     let mut rig = Rig::new(30);
     (0..7).for_each(|_| rig.reach());
     let mut window = Window::default();
-    assert!(window.adopt(&rig.autopilot.list, rig.autopilot.seq, waypoints(8, 4)));
+    assert_eq!(window.adopt(&rig.autopilot.list, rig.autopilot.seq, waypoints(8, 4)), Some(4));
     rig.window = window;
     rig.settle();
-    assert_eq!(rig.window.current().unwrap().token, Token(8));
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(8)));
     (0..30).for_each(|_| rig.reach());
     assert_eq!(rig.tokens_steered(), (1..=11).collect::<Vec<_>>());
-    assert!(!Window::default().adopt(&rig.autopilot.list[..20], 3, vec![]), "not one of ours");
+    assert_eq!(Window::default().adopt(&rig.autopilot.list[..20], 3, vec![]), None, "not one of ours");
 }
 
 proptest! {
@@ -225,22 +239,22 @@ proptest! {
             let steered = rig.autopilot.steered.len();
             match action {
                 0 | 1 => rig.reach(),
-                2 if rig.window.chain().room(None) > 12 => {
-                    rig.window.feed(None, waypoints(next, n as u64));
+                2 if rig.ahead().len() + 12 < CAPACITY => {
+                    rig.window.feed(ALL, waypoints(next, n as u64));
                     next += n as u64;
                 }
                 3 => {
-                    let active = rig.window.chain().active().map_or(0, |w| w.token.0);
+                    let active = rig.active();
                     let after = if n < 4 { 0 } else { active + n as u64 - 4 };
-                    let old: Vec<u64> = rig.window.chain().waypoints().map(|w| w.token.0).collect();
-                    rig.window.feed(Some(Token(after)), waypoints(next, 5));
+                    let old = rig.ahead();
+                    rig.window.feed(Serial(after), waypoints(next, 5));
                     next += 5;
                     cancelled.extend(old.into_iter().filter(|t| *t > after || after == 0));
                     cut = false;
                 }
                 _ => {
                     let most = if action == 4 { n } else { usize::MAX };
-                    cut |= rig.order(most) && most == usize::MAX;
+                    cut |= rig.change(most) && most == usize::MAX;
                 }
             }
             rig.check_claim();
@@ -256,7 +270,7 @@ proptest! {
             rig.reach();
             rig.settle();
         }
-        prop_assert!(rig.window.at_end_loiter());
+        prop_assert_eq!(rig.window.target(), Target::End);
         let steered: Vec<u64> = rig.tokens_steered();
         let mut seen = steered.clone();
         seen.dedup();

@@ -5,13 +5,13 @@
 //! *position* counts up for ever; its slot is `2 + position mod RING`.
 //!
 //! What is wanted is a **chain**: the waypoint being steered to, those after it, and behind the last
-//! one a **end loiter**, a loiter that never ends. The window compares the chain with what it knows to be
+//! one an **end loiter**, a loiter that never ends. The window compares the chain with what it knows to be
 //! on board and makes one write at a time, always the one that keeps the aircraft safe whatever
 //! happens next:
 //!
-//! 1. what differs first is not a end loiter: put a end loiter there (entries are written in order, so this is
+//! 1. what differs first is not an end loiter: put an end loiter there (entries are written in order, so this is
 //!    atomic). What lies beyond can't be reached any more, and may follow in the same write;
-//! 2. it is a end loiter: bring what lies *behind* it in order, up to the new end loiter;
+//! 2. it is an end loiter: bring what lies *behind* it in order, up to the new end loiter;
 //! 3. that is in order: replace the end loiter by the waypoint (one entry, so atomic).
 //!
 //! So the aircraft never steers to a cancelled waypoint that it was not already steering to, and a
@@ -23,22 +23,39 @@ mod ring;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{CAPACITY, Chain};
-pub use ring::{JUMP_SLOT, LAST_SLOT, RING, end_loiter_after, matches, slot};
-
-use super::order::{Item, ItemKind, Order};
-use ring::{Slots, initial_list};
-use usal::contract::{Action, Token, Waypoint};
+use super::items::{Item, ItemKind, matches};
+use crate::gateway::order::{Fed, Serial, Target};
+use chain::Chain;
+use ring::{LAST_SLOT, RING, Slots, end_loiter_after, initial_list, slot};
 
 /// Waypoints ahead of the aircraft that are kept on board; the rest of the ring is already passed.
-pub const AHEAD: u64 = 28;
+const AHEAD: u64 = 28;
 /// The ring is topped up when fewer waypoints than this are ahead.
 const REFILL: u64 = 16;
 
 /// Most entries of one write: an emergency does not wait for a long one.
 const AT_ONCE: u64 = 8;
 
-/// A write in flight.
+/// Something that is to be done to the list.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// Replace the whole list, and verify it.
+    Upload {
+        /// The list, entry 0 (home) first.
+        items: Vec<Item>,
+    },
+    /// Overwrite entries from `start` on, and verify them.
+    Overwrite {
+        /// First entry.
+        start: u16,
+        /// What comes there.
+        items: Vec<Item>,
+    },
+    /// Steer to this entry.
+    SetCurrent(u16),
+}
+
+/// A change in flight.
 #[derive(Debug, Clone, PartialEq)]
 enum Pending {
     Upload { items: Vec<Item> },
@@ -65,16 +82,10 @@ pub struct Window {
 }
 
 impl Window {
-    /// The chain of waypoints.
-    pub fn chain(&self) -> &Chain {
-        &self.chain
-    }
-
-    /// Cancel and append, as one transaction. The caller has checked plausibility and
-    /// [`Chain::room`].
-    pub fn feed(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>) {
+    /// Cancels what is behind `after`, and appends, as one transaction.
+    pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
         let flying = self.entered;
-        self.chain.feed(cancel_after, waypoints, flying);
+        self.chain.feed(after, waypoints, flying);
         self.end = self.end.min(self.chain.end());
         self.leave_foreign();
     }
@@ -90,38 +101,44 @@ impl Window {
         self.installed
     }
 
-    /// The aircraft circles the end loiter: everything that was fed has been flown.
-    pub fn at_end_loiter(&self) -> bool {
-        self.entered && self.chain.is_empty()
+    /// What the autopilot steers to, of what was fed.
+    pub fn target(&self) -> Target {
+        if !self.entered {
+            return Target::None;
+        }
+        let Some(active) = self.chain.active() else { return Target::End };
+        let next = self.chain.next();
+        let item = ring::item(&active.waypoint);
+        match (self.loaded.is_some_and(|l| matches(&l, &item)), active.serial) {
+            (false, _) => Target::Unknown { next },
+            (true, Serial(0)) => {
+                let Item { position, altitude_amsl_m, .. } = item;
+                Target::Elsewhere { next, position, altitude_amsl_m }
+            }
+            (true, serial) => Target::Waypoint(serial),
+        }
     }
 
-    /// The waypoint being steered to; `None` at the end loiter, and while it is not certain.
-    pub fn current(&self) -> Option<&Waypoint> {
-        self.chain.active().filter(|w| self.loaded.is_some_and(|l| matches(&l, &ring::item(w))))
-    }
-
-    /// The autopilot says it steers to entry `seq`. True: it went on to another waypoint.
-    pub fn reported(&mut self, seq: u16) -> bool {
+    /// The autopilot says it steers to entry `seq`.
+    pub fn reported(&mut self, seq: u16) {
         let first = self.chain.first();
         let position = self.position_of(seq).filter(|p| self.entered && *p > first);
-        let Some(position) = position else { return false };
+        let Some(position) = position else { return };
         if self.is_being_written(position) {
             self.reached_in_doubt = Some(position);
-            return false;
+            return;
         }
         self.chain.advance_to(position);
         self.loaded = self.board.get(position);
         self.leave_foreign();
-        true
     }
 
     /// The write is over, during which an entry of it was reached.
-    fn resolve_doubt(&mut self) -> bool {
-        let Some(position) = self.reached_in_doubt.take() else { return false };
+    fn resolve_doubt(&mut self) {
+        let Some(position) = self.reached_in_doubt.take() else { return };
         self.chain.advance_to(position);
         self.loaded = None;
         self.leave_foreign();
-        true
     }
 
     /// When the aircraft steers to something that is not in the chain (it was faster than the cut,
@@ -157,9 +174,11 @@ impl Window {
         self.entered && self.pending.is_none() && self.position_of(seq).is_none()
     }
 
-    /// Leave a loiter for the waypoint after it, if there is one.
-    pub fn leave_loiter(&mut self) {
-        self.chain.leave_active();
+    /// Leave a waypoint that is being circled for the one after it, if there is one.
+    pub fn leave(&mut self, serial: Serial) {
+        if self.chain.active().is_some_and(|f| f.serial == serial) {
+            self.chain.leave_active();
+        }
     }
 
     /// Make the autopilot steer to the chain again.
@@ -214,9 +233,9 @@ impl Window {
         })
     }
 
-    /// The next order, if one is due and none is in flight. `may_install`: the aircraft is not
+    /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
     /// flying the list, so that it may be replaced whole. `home`: what entry 0 becomes.
-    pub fn next_order(&mut self, may_install: bool, home: Option<Item>) -> Option<Order> {
+    pub fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change> {
         if self.pending.is_some() {
             return None;
         }
@@ -225,9 +244,9 @@ impl Window {
         }
         // what the aircraft waits for comes before topping up
         if self.is_short_chain_complete()
-            && let Some(order) = self.set_current()
+            && let Some(change) = self.set_current()
         {
-            return Some(order);
+            return Some(change);
         }
         self.stretch();
         match self.deviation() {
@@ -241,7 +260,7 @@ impl Window {
         self.end > target && self.deviation().is_none()
     }
 
-    fn install(&mut self, home: Item) -> Option<Order> {
+    fn install(&mut self, home: Item) -> Option<Change> {
         self.chain.restart();
         self.board = Slots::with_home(home);
         self.end = 0;
@@ -250,10 +269,10 @@ impl Window {
         self.entered = false;
         let list = initial_list(home, &items);
         self.pending = Some(Pending::Upload { items });
-        Some(Order::Upload { items: list })
+        Some(Change::Upload { items: list })
     }
 
-    fn write_towards(&mut self, position: u64) -> Order {
+    fn write_towards(&mut self, position: u64) -> Change {
         // When the aircraft waits for it, three waypoints now are better than many later.
         let urgent = self.chain.jump().is_some() || position == self.chain.first();
         let end = if urgent { self.end.min(position + 3) } else { self.end };
@@ -272,9 +291,9 @@ impl Window {
         }
     }
 
-    /// A end loiter, and behind it (which is written after it, and out of reach once it is there) what comes
+    /// An end loiter, and behind it (which is written after it, and out of reach once it is there) what comes
     /// after the waypoint that will replace it.
-    fn cut(&mut self, position: u64, end: u64) -> Order {
+    fn cut(&mut self, position: u64, end: u64) -> Change {
         let stop = end.min(position + AT_ONCE - 1).min(ring::last_before_wrap(position));
         let end_loiter = self.end_loiter(position);
         let behind = (position + 1..=stop).map(|p| self.wanted(p));
@@ -282,51 +301,47 @@ impl Window {
         self.write(position, items)
     }
 
-    fn write(&mut self, position: u64, items: Vec<Item>) -> Order {
+    fn write(&mut self, position: u64, items: Vec<Item>) -> Change {
         self.board.forget(position, items.len());
         self.pending = Some(Pending::Write { position, items: items.clone() });
-        Order::Write { start: slot(position), items }
+        Change::Overwrite { start: slot(position), items }
     }
 
-    fn set_current(&mut self) -> Option<Order> {
+    fn set_current(&mut self) -> Option<Change> {
         let position = match self.chain.jump() {
             Some(jump) => jump,
             None if !self.entered || self.must_reload() => self.chain.first(),
             None => return None,
         };
         self.pending = Some(Pending::SetCurrent { position });
-        Some(Order::SetCurrent(slot(position)))
+        Some(Change::SetCurrent(slot(position)))
     }
 
-    /// The order in flight was carried out and confirmed. True: the aircraft steers to another
-    /// waypoint now.
-    pub fn done(&mut self) -> bool {
+    /// The change in flight was carried out and confirmed.
+    pub fn done(&mut self) {
         match self.pending.take() {
             Some(Pending::Upload { items }) => {
                 self.installed = true;
                 self.board.fill(items);
-                false
             }
             Some(Pending::Write { position, items }) => {
                 self.board.put(position, items);
-                self.resolve_doubt()
+                self.resolve_doubt();
             }
             Some(Pending::SetCurrent { position }) => self.arrived_at(position),
-            None => false,
+            None => {}
         }
     }
 
-    fn arrived_at(&mut self, position: u64) -> bool {
-        let new = !self.entered || position > self.chain.first();
+    fn arrived_at(&mut self, position: u64) {
         self.entered = true;
         if position >= self.chain.first() {
             self.loaded = self.board.get(position);
             self.chain.advance_to(position);
         }
-        new
     }
 
-    /// The order in flight failed or its outcome is unknown: what it touched is unknown, and will
+    /// The change in flight failed or its outcome is unknown: what it touched is unknown, and will
     /// be written again.
     pub fn failed(&mut self) {
         self.pending = None;
@@ -347,10 +362,11 @@ impl Window {
     }
 
     /// Take over a list that was read from an autopilot which is flying it. `waypoints`: what was
-    /// known of it before a restart, the one steered to first. False: it is not one of ours.
-    pub fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Waypoint>) -> bool {
+    /// known of it before a restart, the one steered to first; so many of them are on board. `None`: it is not
+    /// one of ours.
+    pub fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
         if !ring::is_ours(list) || !(2..=LAST_SLOT).contains(&current) {
-            return false;
+            return None;
         }
         self.clear();
         self.board = Slots::from_list(list);
@@ -359,13 +375,9 @@ impl Window {
         self.loaded = list.get(usize::from(current)).copied();
         let first = u64::from(current - 2);
         let known = ring::known_on_board(list, first, waypoints);
-        self.end = first + known.len() as u64;
+        let count = known.len();
+        self.end = first + count as u64;
         self.chain = Chain::resumed(first, known);
-        true
-    }
-
-    /// The chain's waypoint after the active one is a landing: it is on the approach.
-    pub fn next_is_land(&self) -> bool {
-        self.chain.second().is_some_and(|w| matches!(w.action, Action::Land { .. }))
+        Some(count)
     }
 }

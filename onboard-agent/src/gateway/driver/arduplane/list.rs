@@ -1,0 +1,162 @@
+//! What is wanted on the autopilot's list, and what is being done to get it there.
+
+use super::items::{Item, ItemKind};
+use super::window::{Change, Window};
+use crate::gateway::order::{Course, Fed, OrderId, Report, Serial, Time};
+use geometry::LatLon;
+use std::time::Duration;
+
+/// What failed is done again after this.
+const RETRY: Duration = Duration::from_secs(1);
+/// The list may be flown elsewhere for so long before the aircraft is brought back.
+const ASTRAY_FOR: Duration = Duration::from_secs(2);
+
+/// What is being done to the list.
+#[derive(Debug, Clone)]
+enum Task {
+    /// Something of the window's.
+    Change,
+    /// It is read, to adopt these waypoints.
+    Adopt(OrderId, Vec<Fed>),
+}
+
+/// What is to be done next.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// Bring this on board.
+    Change(Change),
+    /// Read the list.
+    Read,
+}
+
+/// The list. See the module's text.
+#[derive(Debug, Clone, Default)]
+pub struct List {
+    window: Window,
+    task: Option<Task>,
+    retry_at: Option<Time>,
+    /// A flight that was met in the air is to be looked at.
+    adopt: Option<(OrderId, Vec<Fed>)>,
+    /// The list may be changed: we know this kind of autopilot.
+    pub supported: bool,
+    /// The pilot flies, or nobody does any more.
+    pub hands_off: bool,
+    /// The autopilot flies its list.
+    pub flown: bool,
+    current: Option<u16>,
+    astray_since: Option<Time>,
+    home: Option<Item>,
+    /// The ground under the aircraft, for an autopilot that does not say where its home is.
+    ground: Option<Item>,
+    told: Course,
+}
+
+impl List {
+    /// Cancel and append, as one transaction.
+    pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
+        self.window.feed(after, waypoints);
+    }
+
+    /// Leave a loiter for the waypoint after it.
+    pub fn leave(&mut self, serial: Serial) {
+        self.window.leave(serial);
+    }
+
+    /// The flight is over.
+    pub fn forget(&mut self) {
+        self.window.clear();
+        self.adopt = None;
+    }
+
+    /// Look whether waypoints of ours are flown.
+    pub fn adopt(&mut self, id: OrderId, known: Vec<Fed>) {
+        self.adopt = Some((id, known));
+    }
+
+    /// The autopilot started anew.
+    pub fn rebooted(&mut self) {
+        self.window.invalidate();
+    }
+
+    /// The take-off place, metres AMSL.
+    pub fn set_home(&mut self, position: LatLon, altitude_amsl_m: f64) {
+        self.home = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
+    }
+
+    /// The ground under the aircraft, as far as its height above home tells, metres AMSL.
+    pub fn set_ground(&mut self, position: LatLon, altitude_amsl_m: f64) {
+        self.ground = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
+    }
+
+    /// The autopilot says it steers to this entry.
+    pub fn steers_to(&mut self, now: Time, seq: u16) {
+        self.current = Some(seq);
+        self.window.reported(seq);
+        if !self.window.is_astray(seq) || !self.flown {
+            self.astray_since = None;
+            return;
+        }
+        let since = *self.astray_since.get_or_insert(now);
+        if now.saturating_sub(since) > ASTRAY_FOR {
+            self.astray_since = None;
+            self.window.bring_back();
+        }
+    }
+
+    /// When something is to be tried again.
+    pub fn deadline(&self) -> Option<Time> {
+        self.retry_at
+    }
+
+    /// What is to be done next, if anything, and nothing is being done.
+    pub fn next(&mut self, now: Time) -> Option<Step> {
+        if self.task.is_some() || self.retry_at.is_some_and(|at| now < at) {
+            return None;
+        }
+        self.retry_at = None;
+        if let Some((id, known)) = self.adopt.take_if(|_| self.current.is_some()) {
+            self.task = Some(Task::Adopt(id, known));
+            return Some(Step::Read);
+        }
+        if !self.supported || self.hands_off {
+            return None;
+        }
+        let change = self.window.next_change(!self.flown, self.home.or(self.ground))?;
+        self.task = Some(Task::Change);
+        Some(Step::Change(change))
+    }
+
+    /// It was done, and the autopilot confirmed it.
+    pub fn done(&mut self) {
+        if let Some(Task::Change) = self.task.take() {
+            self.window.done();
+        }
+    }
+
+    /// It failed, or its outcome is unknown: it is done again.
+    pub fn failed(&mut self, now: Time, why: String) -> Option<Report> {
+        self.retry_at = Some(now + RETRY);
+        match self.task.take()? {
+            Task::Change => {
+                tracing::warn!(why, "the autopilot's list was not changed");
+                self.window.failed();
+                None
+            }
+            Task::Adopt(id, _) => Some(Report::Failed(id, why)),
+        }
+    }
+
+    /// The list was read.
+    pub fn read(&mut self, list: &[Item]) -> Option<Report> {
+        let Some(Task::Adopt(id, known)) = self.task.take() else { return None };
+        let aboard = self.window.adopt(list, self.current.unwrap_or(0), known);
+        Some(Report::Adopted(id, aboard))
+    }
+
+    /// How far the autopilot is with the waypoints, if that has changed.
+    pub fn news(&mut self) -> Option<Course> {
+        let w = &self.window;
+        let course = Course { aboard: w.installed(), ready: w.ready(), target: w.target() };
+        (std::mem::replace(&mut self.told, course) != course).then_some(course)
+    }
+}

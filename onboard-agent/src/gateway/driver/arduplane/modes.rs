@@ -1,0 +1,80 @@
+//! ArduPlane's numbers and names of modes.
+
+use crate::gateway::order::{Aim, Mode};
+use std::borrow::Cow;
+
+/// It flies its list.
+pub const AUTO: u32 = 10;
+/// It returns by itself.
+const RTL: u32 = 11;
+/// It circles where it is.
+const LOITER: u32 = 12;
+/// It goes to a place.
+pub const GUIDED: u32 = 15;
+
+const NAMES: [(u32, &str); 19] = [
+    (0, "MANUAL"),
+    (1, "CIRCLE"),
+    (2, "STABILIZE"),
+    (3, "TRAINING"),
+    (4, "ACRO"),
+    (5, "FBWA"),
+    (6, "FBWB"),
+    (7, "CRUISE"),
+    (8, "AUTOTUNE"),
+    (AUTO, "AUTO"),
+    (RTL, "RTL"),
+    (LOITER, "LOITER"),
+    (13, "TAKEOFF"),
+    (14, "AVOID_ADSB"),
+    (GUIDED, "GUIDED"),
+    (16, "INITIALISING"),
+    (24, "THERMAL"),
+    (25, "LOITER_ALT_QLAND"),
+    (26, "AUTOLAND"),
+];
+
+/// Who steers in a mode.
+pub fn meaning(number: u32) -> Mode {
+    match number {
+        AUTO => Mode::Waypoints,
+        RTL => Mode::Return,
+        LOITER => Mode::Hold,
+        GUIDED => Mode::Direct,
+        n => Mode::Other(n),
+    }
+}
+
+/// The mode in which something is done.
+pub fn number(aim: &Aim) -> u32 {
+    match aim {
+        Aim::Waypoints => AUTO,
+        Aim::Hold => LOITER,
+        Aim::Direct { .. } => GUIDED,
+        Aim::Return => RTL,
+    }
+}
+
+/// What ArduPlane calls a mode.
+pub fn name(number: u32) -> Cow<'static, str> {
+    match NAMES.iter().find(|(n, _)| *n == number) {
+        Some((_, name)) => Cow::Borrowed(name),
+        None => Cow::Owned(format!("mode {number}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::LatLon;
+
+    #[test]
+    fn what_is_ordered_is_what_is_reported_when_it_is_done() {
+        let direct = Aim::Direct { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0 };
+        for aim in [Aim::Waypoints, Aim::Hold, direct, Aim::Return] {
+            assert_eq!(meaning(number(&aim)), aim.mode());
+        }
+        let names = [AUTO, 5, 99].map(name);
+        assert_eq!(names, ["AUTO", "FBWA", "mode 99"]);
+    }
+}

@@ -1,0 +1,156 @@
+//! What is being done to the autopilot's list: one transfer or one partial write at a time.
+
+use super::partial_write::PartialWrite;
+use super::rto::Rto;
+use super::transfer::Transfer;
+use super::{Peer, mission_type};
+use crate::gateway::order::Time;
+use mavlink::dialects::ardupilotmega::*;
+
+/// An entry of the list, as on the wire.
+pub type Entry = MISSION_ITEM_INT_DATA;
+
+/// The second, which was read back, is the first, as far as this autopilot keeps it.
+pub type Same = fn(&Entry, &Entry) -> bool;
+
+/// How it ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Written and read back alike.
+    Verified,
+    /// The list.
+    List(Vec<Entry>),
+    /// Given up; what is on board is unknown.
+    Failed(String),
+}
+
+#[derive(Debug, Clone)]
+enum Job {
+    Transfer(Transfer),
+    Write(PartialWrite),
+}
+
+/// The list's one job, and what is known of the link.
+#[derive(Debug, Clone, Default)]
+pub struct Mission {
+    job: Option<Job>,
+    link: Rto,
+}
+
+impl Mission {
+    /// Replaces the whole list, and verifies it.
+    pub fn upload(
+        &mut self,
+        now: Time,
+        entries: Vec<Entry>,
+        same: Same,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) {
+        let link = std::mem::take(&mut self.link);
+        self.job = Some(Job::Transfer(Transfer::upload(now, entries, same, link, peer, out)));
+    }
+
+    /// Overwrites entries, which follow each other, and verifies them.
+    pub fn overwrite(
+        &mut self,
+        now: Time,
+        entries: Vec<Entry>,
+        same: Same,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) {
+        let link = std::mem::take(&mut self.link);
+        self.job = Some(Job::Write(PartialWrite::begin(now, entries, same, link, peer, out)));
+    }
+
+    /// Reads the whole list.
+    pub fn read(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+        let link = std::mem::take(&mut self.link);
+        self.job = Some(Job::Transfer(Transfer::read_list(now, link, peer, out)));
+    }
+
+    /// When `tick` is due.
+    pub fn deadline(&self) -> Option<Time> {
+        match self.job.as_ref()? {
+            Job::Transfer(transfer) => transfer.deadline(),
+            Job::Write(write) => write.deadline(),
+        }
+    }
+
+    /// Time passed.
+    pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
+        let outcome = match self.job.as_mut()? {
+            Job::Transfer(transfer) => transfer.tick(now, peer, out),
+            Job::Write(write) => write.tick(now, peer, out).map(Outcome::Failed),
+        };
+        self.finish(outcome)
+    }
+
+    /// A message came in, and what it ended, if anything. `None`: it is not about what is being done.
+    pub fn hear(
+        &mut self,
+        now: Time,
+        message: &MavMessage,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Option<Option<Outcome>> {
+        let outcome = match self.job.as_mut()? {
+            Job::Transfer(transfer) => hear_transfer(transfer, now, message, peer, out)?,
+            Job::Write(write) => hear_write(write, now, message)?,
+        };
+        Some(self.finish(outcome))
+    }
+
+    fn finish(&mut self, outcome: Option<Outcome>) -> Option<Outcome> {
+        let outcome = outcome?;
+        self.link = match self.job.take()? {
+            Job::Transfer(transfer) => transfer.into_rto(),
+            Job::Write(write) => write.into_rto(),
+        };
+        Some(outcome)
+    }
+}
+
+#[expect(deprecated, reason = "ArduPilot asks by the deprecated message, and has to be answered")]
+fn hear_transfer(
+    transfer: &mut Transfer,
+    now: Time,
+    message: &MavMessage,
+    peer: Peer,
+    out: &mut Vec<MavMessage>,
+) -> Option<Option<Outcome>> {
+    let plan = mission_type();
+    match message {
+        MavMessage::MISSION_REQUEST(r) if r.mission_type == plan => {
+            transfer.requested(now, r.seq, out);
+            Some(None)
+        }
+        MavMessage::MISSION_REQUEST_INT(r) if r.mission_type == plan => {
+            transfer.requested(now, r.seq, out);
+            Some(None)
+        }
+        MavMessage::MISSION_ACK(a) if a.mission_type == plan => {
+            Some(transfer.acked(now, a.mavtype, peer, out))
+        }
+        MavMessage::MISSION_COUNT(c) if c.mission_type == plan => {
+            Some(transfer.counted(now, c.count, peer, out))
+        }
+        MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => Some(transfer.item(now, i, peer, out)),
+        _ => None,
+    }
+}
+
+fn hear_write(write: &mut PartialWrite, now: Time, message: &MavMessage) -> Option<Option<Outcome>> {
+    let plan = mission_type();
+    match message {
+        MavMessage::MISSION_ACK(a) if a.mission_type == plan => {
+            Some(write.acked(a.mavtype).map(Outcome::Failed))
+        }
+        MavMessage::MISSION_ITEM_INT(i) if i.mission_type == plan => {
+            write.item(now, i);
+            Some(write.is_complete().then_some(Outcome::Verified))
+        }
+        _ => None,
+    }
+}

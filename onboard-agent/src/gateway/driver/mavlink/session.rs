@@ -1,0 +1,278 @@
+//! A conversation with one MAVLink autopilot: whom we listen to, heartbeats, time, commands, the list.
+//!
+//! It binds to the first autopilot it hears and ignores every other system; a message with nonsense in it loses
+//! that message and nothing else. What it means is for the driver of that autopilot to say.
+
+use super::Peer;
+use super::commands::{Client, Commands, Shown, Wish};
+use super::mission::{Mission, Outcome};
+use super::streams::Streams;
+use super::telemetry::Readings;
+use crate::gateway::driver::FromLink;
+use crate::gateway::order::{Report, Time};
+use autopilot_link::Outbox;
+use autopilot_link::frame::{Decoder, Sender, encode_into};
+use mavlink::dialects::ardupilotmega::*;
+use std::time::Duration;
+
+/// Our heartbeat's period.
+const HEARTBEAT: Duration = Duration::from_secs(1);
+/// Our component: onboard computer.
+const OWN_COMPONENT: u8 = 191;
+/// Until a vehicle is heard we speak as system 1, the usual number of a single vehicle.
+const FIRST_SYSTEM: u8 = 1;
+/// Bytes that are no frames are logged at most this often.
+const LOG_EVERY: Duration = Duration::from_secs(10);
+
+/// What a message, or time, brought.
+#[derive(Debug, Clone, PartialEq)]
+pub enum News {
+    /// The autopilot was heard for the first time.
+    Bound(HEARTBEAT_DATA),
+    /// Its heartbeat.
+    Heartbeat {
+        /// The mode, by its own number.
+        mode: u32,
+        /// Engine may run.
+        armed: bool,
+    },
+    /// It steers to this entry of its list.
+    Current(u16),
+    /// A command ended.
+    Command(Client, Result<(), String>),
+    /// What was done to its list ended.
+    Mission(Outcome),
+    /// Telemetry.
+    Telemetry(Report),
+}
+
+/// The conversation. See the module's text.
+#[derive(Debug, Default)]
+pub struct Session {
+    lockstep: bool,
+    decoder: Decoder,
+    /// When bytes that were no frames were logged, and how many there were.
+    logged: (Time, u64),
+    peer: Option<Peer>,
+    /// Messages of other systems, and such without sense.
+    pub ignored: u64,
+    mission: Mission,
+    commands: Commands,
+    streams: Streams,
+    readings: Readings,
+    beat_at: Time,
+    stepped: Option<i64>,
+    sequence: u8,
+    /// What is to be sent.
+    pub out: Vec<MavMessage>,
+}
+
+impl Session {
+    /// A session that has heard nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
+    pub fn new(lockstep: bool) -> Self {
+        Self { lockstep, ..Self::default() }
+    }
+
+    /// The autopilot, once it was heard.
+    pub fn peer(&self) -> Option<Peer> {
+        self.peer
+    }
+
+    /// Who we say that we are.
+    pub fn own(&self) -> Sender {
+        Sender { system: self.peer.map_or(FIRST_SYSTEM, |p| p.system), component: OWN_COMPONENT }
+    }
+
+    /// Takes in what the link brought.
+    pub fn receive(&mut self, from: FromLink<'_>) {
+        match from {
+            FromLink::Connected => self.decoder.restart(),
+            FromLink::Stream(bytes) => self.decoder.push(bytes),
+            FromLink::Datagram(bytes) => self.decoder.push_datagram(bytes),
+        }
+    }
+
+    /// Looks at the next message of what was received. False: there is none left.
+    pub fn process(&mut self, now: Time, news: &mut Vec<News>) -> bool {
+        let Some(frame) = self.decoder.next_frame() else { return false };
+        let (sender, message) = (frame.sender, frame.message());
+        match message {
+            Some(message) => self.hear(now, sender, &message, news),
+            // an unknown value in an enumeration loses this message only
+            None => self.ignored += 1,
+        }
+        true
+    }
+
+    /// Hands over the frames to be sent.
+    pub fn send(&mut self, outbox: &mut Outbox) {
+        let own = self.own();
+        for message in self.out.drain(..) {
+            outbox.push(|bytes| encode_into(own, self.sequence, &message, bytes));
+            self.sequence = self.sequence.wrapping_add(1);
+        }
+    }
+
+    /// Gives a command, in its turn.
+    pub fn command(&mut self, now: Time, client: Client, wish: Wish, news: &mut Vec<News>) {
+        let refused = self.commands.give(client, wish);
+        news.extend(refused.map(|(client, result)| News::Command(client, result)));
+        self.tick(now, news);
+    }
+
+    /// The autopilot's list: begin something, if nothing is being done to it.
+    pub fn mission(&mut self) -> (&mut Mission, &mut Vec<MavMessage>) {
+        (&mut self.mission, &mut self.out)
+    }
+
+    /// The simulator waits for the answer to this step (its time, ns).
+    pub fn take_step(&mut self) -> Option<i64> {
+        self.stepped.take()
+    }
+
+    /// Answers a step.
+    pub fn answer_step(&mut self, step_ns: i64) {
+        self.answer_time(step_ns.max(1), step_ns);
+    }
+
+    /// Says that we are here, out of turn.
+    pub fn hello(&mut self) {
+        self.out.push(heartbeat());
+    }
+
+    /// When `tick` is due.
+    pub fn deadline(&self) -> Time {
+        let waits = [self.mission.deadline(), self.commands.deadline()];
+        waits.into_iter().flatten().fold(self.beat_at, Time::min)
+    }
+
+    /// Time passed.
+    pub fn tick(&mut self, now: Time, news: &mut Vec<News>) {
+        if now >= self.beat_at {
+            self.beat_at = now + HEARTBEAT;
+            self.out.push(heartbeat());
+            self.log_garbage(now);
+        }
+        let Some(peer) = self.peer else { return };
+        self.streams.tick(now, peer, &mut self.out);
+        let ended = self.commands.tick(now, peer, &mut self.out);
+        news.extend(ended.map(|(client, result)| News::Command(client, result)));
+        news.extend(self.mission.tick(now, peer, &mut self.out).map(News::Mission));
+    }
+
+    fn log_garbage(&mut self, now: Time) {
+        let bytes = self.decoder.ignored_bytes;
+        if bytes > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
+            tracing::warn!(bytes, "bytes that are no MAVLink were ignored on the autopilot's link");
+            self.logged = (now, bytes);
+        }
+    }
+
+    /// A message came in.
+    pub fn hear(&mut self, now: Time, sender: Sender, message: &MavMessage, news: &mut Vec<News>) {
+        if let MavMessage::HEARTBEAT(beat) = message {
+            self.bind(sender, beat, news);
+        }
+        // a simulator's clock goes on before it has said who it is
+        if let (None, MavMessage::TIMESYNC(sync)) = (self.peer, message) {
+            if sync.tc1 == 0 {
+                self.synchronise(now, sync.ts1);
+            }
+            return self.tick(now, news);
+        }
+        let Some(peer) = self.peer.filter(|p| *p == sender) else {
+            self.ignored += 1;
+            return;
+        };
+        self.streams.seen(mavlink::Message::message_id(message));
+        match message {
+            MavMessage::HEARTBEAT(beat) => self.heard(now, beat, news),
+            MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
+            MavMessage::COMMAND_ACK(ack) => {
+                let ended = self.commands.acked(now, ack);
+                news.extend(ended.map(|(client, result)| News::Command(client, result)));
+            }
+            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq, news),
+            _ => match self.mission.hear(now, message, peer, &mut self.out) {
+                Some(outcome) => news.extend(outcome.map(News::Mission)),
+                None => self.readings.take(now, message, news, &mut self.ignored),
+            },
+        }
+        self.tick(now, news);
+    }
+
+    /// The first autopilot that is heard is ours; the rest are strangers.
+    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA, news: &mut Vec<News>) {
+        if self.peer.is_some() || sender.system == 0 || !is_autopilot(beat) {
+            return;
+        }
+        self.peer = Some(sender);
+        news.push(News::Bound(beat.clone()));
+    }
+
+    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA, news: &mut Vec<News>) {
+        let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        news.push(News::Heartbeat { mode: beat.custom_mode, armed });
+        self.shown(now, Shown::Mode(beat.custom_mode, armed), news);
+    }
+
+    fn current(&mut self, now: Time, seq: u16, news: &mut Vec<News>) {
+        // 65535: no current entry
+        if seq == u16::MAX {
+            return;
+        }
+        news.push(News::Current(seq));
+        self.shown(now, Shown::Current(seq), news);
+    }
+
+    fn shown(&mut self, now: Time, shown: Shown, news: &mut Vec<News>) {
+        let ended = self.commands.shown(now, shown);
+        news.extend(ended.map(|(client, result)| News::Command(client, result)));
+    }
+
+    fn synchronise(&mut self, now: Time, their_ns: i64) {
+        if self.lockstep {
+            self.stepped = Some(their_ns);
+        } else {
+            let own_ns = i64::try_from(now.as_nanos()).unwrap_or(i64::MAX);
+            self.answer_time(own_ns.max(1), their_ns);
+        }
+    }
+
+    fn answer_time(&mut self, own_ns: i64, their_ns: i64) {
+        let (target_system, target_component) = self.peer.map_or((0, 0), |p| (p.system, p.component));
+        self.out.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
+            tc1: own_ns,
+            ts1: their_ns,
+            target_system,
+            target_component,
+        }));
+    }
+}
+
+/// A datagram has an autopilot's heartbeat in it.
+pub fn recognises(datagram: &[u8]) -> bool {
+    let mut decoder = Decoder::default();
+    decoder.push_datagram(datagram);
+    while let Some(frame) = decoder.next_frame() {
+        if matches!(frame.message(), Some(MavMessage::HEARTBEAT(beat)) if is_autopilot(&beat)) {
+            return true;
+        }
+    }
+    false
+}
+
+fn is_autopilot(beat: &HEARTBEAT_DATA) -> bool {
+    beat.autopilot != MavAutopilot::MAV_AUTOPILOT_INVALID
+}
+
+fn heartbeat() -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        custom_mode: 0,
+        mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+        base_mode: MavModeFlag::empty(),
+        system_status: MavState::MAV_STATE_ACTIVE,
+        mavlink_version: 3,
+    })
+}
