@@ -1,17 +1,21 @@
 //! The dependency directions of ARCHITECTURE.md, enforced.
 #![cfg(test)]
 
-use std::{collections::BTreeMap, process::Command};
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
 
 /// Crates of ours that each crate may depend on, and outside crates only it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
-    ("geometry", &[]),
+    ("geodesy", &[]),
+    ("geometry", &["geodesy"]),
     ("terrain", &["geometry"]),
     ("aircraft", &["geometry"]),
     ("flight-plan", &["geometry", "terrain", "aircraft"]),
     ("flight-exec", &["geometry", "terrain", "aircraft", "flight-plan"]),
     ("interchange", &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec"]),
-    ("usal", &["geometry", "flight-plan", "flight-exec"]),
+    ("contract", &["geodesy"]),
+    ("wire", &["geodesy", "contract", "flight-plan", "flight-exec"]),
+    ("usal", &["contract"]),
     ("autopilot-link", &[]),
     ("sim", &["geometry", "aircraft", "autopilot-link"]),
     ("journal", &["flight-exec"]),
@@ -27,6 +31,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "journal",
             "recording",
             "usal",
+            "wire",
             "autopilot-link",
             "service",
         ],
@@ -43,6 +48,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "interchange",
             "recording",
             "usal",
+            "wire",
             "onboard-agent",
             "sim",
         ],
@@ -77,20 +83,51 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("mcap", &["recording"]),
 ];
 
+/// What a payload service in Rust compiles, and what must not be behind it, however far down.
+const PAYLOAD_SERVICE: [&str; 2] = ["contract", "usal"];
+const NOT_FOR_PAYLOADS: [&str; 10] = [
+    "flight-plan",
+    "flight-exec",
+    "geometry",
+    "terrain",
+    "aircraft",
+    "i_overlay",
+    "quick-xml",
+    "cel",
+    "mavlink",
+    "egui",
+];
+/// Crates, of ours and of others, that the types alone may take to compile.
+const CONTRACT_CRATES_MAX: usize = 32;
+
 /// A manifest for Cargo, see there; anyone may depend on it.
 const NO_CODE: &str = "workspace-hack";
 
 /// Crates whose cores must stay pure: no clock, no IO, no runtime.
-const PURE: &[&str] =
-    &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "interchange", "journal", "recording"];
+const PURE: &[&str] = &[
+    "geodesy",
+    "geometry",
+    "terrain",
+    "aircraft",
+    "flight-plan",
+    "flight-exec",
+    "interchange",
+    "journal",
+    "recording",
+    "contract",
+    "wire",
+];
+
+fn cargo(arguments: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO")).args(arguments).arg("--offline").output().expect("cargo runs");
+    assert!(output.status.success(), "cargo {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
 
 /// Name of each workspace package → names of its ordinary dependencies.
 fn dependencies() -> BTreeMap<String, Vec<String>> {
-    let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])
-        .output()
-        .expect("cargo metadata runs");
-    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("metadata is JSON");
+    let metadata = cargo(&["metadata", "--no-deps", "--format-version", "1"]);
+    let metadata: serde_json::Value = serde_json::from_slice(&metadata).expect("metadata is JSON");
     let packages = metadata["packages"].as_array().expect("packages");
     packages
         .iter()
@@ -101,6 +138,13 @@ fn dependencies() -> BTreeMap<String, Vec<String>> {
             (text(&package["name"]), names.filter(|name| name != NO_CODE).collect())
         })
         .collect()
+}
+
+/// Every crate that is compiled when this one of ours is used, itself included.
+fn compiled_for(name: &str) -> BTreeSet<String> {
+    let tree = cargo(&["tree", "--package", name, "--edges", "normal,build", "--prefix", "none"]);
+    let tree = String::from_utf8(tree).expect("text");
+    tree.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect()
 }
 
 fn text(value: &serde_json::Value) -> String {
@@ -127,6 +171,20 @@ fn outside_crates_stay_behind_their_walls() {
             assert!(!leaks, "{name} must not use {wall}: only {inside:?} may");
         }
     }
+}
+
+#[test]
+fn payload_service_compiles_neither_plan_nor_executor() {
+    for name in PAYLOAD_SERVICE {
+        let compiled = compiled_for(name);
+        assert!(compiled.contains("serde"), "{name}: the tree is empty");
+        for banned in NOT_FOR_PAYLOADS {
+            assert!(!compiled.contains(banned), "{name} must not lead to {banned}");
+        }
+    }
+    let contract = compiled_for("contract");
+    assert!(contract.len() <= CONTRACT_CRATES_MAX, "{} crates: {contract:?}", contract.len());
+    assert!(!contract.contains("zenoh") && !contract.contains("tokio"), "{contract:?}");
 }
 
 #[test]

@@ -8,15 +8,16 @@ use super::recorder::Recorder;
 use super::watcher::Watcher;
 use crate::report::TrackPoint;
 use anyhow::{Context, bail, ensure};
-use flight_exec::{Command, Phase};
+use flight_exec::{Command, Event, Phase, Status};
 use flight_plan::{Edit, FlightPlan, Runway};
 use std::time::{Duration, Instant};
 use usal::contract::{
-    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanEvent, PlanStatus,
-    Position, Power, ProposalReport, Propose, TimedGatewayEvent,
+    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanStatus, Position,
+    Power, Propose, TimedGatewayEvent,
 };
 use usal::topics::{fp_manager, gateway};
 use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber};
+use wire::Convert;
 
 /// A service that does not answer for so long has failed, wall-clock.
 const ANSWER_WITHIN: Duration = Duration::from_secs(15);
@@ -58,7 +59,7 @@ pub struct Ending {
     /// Where the aircraft really was.
     pub points: Vec<TrackPoint>,
     /// What the executor told.
-    pub events: Vec<(f64, PlanEvent)>,
+    pub events: Vec<(f64, Event)>,
     /// The plan with its updates.
     pub plan: FlightPlan,
     /// For the judge.
@@ -93,8 +94,8 @@ impl Heard {
         })
     }
 
-    fn status(&self) -> Option<PlanStatus> {
-        Some(self.status.latest()?.stamped.value.clone())
+    fn status(&self) -> Option<Status> {
+        Some(self.status.latest()?.stamped.value.clone().convert())
     }
 
     fn gateway_state(&self) -> Option<GatewayState> {
@@ -142,7 +143,7 @@ impl<'a> Flight<'a> {
         self.wait_until_ready(components).await?;
         let plan = self.plan.clone();
         self.send_plan(&plan).await.context("the plan was not taken")?;
-        self.command(&Command::Start).await.context("the plan was not started")?;
+        self.command(Command::Start).await.context("the plan was not started")?;
         self.started_s = self.now_s;
         self.wall = Instant::now();
         let (mut phase, mut since_s) = (Phase::Idle, self.now_s);
@@ -277,10 +278,7 @@ impl<'a> Flight<'a> {
         }));
         while let Some(occurrence) = self.heard.plan_events.try_recv() {
             match occurrence {
-                Occurrence::Event { event, .. } => {
-                    self.script.hear(&event.value);
-                    recorder.plan_event(event);
-                }
+                Occurrence::Event { event, .. } => self.script.hear(recorder.plan_event(event)),
                 Occurrence::Gap { missed } => {
                     recorder.refusals.push(format!("{missed} events of the FP Manager were lost"))
                 }
@@ -342,7 +340,7 @@ impl<'a> Flight<'a> {
     async fn take(&mut self, step: &Step) -> anyhow::Result<()> {
         for act in &step.acts {
             match act {
-                Act::Command(command) => self.command(command).await?,
+                Act::Command(command) => self.command(command.clone()).await?,
                 Act::Update(edit) => self.update(edit).await?,
             }
         }
@@ -358,13 +356,13 @@ impl<'a> Flight<'a> {
 
     async fn send_plan(&self, plan: &FlightPlan) -> anyhow::Result<()> {
         let request = Propose { xml: flight_plan::write(plan), seen_revision: None };
-        let report: ProposalReport = self.session.call(fp_manager::PROPOSE, &request, ANSWER_WITHIN).await?;
+        let report = self.session.call(fp_manager::PROPOSE, &request, ANSWER_WITHIN).await?;
         ensure!(report.acceptable, "{}", report.problems.join("; "));
-        self.command(&Command::Commit { hash: report.hash, entry: None }).await
+        self.command(Command::Commit { hash: report.hash, entry: None }).await
     }
 
-    async fn command(&self, command: &Command) -> anyhow::Result<()> {
-        self.session.call(fp_manager::COMMAND, command, ANSWER_WITHIN).await?;
+    async fn command(&self, command: Command) -> anyhow::Result<()> {
+        self.session.call(fp_manager::COMMAND, &command.convert(), ANSWER_WITHIN).await?;
         Ok(())
     }
 }

@@ -7,7 +7,8 @@ use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use usal::contract::{GatewayEvent, GatewayState, Stamped};
+use usal::contract::{FpManagerEvent, GatewayEvent, GatewayState, Stamped};
+use wire::Convert;
 
 /// Everything that was heard.
 pub struct Recorder {
@@ -50,16 +51,17 @@ impl Recorder {
         }
     }
 
-    /// The executor told something.
-    pub fn plan_event(&mut self, stamped: Stamped<Event>) {
+    /// The executor told something: what it was.
+    pub fn plan_event(&mut self, stamped: FpManagerEvent) -> &Event {
         self.log("fp-manager/events", &stamped);
-        match &stamped.value {
+        let event: Event = stamped.value.convert();
+        match &event {
             Event::WaypointsRejected { reason, .. } | Event::PatternRefused { reason, .. } => {
                 self.refusals.push(reason.clone());
             }
             _ => {}
         }
-        self.events.push((stamped.time_s, stamped.value));
+        &self.events.push_mut((stamped.time_s, event)).1
     }
 
     /// The gateway told something.

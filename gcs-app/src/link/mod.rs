@@ -4,11 +4,11 @@
 mod session;
 
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
-use flight_exec::{Command as PlanCommand, ProposalReport, Status};
+use flight_exec::{Command as PlanCommand, Event, ProposalReport, Status};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 use usal::contract::{
-    Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation, PlanEvent,
+    Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation,
     PlanVariables, Position, Power, Propose, Stamped,
 };
 
@@ -117,7 +117,10 @@ pub enum Reply {
 
 /// What services tell of the vehicle.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "each is the contract's variable or event of that name")]
+#[expect(
+    missing_docs,
+    reason = "each is the contract's variable or event of that name; of the FP Manager, in the executor's types"
+)]
 pub enum Telemetry {
     Position(Stamped<Position>),
     Attitude(Stamped<Attitude>),
@@ -130,7 +133,7 @@ pub enum Telemetry {
     Status(Box<Stamped<Status>>),
     Ahead(Stamped<Ahead>),
     Variables(Stamped<PlanVariables>),
-    PlanEvent(Numbered<PlanEvent>),
+    PlanEvent(Numbered<Event>),
     GatewayEvent(Numbered<GatewayEvent>),
 }
 

@@ -5,14 +5,16 @@ use super::{
     Call, Endpoint, LinkEvent, LinkId, LinkMessage, LinkState, Loss, Numbered, Order, Reply, Telemetry, Wake,
 };
 use crate::state::{ActivePlan, Ticket, VehicleName};
+use flight_exec::Command;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::mpsc;
-use usal::contract::{Command, Empty, Stamped};
+use usal::contract::{Empty, PlanEvent, Stamped};
 use usal::topics::{Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
+use wire::Convert;
 
 /// A command is answered within this time, or the operator learns that it was not.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
@@ -135,10 +137,13 @@ async fn connect(endpoint: &str, outlet: &Outlet) -> Result<Open, usal::SessionE
     open.follow(gateway::POWER, Telemetry::Power, outlet)?;
     open.follow(gateway::NAVIGATION, Telemetry::Navigation, outlet)?;
     open.follow(gateway::STATE, Telemetry::Gateway, outlet)?;
-    open.follow(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status)), outlet)?;
+    open.follow(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status.convert())), outlet)?;
     open.follow(fp_manager::AHEAD, Telemetry::Ahead, outlet)?;
     open.follow(fp_manager::VARIABLES, Telemetry::Variables, outlet)?;
-    open.listen(fp_manager::EVENTS, Telemetry::PlanEvent, outlet)?;
+    let plan_event = |Numbered { sequence, event }: Numbered<PlanEvent>| {
+        Telemetry::PlanEvent(Numbered { sequence, event: event.convert() })
+    };
+    open.listen(fp_manager::EVENTS, plan_event, outlet)?;
     open.listen(gateway::EVENTS, Telemetry::GatewayEvent, outlet)?;
     open.watch(endpoint, outlet)?;
     Ok(open)
@@ -242,10 +247,11 @@ async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
     match call {
         Call::Propose(proposal) => {
             let report = session.call(fp_manager::PROPOSE, &proposal, PLAN_TIMEOUT).await?;
-            Ok(Reply::Proposal(Box::new(report)))
+            Ok(Reply::Proposal(Box::new(report.convert())))
         }
         Call::Plan(command) => {
-            session.call(fp_manager::COMMAND, &command, timeout(&command)).await.map(|_| Reply::Done)
+            let timeout = timeout(&command);
+            session.call(fp_manager::COMMAND, &command.convert(), timeout).await.map(|_| Reply::Done)
         }
         Call::Gateway(request) => {
             session.call(gateway::REQUEST, &request, COMMAND_TIMEOUT).await.map(|_| Reply::Done)

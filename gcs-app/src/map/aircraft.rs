@@ -41,7 +41,7 @@ pub fn draw_ahead(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette
     let mut before: Mercator = position.value.position.into();
     for waypoint in ahead.value.waypoints.iter().filter(|w| w.position.is_valid()) {
         let here: Mercator = waypoint.position.into();
-        let active = leg == Some(&waypoint.leg);
+        let active = leg.is_some_and(|leg| leg.as_str() == waypoint.leg.as_str());
         let (width, colour) = if active { (3.6, p.active) } else { (1.6, p.active.gamma_multiply(0.6)) };
         let parts = polyline::visible_parts(&[before, here], view);
         polyline::draw(painter, &parts, Stroke::new(width, colour), Style::Solid, p.halo);

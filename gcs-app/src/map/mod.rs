@@ -25,6 +25,7 @@ use tools::{Canvas, Toolbox};
 use usal::contract::PlanVariables;
 use view::View;
 use walkers::{Map, MapMemory, lat_lon};
+use wire::Convert;
 
 /// What the map remembers from frame to frame.
 #[derive(Debug, Default)]
@@ -159,7 +160,7 @@ impl MapState {
         let mut variables = Variables::initial(plan);
         for v in live.map(|l| l.variables.as_slice()).unwrap_or_default() {
             // a value the document's variable does not take belongs to another version of it
-            let _ = variables.set(plan, &v.name, v.value.clone());
+            let _ = variables.set(plan, &v.name.clone().convert(), v.value.clone().convert());
         }
         self.sketch = Sketch::new(plan, &variables);
         self.sketched = Some((version, live.cloned()));

@@ -14,6 +14,7 @@ use flight_plan::{
     Altitude, AltitudeReference, Edit, EmergencyPlan, Fix, FlightPlan, Id, Procedure, Runway, Stage, Value,
     Variable, VariableValue, Zone, ZoneKind, ZoneShape,
 };
+use wire::Convert;
 
 /// Draws the inspector.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -296,13 +297,16 @@ fn show_variable(ui: &mut Ui, scene: &Scene<'_>, variable: &Variable, queue: &mu
         field::row(ui, "Bounds", |ui| ui.label(format!("{} {}", bounds.join(", "), variable.unit)));
     }
     let Some(aboard) = &scene.vehicle.variables else { return };
-    let Some(live) = aboard.value.variables.iter().find(|v| v.name == variable.name) else { return };
+    let Some(live) = aboard.value.variables.iter().find(|v| v.name.as_str() == variable.name.as_str()) else {
+        return;
+    };
+    let live: VariableValue = live.value.clone().convert();
     ui.separator();
     super::group_title(ui, "Aboard");
-    let shown = crate::state::log::variable(&live.value);
+    let shown = crate::state::log::variable(&live);
     super::value_with_age(ui, "Value", &shown, super::age_of(&scene.vehicle.variables, scene.now_s));
     let id = egui::Id::unique(("set aboard", scene.vehicles.shown_name(), &variable.name));
-    let mut draft: VariableValue = ui.data(|d| d.get_temp(id)).unwrap_or_else(|| live.value.clone());
+    let mut draft: VariableValue = ui.data(|d| d.get_temp(id)).unwrap_or(live);
     match variable_field(ui, "New value", variable, &draft) {
         Change::Moving(value) | Change::Set(value) => draft = value,
         Change::None | Change::Ended => {}

@@ -1,8 +1,9 @@
 //! What happened, in sentences.
 
+use flight_exec::Event;
 use flight_plan::VariableValue;
 use std::collections::VecDeque;
-use usal::contract::{GatewayEvent, PlanEvent, Severity};
+use usal::contract::{GatewayEvent, Severity};
 
 /// How much a line matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,58 +81,54 @@ impl Log {
 }
 
 /// A plan event as a sentence.
-pub fn plan_event(event: &PlanEvent) -> (Level, String) {
+pub fn plan_event(event: &Event) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
     match event {
-        PlanEvent::LegEntered { place } => info(format!("Leg {} of stage {}", place.leg, place.stage)),
-        PlanEvent::IterationFinished { leg, finished, of } => info(format!(
+        Event::LegEntered { place } => info(format!("Leg {} of stage {}", place.leg, place.stage)),
+        Event::IterationFinished { leg, finished, of } => info(format!(
             "Loop {leg}: pass {finished}{} done",
             of.map(|n| format!(" of {n}")).unwrap_or_default()
         )),
-        PlanEvent::DecisionRequested(d) => {
+        Event::DecisionRequested(d) => {
             (Level::Caution, format!("Decision asked for at {}: {} choices", d.leg, d.options.len()))
         }
-        PlanEvent::DecisionTaken { leg, branch, by } => {
-            info(format!("{leg}: branch {branch}, decided by {by}"))
-        }
-        PlanEvent::VariableChanged { name, value, by } => {
+        Event::DecisionTaken { leg, branch, by } => info(format!("{leg}: branch {branch}, decided by {by}")),
+        Event::VariableChanged { name, value, by } => {
             info(format!("{name} is now {}, written by {by}", variable(value)))
         }
-        PlanEvent::ActionDone { leg, act, .. } => info(format!("{leg}: {act}")),
-        PlanEvent::ActionRefused { leg, reason, .. } => {
+        Event::ActionDone { leg, act, .. } => info(format!("{leg}: {act}")),
+        Event::ActionRefused { leg, reason, .. } => {
             (Level::Caution, format!("{leg}: an action was not done: {reason}"))
         }
-        PlanEvent::ExpressionFailed { leg, reason } => {
+        Event::ExpressionFailed { leg, reason } => {
             (Level::Caution, format!("{leg}: an expression has no value: {reason}"))
         }
-        PlanEvent::PatternRefused { leg, reason } => {
+        Event::PatternRefused { leg, reason } => {
             (Level::Caution, format!("{leg} keeps its old pattern: {reason}"))
         }
-        PlanEvent::PlanActivated { hash, revision } => {
+        Event::PlanActivated { hash, revision } => {
             info(format!("Plan {} is active, revision {revision}", short_hash(hash)))
         }
-        PlanEvent::EmergencyStarted { cause, plan, .. } => {
+        Event::EmergencyStarted { cause, plan, .. } => {
             (Level::Warning, format!("Emergency plan {plan} is being flown ({cause:?})"))
         }
-        PlanEvent::EmergencyUnanswered { cause } => {
+        Event::EmergencyUnanswered { cause } => {
             (Level::Warning, format!("No emergency plan for {cause:?}: Safe mode decides"))
         }
-        PlanEvent::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
-        PlanEvent::WaypointsRejected { leg, reason } => {
+        Event::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
+        Event::WaypointsRejected { leg, reason } => {
             let leg = leg.as_ref().map(|l| format!(" of {l}")).unwrap_or_default();
             (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
         }
-        PlanEvent::ProblemAhead { leg, code, reason } => {
+        Event::ProblemAhead { leg, code, reason } => {
             let leg = leg.as_ref().map(|l| format!(" on {l}")).unwrap_or_default();
             (Level::Warning, format!("The way ahead has a problem{leg}: {reason} [{code}]"))
         }
-        PlanEvent::NotGranted { request, reason } => {
+        Event::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
         }
-        PlanEvent::NotJournalled { reason } => {
-            (Level::Caution, format!("The flight is not recorded: {reason}"))
-        }
-        PlanEvent::Journalled => info("The flight is recorded again".to_owned()),
+        Event::NotJournalled { reason } => (Level::Caution, format!("The flight is not recorded: {reason}")),
+        Event::Journalled => info("The flight is recorded again".to_owned()),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::{Aged, Level, Log, Losses, Outcome, Repeats, Requests, Ticket, Trail, log};
 use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, Reply, Telemetry};
-use flight_exec::{Phase, Status};
+use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{FlightPlan, Id};
 use std::sync::Arc;
 use usal::contract::{
-    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanEvent,
-    PlanVariables, Position, Power, ProposalReport, Severity,
+    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanVariables,
+    Position, Power, Severity,
 };
 
 /// A vehicle's name: what everything known of it is kept under.
@@ -181,7 +181,7 @@ impl Vehicle {
         }
     }
 
-    fn plan_event(&mut self, event: &Numbered<PlanEvent>, now_s: f64) {
+    fn plan_event(&mut self, event: &Numbered<Event>, now_s: f64) {
         let (level, text) = log::plan_event(&event.event.value);
         if self.plan_events.is_new(event.sequence, event.event.time_s, &text) {
             self.log.add(now_s, level, "plan", &text);

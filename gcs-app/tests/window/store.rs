@@ -5,7 +5,7 @@ use flight_exec::Phase;
 use gcs_app::link::{LinkEvent, LinkId, LinkMessage, LinkState, Loss, Numbered, Reply, Telemetry};
 use gcs_app::state::{Ticket, VehicleName, Vehicles};
 use proptest::prelude::*;
-use usal::contract::{PlanEvent, Stamped};
+use usal::contract::Stamped;
 
 /// Something that happens to one of the vehicles.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,8 @@ fn event(heard: Heard) -> LinkEvent {
 }
 
 pub fn plan_event(sequence: u32, time_s: f64) -> Telemetry {
-    let value = PlanEvent::PatternRefused { leg: "sweep".into(), reason: format!("reason {sequence}") };
+    let value =
+        flight_exec::Event::PatternRefused { leg: "sweep".into(), reason: format!("reason {sequence}") };
     Telemetry::PlanEvent(Numbered { sequence, event: Stamped { time_s, validity_s: 2.0, value } })
 }
 

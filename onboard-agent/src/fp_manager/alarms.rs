@@ -3,9 +3,11 @@
 //! They come as events; those raised while nobody listened, and those that could not be answered then, are found in
 //! the gateway's state.
 
+use flight_plan::Cause;
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
-use usal::contract::{Alarm, Cause, Severity};
+use usal::contract::{Alarm, Severity};
+use wire::Convert;
 
 /// More identifiers are not remembered: a gateway has a few dozen alarms.
 const MOST: usize = 256;
@@ -78,7 +80,7 @@ impl Alarms {
 /// What an alarm asks for, if anything.
 pub fn call(alarm: &Alarm) -> Option<Call> {
     let cause = alarm.cause.filter(|_| alarm.severity == Severity::Warning)?;
-    Some(Call { id: alarm.id.clone(), cause })
+    Some(Call { id: alarm.id.clone(), cause: cause.convert() })
 }
 
 #[cfg(test)]
@@ -86,6 +88,7 @@ mod tests {
     use super::*;
 
     fn alarm(id: &str, severity: Severity, cause: Option<Cause>) -> Alarm {
+        let cause = cause.convert();
         Alarm { id: id.into(), severity, source: "gateway".into(), advice: "land".into(), cause }
     }
 

@@ -2,10 +2,10 @@
 //! way is flown ahead afterwards, on a thread of its own, and what is wrong with it told.
 
 use super::proposals::{LOCKSTEP_PATIENCE, broken};
+use flight_exec::Event;
 use flight_plan::Problem;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
-use usal::contract::PlanEvent;
 
 /// Most problems that are told of one command.
 const MOST_TOLD: usize = 20;
@@ -36,7 +36,7 @@ impl BackgroundReview {
     }
 
     /// What there is to be told of the way that was taken last; never, if none is being looked at. May be cancelled.
-    pub async fn next(&mut self) -> Vec<PlanEvent> {
+    pub async fn next(&mut self) -> Vec<Event> {
         let Some(look) = &mut self.look else { return std::future::pending().await };
         let problems = (&mut look.work).await.unwrap_or_else(|error| vec![broken(&error)]);
         self.look = self.next.take().map(Look::by);
@@ -58,8 +58,8 @@ impl Look {
     }
 }
 
-fn told(problem: Problem) -> PlanEvent {
-    PlanEvent::ProblemAhead { leg: problem.subject, code: problem.code.into(), reason: problem.message }
+fn told(problem: Problem) -> Event {
+    Event::ProblemAhead { leg: problem.subject, code: problem.code.into(), reason: problem.message }
 }
 
 #[cfg(test)]

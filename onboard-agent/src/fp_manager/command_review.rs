@@ -5,12 +5,11 @@ use super::listed;
 use super::manager::Manager;
 use super::proposals::{LOCKSTEP_PATIENCE, broken};
 use crate::clock::Time;
-use flight_exec::review_command;
+use flight_exec::{Command, Refusal, review_command};
 use flight_plan::Problem;
 use std::collections::VecDeque;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
-use usal::contract::{Command, Empty, Refusal};
 
 /// Most commands that wait.
 const MOST_WAITING: usize = 16;
@@ -26,7 +25,7 @@ pub struct Asked {
     /// The request's own name.
     pub id: Option<String>,
     /// Takes the answer.
-    pub reply: Box<dyn FnOnce(Result<Empty, Refusal>) + Send>,
+    pub reply: Box<dyn FnOnce(Result<(), Refusal>) + Send>,
 }
 
 /// What becomes of a command that was looked at.

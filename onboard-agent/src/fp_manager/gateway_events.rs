@@ -3,8 +3,9 @@
 use super::alarms;
 use super::manager::{Effect, Manager};
 use crate::clock::Time;
-use flight_exec::Input;
-use usal::contract::*;
+use flight_exec::{Command, Input, Token};
+use usal::contract::{GatewayEvent, GatewayRequest, GatewayStatus, Navigation};
+use wire::Convert;
 
 /// Who asks for what an alarm of the gateway leads to.
 const GATEWAY: &str = "gateway";
@@ -13,7 +14,7 @@ impl Manager {
     /// The gateway's buffer and place, as it publishes them.
     pub fn navigation(&mut self, now: Time, navigation: &Navigation, out: &mut Vec<Effect>) {
         if let Some(current) = navigation.current {
-            self.progress(now, current, out);
+            self.progress(now, current.convert(), out);
         }
         if navigation.room > self.feeder.waiting() {
             self.feeder.hurry();
@@ -40,12 +41,14 @@ impl Manager {
     /// Something happened at the gateway.
     pub fn gateway_event(&mut self, now: Time, event: GatewayEvent, out: &mut Vec<Effect>) {
         match event {
-            GatewayEvent::Progress { current: Some(current), .. } => self.progress(now, current, out),
+            GatewayEvent::Progress { current: Some(current), .. } => {
+                self.progress(now, current.convert(), out)
+            }
             // while waypoints are on their way it is not the end, nor what Safe mode or the pilot flies
             GatewayEvent::Progress { current: None, taken }
                 if self.feeder.is_idle()
                     && !self.gateway_session.is_controlled()
-                    && !self.is_ahead_of(taken) =>
+                    && !self.is_ahead_of(taken.convert()) =>
             {
                 self.step(now, Input::Progress { current: None }, out);
             }

@@ -4,8 +4,9 @@ use super::journal::Record;
 use super::manager::{Effect, Manager};
 use super::runways::safe_runways;
 use crate::clock::Time;
-use flight_exec::{Input, Phase, Token};
-use usal::contract::*;
+use flight_exec::{Action, Command, Event, Input, Phase, Token};
+use usal::contract::{GatewayRequest, Join, JoinAnswer};
+use wire::Convert;
 
 /// Who asks for what the FP Manager does of itself.
 const FP_MANAGER: &str = "fp-manager";
@@ -16,7 +17,7 @@ impl Manager {
         Join {
             plan: self.executor.program().map(|p| p.hash().to_string()),
             earlier: self.plan_history.earlier().to_vec(),
-            last_token: self.executor.last_token(),
+            last_token: self.executor.last_token().convert(),
         }
     }
 
@@ -27,19 +28,20 @@ impl Manager {
             Err(None) => return,
             Err(Some(reason)) => {
                 tracing::warn!("the gateway does not let us join: {reason}");
-                return out.push(Effect::Event(PlanEvent::NotGranted { request: "join".into(), reason }));
+                return out.push(Effect::Event(Event::NotGranted { request: "join".into(), reason }));
             }
         };
         self.want_runways();
         self.alarms.look_again();
         self.feeder.settle(answer.highest);
-        let lost = std::mem::take(&mut self.returning) && answer.highest > self.executor.last_token();
-        if answer.highest > self.executor.last_token() {
-            self.record(now, Record::NumberAfter(answer.highest), out);
-            self.executor.number_after(answer.highest);
+        let highest: Token = answer.highest.convert();
+        let lost = std::mem::take(&mut self.returning) && highest > self.executor.last_token();
+        if highest > self.executor.last_token() {
+            self.record(now, Record::NumberAfter(highest), out);
+            self.executor.number_after(highest);
         }
         if let Some(current) = answer.current {
-            self.progress(now, current, out);
+            self.progress(now, current.convert(), out);
         }
         let controlled = self.gateway_session.take_controlled();
         let flying =
@@ -62,14 +64,15 @@ impl Manager {
     fn agree(&mut self, now: Time, answer: &JoinAnswer, controlled: bool, out: &mut Vec<Effect>) {
         let taken = self.executor.ahead().next().is_some_and(|w| {
             // before the take-off it is the gateway that has lost them
-            w.token <= answer.highest && (answer.finished || !matches!(w.action, Action::TakeOff { .. }))
+            w.token <= answer.highest.convert()
+                && (answer.finished || !matches!(w.action, Action::TakeOff { .. }))
         });
         if self.gateway_session.is_on_ground() && answer.last.is_none() && taken {
             self.gateway_session.unwant(GatewayRequest::Launch);
             let flown = answer.finished;
             self.step(now, if flown { Input::Progress { current: None } } else { Input::Landed }, out);
             self.step(now, Input::GatewayControls(false), out);
-        } else if controlled || self.has_gap(answer.last) {
+        } else if controlled || self.has_gap(answer.last.convert()) {
             self.feeder.clear();
             // having given control back, the executor sends everything ahead anew
             self.step(now, Input::GatewayControls(true), out);
@@ -84,7 +87,7 @@ impl Manager {
     /// What waits to be sent does not continue what the gateway has.
     fn has_gap(&self, last: Option<Token>) -> bool {
         let sent = self.executor.ahead().map(|w| w.token);
-        let first_waiting = self.feeder.first_waiting().unwrap_or(Token(u64::MAX));
+        let first_waiting = self.feeder.first_waiting().map_or(Token(u64::MAX), Convert::convert);
         !self.feeder.is_under_way() && last != sent.take_while(|token| *token < first_waiting).last()
     }
 
@@ -94,7 +97,7 @@ impl Manager {
         let reason = "the gateway has waypoints that are not in the journal, so the place in the plan is not known: \
                       it holds; go to a leg, or resume from the last place recorded";
         tracing::error!("{reason}");
-        out.push(Effect::Event(PlanEvent::NotJournalled { reason: reason.into() }));
+        out.push(Effect::Event(Event::NotJournalled { reason: reason.into() }));
         self.feeder.clear();
         let held = self.order(now, Command::Hold, FP_MANAGER, out);
         if held.is_err() {

@@ -11,11 +11,15 @@ use super::plan_history::PlanHistory;
 use super::timeline::Timeline;
 use crate::clock::Time;
 use ::aircraft::Wind;
-use flight_exec::{Answer, Conditions, Executor, Input, Output, Phase, RequestId, ResolvedAct, Token};
+use flight_exec::{
+    Answer, Command, Conditions, Event, Executor, Input, Output, Phase, ProposalReport, Refusal, RequestId,
+    ResolvedAct, Token,
+};
 use flight_plan::{Id, Problem, Program};
 use std::collections::VecDeque;
 use std::sync::Arc;
-use usal::contract::*;
+use usal::contract::{Feed, FeedAnswer, GatewayRequest, Join};
+use wire::Convert;
 
 /// What has to be done outside.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +40,7 @@ pub enum Effect {
         argument: serde_json::Value,
     },
     /// Publish an event.
-    Event(PlanEvent),
+    Event(Event),
     /// Record this, with all of the turn's records, before anything else of the turn takes effect.
     Record(Entry),
     /// Keep this plan's document before the turn is recorded.
@@ -242,7 +246,7 @@ impl Manager {
             Fate::Unknown => self.gateway_session.lost(),
             Fate::Refused(first, reason) => {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
-                self.step(now, Input::Rejected { first, reason }, out);
+                self.step(now, Input::Rejected { first: first.convert(), reason }, out);
                 if self.is_in_emergency() {
                     // its plan can't be flown: whoever takes no waypoints has to bring the aircraft home
                     self.gateway_session.want(GatewayRequest::Safe);
@@ -265,7 +269,7 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) {
         if let Some(reason) = self.gateway_session.requested(now, request, answer) {
-            out.push(Effect::Event(PlanEvent::NotGranted { request: request.name().into(), reason }));
+            out.push(Effect::Event(Event::NotGranted { request: request.name().into(), reason }));
         }
         self.send(now, out);
     }
@@ -304,7 +308,8 @@ impl Manager {
         for output in outputs {
             match output {
                 Output::Feed { cancel_after, waypoints } => {
-                    self.feeder.push(Feed { cancel_after, waypoints })
+                    let (cancel_after, waypoints) = (cancel_after.convert(), waypoints.convert());
+                    self.feeder.push(Feed { cancel_after, waypoints });
                 }
                 Output::Hold => self.gateway_session.want(GatewayRequest::Hold),
                 Output::Safe => self.gateway_session.want(GatewayRequest::Safe),
@@ -321,11 +326,11 @@ impl Manager {
         out.extend([Effect::Record(Entry { at, what }), Effect::Sync]);
     }
 
-    fn happened(&mut self, event: PlanEvent, out: &mut Vec<Effect>) {
-        if let PlanEvent::PhaseChanged { phase: Phase::Flying | Phase::AwaitingDecision } = event {
+    fn happened(&mut self, event: Event, out: &mut Vec<Effect>) {
+        if let Event::PhaseChanged { phase: Phase::Flying | Phase::AwaitingDecision } = event {
             self.gateway_session.flies_on();
         }
-        if matches!(event, PlanEvent::PlanActivated { .. }) {
+        if matches!(event, Event::PlanActivated { .. }) {
             self.want_runways();
         }
         out.push(Effect::Event(event));
@@ -357,7 +362,7 @@ fn invocation(leg: Id, passage: u64, act: ResolvedAct) -> Option<Effect> {
         Ok(argument) => Effect::Invoke { service, operation, argument },
         Err(error) => {
             let reason = format!("the argument for {service}/{operation} is no JSON: {error}");
-            Effect::Event(PlanEvent::ActionRefused { leg, passage, reason })
+            Effect::Event(Event::ActionRefused { leg, passage, reason })
         }
     })
 }

@@ -3,7 +3,7 @@
 
 use super::journal::JournalHandle;
 use super::{Config, listed};
-use flight_exec::{Conditions, Executor, compile_and_review, compile_and_review_ahead};
+use flight_exec::{Conditions, Executor, Refusal, compile_and_review, compile_and_review_ahead};
 use flight_plan::{Problem, Program};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -11,7 +11,8 @@ use std::time::Duration;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 use usal::Incoming;
-use usal::contract::{ProposalReport, Propose, Refusal};
+use usal::contract::{ProposalReport, Propose};
+use wire::Convert;
 
 /// In lockstep time stands for so long (wall-clock) while something is looked at; the others wait for five seconds at most.
 pub(super) const LOCKSTEP_PATIENCE: Duration = Duration::from_secs(4);
@@ -62,7 +63,8 @@ impl ProposalReview {
     pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
-            return asked.answer(Err(Refusal { code: "busy".into(), reason: reason.into() }));
+            let refusal = Refusal { code: "busy".into(), reason: reason.into() };
+            return asked.answer(Err(refusal.convert()));
         }
         let (xml, config, in_flight) = (asked.request.xml.clone(), config.clone(), sight.flight.is_some());
         let work = tokio::task::spawn_blocking(move || look(&xml, &config, &sight));

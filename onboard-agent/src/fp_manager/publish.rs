@@ -1,12 +1,13 @@
 //! What the FP Manager publishes: a few times a second, and at once when it matters.
 
 use crate::clock::Time;
-use flight_exec::Executor;
+use flight_exec::{Event, Executor};
 use std::time::Duration;
 use usal::contract::*;
 use usal::topics::FP_MANAGER;
 use usal::topics::fp_manager as topic;
 use usal::{EventPublisher, FileOffer, Session, SessionError, VariablePublisher};
+use wire::Convert;
 
 /// Pace of the status and of the sign of life.
 const OFTEN: Duration = Duration::from_millis(200);
@@ -30,7 +31,7 @@ pub struct Publishers {
     often_due: Time,
     seldom_due: Time,
     /// First and last token and number of the waypoints last published.
-    ahead_told: Option<(Token, Token, usize)>,
+    ahead_told: Option<(flight_exec::Token, flight_exec::Token, usize)>,
     variables_told: PlanVariables,
     plan_told: PlanInfo,
 }
@@ -60,9 +61,10 @@ impl Publishers {
     }
 
     /// An event.
-    pub fn event(&self, now: Time, event: PlanEvent) {
+    pub fn event(&self, now: Time, event: Event) {
         tracing::info!(?event, "plan");
-        self.events.emit(&Stamped { time_s: now.as_secs_f64(), validity_s: f64::MAX, value: event });
+        let event = Stamped { time_s: now.as_secs_f64(), validity_s: f64::MAX, value: event.convert() };
+        self.events.emit(&event);
     }
 
     /// Whatever is due.
@@ -104,7 +106,7 @@ impl Publishers {
         self.beats += 1;
         let plan = executor.program().map(|p| p.hash().to_string());
         self.heartbeat.set(now.as_secs_f64(), VALID_S, &Heartbeat { count: self.beats, plan });
-        self.status.set(now.as_secs_f64(), VALID_S, &executor.status());
+        self.status.set(now.as_secs_f64(), VALID_S, &executor.status().convert());
     }
 
     fn way_ahead(&mut self, now: Time, executor: &Executor, all: bool) {
@@ -113,7 +115,7 @@ impl Publishers {
         let told = tokens.next().map(|first| (first, tokens.last().unwrap_or(first), count));
         if all || told != self.ahead_told {
             self.ahead_told = told;
-            let ahead = Ahead { waypoints: executor.ahead().cloned().collect() };
+            let ahead = Ahead { waypoints: executor.ahead().cloned().map(Convert::convert).collect() };
             self.ahead.set(now.as_secs_f64(), VALID_S, &ahead);
         }
     }
@@ -145,8 +147,8 @@ pub fn plan_info(executor: &Executor) -> PlanInfo {
 fn plan_variables(executor: &Executor) -> PlanVariables {
     let Some(program) = executor.program() else { return PlanVariables::default() };
     let variables = program.plan.variables.iter().map(|v| PlanVariable {
-        name: v.name.clone(),
-        value: executor.variables().get(&v.name).unwrap_or(&v.initial).clone(),
+        name: v.name.clone().convert(),
+        value: executor.variables().get(&v.name).unwrap_or(&v.initial).clone().convert(),
         unit: v.unit.clone(),
         min: v.min,
         max: v.max,

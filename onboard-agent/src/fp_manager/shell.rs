@@ -12,16 +12,21 @@ use super::recording::open;
 use crate::clock::{Clock, Time};
 use crate::{Shutdown, single_instance};
 use anyhow::Context;
+use flight_exec::{Command, Event, Refusal};
 use flight_plan::{Problem, Program};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::Instant;
-use usal::contract::*;
+use usal::contract::{
+    self, Air, Empty, GatewayStatus, Gps, Navigation, PlanDocument, Position, Power, ProposalReport, Propose,
+    TimedGatewayEvent,
+};
 use usal::topics::{self, FP_MANAGER, GATEWAY, fp_manager, gateway};
 use usal::{
     Announcement, CallError, Description, EventSubscriber, Incoming, Occurrence, Participant, Presence,
     Server, Session, Start, VariableSubscriber,
 };
+use wire::Convert;
 
 /// The gateway answers at once or not at all, wall-clock.
 const CALL_TIMEOUT: Duration = Duration::from_millis(1500);
@@ -33,7 +38,7 @@ const EXCHANGES_MAX: usize = 16;
 /// What is asked of us.
 struct Services {
     propose: Server<Propose, ProposalReport>,
-    command: Server<Command, Empty>,
+    command: Server<contract::Command, Empty>,
     plan: Server<Empty, PlanDocument>,
     describe: Server<Empty, Description>,
     _announcement: Announcement,
@@ -41,7 +46,7 @@ struct Services {
 
 enum Call {
     Propose(Incoming<Propose, ProposalReport>),
-    Command(Incoming<Command, Empty>),
+    Command(Incoming<contract::Command, Empty>),
     Plan(Incoming<Empty, PlanDocument>),
     Describe(Incoming<Empty, Description>),
 }
@@ -152,7 +157,7 @@ async fn run_in(session: &Session, config: Config, shutdown: &mut Shutdown) -> a
         background_review,
     };
     let troubles = past.troubles.into_iter();
-    shell.tell(troubles.map(|reason| PlanEvent::NotJournalled { reason }).collect()).await;
+    shell.tell(troubles.map(|reason| Event::NotJournalled { reason }).collect()).await;
     shell.load_plan().await?;
     loop {
         let held_until = shell.held_until();
@@ -303,7 +308,9 @@ impl Shell {
                 let id = incoming.id().map(str::to_owned);
                 let by = incoming.from().unwrap_or(OPERATOR).to_owned();
                 let (command, reply) = incoming.split();
-                self.asked(Asked { command, by, id, reply: Box::new(reply) }).await;
+                let reply =
+                    |answer: Result<(), Refusal>| reply(answer.map(|()| Empty {}).map_err(Convert::convert));
+                self.asked(Asked { command: command.convert(), by, id, reply: Box::new(reply) }).await;
             }
         }
         self.publishers.hurry();
@@ -316,7 +323,7 @@ impl Shell {
         let revision = self.manager.executor().status().revision;
         if incoming.request.seen_revision.is_some_and(|seen| seen != revision) {
             let reason = format!("the plan is at revision {revision} by now: look at it, then propose again");
-            return incoming.answer(Err(refusal("stale-revision", reason)));
+            return incoming.answer(Err(refusal("stale-revision", reason).convert()));
         }
         let sight = self.sight();
         self.proposal_review.take(incoming, &self.config, sight);
@@ -340,7 +347,7 @@ impl Shell {
     async fn give(&mut self, asked: Asked) {
         let Asked { command, by, id, reply } = asked;
         let answer = self.command(command, &by, id.as_deref()).await;
-        reply(answer.map(|()| Empty {}));
+        reply(answer);
     }
 
     /// The command that was the first to wait has been looked at.
@@ -371,14 +378,14 @@ impl Shell {
         let looked =
             looked.and_then(|program| good_for_now(in_flight, self.manager.executor()).map(|()| program));
         let answer = self.propose(looked, incoming.request.seen_revision).await;
-        incoming.answer(answer);
+        incoming.answer(answer.convert());
     }
 
     async fn propose(
         &mut self,
         program: Result<Arc<Program>, Refusal>,
         based_on: Option<u64>,
-    ) -> Result<ProposalReport, Refusal> {
+    ) -> Result<flight_exec::ProposalReport, Refusal> {
         let mut effects = Vec::new();
         let report = self.manager.propose(self.clock.now(), program?, based_on, &mut effects);
         self.perform(effects).await;
@@ -405,7 +412,7 @@ impl Shell {
         PlanDocument { info: publish::plan_info(executor), xml }
     }
 
-    async fn tell(&mut self, events: Vec<PlanEvent>) {
+    async fn tell(&mut self, events: Vec<Event>) {
         self.perform(events.into_iter().map(Effect::Event).collect()).await;
     }
 

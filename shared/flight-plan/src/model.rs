@@ -19,9 +19,7 @@ use smol_str::SmolStr;
 use std::sync::Arc;
 
 /// An identifier of the document: letters, digits, `-`, `_`, `.`; unique, stable across edits.
-#[derive(
-    Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Id(SmolStr);
 
@@ -112,7 +110,7 @@ pub struct Runway {
 }
 
 /// A variable's type and initial value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", content = "value", rename_all = "kebab-case")]
 pub enum VariableValue {
     /// True or false.
@@ -154,9 +152,7 @@ pub struct EmergencyChoice {
 }
 
 /// Why an emergency was raised.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
     /// Operator's decision, no other cause known. The least severe.

@@ -4,7 +4,6 @@
 //! edges; the unit is always in the name.
 
 pub mod arc;
-pub mod geodesy;
 pub mod holding;
 pub mod intercept;
 pub mod local;
@@ -18,8 +17,8 @@ mod testing;
 pub mod turn;
 pub mod zone;
 
+pub use ::geodesy::{self, LatLon};
 pub use arc::Flattening;
-pub use geodesy::LatLon;
 pub use local::{LocalFrame, Vec2};
 pub use path::PathElement;
 pub use pattern::Pattern;

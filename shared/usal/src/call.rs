@@ -1,8 +1,8 @@
 //! Calling invocations, without blocking.
 
 use crate::codec::{self, Format};
+use crate::contract::Kind;
 use crate::contract::Refusal;
-use crate::keys::Kind;
 use crate::session::{Inner, Session};
 use crate::topics::Invocation;
 use crate::variable::PRIORITY;

@@ -13,8 +13,7 @@
 //! A test or a script that joins drives time: it holds its acknowledgement until it has seen and done what it wants. The FP
 //! Manager holds its own while it reviews a proposal or a command, for four of the five seconds.
 
-use crate::contract::{ClockAck, ClockTick};
-use crate::keys::{self, Key, Kind};
+use crate::contract::{ClockAck, ClockTick, Key, Kind, every_service};
 use crate::session::Session;
 use crate::topics::GATEWAY;
 use crate::variable::PRIORITY;
@@ -114,7 +113,7 @@ impl Conductor {
         let acks = session
             .inner
             .zenoh
-            .declare_subscriber(keys::every_service(session.vehicle(), Kind::Variable, ACK)?)
+            .declare_subscriber(every_service(session.vehicle(), Kind::Variable, ACK)?)
             .callback(move |sample| match read_ack(&sample) {
                 Ok((name, count)) => from_acks.acknowledged(&name, count),
                 Err(reason) => health.undecodable(sample.key_expr().as_str(), &reason),

@@ -1,7 +1,7 @@
 //! Events: facts that must not be lost. Reliable, in order, once; a link outage is made up for
 //! from the publisher's memory, and what cannot be made up for is told as a gap.
 
-use crate::keys::Kind;
+use crate::contract::Kind;
 use crate::session::{Inner, Session};
 use crate::topics::Events;
 use crate::variable::{PRIORITY, Untyped};

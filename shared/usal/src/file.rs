@@ -7,9 +7,9 @@
 //! `file.<name>`, from which receivers learn of a new version.
 
 use crate::codec::{self, Format};
+use crate::contract::Kind;
 use crate::contract::{FileManifest, Refusal};
 use crate::invocation::refusal;
-use crate::keys::Kind;
 use crate::session::Session;
 use crate::{SessionError, VariablePublisher, VariableSubscriber};
 use sha2::{Digest, Sha256};
@@ -88,42 +88,42 @@ pub enum FileError {
     Session(#[from] SessionError),
 }
 
-impl FileManifest {
-    fn of(bytes: &[u8]) -> Result<Self, FileError> {
-        let too_large = || FileError::TooLarge(bytes.len());
-        if bytes.len() > FILE_BYTES_MAX {
-            return Err(too_large());
-        }
-        Ok(Self {
-            size_bytes: bytes.len() as u64,
-            chunk_bytes: u32::try_from(CHUNK_BYTES).map_err(|_| too_large())?,
-            chunks: u32::try_from(bytes.len().div_ceil(CHUNK_BYTES)).map_err(|_| too_large())?,
-            sha256: sha256(bytes),
-        })
+fn manifest_of(bytes: &[u8]) -> Result<FileManifest, FileError> {
+    let too_large = || FileError::TooLarge(bytes.len());
+    if bytes.len() > FILE_BYTES_MAX {
+        return Err(too_large());
     }
+    Ok(FileManifest {
+        size_bytes: bytes.len() as u64,
+        chunk_bytes: u32::try_from(CHUNK_BYTES).map_err(|_| too_large())?,
+        chunks: u32::try_from(bytes.len().div_ceil(CHUNK_BYTES)).map_err(|_| too_large())?,
+        sha256: sha256(bytes),
+    })
+}
 
-    /// Says what is wrong with a manifest from the network, before anything is allocated for it.
-    fn check(&self) -> Result<(), String> {
-        let hex = |b: u8| b.is_ascii_digit() || matches!(b, b'a'..=b'f');
-        if self.size_bytes > FILE_BYTES_MAX as u64 {
-            Err(format!("{} bytes are more than {FILE_BYTES_MAX}", self.size_bytes))
-        } else if !CHUNK_BYTES_ACCEPTED.contains(&(self.chunk_bytes as usize)) {
-            Err(format!("chunks of {} bytes are outside of {CHUNK_BYTES_ACCEPTED:?}", self.chunk_bytes))
-        } else if u64::from(self.chunks) != self.size_bytes.div_ceil(u64::from(self.chunk_bytes)) {
-            Err(format!("{} chunks do not make {} bytes", self.chunks, self.size_bytes))
-        } else if self.sha256.len() != 64 || !self.sha256.bytes().all(hex) {
-            Err("its hash is not 64 lower-case hex digits".into())
-        } else {
-            Ok(())
-        }
+/// Says what is wrong with a manifest from the network, before anything is allocated for it.
+fn check(manifest: &FileManifest) -> Result<(), String> {
+    let FileManifest { size_bytes, chunk_bytes, chunks, sha256 } = manifest;
+    let hex = |b: u8| b.is_ascii_digit() || matches!(b, b'a'..=b'f');
+    if *size_bytes > FILE_BYTES_MAX as u64 {
+        Err(format!("{size_bytes} bytes are more than {FILE_BYTES_MAX}"))
+    } else if !CHUNK_BYTES_ACCEPTED.contains(&(*chunk_bytes as usize)) {
+        Err(format!("chunks of {chunk_bytes} bytes are outside of {CHUNK_BYTES_ACCEPTED:?}"))
+    } else if u64::from(*chunks) != size_bytes.div_ceil(u64::from(*chunk_bytes)) {
+        Err(format!("{chunks} chunks do not make {size_bytes} bytes"))
+    } else if sha256.len() != 64 || !sha256.bytes().all(hex) {
+        Err("its hash is not 64 lower-case hex digits".into())
+    } else {
+        Ok(())
     }
+}
 
-    /// Where a chunk lies in the file, bytes.
-    fn range(&self, chunk: u32) -> Option<Range<usize>> {
-        let start = (chunk as usize).checked_mul(self.chunk_bytes as usize)?;
-        let end = start.saturating_add(self.chunk_bytes as usize).min(usize::try_from(self.size_bytes).ok()?);
-        (chunk < self.chunks).then_some(start..end)
-    }
+/// Where a chunk lies in the file, bytes.
+fn range(manifest: &FileManifest, chunk: u32) -> Option<Range<usize>> {
+    let chunk_bytes = manifest.chunk_bytes as usize;
+    let start = (chunk as usize).checked_mul(chunk_bytes)?;
+    let end = start.saturating_add(chunk_bytes).min(usize::try_from(manifest.size_bytes).ok()?);
+    (chunk < manifest.chunks).then_some(start..end)
 }
 
 /// Hex SHA-256 (FIPS 180-4).
@@ -156,7 +156,7 @@ impl FileOffer {
     /// # Errors
     /// [`FileError::TooLarge`]; what was offered before stays.
     pub fn set(&self, time_s: f64, bytes: Vec<u8>) -> Result<(), FileError> {
-        let manifest = FileManifest::of(&bytes)?;
+        let manifest = manifest_of(&bytes)?;
         let offered = Arc::new(Offered { manifest: manifest.clone(), bytes });
         *self.current.lock().unwrap_or_else(PoisonError::into_inner) = Some(offered);
         self.announcement.set(time_s, f64::MAX, &manifest);
@@ -245,7 +245,7 @@ fn asked(query: &Query, offered: Option<&Offered>, format: Format) -> Result<(Ve
         return Err(refusal(REPLACED, "there is another version by now; ask for the manifest again"));
     }
     let number = query.parameters().get("chunk").and_then(|number| number.parse().ok());
-    let range = number.and_then(|number| offered.manifest.range(number));
+    let range = number.and_then(|number| range(&offered.manifest, number));
     let chunk = range.and_then(|range| offered.bytes.get(range));
     let chunk = chunk.ok_or_else(|| refusal("bad-request", "name a chunk that the manifest counts"))?;
     Ok((chunk.to_vec(), Encoding::ZENOH_BYTES))
@@ -301,7 +301,7 @@ impl Source {
         let sample = sample.ok_or_else(|| FileError::Unreachable { key: self.key.clone() })?;
         let manifest: FileManifest =
             codec::decode(sample.payload(), sample.encoding()).map_err(|reason| self.unsound(reason))?;
-        manifest.check().map_err(|reason| self.unsound(reason))?;
+        check(&manifest).map_err(|reason| self.unsound(reason))?;
         Ok(manifest)
     }
 
@@ -315,7 +315,7 @@ impl Source {
         let parameters = format!("?hash={};chunk={number}", manifest.sha256);
         let Some(sample) = self.ask(&parameters, deadline).await? else { return Ok(None) };
         let bytes = sample.payload();
-        let wanted = manifest.range(number).map_or(0, |range| range.len());
+        let wanted = range(&manifest, number).map_or(0, |range| range.len());
         if bytes.len() != wanted {
             return Err(self.unsound(format!("chunk {number} has {} bytes, not {wanted}", bytes.len())));
         }

@@ -9,11 +9,10 @@
 use crate::SessionError;
 use crate::audit::{AuditHook, Audited, Document};
 use crate::codec::{self, Format};
-use crate::contract::Refusal;
+use crate::contract::{Description, Empty, Kind, Refusal, is_segment};
 use crate::health::Health;
-use crate::keys::{Kind, is_segment};
 use crate::session::Session;
-use crate::topics::Invocation;
+use crate::topics::{self, Invocation};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{HashMap, VecDeque};
@@ -147,6 +146,17 @@ impl Session {
             .wait()
             .map_err(SessionError::network)?;
         Ok(Server { receiver, _queryable: queryable, _session: self.clone() })
+    }
+
+    /// Serves `describe` of a service: answer each request with its description.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn serve_description(
+        &self,
+        service: &'static str,
+    ) -> Result<Server<Empty, Description>, SessionError> {
+        self.serve(topics::describe(service))
     }
 }
 

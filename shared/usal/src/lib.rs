@@ -1,4 +1,4 @@
-//! Shell: the service contract (keys, types, sessions) over Zenoh; the only crate that knows Zenoh.
+//! Shell: sessions that speak the service [`contract`] over Zenoh; the only crate that knows Zenoh.
 //!
 //! A [`Session`] speaks for one vehicle. What may be said is listed, typed, in [`topics`]:
 //! variables, events, invocations and files of each service. Everything that is received is put into
@@ -8,39 +8,35 @@
 //! Nothing undecodable stops a session: it is counted ([`Session::health`]), logged at a limited
 //! rate and ignored; an undecodable request is answered with what was wrong with it.
 
-pub mod contract;
-pub mod topics;
-
 mod audit;
 mod call;
 mod clock;
 mod codec;
-mod describe;
 mod error;
 mod event;
 mod file;
 mod health;
 mod invocation;
-mod keys;
 mod liveliness;
 mod raw;
 mod session;
-pub mod spec;
 mod variable;
 
+pub use ::contract::{
+    self, Description, Key, KeyError, Kind, Primitive, fp_manager_description, gateway_description, spec,
+    topics,
+};
 pub use audit::{Audited, Document};
 pub use call::PendingCall;
 pub use clock::{Conductor, Participant};
 pub use codec::Format;
-pub use describe::{Description, Primitive, fp_manager_description, gateway_description};
+pub use contract::spec::{Rate, Said, Spec};
 pub use error::{CallError, SessionError};
 pub use event::{EventPublisher, EventSubscriber, Occurrence, Start};
 pub use file::{Download, FILE_BYTES_MAX, FileError, FileOffer};
 pub use health::{Health, HealthCount};
 pub use invocation::{Incoming, Server};
-pub use keys::{Key, KeyError, Kind};
 pub use liveliness::{Announcement, Presence};
 pub use raw::{Everything, Raw};
 pub use session::{Config, DEFAULT_ENDPOINT, Role, Session, Wake};
-pub use spec::{Rate, Said, Spec};
 pub use variable::{Received, Untyped, VariablePublisher, VariableSubscriber};

@@ -1,6 +1,6 @@
 //! Who is there: each service shows a token as long as it lives.
 
-use crate::keys::{self, Key, Kind};
+use crate::contract::{Key, Kind, every_service};
 use crate::session::Session;
 use crate::{KeyError, SessionError};
 use std::collections::BTreeSet;
@@ -110,7 +110,7 @@ impl Session {
         name: &str,
         changed: impl Fn(String, bool) + Send + Sync + 'static,
     ) -> Result<Subscriber<()>, SessionError> {
-        let pattern = keys::every_service(&self.inner.vehicle, Kind::Liveliness, name)?;
+        let pattern = every_service(&self.inner.vehicle, Kind::Liveliness, name)?;
         self.inner
             .zenoh
             .liveliness()

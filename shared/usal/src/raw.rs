@@ -1,8 +1,8 @@
 //! Everything that a vehicle's services publish, as it came: for a recorder.
 
+use crate::contract::{self, Key, Kind};
 use crate::event::{MEMORY, RECOVERY_TIMEOUT, Start, emitted_us, unix_us};
 use crate::health::Health;
-use crate::keys::{self, Key, Kind};
 use crate::session::Session;
 use crate::{Format, SessionError};
 use std::sync::Arc;
@@ -62,14 +62,14 @@ impl Session {
         let variables = self
             .inner
             .zenoh
-            .declare_subscriber(keys::every_name(self.vehicle(), Kind::Variable)?)
+            .declare_subscriber(contract::every_name(self.vehicle(), Kind::Variable)?)
             .callback(move |sample| values.sample(&sample))
             .wait()
             .map_err(SessionError::network)?;
         let events = self
             .inner
             .zenoh
-            .declare_subscriber(keys::every_name(self.vehicle(), Kind::Event)?)
+            .declare_subscriber(contract::every_name(self.vehicle(), Kind::Event)?)
             .callback(move |sample| {
                 if emitted_us(&sample) >= events.from_us {
                     events.sample(&sample);

@@ -2,8 +2,8 @@
 
 use crate::SessionError;
 use crate::audit::{AuditHook, Audited};
+use crate::contract::{Key, KeyError, Kind};
 use crate::health::{Health, HealthCount};
-use crate::keys::{Key, KeyError, Kind};
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};

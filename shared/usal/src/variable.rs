@@ -4,8 +4,8 @@
 //! a subscriber that sees the token asks once. So a plain Zenoh client gets the last value by
 //! an ordinary `get`, and a restarted publisher or hub heals by itself.
 
+use crate::contract::Kind;
 use crate::contract::Stamped;
-use crate::keys::Kind;
 use crate::session::{Inner, Session};
 use crate::topics::Variable;
 use crate::{Format, SessionError, codec};

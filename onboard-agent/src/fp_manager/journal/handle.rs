@@ -4,10 +4,10 @@
 use super::storage::Storage;
 use super::writer::{Job, Report, Writer};
 use anyhow::Context;
+use flight_exec::Event;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
-use usal::contract::PlanEvent;
 
 /// The flight waits for the disk so long at most.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -137,7 +137,7 @@ impl JournalHandle {
     }
 
     /// What people have to be told: that recording stopped, or that it is back.
-    pub fn news(&mut self) -> Option<PlanEvent> {
+    pub fn news(&mut self) -> Option<Event> {
         let progress = self.progress.borrow();
         let slow =
             || self.behind.then(|| "the disk is slow: check the disk of the state directory".to_owned());
@@ -146,9 +146,9 @@ impl JournalHandle {
         match (trouble, std::mem::take(&mut self.told)) {
             (Some(reason), told) => {
                 self.told = true;
-                (!told).then_some(PlanEvent::NotJournalled { reason })
+                (!told).then_some(Event::NotJournalled { reason })
             }
-            (None, told) => told.then_some(PlanEvent::Journalled),
+            (None, told) => told.then_some(Event::Journalled),
         }
     }
 }

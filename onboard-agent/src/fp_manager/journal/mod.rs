@@ -19,8 +19,8 @@
 //! therefore triggered at most once.
 //!
 //! The flight waits for the disk for half a second at most. A disk that is full, fails or is slow is told as
-//! [`NotJournalled`](usal::contract::PlanEvent::NotJournalled) and flown on without; a new state is tried every second, and when it is written
-//! recording goes on ([`Journalled`](usal::contract::PlanEvent::Journalled)).
+//! [`NotJournalled`](flight_exec::Event::NotJournalled) and flown on without; a new state is tried every second, and when it is written
+//! recording goes on ([`Journalled`](flight_exec::Event::Journalled)).
 //!
 //! # Files
 //!

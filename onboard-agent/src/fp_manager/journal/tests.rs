@@ -10,7 +10,6 @@ use proptest::prelude::*;
 use std::io::ErrorKind;
 use std::sync::Arc;
 use terrain::Flat;
-use usal::contract::PlanEvent;
 
 const LIMITS: Limits = Limits { turns: 10, bytes: 4096, bytes_max: 8192, plans: 3 };
 
@@ -290,7 +289,9 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
     let held = lock.lock();
     keeper.give(state());
     keeper.done().await;
-    assert!(matches!(keeper.news(), Some(PlanEvent::NotJournalled { reason }) if reason.contains("slow")));
+    assert!(
+        matches!(keeper.news(), Some(flight_exec::Event::NotJournalled { reason }) if reason.contains("slow"))
+    );
     for n in 0..50 {
         // each would take the whole patience, if it waited
         keeper.give(job(n, true));
@@ -299,7 +300,7 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
     }
     drop(held);
     let caught_up = async {
-        while keeper.news() != Some(PlanEvent::Journalled) {
+        while keeper.news() != Some(flight_exec::Event::Journalled) {
             tokio::task::yield_now().await;
             keeper.done().await;
         }

@@ -4,6 +4,7 @@
 use super::buffer::CAPACITY;
 use flight_exec::review::plausibility::{self, Context};
 use usal::contract::{Token, Waypoint};
+use wire::Convert;
 
 /// A waypoint that is to blame: token, code for programs, sentence for people.
 pub type Fault = (Token, String, String);
@@ -21,12 +22,14 @@ pub fn faults(
         return vec![(first.token, "batch-too-long".into(), sentence)];
     }
     let mut found: Vec<Fault> = sequence(highest, batch).into_iter().collect();
-    let (mut before_last, mut last) = (None, previous);
+    let mut before_last = None;
+    let mut last: Option<flight_exec::Waypoint> = previous.cloned().convert();
     for waypoint in batch {
-        let broken = plausibility::faults(context, before_last, last, waypoint);
+        let judged = waypoint.clone().convert();
+        let broken = plausibility::faults(context, before_last, last.as_ref(), &judged);
         found.extend(broken.into_iter().map(|f| (waypoint.token, f.code.into(), f.sentence)));
         before_last = last.map(|w| w.position);
-        last = Some(waypoint);
+        last = Some(judged);
     }
     found
 }

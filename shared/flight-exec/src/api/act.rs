@@ -4,7 +4,7 @@ use flight_plan::{Id, VariableValue};
 use serde::{Deserialize, Serialize};
 
 /// What an action does, its numbers and values computed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "act", rename_all = "kebab-case")]
 pub enum ResolvedAct {
     /// Takes one picture.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What people and services may ask of the executor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "command", rename_all = "kebab-case")]
 pub enum Command {
     /// Begin the main plan at its first stage.
@@ -68,7 +68,7 @@ pub enum Command {
 }
 
 /// Why a command was refused; the sentence says what to do.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{code}: {reason}")]
 pub struct Refusal {
     /// Short, stable, for programs: `no-plan`, `unknown-leg`, `stale-revision`, …

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// One step of a nest of loops.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct IterationPlace {
     /// The iterative leg.
     pub leg: Id,
@@ -20,7 +20,7 @@ pub struct IterationPlace {
 }
 
 /// Which part of the document is being flown.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Branching {
     /// The main plan.
@@ -30,7 +30,7 @@ pub enum Branching {
 }
 
 /// Where the flight is in the plan: survives update, restart and hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlacePointer {
     /// Main plan or which emergency plan.
     pub plan: Branching,
@@ -47,7 +47,7 @@ pub struct PlacePointer {
 }
 
 /// What the executor is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
     /// No plan, or a plan that was not started.
@@ -63,7 +63,7 @@ pub enum Phase {
 }
 
 /// A snapshot for people and services.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Status {
     /// What it is doing.
     pub phase: Phase,
@@ -91,7 +91,7 @@ pub struct Status {
 }
 
 /// What an intersection asks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DecisionRequest {
     /// The intersection leg.
     pub leg: Id,
@@ -106,7 +106,7 @@ pub struct DecisionRequest {
 }
 
 /// One way on from an intersection.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BranchOption {
     /// Its identifier.
     pub branch: Id,

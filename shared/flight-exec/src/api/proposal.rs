@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What a proposed plan would do, or why it can't be flown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProposalReport {
     /// Hash of the proposal.
     pub hash: Arc<str>,
@@ -43,7 +43,7 @@ pub struct ProposalReport {
 }
 
 /// A leg that a commit may name, and the way there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EntryReport {
     /// The leg.
     pub leg: Id,

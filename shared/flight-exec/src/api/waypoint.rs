@@ -9,25 +9,12 @@ pub const FARTHEST_M: f64 = 50_000.0;
 
 /// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
 /// updates, emergencies and restarts.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    PartialOrd,
-    Ord,
-    Hash,
-    Default,
-    Serialize,
-    Deserialize,
-    schemars::JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Token(pub u64);
 
 /// What the autopilot does at or towards a waypoint.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Action {
     /// Take off along a heading and climb to the waypoint's altitude.
@@ -50,7 +37,7 @@ pub enum Action {
 }
 
 /// A waypoint, as sent to the gateway.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Waypoint {
     /// Its number.
     pub token: Token,
@@ -72,7 +59,7 @@ pub struct Waypoint {
 }
 
 /// What the gateway tells the executor about the flight.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AircraftState {
     /// Where it is.
     pub position: LatLon,

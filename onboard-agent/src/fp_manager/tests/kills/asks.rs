@@ -1,7 +1,9 @@
 //! What a client asks in the course of a flight.
 
+use flight_exec::Command;
+use flight_plan::{Id, VariableValue};
 use std::collections::VecDeque;
-use usal::contract::*;
+use usal::contract::Cause;
 
 pub const MISSION: &str = include_str!("mission.xml");
 

@@ -3,6 +3,8 @@
 use super::asks::{What, asks};
 use super::*;
 use flight_exec::Phase;
+use flight_plan::Id;
+use usal::contract::{Cause, GatewayEvent, GatewayRequest};
 
 /// In the air, so many waypoints flown; nothing but these first requests is asked.
 fn flown(waypoints: usize, requests: usize) -> Flight {
@@ -27,7 +29,7 @@ fn run(flight: &mut Flight, steps: usize) {
 }
 
 fn emergencies(flight: &Flight) -> usize {
-    flight.heard.iter().filter(|e| matches!(e, PlanEvent::EmergencyStarted { .. })).count()
+    flight.heard.iter().filter(|e| matches!(e, Event::EmergencyStarted { .. })).count()
 }
 
 fn in_emergency(flight: &Flight) -> bool {
@@ -95,7 +97,7 @@ fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
     run(&mut flight, 2);
     assert_eq!(emergencies(&flight), 2);
     let starts = flight.heard.iter().rev();
-    let last = starts.filter(|e| matches!(e, PlanEvent::EmergencyStarted { .. })).take(1);
+    let last = starts.filter(|e| matches!(e, Event::EmergencyStarted { .. })).take(1);
     assert!(format!("{:?}", last.collect::<Vec<_>>()).contains("Energy"));
     // the engine's was answered, and so is this now
     run(&mut flight, 4);
@@ -182,8 +184,8 @@ fn holding_when_safe_mode_ends_it_holds_again() {
 
 /// What is told of legs and actions, and what is asked of services.
 fn told_of_the_plan(flight: &Flight) -> usize {
-    use PlanEvent::*;
-    let of_plan = |e: &&PlanEvent| {
+    use Event::*;
+    let of_plan = |e: &&Event| {
         matches!(e, LegEntered { .. } | IterationFinished { .. } | DecisionTaken { .. } | ActionDone { .. })
     };
     flight.heard.iter().filter(of_plan).count()
@@ -250,12 +252,12 @@ fn everything_flown_told_before_more_was_taken_is_not_the_end() {
     let ahead = |f: &Flight| f.process.manager.executor().ahead().map(|w| w.token).collect::<Vec<_>>();
     let before = ahead(&flight);
     assert!(before.len() > 1);
-    let taken = Token(before[0].0);
+    let taken = before[0].convert();
     flight.tell(|manager, now, out| {
         manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
     });
     assert_eq!(ahead(&flight), before);
-    let taken = before[before.len() - 1];
+    let taken = before[before.len() - 1].convert();
     flight.tell(|manager, now, out| {
         manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
     });

@@ -10,11 +10,13 @@ use crate::fp_manager::journal::faulty::{Death, Faulty, Random};
 use crate::fp_manager::journal::{Job, Limits, Log, Saved, Storage, Writer, encode};
 use crate::fp_manager::{Config, Effect, Manager, compile, restart};
 use asks::{Ask, What, asks};
+use flight_exec::{Command, Event, Refusal};
 use gateway::Gateway;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use terrain::Flat;
-use usal::contract::*;
+use usal::contract::{GatewayState, LatLon, Waypoint};
+use wire::Convert;
 
 const KILLS: u64 = 1000;
 /// Segments are short, so that many deaths fall on a change of segments.
@@ -48,7 +50,7 @@ struct Flight {
     random: Random,
     deadly: bool,
     kills: u64,
-    heard: Vec<PlanEvent>,
+    heard: Vec<Event>,
     /// States after the latest turns; the last turn that was written, and the last that was synced for sure.
     history: VecDeque<(u64, Saved)>,
     turn: u64,
@@ -220,7 +222,7 @@ impl Flight {
         }
         let ahead = self.process.manager.executor().ahead().next().map(|w| w.token);
         // on its way home it has no waypoints that would say what was flown unheard
-        let all_heard = ahead == self.gateway.navigation().current;
+        let all_heard = ahead == self.gateway.navigation().current.convert();
         match self.random.below(4) {
             0 => self.gateway.safe_hold(),
             1 if all_heard => self.gateway.safe_return(),
@@ -345,14 +347,14 @@ impl Flight {
 }
 
 /// What happened once; of an event that measures, only what it is about.
-fn happened(events: &[PlanEvent]) -> BTreeMap<String, usize> {
+fn happened(events: &[Event]) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for event in events {
         let key = match event {
-            PlanEvent::LegEntered { place } => {
+            Event::LegEntered { place } => {
                 format!("leg {} {:?} {:?}", place.leg, place.plan, place.iterations)
             }
-            PlanEvent::DecisionRequested(request) => format!("asked {}", request.leg),
+            Event::DecisionRequested(request) => format!("asked {}", request.leg),
             other => format!("{other:?}"),
         };
         *counts.entry(key).or_default() += 1;
@@ -409,8 +411,7 @@ fn killed_while_the_disk_was_full_it_holds_and_says_that_its_place_is_not_known(
     flight.hand_in_state();
     flight.come_back().unwrap();
     assert_eq!(flight.gateway.state, GatewayState::Hold);
-    let told =
-        |event: &PlanEvent| matches!(event, PlanEvent::NotJournalled { reason } if reason.contains("place"));
+    let told = |event: &Event| matches!(event, Event::NotJournalled { reason } if reason.contains("place"));
     assert_eq!(flight.heard.iter().filter(|e| told(e)).count(), 1, "{:?}", flight.heard);
     for _ in 0..5 {
         flight.step();

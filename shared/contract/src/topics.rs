@@ -1,6 +1,6 @@
 //! Everything that may be said, with its type. What is not here is not part of the contract.
 
-use crate::Description;
+use crate::{Description, Empty};
 use std::marker::PhantomData;
 
 /// The FCS Gateway's name.
@@ -56,14 +56,17 @@ copyable!(Events<T>);
 copyable!(Invocation<Q, A>);
 
 /// What a service is and can.
-pub const fn describe(service: &'static str) -> Invocation<crate::contract::Empty, Description> {
+pub const fn describe(service: &'static str) -> Invocation<Empty, Description> {
     Invocation::new(service, "describe")
 }
 
 /// The FCS Gateway.
 pub mod gateway {
     use super::{Events, GATEWAY, Invocation, Variable};
-    use crate::contract::*;
+    use crate::{
+        Air, Attitude, Empty, Engine, Feed, FeedAnswer, GatewayRequest, GatewayStatus, Gps, Join, JoinAnswer,
+        Navigation, Position, Power, TimedGatewayEvent,
+    };
 
     /// Where the aircraft is.
     pub const POSITION: Variable<Position> = Variable::new(GATEWAY, "position");
@@ -96,7 +99,10 @@ pub mod gateway {
 /// The FP Manager.
 pub mod fp_manager {
     use super::{Events, FP_MANAGER, Invocation, Variable};
-    use crate::contract::*;
+    use crate::{
+        Ahead, Command, Empty, FpManagerEvent, Heartbeat, PlanDocument, PlanInfo, PlanStatus, PlanVariables,
+        ProposalReport, Propose,
+    };
 
     /// What the executor is doing, and where.
     pub const STATUS: Variable<PlanStatus> = Variable::new(FP_MANAGER, "status");

@@ -1,11 +1,8 @@
 //! Self-description: what a service is called, which version it speaks and what it says, with
 //! JSON Schemas made from the types. A golden file shows every change of the contract.
 
-use crate::contract::{ClockAck, ClockTick, Empty, FileManifest, Stamped};
-use crate::keys::Kind;
-use crate::session::Session;
 use crate::topics::{self, Events, FP_MANAGER, GATEWAY, Invocation, Variable};
-use crate::{Server, SessionError};
+use crate::{ClockAck, ClockTick, FileManifest, Kind, Stamped};
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -108,41 +105,9 @@ pub fn fp_manager_description() -> Description {
     description(FP_MANAGER, primitives)
 }
 
-impl Session {
-    /// Serves `describe` of a service: answer each request with its description.
-    ///
-    /// # Errors
-    /// [`SessionError::Network`] on a closed session.
-    pub fn serve_description(
-        &self,
-        service: &'static str,
-    ) -> Result<Server<Empty, Description>, SessionError> {
-        self.serve(topics::describe(service))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// `LEGWORK_BLESS=1 cargo test -p usal` rewrites the file: look at the difference before
-    /// committing it; it is a change of the contract.
-    #[test]
-    fn the_contract_is_the_one_in_the_golden_file() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/contract.json");
-        let now =
-            serde_json::to_string_pretty(&[gateway_description(), fp_manager_description()]).unwrap() + "\n";
-        if std::env::var_os("LEGWORK_BLESS").is_some() {
-            std::fs::write(path, &now).unwrap();
-        }
-        let golden = std::fs::read_to_string(path).unwrap_or_default();
-        let first = golden.lines().zip(now.lines()).position(|(a, b)| a != b);
-        assert!(
-            golden == now,
-            "the contract differs from contract.json, first in line {:?}",
-            first.map(|n| n + 1)
-        );
-    }
 
     #[test]
     fn every_primitive_has_a_schema_and_a_key() {

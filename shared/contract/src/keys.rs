@@ -73,17 +73,23 @@ impl Key {
 }
 
 /// The pattern that matches this kind and name of every service of a vehicle.
-pub(crate) fn every_service(vehicle: &str, kind: Kind, name: &str) -> Result<String, KeyError> {
+///
+/// # Errors
+/// [`KeyError::Segment`] for a name that cannot be a key segment.
+pub fn every_service(vehicle: &str, kind: Kind, name: &str) -> Result<String, KeyError> {
     Ok(format!("{ROOT}/{}/*/{}/{}", segment(vehicle)?, kind.as_str(), segment(name)?))
 }
 
 /// The pattern that matches every name of this kind of every service of a vehicle.
-pub(crate) fn every_name(vehicle: &str, kind: Kind) -> Result<String, KeyError> {
+///
+/// # Errors
+/// [`KeyError::Segment`] for a name that cannot be a key segment.
+pub fn every_name(vehicle: &str, kind: Kind) -> Result<String, KeyError> {
     Ok(format!("{ROOT}/{}/*/{}/*", segment(vehicle)?, kind.as_str()))
 }
 
-/// Could be a part of a key.
-pub(crate) fn is_segment(text: &str) -> bool {
+/// Could be a part of a key: a vehicle's, a service's or a primitive's name.
+pub fn is_segment(text: &str) -> bool {
     segment(text).is_ok()
 }
 

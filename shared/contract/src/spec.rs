@@ -1,9 +1,7 @@
 //! What a service is called and says, as a declaration: its description, its publishing rates and the registry come from it.
 
-use crate::contract::{ClockAck, ClockTick, FileManifest, Stamped};
-use crate::describe::{Description, Primitive};
-use crate::keys::Kind;
 use crate::topics::{self, Events, Invocation, Variable};
+use crate::{ClockAck, ClockTick, Description, FileManifest, Kind, Primitive, Stamped};
 use schemars::{JsonSchema, schema_for};
 
 /// A service's declaration.
@@ -160,7 +158,7 @@ pub const FP_MANAGER: Spec = {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::describe::{fp_manager_description, gateway_description};
+    use crate::{fp_manager_description, gateway_description};
 
     #[test]
     fn declarations_are_the_descriptions() {

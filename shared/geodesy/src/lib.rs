@@ -1,4 +1,6 @@
-//! Positions on WGS84, and the geodesics between them (Karney 2013, by `geographiclib-rs`).
+//! Pure: positions on WGS84, and the geodesics between them (Karney 2013, by `geographiclib-rs`).
+//!
+//! A crate of its own, so that the service contract has positions without the rest of the geometry.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use serde::{Deserialize, Serialize};
@@ -37,11 +39,13 @@ pub struct Direct {
 
 impl LatLon {
     /// A position; use [`LatLon::is_valid`] on anything that comes from outside.
+    #[inline]
     pub const fn new(lat_deg: f64, lon_deg: f64) -> Self {
         Self { lat_deg, lon_deg }
     }
 
     /// Finite, latitude within ±90 and longitude within ±180 degrees.
+    #[inline]
     pub fn is_valid(self) -> bool {
         self.lat_deg.abs() <= 90.0 && self.lon_deg.abs() <= 180.0
     }
@@ -85,12 +89,14 @@ impl LatLon {
 }
 
 /// An angle brought into 0..360 degrees.
+#[inline]
 pub fn normalise_360(deg: f64) -> f64 {
     let r = deg.rem_euclid(360.0);
     if r >= 360.0 { 0.0 } else { r }
 }
 
 /// An angle brought into −180..=180 degrees; angles that are already there stay as they are.
+#[inline]
 pub fn normalise_180(deg: f64) -> f64 {
     if deg.abs() <= 180.0 {
         return deg;

@@ -1,0 +1,99 @@
+//! What the gateway measures.
+
+use geodesy::LatLon;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Gateway variable `position`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Position {
+    /// Where.
+    pub position: LatLon,
+    /// Metres above mean sea level.
+    pub altitude_amsl_m: f64,
+    /// Metres above the take-off place.
+    pub altitude_home_m: f64,
+    /// Velocity, m/s north.
+    pub velocity_north_mps: f64,
+    /// Velocity, m/s east.
+    pub velocity_east_mps: f64,
+    /// Velocity, m/s down.
+    pub velocity_down_mps: f64,
+    /// Direction of travel over the ground, degrees true.
+    pub track_deg: f64,
+    /// Speed over the ground, m/s.
+    pub ground_speed_mps: f64,
+    /// On the ground.
+    pub on_ground: bool,
+}
+
+/// Gateway variable `attitude`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Attitude {
+    /// Right wing down positive, degrees.
+    pub roll_deg: f64,
+    /// Nose up positive, degrees.
+    pub pitch_deg: f64,
+    /// Degrees true.
+    pub heading_deg: f64,
+    /// Roll rate, degrees/s.
+    pub roll_rate_dps: f64,
+    /// Pitch rate, degrees/s.
+    pub pitch_rate_dps: f64,
+    /// Yaw rate, degrees/s.
+    pub yaw_rate_dps: f64,
+}
+
+/// Gateway variable `air`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Air {
+    /// Airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// Where the wind blows to, m/s east.
+    pub wind_east_mps: f64,
+    /// Where the wind blows to, m/s north.
+    pub wind_north_mps: f64,
+    /// Static pressure, hPa.
+    pub pressure_hpa: f64,
+    /// Temperature, °C.
+    pub temperature_c: f64,
+}
+
+/// Gateway variable `gps`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Gps {
+    /// A three-dimensional fix or better.
+    pub fix_3d: bool,
+    /// Satellites in use.
+    pub satellites: u8,
+    /// Horizontal dilution of precision.
+    pub hdop: f64,
+    /// Time of day, whole seconds since 1970-01-01T00:00:00Z; `None`: the autopilot doesn't know it (yet).
+    #[serde(default)]
+    pub unix_s: Option<i64>,
+}
+
+/// Gateway variable `engine`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Engine {
+    /// Revolutions per minute.
+    pub rpm: f64,
+    /// Temperature, °C.
+    pub temperature_c: f64,
+    /// Throttle, 0..1.
+    pub throttle: f64,
+}
+
+/// Gateway variable `power`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Power {
+    /// Battery voltage, V.
+    pub voltage_v: f64,
+    /// Battery current, A.
+    pub current_a: f64,
+    /// Share of the energy left, 0..1.
+    pub battery: f64,
+    /// Share of the fuel left, 0..1; nothing, if the autopilot tells of no tank.
+    #[serde(default)]
+    pub fuel: Option<f64>,
+}
