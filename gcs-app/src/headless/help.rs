@@ -47,3 +47,14 @@ pub const DIFF: &str = with_examples!(
     "legwork diff fire-watch.xml fire-watch-2.xml",
     "legwork diff fire-watch.xml fire-watch-2.xml --at sweep --pass 2 --json",
 );
+
+pub const LOG: &str = concat!(
+    "Examples:\n",
+    "  legwork log recordings/*.mcap\n",
+    "  legwork log --check uav1-20261123T080000Z-001.mcap\n",
+    "  legwork log --export flight.gpx uav1-20261123T080000Z-001.mcap\n",
+    "\nExit status:\n",
+    "  0  fine\n",
+    "  1  a file is no recording, or with --check: torn or damaged; what can be read of it is given\n",
+    "  2  wrong usage, or a file that can't be read or written",
+);

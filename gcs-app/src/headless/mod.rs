@@ -10,6 +10,8 @@ mod expand;
 pub mod forecast;
 mod foreign;
 mod help;
+mod log;
+mod log_export;
 mod output;
 mod preview;
 mod select;
@@ -117,6 +119,9 @@ pub enum Command {
         #[arg(long, help_heading = None::<&str>)]
         json: bool,
     },
+    /// Say what a flight recording holds, check it, and export track and events.
+    #[command(after_help = help::LOG)]
+    Log(log::Args),
 }
 
 /// Runs a command.
@@ -129,6 +134,7 @@ pub fn run(command: &Command) -> anyhow::Result<ExitCode> {
         Command::Preview { source, selection, target, air } => preview::run(source, *air, selection, target),
         Command::Expand { source, selection, written, air } => expand::run(source, *air, selection, written),
         Command::Convert { source, target, selection, air } => convert::run(source, *air, selection, target),
+        Command::Log(args) => log::run(args),
         Command::Diff { old, new, moment, air, json } => diff::run(old, new, moment, *air, *json),
     }
 }

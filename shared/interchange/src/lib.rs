@@ -17,11 +17,13 @@ mod names;
 mod note;
 mod qgc;
 mod synthetic;
+mod track;
 mod wpl;
 mod xml;
 
 pub use note::Note;
 pub use synthetic::Assumptions;
+pub use track::{RecordedFlight, TrackEvent, TrackPoint, write_flights};
 
 use flight_exec::Waypoint;
 use flight_plan::FlightPlan;

@@ -8,6 +8,14 @@ pub const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
 /// Bytes before a record's content: opcode and length.
 pub const HEAD_BYTES: usize = 9;
 
+/// Bytes that every finished file ends with: its footer and the magic.
+pub const END_BYTES: u64 = (HEAD_BYTES + 20 + MAGIC.len()) as u64;
+
+/// The last [`END_BYTES`] of a file are those of a finished one.
+pub fn is_end(bytes: &[u8]) -> bool {
+    bytes.len() as u64 == END_BYTES && bytes.first() == Some(&op::FOOTER) && bytes.ends_with(&MAGIC)
+}
+
 /// The kinds of records that are read.
 pub mod op {
     pub const HEADER: u8 = 0x01;

@@ -34,6 +34,7 @@ mod repair;
 mod retention;
 mod scan;
 
+pub use bytes::{END_BYTES, is_end};
 pub use finding::{Damage, Finding};
 pub use foxglove::Level;
 pub use frame::{Frame, Payload};

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Rig, UNIX, ms, numbered, position};
 use proptest::prelude::*;
-use recording::{Config, Contents, Damage, Ending, Input, repair, scan};
+use recording::{Config, Contents, Damage, END_BYTES, Ending, Input, is_end, repair, scan};
 use std::time::Duration;
 
 const COUNT: &str = "legwork/uav1/counter/variable/count";
@@ -37,6 +37,7 @@ fn times(bytes: &[u8]) -> (Contents, Vec<Duration>) {
 /// What the process, or the power, leaves when it ends in the moment in which byte `cut` is being written.
 fn killed(rig: &Rig, cut: usize) {
     let bytes = &rig.files[0].1[..cut];
+    assert!(!is_end(&bytes[cut.saturating_sub(END_BYTES as usize)..]));
     let (written_at, _) = *rig.appended.iter().find(|(_, length)| *length >= cut).unwrap();
     let (contents, times) = times(bytes);
     let expected: Vec<Duration> = (0..200).map(|i| ms(20 * i)).collect();
@@ -82,6 +83,7 @@ fn torn_file_is_mended_into_one_that_every_tool_opens() {
         let contents = repair(torn, &mut mended).unwrap();
         let (before, after) = (times(torn), times(&mended));
         assert_eq!(before.1, after.1, "{cut}");
+        assert!(is_end(&mended[mended.len() - END_BYTES as usize..]));
         assert_eq!((after.0.ending, after.0.findings.len()), (Ending::Finished, 0), "{:?}", after.0.findings);
         assert_eq!(after.0.messages, contents.messages);
         let lost = &after.0.metadata.iter().find(|(name, _)| name == "legwork.recovered").unwrap().1;
