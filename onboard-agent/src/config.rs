@@ -1,9 +1,11 @@
 //! What the agent is started with: command line over configuration file over defaults.
 
+use crate::registry::{Entry, SERVICES};
 use crate::{fp_manager, gateway, supervisor};
 use aircraft::Profile;
 use anyhow::{Context, bail};
-use clap::{Args, Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,16 +27,55 @@ pub struct Cli {
 }
 
 /// What the agent can do.
-#[derive(Debug, Subcommand)]
+#[derive(Debug)]
 pub enum Task {
     /// Run every service in a process of its own; restart what dies.
     Run(Options),
-    /// Run the FCS Gateway alone: the autopilot's driver and the network's hub.
-    Gateway(Options),
-    /// Run the FP Manager alone: it connects to the gateway and flies the plan.
-    FpManager(Options),
+    /// Run one of them alone.
+    Service(&'static Entry, Options),
     /// Print the services' descriptions with their JSON Schemas.
     Describe,
+}
+
+impl FromArgMatches for Task {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
+        let (name, matches) = matches.subcommand().ok_or_else(missing)?;
+        match name {
+            "run" => Ok(Self::Run(Options::from_arg_matches(matches)?)),
+            "describe" => Ok(Self::Describe),
+            name => {
+                let entry = SERVICES.iter().find(|entry| entry.spec.name == name).ok_or_else(missing)?;
+                Ok(Self::Service(entry, Options::from_arg_matches(matches)?))
+            }
+        }
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Subcommand for Task {
+    fn augment_subcommands(command: Command) -> Command {
+        let with_options =
+            |name: &'static str, about: String| Options::augment_args(Command::new(name)).about(about);
+        let run = with_options("run", "Run every service in a process of its own; restart what dies".into());
+        let services =
+            SERVICES.iter().map(|entry| with_options(entry.spec.name, format!("Run {}", entry.spec.about)));
+        let describe = Command::new("describe");
+        let describe = describe.about("Print the services' descriptions with their JSON Schemas");
+        command.subcommand(run).subcommands(services).subcommand(describe)
+    }
+
+    fn augment_subcommands_for_update(command: Command) -> Command {
+        Self::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        ["run", "describe"].contains(&name) || SERVICES.iter().any(|entry| entry.spec.name == name)
+    }
 }
 
 /// Options of the services. The configuration file has the same names, with `_` for `-`.
@@ -146,9 +187,10 @@ impl Options {
     }
 
     /// The command lines of the services' processes.
-    pub fn processes(&self) -> [supervisor::Process; 2] {
+    pub fn processes(&self) -> Vec<supervisor::Process> {
         let arguments = self.arguments();
-        ["gateway", "fp-manager"].map(|name| supervisor::Process::new(name, arguments.clone()))
+        let process = |entry: &Entry| supervisor::Process::new(entry.spec.name, arguments.clone());
+        SERVICES.iter().map(process).collect()
     }
 
     /// As they would be typed.
@@ -219,7 +261,7 @@ mod tests {
 
     fn parse(line: &str) -> Options {
         match Cli::try_parse_from(line.split(' ')).unwrap().task {
-            Task::Run(options) | Task::Gateway(options) | Task::FpManager(options) => options,
+            Task::Run(options) | Task::Service(_, options) => options,
             Task::Describe => panic!("no options"),
         }
     }
@@ -236,7 +278,7 @@ mod tests {
                 .collect::<Vec<std::ffi::OsString>>(),
         )
         .unwrap();
-        let Task::Gateway(again) = &mut again.task else { panic!("another task") };
+        let Task::Service(_, again) = &mut again.task else { panic!("another task") };
         assert_eq!(*again, options);
     }
 

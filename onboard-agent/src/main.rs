@@ -2,10 +2,10 @@
 
 use clap::Parser;
 use onboard_agent::config::{Cli, Options, Task};
+use onboard_agent::registry::SERVICES;
 use onboard_agent::single_instance::AlreadyRunning;
-use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown, supervisor};
+use onboard_agent::{Shutdown, Trigger, shutdown, supervisor};
 use std::process::ExitCode;
-use tracing_subscriber::EnvFilter;
 
 /// Started wrongly: a restart would not help.
 const STARTED_WRONGLY: u8 = supervisor::USAGE as u8;
@@ -14,8 +14,7 @@ const FAILED: u8 = 1;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info,zenoh=error"));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    service::logging::init("info,zenoh=error");
     match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
         Ok(runtime) => runtime.block_on(perform(cli.task)),
         Err(error) => failed(FAILED, &error.into()),
@@ -31,27 +30,26 @@ async fn perform(task: Task) -> ExitCode {
             Ok(options) => status(run(options, shutdown).await),
             Err(error) => failed(STARTED_WRONGLY, &error),
         },
-        Task::Gateway(options) => match options.completed().and_then(|o| o.gateway()) {
-            Ok(config) => status(gateway::run(config, shutdown).await),
-            Err(error) => failed(STARTED_WRONGLY, &error),
-        },
-        Task::FpManager(options) => match options.completed().and_then(|o| o.fp_manager()) {
-            Ok(config) => status(fp_manager::run(config, shutdown).await),
-            Err(error) => failed(STARTED_WRONGLY, &error),
-        },
+        Task::Service(entry, options) => {
+            match options.completed().and_then(|options| (entry.start)(&options, shutdown)) {
+                Ok(running) => status(running.await),
+                Err(error) => failed(STARTED_WRONGLY, &error),
+            }
+        }
     }
 }
 
 async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
     // what is wrong is better said once than by every child
-    options.gateway()?;
-    options.fp_manager()?;
+    for entry in SERVICES {
+        drop((entry.start)(&options, shutdown.clone())?);
+    }
     let program = std::env::current_exe()?;
     supervisor::run(&program, &options.processes(), shutdown).await
 }
 
 fn describe() -> ExitCode {
-    let descriptions = [usal::gateway_description(), usal::fp_manager_description()];
+    let descriptions: Vec<_> = SERVICES.iter().map(|entry| entry.spec.describe()).collect();
     match serde_json::to_string_pretty(&descriptions) {
         Ok(text) => {
             use std::io::Write;

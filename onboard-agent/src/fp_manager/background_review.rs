@@ -1,11 +1,10 @@
 //! Commands that take effect at once though they lead where nobody has looked (a go-to, a leg skipped, a return to the main plan): the
 //! way is flown ahead afterwards, on a thread of its own, and what is wrong with it told.
 
-use super::proposals::{LOCKSTEP_PATIENCE, broken};
+use super::proposals::broken;
+use super::service::{Input, Out};
 use flight_exec::Event;
 use flight_plan::Problem;
-use tokio::task::JoinHandle;
-use tokio::time::Instant;
 
 /// Most problems that are told of one command.
 const MOST_TOLD: usize = 20;
@@ -16,45 +15,30 @@ type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
 /// What is looked at afterwards: one way at a time, then the latest.
 #[derive(Default)]
 pub struct BackgroundReview {
-    look: Option<Look>,
+    looking: bool,
     /// Taken since; the way being looked at is not flown any more.
     next: Option<Review>,
 }
 
-struct Look {
-    work: JoinHandle<Vec<Problem>>,
-    since: Instant,
-}
-
 impl BackgroundReview {
     /// Has a way looked at.
-    pub fn look(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static) {
-        match self.look {
-            Some(_) => self.next = Some(Box::new(review)),
-            None => self.look = Some(Look::by(Box::new(review))),
+    pub fn look(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static, out: &mut Out) {
+        if std::mem::replace(&mut self.looking, true) {
+            self.next = Some(Box::new(review));
+        } else {
+            out.work(review, Input::WayLooked);
         }
     }
 
-    /// What there is to be told of the way that was taken last; never, if none is being looked at. May be cancelled.
-    pub async fn next(&mut self) -> Vec<Event> {
-        let Some(look) = &mut self.look else { return std::future::pending().await };
-        let problems = (&mut look.work).await.unwrap_or_else(|error| vec![broken(&error)]);
-        self.look = self.next.take().map(Look::by);
-        match self.look {
-            Some(_) => Vec::new(),
-            None => problems.into_iter().take(MOST_TOLD).map(told).collect(),
+    /// What there is to be told of the way that was taken last.
+    pub fn looked(&mut self, problems: Result<Vec<Problem>, String>, out: &mut Out) -> Vec<Event> {
+        if let Some(review) = self.next.take() {
+            out.work(review, Input::WayLooked);
+            return Vec::new();
         }
-    }
-
-    /// In lockstep, time stands while a way is looked at, but not so long that the others go on without us.
-    pub fn holds_time_until(&self) -> Option<Instant> {
-        self.look.as_ref().map(|look| look.since + LOCKSTEP_PATIENCE)
-    }
-}
-
-impl Look {
-    fn by(review: Review) -> Self {
-        Self { work: tokio::task::spawn_blocking(review), since: Instant::now() }
+        self.looking = false;
+        let problems = problems.unwrap_or_else(|error| vec![broken(&error)]);
+        problems.into_iter().take(MOST_TOLD).map(told).collect()
     }
 }
 
@@ -65,36 +49,32 @@ fn told(problem: Problem) -> Event {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     fn problems(count: usize) -> Vec<Problem> {
         (0..count).map(|i| Problem::error("keep-out", format!("{i} of {count}"))).collect()
     }
 
-    async fn reasons(afterwards: &mut BackgroundReview) -> Vec<String> {
-        let events = afterwards.next().await.into_iter();
-        events.map(|event| format!("{event:?}")).collect()
-    }
-
-    #[tokio::test]
-    async fn only_the_way_taken_last_is_told_of() {
-        let mut afterwards = BackgroundReview::default();
+    #[test]
+    fn only_the_way_taken_last_is_told_of() {
+        let (mut review, mut out) = (BackgroundReview::default(), Out::new(Duration::ZERO));
         for count in 1..=3 {
-            afterwards.look(move || problems(count));
+            review.look(move || problems(count), &mut out);
         }
-        assert!(afterwards.holds_time_until().is_some());
-        assert!(reasons(&mut afterwards).await.is_empty(), "of the first, which is not flown any more");
-        let told = reasons(&mut afterwards).await;
-        assert!(told.len() == 3 && told.iter().all(|told| told.contains("of 3")), "{told:?}");
-        assert!(afterwards.holds_time_until().is_none());
+        let told = review.looked(Ok(problems(1)), &mut out);
+        assert!(told.is_empty(), "of the first, which is not flown any more");
+        let told = review.looked(Ok(problems(3)), &mut out);
+        assert!(told.len() == 3 && told.iter().all(|told| format!("{told:?}").contains("of 3")), "{told:?}");
+        assert!(!review.looking);
     }
 
-    #[tokio::test]
-    async fn very_many_problems_and_a_review_that_fails() {
-        let mut afterwards = BackgroundReview::default();
-        afterwards.look(|| problems(1000));
-        assert_eq!(reasons(&mut afterwards).await.len(), MOST_TOLD);
-        afterwards.look(|| panic!("for the test"));
-        let told = reasons(&mut afterwards).await;
-        assert!(told.len() == 1 && told.iter().all(|told| told.contains("not-reviewed")), "{told:?}");
+    #[test]
+    fn very_many_problems_and_a_review_that_fails() {
+        let (mut review, mut out) = (BackgroundReview::default(), Out::new(Duration::ZERO));
+        review.look(|| problems(1000), &mut out);
+        assert_eq!(review.looked(Ok(problems(1000)), &mut out).len(), MOST_TOLD);
+        review.look(Vec::new, &mut out);
+        let told = review.looked(Err("panicked, for the test".into()), &mut out);
+        assert!(told.len() == 1 && format!("{told:?}").contains("not-reviewed"), "{told:?}");
     }
 }

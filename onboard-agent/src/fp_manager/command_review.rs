@@ -2,18 +2,19 @@
 //! a thread of their own, one after the other in the order in which they came, and given only then.
 
 use super::listed;
-use super::manager::Manager;
-use super::proposals::{LOCKSTEP_PATIENCE, broken};
-use crate::clock::Time;
+use super::manager::{Manager, OPERATOR};
+use super::proposals::broken;
+use super::service::{Input, Out};
 use flight_exec::{Command, Refusal, review_command};
 use flight_plan::Problem;
+use service::{Reply, Request, Time};
 use std::collections::VecDeque;
-use tokio::task::JoinHandle;
-use tokio::time::Instant;
+use usal::contract::{self, Empty};
+use wire::Convert;
 
 /// Most commands that wait.
 const MOST_WAITING: usize = 16;
-/// CommandReview at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
+/// Looks at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
 const MOST_LOOKS: u32 = 3;
 
 /// A command that wants its answer.
@@ -25,7 +26,7 @@ pub struct Asked {
     /// The request's own name.
     pub id: Option<String>,
     /// Takes the answer.
-    pub reply: Box<dyn FnOnce(Result<(), Refusal>) + Send>,
+    reply: Reply<Empty>,
 }
 
 /// What becomes of a command that was looked at.
@@ -42,19 +43,13 @@ pub enum Verdict {
 #[derive(Default)]
 pub struct CommandReview {
     waiting: VecDeque<Waiting>,
-    look: Option<Look>,
+    /// One is being looked at, for the flight as it was after so many turns.
+    looks_at: Option<u64>,
 }
 
 struct Waiting {
     asked: Asked,
-    since: Instant,
     looks: u32,
-}
-
-struct Look {
-    work: JoinHandle<Vec<Problem>>,
-    /// The flight as it was then.
-    turns: u64,
 }
 
 impl CommandReview {
@@ -66,64 +61,65 @@ impl CommandReview {
     }
 
     /// Takes a command in; where too many wait, it is refused.
-    pub fn take(&mut self, asked: Asked) {
+    pub fn take(&mut self, asked: Asked, out: &mut Out) {
         if self.waiting.len() >= MOST_WAITING {
-            return asked
-                .refuse("busy", "too many changes of the flight are being looked at: ask again in a moment");
+            let reason = "too many changes of the flight are being looked at: ask again in a moment";
+            return asked.answer(Err(busy(reason)), out);
         }
-        self.waiting.push_back(Waiting { asked, since: Instant::now(), looks: 0 });
+        self.waiting.push_back(Waiting { asked, looks: 0 });
     }
 
     /// Begins to look at the first that waits, unless one is being looked at; gives that which needs no look (any more).
-    pub fn begin(&mut self, manager: &Manager, now: Time) -> Option<Asked> {
-        let first = self.waiting.front_mut().filter(|_| self.look.is_none())?;
+    pub fn begin(&mut self, manager: &Manager, now: Time, out: &mut Out) -> Option<Asked> {
+        let first = self.waiting.front_mut().filter(|_| self.looks_at.is_none())?;
         let (command, by) = (first.asked.command.clone(), first.asked.by.clone());
         if !manager.executor().changes_what_is_flown(&command) {
             return self.waiting.pop_front().map(|waiting| waiting.asked);
         }
         first.looks += 1;
         let (flight, conditions) = (manager.executor().clone(), manager.conditions(now));
-        let work = tokio::task::spawn_blocking(move || review_command(&flight, &by, &command, conditions));
-        self.look = Some(Look { work, turns: manager.turns() });
+        let review = move || review_command(&flight, &by, &command, conditions);
+        out.work(review, Input::CommandLooked);
+        self.looks_at = Some(manager.turns());
         None
     }
 
-    /// What was found about the first that waits; never, if nothing is being looked at. May be cancelled.
-    pub async fn next(&mut self) -> Vec<Problem> {
-        match &mut self.look {
-            Some(look) => (&mut look.work).await.unwrap_or_else(|error| vec![broken(&error)]),
-            None => std::future::pending().await,
-        }
-    }
-
     /// What becomes of the first that waits, now that it has been looked at; `None`: nothing was.
-    pub fn decide(&mut self, problems: &[Problem], manager: &Manager) -> Option<Verdict> {
-        let look = self.look.take()?;
+    pub fn decide(&mut self, problems: Result<Vec<Problem>, String>, manager: &Manager) -> Option<Verdict> {
+        let looked_at = self.looks_at.take()?;
         let first = self.waiting.pop_front()?;
+        let problems = problems.unwrap_or_else(|error| vec![broken(&error)]);
         if let Some(error) = problems.iter().find(|problem| problem.is_error()) {
-            let refusal = Refusal { code: error.code.into(), reason: listed(problems) };
+            let refusal = Refusal { code: error.code.into(), reason: listed(&problems) };
             return Some(Verdict::Refuse(first.asked, refusal));
         }
-        if look.turns == manager.turns() {
+        if looked_at == manager.turns() {
             return Some(Verdict::Give(first.asked));
         }
         if first.looks >= MOST_LOOKS {
             let reason = "the flight changes faster than it can be looked at: ask again in a moment";
-            let refusal = Refusal { code: "busy".into(), reason: reason.into() };
-            return Some(Verdict::Refuse(first.asked, refusal));
+            return Some(Verdict::Refuse(first.asked, busy(reason)));
         }
         self.waiting.push_front(first);
         Some(Verdict::Again)
     }
+}
 
-    /// In lockstep, time stands while something is looked at, but not so long that the others go on without us.
-    pub fn holds_time_until(&self) -> Option<Instant> {
-        self.waiting.front().map(|waiting| waiting.since + LOCKSTEP_PATIENCE)
+impl From<Request<contract::Command, Empty>> for Asked {
+    fn from(request: Request<contract::Command, Empty>) -> Self {
+        let Request { request, caller, id, reply } = request;
+        let by = caller.unwrap_or_else(|| OPERATOR.to_owned());
+        Self { command: request.convert(), by, id, reply }
     }
 }
 
 impl Asked {
-    fn refuse(self, code: &str, reason: &str) {
-        (self.reply)(Err(Refusal { code: code.into(), reason: reason.into() }));
+    /// Answers it.
+    pub fn answer(self, answer: Result<(), Refusal>, out: &mut Out) {
+        out.answer(self.reply, answer.map(|()| Empty {}).map_err(Convert::convert));
     }
+}
+
+fn busy(reason: &str) -> Refusal {
+    Refusal { code: "busy".into(), reason: reason.into() }
 }

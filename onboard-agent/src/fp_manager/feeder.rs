@@ -4,7 +4,7 @@
 //! executor's horizon. A transaction whose answer got lost may or may not have been taken; that
 //! is settled by the highest token the gateway tells at a join.
 
-use crate::clock::Time;
+use service::Time;
 use std::time::Duration;
 use usal::contract::{Feed, FeedAnswer, Token};
 

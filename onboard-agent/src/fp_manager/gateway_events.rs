@@ -2,8 +2,8 @@
 
 use super::alarms;
 use super::manager::{Effect, Manager};
-use crate::clock::Time;
 use flight_exec::{Command, Input, Token};
+use service::Time;
 use usal::contract::{GatewayEvent, GatewayRequest, GatewayStatus, Navigation};
 use wire::Convert;
 

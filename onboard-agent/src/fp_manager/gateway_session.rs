@@ -1,6 +1,6 @@
 //! Pure: where we stand with the gateway: joined or not, who has control, and what we want of it.
 
-use crate::clock::Time;
+use service::Time;
 use std::time::Duration;
 use usal::contract::{GatewayRequest, GatewayState, JoinAnswer, SafeRunway};
 

@@ -3,8 +3,8 @@
 use super::journal::Record;
 use super::manager::{Effect, Manager};
 use super::runways::safe_runways;
-use crate::clock::Time;
 use flight_exec::{Action, Command, Event, Input, Phase, Token};
+use service::Time;
 use usal::contract::{GatewayRequest, Join, JoinAnswer};
 use wire::Convert;
 

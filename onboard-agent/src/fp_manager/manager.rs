@@ -9,13 +9,13 @@ use super::gateway_session::GatewaySession;
 use super::journal::{Entry, ManagerState, Record, Reply};
 use super::plan_history::PlanHistory;
 use super::timeline::Timeline;
-use crate::clock::Time;
 use ::aircraft::Wind;
 use flight_exec::{
     Answer, Command, Conditions, Event, Executor, Input, Output, Phase, ProposalReport, Refusal, RequestId,
     ResolvedAct, Token,
 };
 use flight_plan::{Id, Problem, Program};
+use service::Time;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use usal::contract::{Feed, FeedAnswer, GatewayRequest, Join};

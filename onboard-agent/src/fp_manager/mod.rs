@@ -1,6 +1,6 @@
 //! The FP Manager: flies the plan. Pure parts (`manager`, `gateway_events`, `joining`, `feeder`, `gateway_session`, `plan_history`,
 //! `aircraft`, `alarms`, `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a
-//! crash, and the shell that owns session, clock and disk.
+//! crash; `service` declares it, and the shell is the journal's disk.
 
 mod aircraft;
 mod alarms;
@@ -12,18 +12,18 @@ mod gateway_session;
 mod joining;
 pub mod journal;
 mod manager;
-mod pending;
 mod plan_history;
 mod proposals;
 mod publish;
-mod recording;
 mod restart;
 mod runways;
+mod service;
 mod shell;
 #[cfg(test)]
 mod tests;
 mod timeline;
 
+pub use self::service::{FpManager, Input, Output};
 pub use aircraft::Aircraft;
 pub use feeder::{Fate, Feeder};
 pub use manager::{Effect, Manager};

@@ -1,23 +1,17 @@
 //! A plan put forward: checked, compiled and its path reviewed on a thread of its own, its document kept on the disk,
 //! while the flight goes on. In flight that is the path ahead, from where the aircraft is.
 
-use super::journal::JournalHandle;
+use super::service::{Input, Out, Output};
 use super::{Config, listed};
 use flight_exec::{Conditions, Executor, Refusal, compile_and_review, compile_and_review_ahead};
 use flight_plan::{Problem, Program};
-use std::pin::Pin;
+use service::Request;
 use std::sync::Arc;
-use std::time::Duration;
-use tokio::task::JoinHandle;
-use tokio::time::Instant;
-use usal::Incoming;
 use usal::contract::{ProposalReport, Propose};
 use wire::Convert;
 
-/// In lockstep time stands for so long (wall-clock) while something is looked at; the others wait for five seconds at most.
-pub(super) const LOCKSTEP_PATIENCE: Duration = Duration::from_secs(4);
-
-type Asked = Incoming<Propose, ProposalReport>;
+/// A plan put forward.
+pub type Asked = Request<Propose, ProposalReport>;
 
 /// A plan that may be proposed, and its document as it is kept.
 pub struct Fit {
@@ -35,7 +29,8 @@ pub struct Sight {
     pub flight: Option<Executor>,
 }
 
-type Looked = Result<Fit, Vec<Problem>>;
+/// What was found.
+pub type Looked = Result<Fit, Vec<Problem>>;
 type Outcome = Result<Arc<Program>, Refusal>;
 
 /// The proposal that is being reviewed, if there is one.
@@ -44,64 +39,55 @@ pub struct ProposalReview(Option<Proposal>);
 
 struct Proposal {
     asked: Asked,
-    since: Instant,
-    /// It was looked at for a flight under way: what lies ahead of that.
     in_flight: bool,
-    step: Step,
+    /// It is fit, and its document is being kept.
+    fit: Option<Arc<Program>>,
 }
 
-enum Step {
-    /// It is being looked at.
-    Looking(JoinHandle<Looked>),
-    /// Its document is being kept.
-    Keeping(Arc<Program>, Pin<Box<dyn Future<Output = ()> + Send>>),
-    Done(Outcome),
+/// A proposal that has been looked at and is kept.
+pub struct Conclusion {
+    /// What was asked.
+    pub asked: Asked,
+    /// It was looked at for a flight under way: what lies ahead of that.
+    pub in_flight: bool,
+    /// The plan, if it may be proposed.
+    pub outcome: Outcome,
 }
 
 impl ProposalReview {
     /// Begins to look at a proposal; one that comes while another is being reviewed is refused.
-    pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight) {
+    pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight, out: &mut Out) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
             let refusal = Refusal { code: "busy".into(), reason: reason.into() };
-            return asked.answer(Err(refusal.convert()));
+            return out.answer(asked.reply, Err(refusal.convert()));
         }
         let (xml, config, in_flight) = (asked.request.xml.clone(), config.clone(), sight.flight.is_some());
-        let work = tokio::task::spawn_blocking(move || look(&xml, &config, &sight));
-        self.0 = Some(Proposal { asked, since: Instant::now(), in_flight, step: Step::Looking(work) });
+        out.work(move || look(&xml, &config, &sight), Input::ProposalLooked);
+        self.0 = Some(Proposal { asked, in_flight, fit: None });
     }
 
-    /// A proposal that has been looked at and is kept, and whether that was done for a flight under way; never, if there is none. May be
-    /// cancelled.
-    pub async fn next(&mut self, journal: &mut Option<JournalHandle>) -> (Asked, bool, Outcome) {
-        loop {
-            match self.0.take_if(|proposal| matches!(proposal.step, Step::Done(_))) {
-                Some(Proposal { asked, in_flight, step: Step::Done(outcome), .. }) => {
-                    return (asked, in_flight, outcome);
-                }
-                _ => self.advance(journal).await,
+    /// It has been looked at: its document is kept, unless it is refused.
+    pub fn looked(&mut self, looked: Result<Looked, String>, out: &mut Out) -> Option<Conclusion> {
+        match outcome(looked.unwrap_or_else(|error| Err(vec![broken(&error)]))) {
+            Ok(Fit { program, xml }) => {
+                out.push(Output::Document { hash: program.hash().clone(), xml });
+                self.0.as_mut()?.fit = Some(program);
+                None
             }
+            Err(refusal) => self.conclude(Err(refusal)),
         }
     }
 
-    async fn advance(&mut self, journal: &mut Option<JournalHandle>) {
-        let Some(proposal) = &mut self.0 else { return std::future::pending().await };
-        proposal.step = match &mut proposal.step {
-            Step::Looking(work) => match outcome(work.await.unwrap_or_else(|e| Err(vec![broken(&e)]))) {
-                Ok(fit) => kept(fit, journal),
-                Err(refusal) => Step::Done(Err(refusal)),
-            },
-            Step::Keeping(program, keeping) => {
-                keeping.await;
-                Step::Done(Ok(program.clone()))
-            }
-            Step::Done(_) => return,
-        };
+    /// Its document has been kept.
+    pub fn kept(&mut self) -> Option<Conclusion> {
+        let program = self.0.as_mut()?.fit.take()?;
+        self.conclude(Ok(program))
     }
 
-    /// In lockstep, time stands while a proposal is looked at, but not so long that the others go on without us.
-    pub fn holds_time_until(&self) -> Option<Instant> {
-        self.0.as_ref().map(|proposal| proposal.since + LOCKSTEP_PATIENCE)
+    fn conclude(&mut self, outcome: Outcome) -> Option<Conclusion> {
+        let Proposal { asked, in_flight, .. } = self.0.take()?;
+        Some(Conclusion { asked, in_flight, outcome })
     }
 }
 
@@ -117,18 +103,7 @@ pub fn good_for_now(in_flight: bool, executor: &Executor) -> Result<(), Refusal>
     Ok(())
 }
 
-fn kept(fit: Fit, journal: &mut Option<JournalHandle>) -> Step {
-    let Fit { program, xml } = fit;
-    match journal {
-        Some(journal) => {
-            let keeping = journal.keep(program.hash().clone(), xml);
-            Step::Keeping(program, Box::pin(keeping))
-        }
-        None => Step::Done(Ok(program)),
-    }
-}
-
-/// CommandReview at a document, here and now.
+/// Looks at a document, here and now.
 ///
 /// # Errors
 /// Its problems.
@@ -151,12 +126,14 @@ fn outcome(looked: Looked) -> Result<Fit, Refusal> {
     looked.map_err(|problems| Refusal { code: "plan-errors".into(), reason: listed(&problems) })
 }
 
-pub(super) fn broken(error: &tokio::task::JoinError) -> Problem {
+/// A review that broke off.
+pub(super) fn broken(error: &str) -> Problem {
     Problem::error("not-reviewed", format!("the review of the path failed; please report it: {error}"))
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use aircraft::Profile;
     use flight_exec::{AircraftState, Command, Input, RequestId, Time};

@@ -1,7 +1,7 @@
 //! Pure: the executor's time across restarts. It never goes back, and goes on during the restart where the machine's
 //! clock allows to know for how long.
 
-use crate::clock::Time;
+use service::Time;
 
 /// From a process' time to the executor's.
 ///

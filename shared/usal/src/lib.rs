@@ -22,10 +22,7 @@ mod raw;
 mod session;
 mod variable;
 
-pub use ::contract::{
-    self, Description, Key, KeyError, Kind, Primitive, fp_manager_description, gateway_description, spec,
-    topics,
-};
+pub use ::contract::{self, Description, Key, KeyError, Kind, Primitive, spec, topics};
 pub use audit::{Audited, Document};
 pub use call::PendingCall;
 pub use clock::{Conductor, Participant};

@@ -373,13 +373,13 @@ async fn describe_answers_in_json_to_anyone() {
     let mut server = net.hub.serve_description(topics::GATEWAY).unwrap();
     let service = tokio::spawn(async move {
         while let Some(incoming) = server.recv().await {
-            incoming.answer(Ok(usal::gateway_description()));
+            incoming.answer(Ok(usal::spec::GATEWAY.describe()));
         }
     });
     let outside = outside_client(&net.endpoint).await;
     let text = ask(&outside, "gateway", "describe", "", b"", Encoding::APPLICATION_JSON).await.unwrap();
     let description: usal::Description = serde_json::from_str(&text).unwrap();
-    assert_eq!(description, usal::gateway_description());
+    assert_eq!(description, usal::spec::GATEWAY.describe());
     service.abort();
 }
 

@@ -2,11 +2,11 @@
 
 use super::faulty::{Death, Faulty, Operation, Random};
 use super::*;
-use crate::clock::Time;
 use crate::fp_manager::{Config, Manager, compile, restart};
 use ::journal::frame;
 use flight_exec::{Executor, RequestId, Token};
 use proptest::prelude::*;
+use service::Time;
 use std::io::ErrorKind;
 use std::sync::Arc;
 use terrain::Flat;

@@ -3,8 +3,8 @@
 use super::Saved;
 use super::log::Log;
 use super::storage::Storage;
-use crate::clock::Time;
 use flight_plan::Program;
+use service::Time;
 use std::io::{self, ErrorKind};
 use std::sync::Arc;
 use std::time::Duration;

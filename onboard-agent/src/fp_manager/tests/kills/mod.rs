@@ -5,13 +5,13 @@ mod asks;
 mod gateway;
 mod gateway_faults;
 
-use crate::clock::Time;
 use crate::fp_manager::journal::faulty::{Death, Faulty, Random};
 use crate::fp_manager::journal::{Job, Limits, Log, Saved, Storage, Writer, encode};
 use crate::fp_manager::{Config, Effect, Manager, compile, restart};
 use asks::{Ask, What, asks};
 use flight_exec::{Command, Event, Refusal};
 use gateway::Gateway;
+use service::Time;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use terrain::Flat;

@@ -1,0 +1,58 @@
+//! The services aboard: a new one is a line here. Command line, supervisor and descriptions follow.
+
+use crate::config::Options;
+use crate::{Shutdown, fp_manager, gateway};
+use std::fmt;
+use std::pin::Pin;
+use usal::{Spec, spec};
+
+/// A service that runs once it is awaited.
+pub type Running = Pin<Box<dyn Future<Output = anyhow::Result<()>> + Send>>;
+
+/// A service aboard.
+pub struct Entry {
+    /// What it is called and says.
+    pub spec: &'static Spec,
+    /// Makes it of the options, unless these are wrong.
+    pub start: fn(&Options, Shutdown) -> anyhow::Result<Running>,
+}
+
+/// The services aboard, in the order in which they are started.
+pub const SERVICES: &[Entry] = &[
+    Entry { spec: &spec::GATEWAY, start: |options, end| Ok(Box::pin(gateway::run(options.gateway()?, end))) },
+    Entry {
+        spec: &spec::FP_MANAGER,
+        start: |options, end| Ok(Box::pin(fp_manager::run(options.fp_manager()?, end))),
+    },
+];
+
+impl fmt::Debug for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.spec.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Cli;
+    use clap::CommandFactory;
+    use usal::contract::Kind;
+
+    /// What is aboard is in the contract, in its order; the command line names it; what it follows is said by somebody.
+    #[test]
+    fn services_aboard_are_those_of_the_contract_and_of_the_command_line() {
+        let names = |specs: &[&Spec]| specs.iter().map(|spec| spec.name).collect::<Vec<_>>();
+        let aboard: Vec<&Spec> = SERVICES.iter().map(|entry| entry.spec).collect();
+        assert_eq!(names(&aboard), names(spec::SERVICES));
+        let command = Cli::command();
+        let told: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        assert_eq!(told, ["run", "gateway", "fp-manager", "describe"]);
+        let followed = service::followed::<fp_manager::FpManager>();
+        assert!(followed.iter().any(|topic| topic.kind == Kind::Event));
+        for topic in followed {
+            let whose = spec::SERVICES.iter().find(|spec| spec.name == topic.service).unwrap();
+            assert!(whose.says.iter().any(|s| (s.kind, s.name) == (topic.kind, topic.name)), "{topic:?}");
+        }
+    }
+}
