@@ -10,9 +10,9 @@ pub mod core;
 pub mod driver;
 pub mod order;
 mod publish;
+mod service;
 mod shell;
 mod station;
-mod store;
 #[cfg(test)]
 mod tests;
 

@@ -1,0 +1,188 @@
+//! The gateway as a service: what it serves and follows, and what each thing that happens means to the station.
+
+use super::core::{Answer, Input as CoreInput};
+use super::driver::FromLink;
+use super::publish;
+use super::station::Station;
+use autopilot_link::{Event, Outbox};
+use service::{Board, Request, Service, Time, Wiring};
+use std::time::Duration;
+use usal::contract::{Empty, Feed, FeedAnswer, GatewayRequest, Heartbeat, Join, JoinAnswer, Refusal};
+use usal::topics::{fp_manager, gateway};
+use usal::{Spec, spec};
+
+/// A simulator that asks for no step for so long is spoken to, and missed after the second time.
+const STEP_LATE: Duration = Duration::from_millis(500);
+const STEP_MISSED: Duration = Duration::from_secs(5);
+/// Events may be believed for so long, seconds.
+const VALIDITY_S: f64 = 3.0;
+/// What survives a restart.
+pub(super) const FILE: &str = "gateway.json";
+
+/// All that can happen to it.
+pub enum Input {
+    /// Time has passed.
+    Tick,
+    /// The link brought something.
+    Received(Event, Vec<u8>),
+    /// Waypoints for the buffer.
+    Feed(Request<Feed, FeedAnswer>),
+    /// The FP Manager presents itself.
+    Join(Request<Join, JoinAnswer>),
+    /// A person or a service asks.
+    Request(Request<GatewayRequest, Empty>),
+    /// The FP Manager's sign of life.
+    Heartbeat(Heartbeat),
+    /// Whether what is kept comes to the disk.
+    Kept(bool),
+    /// The simulator asks for no step.
+    Waiting(Duration),
+    /// The simulator's step has been done by all.
+    Stepped,
+}
+
+/// What it wants of the link: to send frames.
+pub type Output = Outbox;
+
+type Out = service::Out<Input, Output>;
+
+/// The FCS Gateway.
+pub struct FcsGateway {
+    station: Station,
+    /// The simulator's step under way, ns.
+    step_ns: Option<i64>,
+    complained: bool,
+}
+
+impl Service for FcsGateway {
+    type Input = Input;
+    type Output = Output;
+    const SPEC: Spec = spec::GATEWAY;
+
+    fn wire(wiring: &mut Wiring<Input>) {
+        wiring.follow(fp_manager::HEARTBEAT, |received| Input::Heartbeat(received.stamped.value.clone()));
+        wiring.serve(gateway::JOIN, Input::Join);
+        wiring.serve(gateway::FEED, Input::Feed);
+        wiring.serve(gateway::REQUEST, Input::Request);
+        wiring.kept(Input::Kept);
+        wiring.waiting(Input::Waiting);
+        wiring.stepped(|_| Input::Stepped);
+        wiring.tick(|| Input::Tick);
+    }
+
+    fn step(&mut self, now: Time, input: Input, out: &mut Out) {
+        match input {
+            Input::Tick => self.station.tick(now),
+            Input::Received(event, bytes) => {
+                self.station.receive(from_link(event, &bytes));
+                self.process(now, out);
+            }
+            Input::Feed(asked) => self.feed(now, asked, out),
+            Input::Join(asked) => self.join(now, asked, out),
+            Input::Request(asked) => self.request(now, asked, out),
+            Input::Heartbeat(Heartbeat { count, plan }) => {
+                self.station.input(now, CoreInput::Heartbeat { count, plan });
+            }
+            Input::Kept(stored) => self.station.input(now, CoreInput::Stored(stored)),
+            Input::Waiting(late) => self.wait(late),
+            Input::Stepped => {
+                if let Some(step_ns) = self.step_ns.take() {
+                    self.station.answer_step(step_ns);
+                }
+                self.process(now, out);
+            }
+        }
+        self.carry_out(out);
+    }
+
+    fn publish(&mut self, now: Time, board: &mut Board) {
+        publish::show(now, self.station.gateway(), board);
+    }
+}
+
+impl FcsGateway {
+    /// Around a station.
+    pub fn new(station: Station) -> Self {
+        Self { station, step_ns: None, complained: false }
+    }
+
+    /// Goes through what was received; a step of the simulator is done before the rest.
+    fn process(&mut self, now: Time, out: &mut Out) {
+        if let Some(step_ns) = self.station.process(now) {
+            self.step_ns = Some(step_ns);
+            self.complained = false;
+            out.lead_time_to(Time::from_nanos(u64::try_from(step_ns).unwrap_or(0)));
+        }
+    }
+
+    fn feed(&mut self, now: Time, Request { request, reply, .. }: Request<Feed, FeedAnswer>, out: &mut Out) {
+        let answer = match self.station.ask(now, |id| CoreInput::Feed(id, request)) {
+            Some(Answer::Feed(fed)) => Ok(fed),
+            _ => Err(unanswered()),
+        };
+        out.answer(reply, answer);
+    }
+
+    fn join(&mut self, now: Time, Request { request, reply, .. }: Request<Join, JoinAnswer>, out: &mut Out) {
+        let answer = match self.station.ask(now, |id| CoreInput::Join(id, request)) {
+            Some(Answer::Join(joined)) => Ok(joined),
+            _ => Err(unanswered()),
+        };
+        out.answer(reply, answer);
+    }
+
+    /// What was accepted survives a crash; the orders that it leads to do not wait for the disk.
+    fn request(&mut self, now: Time, asked: Request<GatewayRequest, Empty>, out: &mut Out) {
+        let Request { request, reply, .. } = asked;
+        tracing::info!(?request, "request");
+        let answer = match self.station.ask(now, |id| CoreInput::Request(id, request)) {
+            Some(Answer::Request(Ok(()))) => Ok(Empty {}),
+            Some(Answer::Request(Err(reason))) => Err(Refusal { code: "refused".into(), reason }),
+            _ => Err(unanswered()),
+        };
+        out.answer_when_kept(reply, answer);
+    }
+
+    fn wait(&mut self, late: Duration) {
+        if late > STEP_LATE {
+            self.station.hello();
+        }
+        if late > STEP_MISSED && !std::mem::replace(&mut self.complained, true) {
+            tracing::warn!(
+                "the simulator asks for no steps; start it with --lockstep, or this gateway without --simulated"
+            );
+        }
+    }
+
+    /// What came of a step.
+    fn carry_out(&mut self, out: &mut Out) {
+        let mut outbox = Outbox::default();
+        self.station.send(&mut outbox);
+        if !outbox.is_empty() {
+            out.push(outbox);
+        }
+        for event in self.station.take_events() {
+            tracing::info!(?event, time_s = out.now().as_secs_f64(), "event");
+            out.emit(gateway::EVENTS, VALIDITY_S, event);
+        }
+        if let Some(snapshot) = self.station.take_snapshot() {
+            match serde_json::to_vec(&snapshot) {
+                Ok(bytes) => out.keep(FILE, bytes),
+                Err(error) => tracing::error!(%error, "the gateway's state can't be written"),
+            }
+        }
+    }
+}
+
+/// What an event of the link means to a driver. That a connection broke means nothing: it is made again.
+fn from_link(event: Event, received: &[u8]) -> FromLink<'_> {
+    match event {
+        Event::Connected(_) | Event::Gone(_) => FromLink::Connected,
+        Event::Stream(_) => FromLink::Stream(received),
+        Event::Datagram(_) => FromLink::Datagram(received),
+    }
+}
+
+fn unanswered() -> Refusal {
+    Refusal { code: "unanswered".into(), reason: "The gateway could not answer; try again.".into() }
+}
