@@ -1,66 +1,49 @@
 //! The virtual machine: inputs in, outputs out, time as an argument.
+//!
+//! What it remembers is in the parts of [`crate::flight`], each of which looks after itself. Here an input is dispatched to them, and
+//! what concerns several of them is put in order.
 
-pub(crate) mod actions;
+mod acting;
 mod commands;
 mod emergency;
 mod progress;
 mod proposal;
-pub(crate) mod questions;
 mod refresh;
 mod replan;
-pub(crate) mod snapshot;
-pub(crate) mod state;
+mod setup;
+mod snapshot;
 mod status;
+mod trial;
 mod update;
 
 pub use snapshot::{RestoreError, Snapshot};
 
-use crate::api::{Answer, Event, Input, Output, Phase, Refusal, RequestId, Time, Token};
-use crate::executor::state::State;
-use crate::layout::path::{Level, PathEnd, PathState, distance_m};
-use crate::layout::stretch::IssuedWaypoint;
-use crate::layout::world::{ReadSet, World};
+use crate::api::{Answer, Input, Output, Phase, Refusal, RequestId, Time, Token, Waypoint};
+use crate::flight::{Flight, Life, PathAhead, refusal};
+use crate::layout::path::PathState;
+use crate::layout::world::{World, seconds_between};
 use crate::value::Config;
 use aircraft::Profile;
-use flight_plan::{AltitudeReference, FlightState, Program, Variables};
-use geometry::LatLon;
+use flight_plan::{Program, Variables};
+use setup::Setup;
 use std::sync::Arc;
 use terrain::Terrain;
 
 /// The executor: flies a plan by handing out waypoints a bounded way ahead.
 #[derive(Clone)]
 pub struct Executor {
-    pub(crate) config: Config,
-    pub(crate) terrain: Arc<dyn Terrain>,
-    pub(crate) profile: Profile,
-    /// [`Program::default`]: there is none.
-    pub(crate) program: Arc<Program>,
-    pub(crate) proposed: Option<Arc<Program>>,
-    pub(crate) state: State,
-    pub(crate) last_step: Option<Time>,
-    /// What has been read of the plan, for who wants to know (see [`ReadSet`]).
-    pub(crate) seen: Option<ReadSet>,
-}
-
-/// A refusal.
-pub(crate) fn refusal(code: &str, reason: impl Into<String>) -> Refusal {
-    Refusal { code: code.into(), reason: reason.into() }
+    setup: Setup,
+    proposed: Option<Arc<Program>>,
+    life: Life,
+    flight: Flight,
+    last_step: Option<Time>,
 }
 
 impl Executor {
     /// An executor without a plan.
     pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
-        let state = State::default();
-        Self {
-            config,
-            terrain,
-            profile,
-            program: Arc::default(),
-            proposed: None,
-            state,
-            last_step: None,
-            seen: None,
-        }
+        let setup = Setup { config, terrain, profile, program: Arc::default(), seen: None };
+        Self { setup, proposed: None, life: Life::default(), flight: Flight::default(), last_step: None }
     }
 
     /// One thing happened at `now`; what has to be done about it is appended to `out`.
@@ -68,7 +51,7 @@ impl Executor {
         self.advance_clock(now);
         match input {
             Input::Tick => {}
-            Input::Aircraft(state) if state.is_sound() => self.state.aircraft = Some(state),
+            Input::Aircraft(state) if state.is_sound() => self.life.aircraft = Some(state),
             // numbers that are none: the last sound report counts on
             Input::Aircraft(_) => {}
             Input::Propose { request, program, based_on, objections } => {
@@ -89,20 +72,25 @@ impl Executor {
 
     /// When to call [`Executor::step`] with a tick, if nothing else happens before.
     pub fn deadline(&self) -> Option<Time> {
-        let review = (self.is_flying() && self.has_provisional_choices()).then_some(self.state.review_due_s);
-        let refresh = self.state.refresh_due_s.filter(|_| self.is_flying());
-        let wait = self.state.wait.filter(|_| self.is_flying()).map(|w| w.due_s);
-        let action = if self.is_flying() { self.next_action_s() } else { None };
-        let due_s = [review, refresh, wait, action].into_iter().flatten().fold(f64::INFINITY, f64::min);
-        let wait_s = (due_s - self.state.clock_s).max(0.0);
+        let due_s = if self.is_flying() { self.due_s() } else { f64::INFINITY };
+        let wait_s = (due_s - self.life.clock.now_s()).max(0.0);
         let last = self.last_step?;
         wait_s.is_finite().then(|| last + Time::from_secs_f64(wait_s.min(3600.0)))
+    }
+
+    /// When something is due by itself while it flies, by its own clock; infinity: never.
+    fn due_s(&self) -> f64 {
+        let clock = &self.life.clock;
+        let review = self.flight.horizon.has_provisional_choices().then(|| clock.review_due_s());
+        let wait = self.flight.overrides.wait().map(|wait| wait.due_s());
+        let all = [review, clock.refresh_due_s(), wait, self.next_action_s()];
+        all.into_iter().flatten().fold(f64::INFINITY, f64::min)
     }
 
     /// The active plan.
     pub fn program(&self) -> Option<&Arc<Program>> {
         // whatever was compiled has a stage
-        Some(&self.program).filter(|program| !program.plan.stages.is_empty())
+        Some(&self.setup.program).filter(|program| !program.plan.stages.is_empty())
     }
 
     /// The plan that was proposed last and may be committed.
@@ -112,17 +100,17 @@ impl Executor {
 
     /// Present values of the plan's variables.
     pub fn variables(&self) -> &Variables {
-        &self.state.variables
+        self.life.values.current()
     }
 
     /// Waypoints issued and not flown yet, the current one first.
-    pub fn ahead(&self) -> impl Iterator<Item = &crate::api::Waypoint> {
-        self.state.issued.iter().map(|h| &h.waypoint)
+    pub fn ahead(&self) -> impl Iterator<Item = &Waypoint> {
+        self.flight.horizon.iter().map(|h| &h.waypoint)
     }
 
     /// Highest token used so far.
     pub fn last_token(&self) -> Token {
-        Token(self.state.last_token)
+        self.life.numbers.token()
     }
 
     /// When it was last stepped, if ever.
@@ -132,12 +120,12 @@ impl Executor {
 
     /// Goes on numbering after a token that the gateway has seen (its memory may be longer than a snapshot's).
     pub fn number_after(&mut self, highest: Token) {
-        self.state.last_token = self.state.last_token.max(highest.0);
+        self.life.numbers.token_used(highest);
     }
 
     fn advance_clock(&mut self, now: Time) {
         if let Some(last) = self.last_step {
-            self.state.clock_s += crate::layout::world::seconds_between(last, now);
+            self.life.clock.advance(seconds_between(last, now));
         }
         self.last_step = Some(self.last_step.map_or(now, |last| last.max(now)));
     }
@@ -151,164 +139,75 @@ impl Executor {
         if !self.is_flying() {
             return;
         }
-        // a deadline rounded to nanoseconds is not to be missed by one
-        let by_now_s = self.state.clock_s + 1e-6;
         self.act_on_the_way(out);
-        if let Some(wait) = self.state.wait.filter(|wait| wait.due_s <= by_now_s) {
-            self.end_wait(wait, out);
+        if self.flight.overrides.wait().is_some_and(|wait| self.life.clock.is_due(wait.due_s())) {
+            self.end_wait(out);
         }
-        if self.state.refresh_due_s.is_some_and(|due| due <= by_now_s) {
+        if self.life.clock.refresh_due_s().is_some_and(|due_s| self.life.clock.is_due(due_s)) {
             self.refresh(out);
         }
-        let reviews = self.state.review_due_s <= by_now_s;
+        let reviews = self.life.clock.is_due(self.life.clock.review_due_s());
         if reviews {
-            self.state.review_due_s = self.state.clock_s + self.config.review_s;
+            self.life.clock.review_in(self.setup.config.review_s);
             self.reevaluate_choices(out);
         }
         self.fill(out);
-        self.attend_decisions(out);
-        if reviews {
-            self.look_ahead(out);
-        }
+        self.attend_questions(reviews, out);
     }
 
-    /// A plan is being flown, and where the aircraft is is known: what is ahead of it can be looked at.
+    /// A plan is being flown, and where the aircraft is is known: what is ahead of it can be reviewed.
     pub fn is_under_way(&self) -> bool {
-        self.is_flying() && self.state.aircraft.is_some()
+        self.is_flying() && self.life.aircraft.is_some()
     }
 
     /// Between start and finish, holding or not.
     pub(crate) fn is_flying(&self) -> bool {
-        matches!(self.state.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
+        self.life.mode.is_flying()
     }
 
-    pub(crate) fn flying_program(&self) -> Result<Arc<Program>, Refusal> {
+    fn flying_program(&self) -> Result<Arc<Program>, Refusal> {
         if self.is_flying() {
-            return Ok(self.program.clone());
+            return Ok(self.setup.program.clone());
         }
         Err(refusal("not-flying", "no plan is being flown: commit a plan and start it first"))
     }
 
     /// What is changed now must wait to be fed.
     pub(crate) fn is_muted(&self) -> bool {
-        self.state.phase == Phase::Holding || self.state.gateway_controls
+        self.life.mode.is_muted()
     }
 
-    pub(crate) fn enter_phase(&mut self, phase: Phase, out: &mut Vec<Output>) {
-        if self.state.phase != phase {
-            self.state.phase = phase;
-            out.push(Output::Event(Event::PhaseChanged { phase }));
-        }
+    fn enter_phase(&mut self, phase: Phase, out: &mut Vec<Output>) {
+        self.life.mode.enter(phase, out);
     }
 
     /// The world as the cursor sees it.
     pub fn world(&self) -> World<'_> {
-        World {
-            program: &self.program,
-            config: &self.config,
-            profile: &self.profile,
-            terrain: self.terrain.as_ref(),
-            variables: &self.state.variables,
-            flight: self.flight_state(),
-            decisions: &self.state.decisions,
-            released: self.state.released,
-            waited: self.state.waited,
-            counts: &self.state.counts,
-            arriving: false,
-            looking_ahead: false,
-            seen: self.seen.as_ref(),
-        }
+        let decisions = self.flight.questions.decisions();
+        World { decisions, ..self.setup.world(&self.life, &self.flight.overrides) }
     }
 
-    fn flight_state(&self) -> FlightState {
-        let time_s = self.state.started_s.map_or(0.0, |s| self.state.clock_s - s);
-        let Some(a) = &self.state.aircraft else {
-            return FlightState { time_s, ..FlightState::on_ground(self.home()) };
-        };
-        FlightState {
-            iteration: 0,
-            time_s,
-            altitude_amsl_m: a.altitude_amsl_m,
-            airspeed_mps: a.airspeed_mps,
-            battery: a.battery,
-            // an electric aircraft has its energy nowhere else
-            fuel: a.fuel.unwrap_or(a.battery),
-            wind_mps: a.wind_east_mps.hypot(a.wind_north_mps),
-            position: a.position,
-        }
-    }
-
-    fn home(&self) -> LatLon {
-        let home = self.program.plan.home();
-        home.map_or(LatLon::new(0.0, 0.0), |r| r.threshold)
+    /// The path ahead, measured from the aircraft.
+    fn path_ahead(&self) -> PathAhead<'_> {
+        self.setup.path_ahead(&self.life, &self.flight.horizon)
     }
 
     /// The aircraft as the end of the path that it has flown; before its first report, standing at home.
     pub fn here(&self) -> PathState {
-        let runway = self.program.plan.home();
-        let aircraft = self.state.aircraft.as_ref();
-        let elevation_m = runway.map_or(0.0, |r| r.elevation_amsl_m);
-        let altitude_m = aircraft.map_or(elevation_m, |a| a.altitude_amsl_m);
-        let course_deg = aircraft.map_or(runway.map_or(0.0, |r| r.heading_deg), |a| a.track_deg);
-        PathState {
-            last: PathEnd {
-                position: aircraft.map_or_else(|| self.home(), |a| a.position),
-                level: Level { metres: altitude_m, reference: AltitudeReference::Amsl },
-                airspeed_mps: self.profile.cruise_airspeed_mps,
-                fly_over: false,
-            },
-            course_deg,
-            predicted_amsl_m: altitude_m,
-            commanded_amsl_m: altitude_m,
-            distance_m: self.way_made_m(),
-            time_s: self.time_made_s(),
+        let path = self.path_ahead();
+        self.setup.here(path.aircraft, path.distance_flown_m(), path.time_flown_s())
+    }
+
+    /// Asks for decisions that came into the horizon, and now and then for those that are due soon beyond it.
+    fn attend_questions(&mut self, looks_ahead: bool, out: &mut Vec<Output>) {
+        if !looks_ahead && !self.flight.horizon.has_forks() {
+            return;
         }
-    }
-
-    /// From the aircraft to the waypoint it steers to, metres.
-    pub(crate) fn to_current_m(&self) -> f64 {
-        match (self.state.issued.front(), &self.state.aircraft) {
-            (Some(front), Some(a)) => distance_m(a.position, front.waypoint.position),
-            _ => 0.0,
+        let Self { setup, life, flight: Flight { questions, horizon, overrides, .. }, .. } = self;
+        let (path, world) = (setup.path_ahead(life, horizon), setup.world(life, overrides));
+        questions.attend(&path, &world, out);
+        if looks_ahead {
+            questions.look_ahead(&path, &world, out);
         }
-    }
-
-    /// Path length where the aircraft is, metres; never less than where the way to the current waypoint begins, however far the
-    /// aircraft was brought away from it.
-    pub(crate) fn way_made_m(&self) -> f64 {
-        let on_the_way = |h: &IssuedWaypoint| {
-            let begun_m = h.before.end_of_path().distance_m;
-            (h.end_m - self.to_be_flown_m()).max(begun_m)
-        };
-        let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().distance_m);
-        self.state.issued.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
-    }
-
-    /// Flying time of the path where the aircraft is, seconds; likewise.
-    pub(crate) fn time_made_s(&self) -> f64 {
-        let on_the_way = |h: &IssuedWaypoint| {
-            let left_s = self.to_be_flown_m() / h.waypoint.airspeed_mps.max(1.0);
-            (h.end_s - left_s).max(h.before.end_of_path().time_s)
-        };
-        let tail = || self.state.tail.as_ref().map(|t| t.end_of_path().time_s);
-        self.state.issued.front().map(on_the_way).or_else(tail).unwrap_or(0.0)
-    }
-
-    /// From where the path is left or gone on with to the waypoint steered to, metres: in a hold that is where it was given, wherever
-    /// the aircraft has drifted since.
-    fn to_be_flown_m(&self) -> f64 {
-        let held_at = self.state.held_at.filter(|_| self.state.phase == Phase::Holding);
-        let front = self.state.issued.front();
-        front.zip(held_at).map_or_else(|| self.to_current_m(), |(h, at)| distance_m(at, h.waypoint.position))
-    }
-
-    /// Path from the aircraft to a path length ahead, metres; never negative.
-    pub(crate) fn path_left_m(&self, at_m: f64) -> f64 {
-        let beyond = self.state.issued.front().filter(|front| at_m > front.before.path.distance_m);
-        beyond.map_or(0.0, |front| (self.to_current_m() + at_m - front.end_m).max(0.0))
-    }
-
-    fn has_provisional_choices(&self) -> bool {
-        self.state.tail_has_choices || self.state.issued.iter().any(|h| !h.choices.is_empty())
     }
 }

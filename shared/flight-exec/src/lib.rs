@@ -11,6 +11,7 @@
 
 pub mod api;
 mod executor;
+mod flight;
 pub mod layout;
 pub mod rehearse;
 pub mod review;

@@ -13,6 +13,7 @@ const LAYERS: &[&str] = &[
     "layout::cursor",
     "layout::stretch",
     "layout::translate",
+    "flight",
     "executor",
     "rehearse",
     "review",
@@ -81,7 +82,7 @@ fn absolute(path: &str, module: &[String]) -> Vec<String> {
 fn layer_of(path: &[String]) -> Option<usize> {
     let is_in =
         |layer: &&str| layer.split("::").enumerate().all(|(i, name)| path.get(i).is_some_and(|p| p == name));
-    LAYERS.iter().position(|layer| is_in(&layer))
+    LAYERS.iter().position(is_in)
 }
 
 /// What a file uses that it may not, each in a sentence.
@@ -134,4 +135,33 @@ fn an_import_from_above_is_found() {
     ] {
         assert_eq!(faults_of(module, text), count, "{module}: {text}");
     }
+}
+
+/// Lines of a struct's body; `None`: it isn't defined there.
+fn fields<'t>(text: &'t str, name: &str) -> Option<Vec<&'t str>> {
+    let body = text.split_once(&format!("struct {name} {{\n"))?.1.split_once("\n}")?.0;
+    Some(body.lines().map(str::trim).filter(|line| !line.starts_with("//")).collect())
+}
+
+/// What the flight consists of are parts that nobody else writes.
+#[test]
+fn parts_of_a_flight_keep_their_fields_to_themselves() {
+    let texts: Vec<String> = sources()
+        .iter()
+        .filter(|file| module_of(file).first().is_some_and(|layer| layer == "flight"))
+        .map(|file| std::fs::read_to_string(file).expect("text"))
+        .collect();
+    let defined = |name: &str| texts.iter().find_map(|text| fields(text, name));
+    let mut parts = 0;
+    for whole in ["Life", "Flight"] {
+        for field in defined(whole).expect("a struct") {
+            let part = field.trim_end_matches(',').rsplit(": ").next().expect("a type");
+            // a value of another layer is replaced as a whole, a tuple's field is private as well
+            let Some(own) = defined(part) else { continue };
+            parts += 1;
+            let open: Vec<_> = own.iter().filter(|line| line.starts_with("pub")).collect();
+            assert!(open.is_empty(), "{part}: {open:?}");
+        }
+    }
+    assert!(parts >= 10, "{parts} parts were found");
 }

@@ -1,15 +1,13 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
-use crate::api::{Action, Command, Event, Output, Phase, Refusal};
-use crate::executor::{Executor, refusal};
-use crate::layout::cursor::Cursor;
+use super::Executor;
+use crate::api::{Action, Command, Output, Phase, Refusal};
+use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
-use crate::layout::stretch::{Continuation, IssuedWaypoint};
-use crate::value::LoopCount;
-use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue, Variables};
-
-/// Most loops whose counts are set by command at a time.
-const MOST_COUNTS: usize = 64;
+use crate::layout::cursor::{Cursor, Step};
+use crate::layout::path::{PathState, distance_m};
+use crate::layout::stretch::IssuedWaypoint;
+use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
 impl Executor {
     pub(crate) fn command(
@@ -52,18 +50,10 @@ impl Executor {
         if self.program().is_none() {
             return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
         }
-        self.state.started_s = Some(self.state.clock_s);
-        self.state.emergency = None;
-        self.reset_variables(out);
-        self.state.decisions.clear();
-        self.state.requested.clear();
-        self.state.late.clear();
-        self.state.ahead = None;
-        self.state.counts.clear();
-        self.state.passages.clear();
-        self.state.issued.clear();
-        self.state.tail = None;
-        let cursor = Cursor::start(None, self.here(), self.state.last_passage);
+        self.flight = Flight::default();
+        self.life.clock.start();
+        self.life.values.begin_flight(&self.setup.program.plan, out);
+        let cursor = Cursor::start(None, self.here(), self.life.numbers.passage());
         self.enter_phase(Phase::Flying, out);
         self.jump(cursor, out);
         Ok(())
@@ -71,7 +61,7 @@ impl Executor {
 
     fn hold_by_command(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
-        if self.state.phase == Phase::Holding {
+        if self.life.mode.is_holding() {
             return Err(refusal("already-holding", "it holds already: resume to go on"));
         }
         self.hold(out);
@@ -79,15 +69,15 @@ impl Executor {
     }
 
     /// Holds here and remembers the place.
-    pub(crate) fn hold(&mut self, out: &mut Vec<Output>) {
+    pub(super) fn hold(&mut self, out: &mut Vec<Output>) {
         self.stay_here(out);
         out.push(Output::Hold);
     }
 
     /// The plan stays at its place, whoever flies meanwhile.
     fn stay_here(&mut self, out: &mut Vec<Output>) {
-        self.state.held_at = self.state.aircraft.as_ref().map(|a| a.position);
-        self.enter_phase(Phase::Holding, out);
+        let at = self.life.aircraft.as_ref().map(|a| a.position);
+        self.life.mode.hold(at, out);
     }
 
     /// Never refused: with or without a plan, the gateway decides whether there is anything to be brought home.
@@ -99,21 +89,19 @@ impl Executor {
     }
 
     fn resume(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
-        if self.state.phase != Phase::Holding {
+        if !self.life.mode.is_holding() {
             return Err(refusal("not-holding", "it doesn't hold: there is nothing to resume"));
         }
         self.enter_phase(Phase::Flying, out);
         if let Some(rejoin) = self.rejoin() {
-            self.state.issued.push_front(rejoin);
-            self.lead_the_path_there();
+            self.flight.horizon.rejoin_at(rejoin);
         }
-        self.state.held_at = None;
-        if self.state.issued.is_empty() {
-            // what flew nothing may do so by now
-            self.state.continuation = Continuation::Open;
+        self.life.mode.forget_place();
+        if self.flight.horizon.is_empty() {
+            self.flight.horizon.reopen();
         }
         self.refeed(out);
-        if self.state.phase == Phase::Holding {
+        if self.life.mode.is_holding() {
             let reason =
                 "what comes next flies no waypoint: go to another leg, or change the plan by an update";
             return Err(refusal("nothing-to-fly", reason));
@@ -123,12 +111,12 @@ impl Executor {
 
     /// A waypoint where the hold was given, so that the leg is gone on with there and not cut.
     fn rejoin(&self) -> Option<IssuedWaypoint> {
-        let front = self.state.issued.front().filter(|h| !h.is_loiter())?;
-        let held_at = self.state.held_at?;
-        let left_m = crate::layout::path::distance_m(held_at, front.waypoint.position);
-        let stop_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
-        let straight = matches!(front.waypoint.action, crate::api::Action::Fly);
-        if left_m < stop_m || !straight || !self.is_announced(front) {
+        let front = self.flight.horizon.front().filter(|h| !h.is_loiter())?;
+        let held_at = self.life.mode.held_at()?;
+        let left_m = distance_m(held_at, front.waypoint.position);
+        let stop_m = self.setup.profile.turn_radius_m(self.setup.profile.cruise_airspeed_mps);
+        let straight = matches!(front.waypoint.action, Action::Fly);
+        if left_m < stop_m || !straight || !self.flight.horizon.is_entered(front) {
             return None;
         }
         let mut rejoin = front.clone();
@@ -141,79 +129,64 @@ impl Executor {
         Some(rejoin)
     }
 
-    /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft, and one
-    /// that had not begun there, from wherever it is joined, is climbed to from there.
-    fn lead_the_path_there(&mut self) {
-        let mut ahead = self.state.issued.iter_mut();
-        let (Some(rejoin), Some(next)) = (ahead.next(), ahead.next()) else { return };
-        let (position, altitude_amsl_m) = (rejoin.waypoint.position, rejoin.waypoint.altitude_amsl_m);
-        let mut path = next.before.path;
-        path.last.position = position;
-        path.course_deg = crate::layout::path::distance_and_course(position, next.waypoint.position).1;
-        (path.commanded_amsl_m, path.predicted_amsl_m) = (altitude_amsl_m, altitude_amsl_m);
-        (path.distance_m, path.time_s) = (rejoin.end_m, rejoin.end_s);
-        if next.before.passage == next.passage {
-            (next.before.path, next.before.rejoined) = (path, None);
-        } else {
-            next.before = next.before.going_on_from(path);
-        }
-    }
-
     fn skip_leg(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
         self.check_taken_off()?;
-        if let Some(wait) = self.state.wait {
-            self.end_wait(wait, out);
+        if self.flight.overrides.wait().is_some() {
+            self.end_wait(out);
             return Ok(());
         }
         if let Some(passage) = self.holding_to_release() {
-            self.state.released = Some(passage);
+            self.flight.overrides.release(passage);
             self.replan(out);
             return Ok(());
         }
-        let Some(front) = self.state.issued.front() else {
+        let Some(front) = self.flight.horizon.front() else {
             return Err(refusal("nothing-to-skip", "no leg is being flown: wait for the next one"));
         };
         if front.waits_for_decision() {
             return Err(refusal("decision-needed", "it waits for a decision: decide, or go to a leg"));
         }
         // after a resume the leg's first waypoint is the place where the hold was given
-        let of_leg = self.state.issued.iter().take_while(|h| h.passage == front.passage).count();
+        let of_leg = self.flight.horizon.iter().take_while(|h| h.passage == front.passage).count();
         let mut cursor = self.bookmark(of_leg);
         cursor.abandon_leg(front.passage);
         cursor.move_path_to(self.here_at_level_of(&cursor));
         let mut probe = cursor.clone();
-        if matches!(probe.next(&self.world()), crate::layout::cursor::Step::Ended { .. }) {
+        if matches!(probe.next(&self.world()), Step::Ended { .. }) {
             return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
         }
         // skipped before it was entered, it is passed all the same, and what led to it with it
-        let choices = self.state.issued.front_mut().map(|h| std::mem::take(&mut h.choices));
-        let choices = choices.unwrap_or_default();
-        choices.iter().for_each(|choice| self.end_the_loop_left_by(choice, out));
-        self.tell_choices(choices, out);
+        let choices = self.flight.horizon.take_choices();
+        for choice in &choices {
+            let (acting, horizon, mut scene) = self.acting();
+            acting.end_the_loop_left_by(choice, horizon.front(), &mut scene, out);
+        }
+        self.report_choices(choices, out);
         self.jump(cursor, out);
         Ok(())
     }
 
     /// The passage being flown, if it is a holding until released that was not released yet.
     fn holding_to_release(&self) -> Option<u64> {
-        let front = self.state.issued.front().filter(|h| self.state.released != Some(h.passage))?;
-        let leg = self.program.leg(&front.place.leg)?;
+        let released = self.flight.overrides.released();
+        let front = self.flight.horizon.front().filter(|h| released != Some(h.passage))?;
+        let leg = self.setup.program.leg(&front.place.leg)?;
         matches!(leg.kind, LegKind::Hm { .. }).then_some(front.passage)
     }
 
     /// The aircraft's place, with the altitude and speed that legs without their own inherit.
-    fn here_at_level_of(&self, cursor: &Cursor) -> crate::layout::path::PathState {
+    pub(super) fn here_at_level_of(&self, cursor: &Cursor) -> PathState {
         let mut here = self.here();
         here.last.level = cursor.path.last.level;
         here
     }
 
     /// On the ground there is nothing to be flown but the take-off.
-    pub(crate) fn check_taken_off(&self) -> Result<(), Refusal> {
+    pub(super) fn check_taken_off(&self) -> Result<(), Refusal> {
         let takes_off = |h: &IssuedWaypoint| matches!(h.waypoint.action, Action::TakeOff { .. });
-        let on_ground = self.state.aircraft.as_ref().is_none_or(|a| a.on_ground);
-        if on_ground && self.state.issued.front().is_some_and(takes_off) {
+        let on_ground = self.life.aircraft.as_ref().is_none_or(|a| a.on_ground);
+        if on_ground && self.flight.horizon.front().is_some_and(takes_off) {
             let reason = "the aircraft has not taken off yet: wait until it is in the air";
             return Err(refusal("on-ground", reason));
         }
@@ -221,10 +194,10 @@ impl Executor {
     }
 
     /// In the air nobody takes off.
-    pub(crate) fn check_not_a_take_off(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
+    pub(super) fn check_not_a_take_off(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
         let stage = program.stage(target).filter(|_| target.indices.is_empty());
         let takes_off = stage.is_some_and(|s| s.kind == StageKind::TakeOff);
-        if takes_off && self.state.aircraft.as_ref().is_some_and(|a| !a.on_ground) {
+        if takes_off && self.life.aircraft.as_ref().is_some_and(|a| !a.on_ground) {
             return Err(refusal("in-the-air", "the aircraft is in the air already: name another leg"));
         }
         Ok(())
@@ -233,14 +206,14 @@ impl Executor {
     fn go_to(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
         self.check_taken_off()?;
-        let section = self.state.tail.as_ref().and_then(|t| t.section);
+        let section = self.flight.horizon.tail().and_then(|t| t.section);
         let cursor = self.cursor_at(leg, section)?;
         self.jump(cursor, out);
         Ok(())
     }
 
     /// A cursor at the beginning of a leg of a section, its path starting at the aircraft.
-    pub(crate) fn cursor_at(&self, leg: &Id, section: Option<usize>) -> Result<Cursor, Refusal> {
+    pub(super) fn cursor_at(&self, leg: &Id, section: Option<usize>) -> Result<Cursor, Refusal> {
         let program = self.flying_program()?;
         let unknown = || {
             let reason = format!("the plan being flown has no leg `{leg}`: name one of its legs");
@@ -256,8 +229,9 @@ impl Executor {
 
     /// The cursor behind the waypoint steered to; before it, and before the choices that would lead to it, while its leg isn't entered:
     /// what nobody was told of has not happened.
-    pub(crate) fn place_reached(&self) -> Cursor {
-        let entered = self.state.issued.front().is_none_or(|front| self.is_announced(front));
+    pub(super) fn place_reached(&self) -> Cursor {
+        let horizon = &self.flight.horizon;
+        let entered = horizon.front().is_none_or(|front| horizon.is_entered(front));
         self.bookmark(usize::from(entered))
     }
 
@@ -273,15 +247,13 @@ impl Executor {
             let reason = format!("loop `{leg}` is not being flown: set its count when the aircraft is in it");
             return Err(refusal("not-in-loop", reason));
         };
-        self.state.counts.retain(|c| c.leg != leg);
-        self.state.counts.truncate(MOST_COUNTS - 1);
-        // waypoints too near to be laid out anew tell it as well
+        // waypoints too near to be laid out anew say it as well
         for near in 0..self.alterable_from() {
             if self.activation_at(near, &leg) == Some(activation) {
-                self.state.issued.iter_mut().skip(near).take(1).for_each(|h| h.tell_count(&leg, count));
+                self.flight.horizon.set_count(near, &leg, count);
             }
         }
-        self.state.counts.push(LoopCount { leg, activation: Some(activation), count });
+        self.flight.overrides.set_count(leg, activation, count);
         self.replan(out);
         Ok(())
     }
@@ -294,6 +266,16 @@ impl Executor {
         behind.loops.get(around.iter().position(|id| id == leg)?).map(|frame| frame.activation)
     }
 
+    fn decide(&mut self, leg: &Id, branch: &Id, by: &str, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        let program = self.flying_program()?;
+        let Self { setup, life, flight: Flight { questions, horizon, .. }, .. } = self;
+        let path = setup.path_ahead(life, horizon);
+        if questions.decide((leg, branch), by, &path, &program, out)? {
+            self.refresh(out);
+        }
+        Ok(())
+    }
+
     fn set_variable(
         &mut self,
         name: &Id,
@@ -301,7 +283,7 @@ impl Executor {
         by: &str,
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
-        let variable = self.program.plan.variable(name);
+        let variable = self.setup.program.plan.variable(name);
         if let Some(variable) = variable.filter(|v| !v.may_be_written_by(by)) {
             let writers: Vec<_> = variable.writers.iter().map(Id::as_str).collect();
             let writers = writers.join(", ");
@@ -310,47 +292,15 @@ impl Executor {
             );
             return Err(refusal("not-a-writer", reason));
         }
-        self.write_variable(name, value, by, out)
-    }
-
-    /// Writes a variable for somebody who may; the way is changed after the debouncing time.
-    pub(crate) fn write_variable(
-        &mut self,
-        name: &Id,
-        value: VariableValue,
-        by: &str,
-        out: &mut Vec<Output>,
-    ) -> Result<(), Refusal> {
         if self.program().is_none() {
             let reason = "there is no plan, so there are no variables: commit a plan first";
             return Err(refusal("no-plan", reason));
         }
-        let set = self.state.variables.set(&self.program.plan, name, value.clone());
-        set.map_err(|e| refusal("bad-variable", e.to_string()))?;
-        if !self.is_flying() && !self.state.written.contains(name) {
-            self.state.written.push(name.clone());
-        }
-        out.push(Output::Event(Event::VariableChanged { name: name.clone(), value, by: by.into() }));
-        let earliest_s = self.state.last_refresh_s.map_or(0.0, |last| last + self.config.debounce_s);
-        self.state.refresh_due_s = Some(self.state.clock_s.max(earliest_s));
+        let (plan, in_flight) = (&self.setup.program.plan, self.is_flying());
+        let written = self.life.values.write(plan, (name, value), by, in_flight, out);
+        written.map_err(|e| refusal("bad-variable", e.to_string()))?;
+        // the way is changed after the debouncing time
+        self.life.clock.ask_for_refresh(self.setup.config.debounce_s);
         Ok(())
-    }
-
-    /// A flight begins with the plan's values, and those written since the last one: not with what that one left behind.
-    fn reset_variables(&mut self, out: &mut Vec<Output>) {
-        let initial = Variables::initial(&self.program.plan);
-        let written = std::mem::take(&mut self.state.written);
-        for name in self.program.plan.variables.iter().map(|v| &v.name).filter(|name| !written.contains(name))
-        {
-            let Some(value) =
-                initial.get(name).filter(|value| self.state.variables.get(name) != Some(*value))
-            else {
-                continue;
-            };
-            if self.state.variables.set(&self.program.plan, name, value.clone()).is_ok() {
-                let (name, value, by) = (name.clone(), value.clone(), "plan".into());
-                out.push(Output::Event(Event::VariableChanged { name, value, by }));
-            }
-        }
     }
 }

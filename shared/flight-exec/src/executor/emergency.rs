@@ -1,26 +1,24 @@
 //! Emergencies: an alternative plan at once, more severe causes only, back to the main plan by command.
 
+use super::Executor;
 use crate::api::{Event, Output, Phase, Refusal};
-use crate::executor::state::Emergency;
-use crate::executor::{Executor, refusal};
+use crate::flight::{Emergency, emergencies, refusal};
 use crate::layout::cursor::Cursor;
-use flight_plan::{Cause, EmergencyPlan, Id, Program};
+use flight_plan::{Cause, Id};
 
 impl Executor {
-    pub(crate) fn emergency(
+    pub(super) fn emergency(
         &mut self,
         cause: Cause,
         plan: Option<Id>,
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
-        self.flying_program()?;
+        let program = self.flying_program()?;
         self.check_taken_off()?;
-        self.check_escalation(cause)?;
-        let from_leg = match &self.state.emergency {
-            Some(running) => running.from_leg.clone(),
-            None => self.main_leg(),
-        };
-        let Some((index, plan)) = self.resolve(cause, plan.as_ref(), from_leg.as_ref())? else {
+        self.flight.emergencies.check_escalation(cause)?;
+        let from_leg = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
+        let found = emergencies::resolve(&program, cause, plan.as_ref(), from_leg.as_ref())?;
+        let Some((index, plan)) = found else {
             out.push(Output::Event(Event::EmergencyUnanswered { cause }));
             let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
             return Err(refusal("no-emergency-plan", reason));
@@ -29,52 +27,17 @@ impl Executor {
         Ok(())
     }
 
-    /// During an emergency only a more severe cause counts.
-    fn check_escalation(&self, cause: Cause) -> Result<(), Refusal> {
-        match &self.state.emergency {
-            Some(running) if cause <= running.cause => {
-                let reason = format!(
-                    "emergency plan `{}` is being flown for {:?}: only a more severe cause replaces it",
-                    running.plan, running.cause
-                );
-                Err(refusal("not-more-severe", reason))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The emergency plan and its index: the named one, else the one in force for the leg and the cause.
-    fn resolve(
-        &self,
-        cause: Cause,
-        named: Option<&Id>,
-        leg: Option<&Id>,
-    ) -> Result<Option<(usize, Id)>, Refusal> {
-        let program = self.flying_program()?;
-        let index_of = |id: &Id| {
-            let index = program.plan.emergency_plans.iter().position(|p| p.id == *id)?;
-            Some((index, id.clone()))
-        };
-        if let Some(id) = named {
-            let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
-            return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
-        }
-        Ok(emergency_coverage(&program, leg, cause).and_then(|plan| index_of(&plan.id)))
-    }
-
     fn switch_to(&mut self, index: usize, emergency: Emergency, out: &mut Vec<Output>) {
-        let goes_on = self.state.emergency.as_ref().is_some_and(|running| running.plan == emergency.plan);
         let Emergency { cause, plan, from_leg } = emergency.clone();
         out.push(Output::Event(Event::EmergencyStarted { cause, plan, from_leg }));
-        self.state.emergency = Some(emergency);
-        if goes_on {
-            if self.state.phase == Phase::Holding {
+        if self.flight.emergencies.begin(emergency) {
+            if self.life.mode.is_holding() {
                 self.leave_hold(out);
                 self.refeed(out);
             }
             return;
         }
-        let mut cursor = Cursor::start(Some(index), self.here(), self.state.last_passage);
+        let mut cursor = Cursor::start(Some(index), self.here(), self.life.numbers.passage());
         // crossings are counted on, so that a decision for the next one is not taken for another after the return
         let before = self.bookmark(0);
         (cursor.crossings, cursor.uncounted) = (before.crossings, before.uncounted);
@@ -84,17 +47,17 @@ impl Executor {
 
     /// An emergency doesn't wait for a resume.
     fn leave_hold(&mut self, out: &mut Vec<Output>) {
-        self.state.held_at = None;
+        self.life.mode.forget_place();
         self.enter_phase(Phase::Flying, out);
     }
 
-    pub(crate) fn return_to_main(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
+    pub(super) fn return_to_main(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
-        if self.state.emergency.is_none() {
+        if self.flight.emergencies.plan().is_none() {
             return Err(refusal("no-emergency", "the main plan is being flown: use go-to for another leg"));
         }
         let cursor = self.cursor_at(leg, None)?;
-        self.state.emergency = None;
+        self.flight.emergencies.end();
         self.jump(cursor, out);
         Ok(())
     }
@@ -103,25 +66,14 @@ impl Executor {
     /// one that comes next.
     fn main_leg(&self) -> Option<Id> {
         let world = self.world();
-        let tail = self.state.tail.as_ref().map(|t| t.place(&world).leg);
-        let legs = self.state.issued.iter().map(|h| h.place.leg.clone()).chain(tail);
+        let tail = self.flight.horizon.tail().map(|t| t.place(&world).leg);
+        let legs = self.flight.horizon.iter().map(|h| h.place.leg.clone()).chain(tail);
         legs.into_iter().find(|leg| world.program.path(leg).is_some())
     }
 
     /// The plan an emergency without a particular cause would fly now.
-    pub(crate) fn emergency_in_force(&self) -> Option<Id> {
-        let leg = match &self.state.emergency {
-            Some(running) => running.from_leg.clone(),
-            None => self.main_leg(),
-        };
-        Some(emergency_coverage(&self.program, leg.as_ref(), Cause::Operator)?.id.clone())
-    }
-}
-
-/// The plan that answers a cause on a leg (or stage); on none that the plan has, the one that the document names for all.
-fn emergency_coverage<'p>(program: &'p Program, leg: Option<&Id>, cause: Cause) -> Option<&'p EmergencyPlan> {
-    match leg.filter(|leg| program.path(leg).is_some()) {
-        Some(leg) => program.emergency_for(leg, cause),
-        None => program.flown().emergency_plan(program.plan.emergency.plan_for(cause)?),
+    pub(super) fn emergency_in_force(&self) -> Option<Id> {
+        let leg = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
+        Some(emergencies::in_force(&self.setup.program, leg.as_ref(), Cause::Operator)?.id.clone())
     }
 }

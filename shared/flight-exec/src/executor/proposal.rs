@@ -1,7 +1,8 @@
 //! A plan put forward: whether it may be committed, what it changes, and where the aircraft would go.
 
+use super::Executor;
 use crate::api::{Answer, Command, EntryReport, ProposalReport, Refusal};
-use crate::executor::{Executor, refusal};
+use crate::flight::refusal;
 use flight_plan::diff::changes;
 use flight_plan::{Change, Fate, Id, Problem, Program};
 use std::sync::Arc;
@@ -14,15 +15,15 @@ const NOBODY: &str = "trial";
 const MOST_ENTRIES: usize = 24;
 
 impl Executor {
-    /// Keeps a proposal that may be committed, and tells what it would do. One that may not takes the place of an earlier
+    /// Keeps a proposal that may be committed, and reports what it would do. One that may not takes the place of an earlier
     /// one as well: what is committed is what was reported on last.
-    pub(crate) fn propose(
+    pub(super) fn propose(
         &mut self,
         program: &Arc<Program>,
         based_on: Option<u64>,
         objections: Vec<Problem>,
     ) -> Result<Answer, Refusal> {
-        let revision = self.state.revision;
+        let revision = self.life.revision.number();
         if let Some(seen) = based_on.filter(|seen| *seen != revision) {
             let advice = "another plan was committed meanwhile; look at it and propose again";
             let reason =
@@ -45,10 +46,10 @@ impl Executor {
             acceptable: !forbidden,
             problems,
             entry_needed: false,
-            ..differences(&self.program, program)
+            ..differences(&self.setup.program, program)
         };
         match self.outcome(program, None) {
-            Ok(after) => self.tell_outcome(&after, &mut report),
+            Ok(after) => self.report_outcome(&after, &mut report),
             Err(refused) => {
                 report.entry_needed = refused.code == "entry-needed";
                 report.entries = self.entries(program);
@@ -61,39 +62,39 @@ impl Executor {
     /// What a commit now would lead to: tried on a copy.
     fn outcome(&self, program: &Arc<Program>, entry: Option<&Id>) -> Result<Executor, Refusal> {
         let mut copy = self.clone();
-        let mut unheard = Vec::new();
-        copy.commit(program.hash(), entry, &mut unheard)?;
+        let mut unused = Vec::new();
+        copy.commit(program.hash(), entry, &mut unused)?;
         if !copy.is_flying() {
-            copy.command(Command::Start, NOBODY, &mut unheard)?;
+            copy.command(Command::Start, NOBODY, &mut unused)?;
         }
         Ok(copy)
     }
 
     /// Where each leg of the plan being flown that can be entered would lead; of very many, the first.
     fn entries(&self, program: &Arc<Program>) -> Vec<EntryReport> {
-        let plan = self.state.emergency.as_ref().map(|e| &e.plan);
+        let plan = self.flight.emergencies.plan();
         let section = plan.and_then(|id| program.plan.emergency_plans.iter().position(|p| p.id == *id));
         let legs = program.stages(section).iter().flat_map(|stage| &stage.legs).take(MOST_ENTRIES);
         let tried = legs.filter_map(|leg| {
             let after = self.outcome(program, Some(&leg.id)).ok()?;
-            let position = after.state.issued.front()?.waypoint.position;
-            let in_m = after.to_current_m();
+            let position = after.flight.horizon.front()?.waypoint.position;
+            let in_m = after.path_ahead().left_to_current_m();
             Some(EntryReport { leg: leg.id.clone(), position, in_m, in_s: in_m / self.ground_speed_mps() })
         });
         tried.collect()
     }
 
     fn ground_speed_mps(&self) -> f64 {
-        let aircraft = self.state.aircraft.as_ref();
-        aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.profile.min_airspeed_mps)
+        let aircraft = self.life.aircraft.as_ref();
+        aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.setup.profile.min_airspeed_mps)
     }
 
-    fn tell_outcome(&self, after: &Executor, report: &mut ProposalReport) {
+    fn report_outcome(&self, after: &Executor, report: &mut ProposalReport) {
         let speed_mps = self.ground_speed_mps();
-        let next = after.state.issued.front();
+        let next = after.flight.horizon.front();
         report.next_leg = next.map(|h| h.place.leg.clone());
         report.next_position = next.map(|h| h.waypoint.position);
-        report.next_in_m = next.map(|_| after.to_current_m());
+        report.next_in_m = next.map(|_| after.path_ahead().left_to_current_m());
         report.next_in_s = report.next_in_m.map(|metres| metres / speed_mps);
         report.differs_in_m = self.differs_in_m(after);
         report.differs_in_s = report.differs_in_m.map(|metres| metres / speed_mps);
@@ -101,11 +102,11 @@ impl Executor {
 
     /// How much of the present path would still be flown.
     fn differs_in_m(&self, after: &Executor) -> Option<f64> {
-        let token = |e: &Executor, i: usize| e.state.issued.get(i).map(|h| h.waypoint.token);
-        let both = self.state.issued.len().max(after.state.issued.len());
+        let token = |e: &Executor, i: usize| e.flight.horizon.get(i).map(|h| h.waypoint.token);
+        let both = self.flight.horizon.len().max(after.flight.horizon.len());
         let first = (0..both).find(|i| token(self, *i) != token(after, *i))?;
-        let kept = first.checked_sub(1).and_then(|i| self.state.issued.get(i));
-        Some(kept.map_or(0.0, |h| self.path_left_m(h.end_m)))
+        let kept = first.checked_sub(1).and_then(|i| self.flight.horizon.get(i));
+        Some(kept.map_or(0.0, |h| self.path_ahead().path_left_m(h.end_m)))
     }
 }
 

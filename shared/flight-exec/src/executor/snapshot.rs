@@ -2,9 +2,9 @@
 
 mod shared;
 
+use super::Executor;
 use crate::api::Time;
-use crate::executor::Executor;
-use crate::executor::state::State;
+use crate::flight::{Flight, Life};
 use crate::layout::cursor::Cursor;
 use crate::value::Config;
 use aircraft::Profile;
@@ -19,7 +19,8 @@ use terrain::Terrain;
 pub struct Snapshot {
     /// Hash of the active plan: restore with that one.
     pub plan: Option<Arc<str>>,
-    state: State,
+    life: Life,
+    flight: Flight,
     /// What the bookmarks have in common, and which of it each has.
     shared: Shared,
     of_bookmarks: Vec<Holding>,
@@ -46,10 +47,11 @@ impl Executor {
     /// Everything needed to come back to this very place.
     pub fn snapshot(&self) -> Snapshot {
         let mut shared = Shared::default();
-        let of_bookmarks = bookmarks(&self.state).map(|c| shared.take(c)).collect();
-        let sealed = self.state.issued.iter().map(|h| h.sealed.clone()).collect();
+        let Self { life, flight, .. } = self;
+        let of_bookmarks = flight.horizon.bookmarks().map(|c| shared.take(c)).collect();
+        let sealed = flight.horizon.iter().map(|h| h.sealed.clone()).collect();
         let plan = self.program().map(|p| p.hash().clone());
-        Snapshot { plan, state: self.state.clone(), shared, of_bookmarks, sealed }
+        Snapshot { plan, life: life.clone(), flight: flight.clone(), shared, of_bookmarks, sealed }
     }
 
     /// The executor as it was, with its plan.
@@ -69,8 +71,8 @@ impl Executor {
             return Err(RestoreError::OtherPlan { wanted: name(snapshot.plan), given: name(given) });
         }
         let mut executor = Self::new(config, terrain, profile);
-        executor.program = program.unwrap_or_default();
-        executor.state = revived(snapshot)?;
+        executor.setup.program = program.unwrap_or_default();
+        (executor.life, executor.flight) = revived(snapshot)?;
         Ok(executor)
     }
 
@@ -82,30 +84,17 @@ impl Executor {
     }
 }
 
-fn revived(snapshot: Snapshot) -> Result<State, RestoreError> {
-    let Snapshot { mut state, shared, of_bookmarks, sealed, .. } = snapshot;
-    if state.issued.len() != sealed.len() {
+fn revived(snapshot: Snapshot) -> Result<(Life, Flight), RestoreError> {
+    let Snapshot { plan: _, life, mut flight, shared, of_bookmarks, sealed } = snapshot;
+    if flight.horizon.len() != sealed.len() {
         return Err(RestoreError::Damaged);
     }
-    for (issued, sealed) in state.issued.iter_mut().zip(sealed) {
-        issued.sealed = sealed;
-    }
-    if bookmarks(&state).count() != of_bookmarks.len() {
+    flight.horizon.set_sealed(sealed);
+    if flight.horizon.bookmarks().count() != of_bookmarks.len() {
         return Err(RestoreError::Damaged);
     }
-    for (cursor, holding) in bookmarks_mut(&mut state).zip(of_bookmarks) {
+    for (cursor, holding) in flight.horizon.bookmarks_mut().zip(of_bookmarks) {
         shared.give_back(&holding, cursor).ok_or(RestoreError::Damaged)?;
     }
-    Ok(state)
-}
-
-fn bookmarks(state: &State) -> impl Iterator<Item = &Cursor> {
-    let issued = state.issued.iter().flat_map(|h| [Some(&h.before), h.sealed.as_deref()]);
-    issued.flatten().chain(&state.tail)
-}
-
-/// Every bookmark, and the place where the path goes on.
-pub(crate) fn bookmarks_mut(state: &mut State) -> impl Iterator<Item = &mut Cursor> {
-    let issued = state.issued.iter_mut().flat_map(|h| [Some(&mut h.before), h.sealed.as_deref_mut()]);
-    issued.flatten().chain(&mut state.tail)
+    Ok((life, flight))
 }

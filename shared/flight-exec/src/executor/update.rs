@@ -1,11 +1,12 @@
 //! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
 
+use super::Executor;
 use crate::api::{Event, Output, Phase, Refusal};
-use crate::executor::{Executor, refusal};
+use crate::flight::refusal;
 use crate::layout::cursor::{Cursor, CursorPhase};
 use crate::layout::translate::translated;
 use crate::layout::world::World;
-use flight_plan::{Id, LegPath, Program, Variable};
+use flight_plan::{Id, LegPath, Program};
 use std::sync::Arc;
 
 impl Executor {
@@ -22,8 +23,7 @@ impl Executor {
         })?;
         if !self.is_flying() {
             self.activate(proposed, out);
-            self.state.issued.clear();
-            self.state.tail = None;
+            self.flight.horizon.clear_path();
             self.enter_phase(Phase::Idle, out);
             return Ok(());
         }
@@ -33,7 +33,7 @@ impl Executor {
                 self.jump(*cursor, out);
             }
             Carried::On { bookmarks, sealed, keep } => {
-                self.seal_in_the_new_plan(sealed);
+                self.flight.horizon.set_sealed(sealed);
                 self.go_on_in(proposed, &bookmarks, keep, out);
             }
         }
@@ -41,90 +41,63 @@ impl Executor {
     }
 
     fn activate(&mut self, program: Arc<Program>, out: &mut Vec<Output>) {
-        self.carry_variables_over(&program, out);
-        self.state.seen_ahead_only = self.is_under_way();
-        self.state.revision += 1;
-        let event = Event::PlanActivated { hash: program.hash().clone(), revision: self.state.revision };
-        let before = std::mem::replace(&mut self.program, program);
+        self.life.values.carry_over(&program.plan, out);
+        let revision = self.life.revision.activate(self.is_under_way());
+        let event = Event::PlanActivated { hash: program.hash().clone(), revision };
+        let before = std::mem::replace(&mut self.setup.program, program);
         self.proposed = None;
-        // what couldn't be flown in the old plan may come to be told again in the new one
-        self.state.told.clear();
-        self.carry_passages_over(&before);
-        self.forget_branches_gone();
+        // what couldn't be flown in the old plan may come to be reported again in the new one
+        self.flight.reported.clear();
+        let distance_flown_m = self.path_ahead().distance_flown_m();
+        self.flight.acting.carry_over(&before, &self.setup.program, distance_flown_m);
+        self.flight.questions.forget_branches_gone(&self.setup.program);
         out.push(Output::Event(event));
-    }
-
-    /// Values that the new plan doesn't allow become its initial ones, and that is told.
-    fn carry_variables_over(&mut self, program: &Program, out: &mut Vec<Output>) {
-        let carried = self.state.variables.carried_over(&program.plan);
-        for Variable { name, .. } in &program.plan.variables {
-            let (Some(before), Some(value)) = (self.state.variables.get(name), carried.get(name)) else {
-                continue;
-            };
-            if before != value {
-                let (name, value, by) = (name.clone(), value.clone(), "plan".into());
-                out.push(Output::Event(Event::VariableChanged { name, value, by }));
-            }
-        }
-        self.state.variables = carried;
     }
 
     /// The same place in the new plan; what is near stays, and what differs beyond is fed as one transaction.
     fn go_on_in(&mut self, program: Arc<Program>, bookmarks: &[Cursor], keep: usize, out: &mut Vec<Output>) {
-        let before = self.program.clone();
+        let before = self.setup.program.clone();
         let same = before == program;
         self.activate(program, out);
         // as it was laid out goes on what can't be laid out any more
         let left_out = bookmarks.get(keep).and_then(|at| self.would_leave_out_the_leg_begun(keep, at));
         let keep = left_out.as_ref().map_or(keep, |(_, behind)| *behind);
-        if let Some((trouble, _)) = left_out {
-            self.tell_trouble(trouble, out);
+        if let Some((error, _)) = left_out {
+            self.flight.reported.report(error, out);
         }
         let (kept, continuation) = bookmarks.split_at(keep.min(bookmarks.len()));
         let world = self.world();
         let places: Vec<_> =
             bookmarks.iter().skip(1).map(|at| (at.place(&world), at.activations())).collect();
-        for ((issued, bookmark), (place, activations)) in self.state.issued.iter_mut().zip(kept).zip(places) {
-            issued.before = bookmark.clone();
-            issued.pinned = true;
-            if place.leg == issued.place.leg {
-                (issued.place, issued.activations) = (place, activations);
-            }
-        }
+        self.flight.horizon.carry_over(kept, places);
         self.follow_what_acts_now();
         self.forget_counts_of_loops_left(bookmarks.first());
         let Some(mut continuation) = continuation.first().cloned() else { return };
         let refreshed = if same { Ok(false) } else { self.refreshed(kept.len(), &mut continuation) };
-        if let Err(trouble) = refreshed {
-            self.tell_trouble(trouble, out);
+        if let Err(error) = refreshed {
+            self.flight.reported.report(error, out);
         }
         self.replan_with(kept.len(), continuation, false, out);
         self.wait_anew(&before);
     }
 
-    /// The cursors behind choices that are final when their waypoints are steered to.
-    fn seal_in_the_new_plan(&mut self, sealed: Vec<Option<Cursor>>) {
-        for (issued, cursor) in self.state.issued.iter_mut().zip(sealed) {
-            issued.sealed = cursor.map(Box::new);
-        }
-    }
-
     /// A count belongs to an activation: a loop that the plan hasn't around the leg being flown has been left. On the way to a leg the
     /// loops around the one before it are still there.
     fn forget_counts_of_loops_left(&mut self, before: Option<&Cursor>) {
-        let Some(front) = self.state.issued.front() else { return };
-        let path = self.program.path(&front.place.leg);
-        let chain = path.iter().flat_map(|path| self.program.chain(path));
+        let Some(front) = self.flight.horizon.front() else { return };
+        let program = &self.setup.program;
+        let path = program.path(&front.place.leg);
+        let chain = path.iter().flat_map(|path| program.chain(path));
         let around = chain.filter(|leg| leg.as_loop().is_some()).map(|leg| leg.id.clone());
-        let before = before.filter(|_| !self.is_announced(front));
+        let before = before.filter(|_| !self.flight.horizon.is_entered(front));
         let still_there = before.map_or(Vec::new(), |cursor| cursor.loop_ids(&self.world()));
         let loops: Vec<Id> = around.chain(still_there).collect();
-        self.state.counts.retain(|c| loops.contains(&c.leg));
+        self.flight.overrides.retain_counts(|leg| loops.contains(leg));
     }
 
     fn carried_over(&self, new: &Arc<Program>, entry: Option<&Id>) -> Result<Carried, Refusal> {
         let world = self.world();
-        let current = self.state.issued.front().map(|h| &h.place.leg);
+        let current = self.flight.horizon.front().map(|h| &h.place.leg);
         let current = current.filter(|leg| entry.is_none_or(|e| e == *leg)).and_then(|leg| new.path(leg));
         if let Some(current) = current.filter(|path| self.is_of_the_plan_flown(path, new)) {
             let keep = self.alterable_from();
@@ -132,14 +105,14 @@ impl Executor {
             let translate = |i: usize| {
                 let begun = self.at_the_leg_begun(i, &world);
                 let kept = i.checked_sub(1).filter(|_| begun.is_none());
-                let kept = kept.and_then(|i| self.state.issued.get(i));
+                let kept = kept.and_then(|i| self.flight.horizon.get(i));
                 let bookmark = begun.unwrap_or_else(|| self.bookmark(i));
                 translated(&bookmark, kept, &current, entered, new, &world)
             };
-            let bookmarks = (0..=self.state.issued.len()).map(translate).collect();
-            let sealed = self.state.issued.iter().map(|issued| {
+            let bookmarks = (0..=self.flight.horizon.len()).map(translate).collect();
+            let sealed = self.flight.horizon.iter().map(|issued| {
                 let sealed = issued.sealed.as_deref()?;
-                Some(translated(sealed, Some(issued), &current, entered, new, &world))
+                Some(Box::new(translated(sealed, Some(issued), &current, entered, new, &world)))
             });
             let sealed = sealed.collect();
             return Ok(Carried::On { bookmarks, sealed, keep });
@@ -161,28 +134,24 @@ impl Executor {
             return Err(refusal("unknown-leg", reason));
         }
         let mut cursor = now.placed_at(&target, &now.loop_ids(&world), new);
-        let mut here = self.here();
-        here.last.level = now.path.last.level;
-        cursor.move_path_to(here);
+        cursor.move_path_to(self.here_at_level_of(&now));
         Ok(Carried::Enter(Box::new(cursor)))
     }
 
     /// In the new plan too, a path is in the main plan, or in the emergency plan that is being flown.
     fn is_of_the_plan_flown(&self, path: &LegPath, new: &Program) -> bool {
         let plan = path.emergency_plan.and_then(|i| new.plan.emergency_plans.get(i)).map(|p| &p.id);
-        plan == self.state.emergency.as_ref().map(|e| &e.plan)
+        plan == self.flight.emergencies.plan()
     }
-}
 
-impl Executor {
     /// At the beginning of the leg being flown, when waypoint number `index` is its first and still ahead (after a
     /// resume it comes behind the place where the hold was given): that waypoint's bookmark is at the end of the leg before it, and a leg that a new
     /// plan puts in between belongs to the past.
-    pub(crate) fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
-        let first = self.state.issued.get(index)?;
+    pub(super) fn at_the_leg_begun(&self, index: usize, world: &World) -> Option<Cursor> {
+        let first = self.flight.horizon.get(index)?;
         let before = Some(self.bookmark(index)).filter(|c| c.passage != first.passage)?;
         let mut begun = before.clone();
-        self.is_announced(first).then(|| begun.next(world))?;
+        self.flight.horizon.is_entered(first).then(|| begun.next(world))?;
         if begun.place(world).leg != first.place.leg {
             // what it waits for is there: that choice is made, and told, by laying the path out
             let to = &first.place.leg;
@@ -200,7 +169,7 @@ impl Executor {
     }
 
     /// From the bookmark of waypoint number `index` one would come to another leg by now: to one that was left out before `begun`.
-    pub(crate) fn leads_elsewhere(&self, index: usize, begun: &Cursor) -> bool {
+    pub(super) fn leads_elsewhere(&self, index: usize, begun: &Cursor) -> bool {
         let (mut there, world) = (self.bookmark(index), self.world());
         there.next(&world);
         there.place(&world).leg != begun.place(&world).leg
@@ -216,7 +185,7 @@ enum Carried {
         /// Bookmarks before each waypoint ahead, and behind the last of them.
         bookmarks: Vec<Cursor>,
         /// Likewise, behind the choices that led to each.
-        sealed: Vec<Option<Cursor>>,
+        sealed: Vec<Option<Box<Cursor>>>,
         /// So many of the waypoints stay.
         keep: usize,
     },

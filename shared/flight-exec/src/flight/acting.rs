@@ -6,278 +6,307 @@
 mod resolve;
 mod trigger;
 
-use crate::api::{Event, Output, ResolvedAct};
-use crate::executor::Executor;
+use super::{Clock, Offset, Reported, Values};
+use crate::api::{Event, Output};
 use crate::layout::cursor::SilentLeg;
 use crate::layout::cursor::control::{is_call, is_control};
 use crate::layout::stretch::IssuedWaypoint;
 use crate::value::Choice;
-use flight_plan::{Act, Id, Leg, Program, Trigger};
+use flight_plan::{Act, Env, FlightState, Id, Leg, LegAction, Program, Trigger};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 pub(crate) use trigger::Moment;
 
+/// The passages under way, and when they were looked after last.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Acting {
+    /// Those that have actions, outermost first.
+    passages: Vec<Passage>,
+    /// By the executor's clock.
+    acted_s: f64,
+}
+
 /// A passage of a leg, or an activation of a loop, whose actions are looked after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Passage {
-    pub leg: Id,
+    leg: Id,
     /// Of the passage; of a loop: of its activation.
-    pub number: u64,
+    number: u64,
     /// Pass of the innermost loop; of a loop: its own, the one being flown. What `iteration` is in its expressions.
-    pub iteration: u64,
+    iteration: u64,
     /// Path length when it began, metres.
-    pub began_m: f64,
+    began_m: f64,
     /// Seconds flown on it.
-    pub flown_s: f64,
+    flown_s: f64,
     /// As many as the leg has actions.
-    pub done: Vec<Done>,
+    done: Vec<Done>,
 }
 
 /// What became of an action on this passage.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Done {
+struct Done {
     times: u64,
-    /// Of one that is repeated: up to this way made on the passage it has been done, metres.
+    /// Of one that is repeated: up to this distance flown on the passage it has been done, metres.
     up_to_m: f64,
     /// Of one that is due abeam of a position: it lay beyond the end of the last piece of the path.
     ahead: bool,
 }
 
-/// Circling at the end of a leg for a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Wait {
-    pub passage: u64,
-    /// By the executor's clock.
-    pub begun_s: f64,
-    /// Likewise.
-    pub due_s: f64,
+/// What actions are worked out from, and what they change.
+pub(crate) struct Scene<'a> {
+    pub program: &'a Program,
+    pub flight: FlightState,
+    pub debounce_s: f64,
+    pub values: &'a mut Values,
+    pub clock: &'a mut Clock,
+    pub reported: &'a mut Reported,
 }
 
-impl Executor {
+impl Scene<'_> {
+    /// What expressions see in a pass of a loop.
+    fn env(&self, iteration: u64) -> Env<'_> {
+        let iteration = i64::try_from(iteration).unwrap_or(i64::MAX);
+        Env { variables: self.values.current(), flight: FlightState { iteration, ..self.flight } }
+    }
+}
+
+impl Acting {
+    /// A passage is followed: its leg has actions, and it is under way.
+    pub fn follows(&self, leg: &Id, number: u64) -> bool {
+        self.passages.iter().any(|p| p.is(leg, number))
+    }
+
+    /// The legs and loops whose passages are followed.
+    pub fn legs(&self) -> impl Iterator<Item = &Id> {
+        self.passages.iter().map(|passage| &passage.leg)
+    }
+
     /// The aircraft steers to a waypoint of another passage now: ends what is over, begins what begins.
-    pub(crate) fn change_passage(
+    pub fn change_passage(
         &mut self,
         issued: &IssuedWaypoint,
         mut silent_legs: Vec<SilentLeg>,
+        scene: &mut Scene,
         out: &mut Vec<Output>,
     ) {
         self.retain_new(&mut silent_legs);
-        self.end_passages(|p| !p.is_around(issued), out);
-        for passage in &mut self.state.passages {
-            passage.iteration = iteration_of(&self.program, &passage.leg, issued);
+        self.end(|p| !p.is_around(issued), scene, out);
+        for passage in &mut self.passages {
+            passage.iteration = iteration_of(scene.program, &passage.leg, issued);
         }
-        self.pass_silently(silent_legs, issued, out);
+        self.pass_silently(silent_legs, issued, scene, out);
         out.push(Output::Event(Event::LegEntered { place: issued.place.clone() }));
-        for (leg, number) in self.flown_at(issued) {
-            self.begin_passage(&leg, number, issued, out);
+        for (leg, number) in flown_at(scene.program, issued) {
+            self.begin(&leg, number, issued, scene, out);
         }
     }
 
     /// Of a passage that has begun it may turn out, laid out anew, that nothing of it is left: it is not passed once more.
-    pub(crate) fn retain_new(&self, silent_legs: &mut Vec<SilentLeg>) {
-        let is_followed = |m: &SilentLeg| self.state.passages.iter().any(|p| p.is(&m.leg, m.passage));
-        silent_legs.retain(|mark| !is_followed(mark));
-    }
-
-    /// What is flown on the way to a waypoint, with the numbers of its passages: the loops around it, outermost first, and its leg.
-    fn flown_at(&self, issued: &IssuedWaypoint) -> Vec<(Id, u64)> {
-        let own = Some((&issued.place.leg, issued.passage)).filter(|(leg, _)| !self.is_control_leg(leg));
-        loops_of(issued).chain(own).map(|(leg, number)| (leg.clone(), number)).collect()
+    pub fn retain_new(&self, silent_legs: &mut Vec<SilentLeg>) {
+        silent_legs.retain(|silent| !self.follows(&silent.leg, silent.passage));
     }
 
     /// In a new plan, what is being flown may have actions for the first time: what lies behind is not repeated.
-    pub(crate) fn follow_what_acts_now(&mut self) {
-        let front = self.state.issued.front().filter(|front| self.is_announced(front));
-        let Some(front) = front.cloned() else { return };
-        let behind_m = (self.way_made_m() - front.leg_start_m).max(0.0);
-        for (leg, number) in self.flown_at(&front) {
-            let passage = self.passage(&leg, number, &front, behind_m);
-            self.state.passages.extend(passage);
+    pub fn follow_from(&mut self, front: &IssuedWaypoint, distance_flown_m: f64, program: &Program) {
+        let behind_m = (distance_flown_m - front.leg_start_m).max(0.0);
+        for (leg, number) in flown_at(program, front) {
+            let passage = self.passage((&leg, number), front, behind_m, program);
+            self.passages.extend(passage);
         }
     }
 
     /// Legs passed before a waypoint without one of their own.
-    pub(crate) fn pass_silently(
+    pub fn pass_silently(
         &mut self,
         silent_legs: Vec<SilentLeg>,
         issued: &IssuedWaypoint,
+        scene: &mut Scene,
         out: &mut Vec<Output>,
     ) {
-        for mark in silent_legs {
-            self.begin_passage(&mark.leg, mark.passage, issued, out);
-            self.end_passages(|p| p.is(&mark.leg, mark.passage), out);
+        for silent in silent_legs {
+            self.begin(&silent.leg, silent.passage, issued, scene, out);
+            self.end(|p| p.is(&silent.leg, silent.passage), scene, out);
         }
     }
 
-    /// Loops are begun with the first leg inside them; at an intersection nothing is flown.
-    fn is_control_leg(&self, id: &Id) -> bool {
-        self.program.leg(id).is_none_or(is_control)
-    }
-
-    fn begin_passage(&mut self, leg: &Id, number: u64, issued: &IssuedWaypoint, out: &mut Vec<Output>) {
-        let Some(mut passage) = self.passage(leg, number, issued, 0.0) else { return };
-        self.state.acted_s = self.state.clock_s;
-        self.act_on(&mut passage, &Moment::begun(issued), out);
-        self.state.passages.push(passage);
+    fn begin(
+        &mut self,
+        leg: &Id,
+        number: u64,
+        issued: &IssuedWaypoint,
+        scene: &mut Scene,
+        out: &mut Vec<Output>,
+    ) {
+        let Some(mut passage) = self.passage((leg, number), issued, 0.0, scene.program) else { return };
+        self.acted_s = scene.clock.now_s();
+        passage.act(&Moment::begun(issued), scene, out);
+        self.passages.push(passage);
     }
 
     /// A passage to be followed, if it has actions and is not followed yet; nothing is repeated of the way up to `up_to_m`, metres.
-    fn passage(&self, leg: &Id, number: u64, issued: &IssuedWaypoint, up_to_m: f64) -> Option<Passage> {
-        let actions = self.program.leg(leg).map_or(0, |l| l.actions.len());
-        let is_new = actions > 0 && !self.state.passages.iter().any(|p| p.is(leg, number));
+    fn passage(
+        &self,
+        (leg, number): (&Id, u64),
+        issued: &IssuedWaypoint,
+        up_to_m: f64,
+        program: &Program,
+    ) -> Option<Passage> {
+        let actions = program.leg(leg).map_or(0, |l| l.actions.len());
+        let is_new = actions > 0 && !self.follows(leg, number);
         is_new.then(|| Passage {
             leg: leg.clone(),
             number,
-            iteration: iteration_of(&self.program, leg, issued),
+            iteration: iteration_of(program, leg, issued),
             began_m: issued.leg_start_m,
             flown_s: 0.0,
             done: vec![Done { up_to_m, ..Done::default() }; actions],
         })
     }
 
+    /// Ends all passages as they should.
+    pub fn end_all(&mut self, scene: &mut Scene, out: &mut Vec<Output>) {
+        self.end(|_| true, scene, out);
+    }
+
+    /// Ends a passage as it should.
+    pub fn end_passage(&mut self, leg: &Id, number: u64, scene: &mut Scene, out: &mut Vec<Output>) {
+        self.end(|p| p.is(leg, number), scene, out);
+    }
+
     /// Ends passages as they should, the innermost first.
-    pub(crate) fn end_passages(&mut self, over: impl Fn(&Passage) -> bool, out: &mut Vec<Output>) {
-        let (ending, open): (Vec<_>, Vec<_>) =
-            std::mem::take(&mut self.state.passages).into_iter().partition(over);
-        self.state.passages = open;
+    fn end(&mut self, over: impl Fn(&Passage) -> bool, scene: &mut Scene, out: &mut Vec<Output>) {
+        let (ending, open): (Vec<_>, Vec<_>) = std::mem::take(&mut self.passages).into_iter().partition(over);
+        self.passages = open;
         for mut passage in ending.into_iter().rev() {
-            self.act_at_the_end(&mut passage, out);
+            passage.act_at_the_end(scene, out);
         }
     }
 
-    /// If a choice is one to leave a loop, that is over, except when it is entered anew.
-    pub(crate) fn end_the_loop_left_by(&mut self, choice: &Choice, out: &mut Vec<Output>) {
+    /// If a choice is one to leave a loop, that is over, except when it is entered anew on the way to `front`.
+    pub fn end_the_loop_left_by(
+        &mut self,
+        choice: &Choice,
+        front: Option<&IssuedWaypoint>,
+        scene: &mut Scene,
+        out: &mut Vec<Output>,
+    ) {
         let Some(left) = choice.loop_left() else { return };
-        let around = self.state.issued.front().and_then(|h| loops_of(h).find(|(id, _)| *id == left));
+        let around = front.and_then(|h| loops_of(h).find(|(id, _)| *id == left));
         let entered = around.map(|(_, activation)| activation);
-        self.end_passages(|p| p.leg == *left && Some(p.number) != entered, out);
+        self.end(|p| p.leg == *left && Some(p.number) != entered, scene, out);
     }
 
     /// The flight goes on elsewhere: only loops around that place go on, and those on the way there until they are left; nothing is done
     /// at the end of the others.
-    pub(crate) fn abandon_passages(&mut self) {
-        let front = self.state.issued.front();
+    pub fn abandon_but_around(&mut self, front: Option<&IssuedWaypoint>) {
         let leaves = |h: &IssuedWaypoint, leg: &Id| h.choices.iter().any(|c| c.loop_left() == Some(leg));
         let goes_on = |p: &Passage| front.is_some_and(|h| p.is_around(h) || leaves(h, &p.leg));
-        self.state.passages.retain(goes_on);
-        self.state.wait = None;
+        self.passages.retain(goes_on);
+    }
+
+    /// The flight is over: nothing more is done.
+    pub fn abandon(&mut self) {
+        self.passages.clear();
     }
 
     /// A waypoint has been reached: everything up to it is due.
-    pub(crate) fn act_up_to(&mut self, flown: &IssuedWaypoint, out: &mut Vec<Output>) {
-        self.act_on_all(&Moment::reached(flown), out);
+    pub fn act_up_to(&mut self, flown: &IssuedWaypoint, scene: &mut Scene, out: &mut Vec<Output>) {
+        self.act(&Moment::reached(flown), scene, out);
     }
 
-    /// Between waypoints: what is due where the aircraft is now.
-    pub(crate) fn act_on_the_way(&mut self, out: &mut Vec<Output>) {
-        let since_s = self.state.clock_s - self.state.acted_s;
-        self.state.acted_s = self.state.clock_s;
-        if self.is_muted() || self.state.passages.is_empty() {
-            return;
-        }
-        for passage in &mut self.state.passages {
-            passage.flown_s += since_s;
-        }
-        let aircraft = self.state.aircraft.as_ref().map(|a| a.position);
-        let moment = self.state.issued.front().map(|h| Moment::on_the_way(h, aircraft, self.to_current_m()));
-        if let Some(moment) = moment {
-            self.act_on_all(&moment, out);
-        }
+    /// Time has passed; gives the seconds.
+    pub fn pass_time(&mut self, now_s: f64) -> f64 {
+        now_s - std::mem::replace(&mut self.acted_s, now_s)
     }
 
-    fn act_on_all(&mut self, moment: &Moment, out: &mut Vec<Output>) {
-        self.for_passages(|executor, passage| executor.act_on(passage, moment, out));
+    /// Nothing is followed.
+    pub fn is_empty(&self) -> bool {
+        self.passages.is_empty()
     }
 
-    /// Each passage under way, outermost first.
-    fn for_passages(&mut self, mut act: impl FnMut(&mut Self, &mut Passage)) {
-        let mut passages = std::mem::take(&mut self.state.passages);
-        passages.iter_mut().for_each(|passage| act(self, passage));
-        self.state.passages = passages;
+    /// On every passage under way, so many seconds more were flown.
+    pub fn fly_for(&mut self, seconds: f64) {
+        self.passages.iter_mut().for_each(|passage| passage.flown_s += seconds);
+    }
+
+    /// Does what is due at a moment, outermost passage first.
+    pub fn act(&mut self, moment: &Moment, scene: &mut Scene, out: &mut Vec<Output>) {
+        self.passages.iter_mut().for_each(|passage| passage.act(moment, scene, out));
+    }
+
+    /// The aircraft circles at the end of a leg: the leg's other actions at its end are done before.
+    pub fn act_before_wait(&mut self, issued: &IssuedWaypoint, scene: &mut Scene, out: &mut Vec<Output>) {
+        let own = self.passages.iter_mut().filter(|p| p.is(&issued.place.leg, issued.passage));
+        own.for_each(|passage| passage.act_at_the_end(scene, out));
+    }
+
+    /// The actions of a leg that let the aircraft wait at its end.
+    pub fn waits_of(program: &Program, leg: &Id) -> Vec<LegAction> {
+        let actions = program.leg(leg).map_or(&[][..], |leg| &leg.actions);
+        actions.iter().filter(|action| is_wait(&action.act)).cloned().collect()
     }
 
     /// When the next action is due by time, in seconds of the executor's clock.
-    pub(crate) fn next_action_s(&self) -> Option<f64> {
-        if self.is_muted() {
-            return None;
-        }
-        let world = self.world();
-        let open = self.state.passages.iter().filter_map(|p| Some((p, world.program.leg(&p.leg)?)));
+    pub fn next_due_s(&self, program: &Program, env: &Env) -> Option<f64> {
+        let open = self.passages.iter().filter_map(|p| Some((p, program.leg(&p.leg)?)));
         let due_s = open.flat_map(|(p, leg)| {
             let left = leg.actions.iter().zip(&p.done).filter(|(_, done)| done.times == 0);
-            left.filter_map(|(action, _)| match &action.trigger {
-                Trigger::Time(seconds) => world.in_iteration(p.iteration).number(seconds).ok(),
+            let iteration = i64::try_from(p.iteration).unwrap_or(i64::MAX);
+            let env = Env { flight: FlightState { iteration, ..env.flight }, ..*env };
+            left.filter_map(move |(action, _)| match &action.trigger {
+                Trigger::Time(seconds) => program.eval_number(seconds, &env).ok(),
                 _ => None,
             })
-            .map(|seconds| self.state.acted_s + seconds - p.flown_s)
+            .map(|seconds| self.acted_s + seconds - p.flown_s)
         });
         due_s.min_by(f64::total_cmp)
     }
 
     /// The actions of legs in another plan: what was done stays done, found again by the action itself. A leg that flies is no longer
     /// what it was as a loop or an intersection, and the other way round.
-    pub(crate) fn carry_passages_over(&mut self, old: &Program) {
-        let way_m = self.way_made_m();
-        for passage in &mut self.state.passages {
-            let (before, after) = (old.leg(&passage.leg), self.program.leg(&passage.leg));
+    pub fn carry_over(&mut self, old: &Program, new: &Program, distance_flown_m: f64) {
+        for passage in &mut self.passages {
+            let (before, after) = (old.leg(&passage.leg), new.leg(&passage.leg));
             let kind = |leg: &Leg| is_control(leg).then(|| leg.kind_name());
             let after = after.filter(|leg| before.map(kind) == Some(kind(leg)));
-            let new = Done { up_to_m: (way_m - passage.began_m).max(0.0), ..Done::default() };
-            passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg, new));
+            let unknown = Done { up_to_m: (distance_flown_m - passage.began_m).max(0.0), ..Done::default() };
+            passage.done = after.map_or_else(Vec::new, |leg| remapped(&passage.done, before, leg, unknown));
         }
-        self.state.passages.retain(|p| !p.done.is_empty());
+        self.passages.retain(|p| !p.done.is_empty());
     }
 
-    /// Begins to circle for a time, when the aircraft steers to such a waypoint. The leg's other actions at its end are done
-    /// before.
-    pub(crate) fn begin_wait(&mut self, issued: &IssuedWaypoint, out: &mut Vec<Output>) {
-        let Some(seconds) = issued.wait_s.filter(|_| !self.is_waiting_at(issued.passage)) else { return };
-        self.for_passages(|executor, passage| {
-            if passage.is(&issued.place.leg, issued.passage) {
-                executor.act_at_the_end(passage, out);
-            }
-        });
-        let begun_s = self.state.clock_s;
-        self.state.wait = Some(Wait { passage: issued.passage, begun_s, due_s: begun_s + seconds });
-        let (leg, passage) = (issued.place.leg.clone(), issued.passage);
-        out.push(Output::Event(Event::ActionDone { leg, passage, act: ResolvedAct::Wait { seconds } }));
-    }
-
-    /// A new plan that says something else about the wait being flown makes it longer or shorter, counted from where it began. One
-    /// that says the same changes nothing, whatever its expression gives by now.
-    pub(crate) fn wait_anew(&mut self, before: &Program) {
-        let Some(front) = self.state.issued.front() else { return };
-        let waits = |program: &Program| {
-            let actions = program.leg(&front.place.leg).map_or(&[][..], |leg| &leg.actions);
-            Vec::from_iter(actions.iter().filter(|action| is_wait(&action.act)).cloned())
-        };
-        let other = front.wait_s.filter(|_| waits(before) != waits(&self.program));
-        if let Some((wait, seconds)) = self.state.wait.as_mut().zip(other) {
-            wait.due_s = wait.begun_s + seconds;
-        }
-    }
-
-    fn is_waiting_at(&self, passage: u64) -> bool {
-        self.state.wait.is_some_and(|w| w.passage == passage)
-    }
-
-    /// Goes on from a circle that was flown long enough, or is not to be flown any longer.
-    pub(crate) fn end_wait(&mut self, wait: Wait, out: &mut Vec<Output>) {
-        self.state.wait = None;
-        self.state.waited = Some(wait.passage);
-        self.replan_from(0, true, out);
+    pub fn is_equivalent(&self, other: &Self, offset: &Offset) -> bool {
+        let Self { passages, acted_s } = self;
+        offset.instant(*acted_s, other.acted_s)
+            && super::all_equivalent(passages, &other.passages, |a, b| a.is_equivalent(b, offset))
     }
 }
 
 impl Passage {
-    pub fn is(&self, leg: &Id, number: u64) -> bool {
+    fn is(&self, leg: &Id, number: u64) -> bool {
         (&self.leg, self.number) == (leg, number)
     }
 
     /// It is that of a loop around a waypoint.
-    pub(crate) fn is_around(&self, issued: &IssuedWaypoint) -> bool {
+    fn is_around(&self, issued: &IssuedWaypoint) -> bool {
         loops_of(issued).any(|l| l == (&self.leg, self.number))
     }
+
+    fn is_equivalent(&self, other: &Self, offset: &Offset) -> bool {
+        let Self { leg, number, iteration, began_m, flown_s, done } = self;
+        offset.passage(*number, other.number)
+            && (leg, iteration, done) == (&other.leg, &other.iteration, &other.done)
+            && offset.distance(*began_m, other.began_m)
+            && offset.span(*flown_s, other.flown_s)
+    }
+}
+
+/// What is flown on the way to a waypoint, with the numbers of its passages: the loops around it, outermost first, and its leg.
+/// Loops are begun with the first leg inside them; at an intersection nothing is flown.
+fn flown_at(program: &Program, issued: &IssuedWaypoint) -> Vec<(Id, u64)> {
+    let is_control_leg = |id: &Id| program.leg(id).is_none_or(is_control);
+    let own = Some((&issued.place.leg, issued.passage)).filter(|(leg, _)| !is_control_leg(leg));
+    loops_of(issued).chain(own).map(|(leg, number)| (leg.clone(), number)).collect()
 }
 
 /// The pass that a leg's actions see at a waypoint: a loop's own, else that of the innermost loop. A call is no loop.
@@ -307,7 +336,7 @@ fn remapped(done: &[Done], old: Option<&Leg>, new: &Leg, unknown: Done) -> Vec<D
 
 /// A piece of the path, between two waypoints.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
+struct Piece {
     from: LatLon,
     to: LatLon,
 }

@@ -79,7 +79,7 @@ impl<'a> Flight<'a> {
     ) -> Result<Self, PreviewError> {
         let triggers = given.scenario.triggers.len();
         let mut at = Situation::new(program, profile, terrain, start, triggers, given.options)?;
-        at.executor.seen = watched.then(Default::default);
+        at.executor.watch(watched);
         let mut flight = Self::resumed(given, at);
         flight.start(program)?;
         Ok(flight)

@@ -3,7 +3,7 @@
 //! A flight is kept in stretches: the situation in which each begins, and which stages and legs were read on it. A stretch
 //! stays valid as long as it begins in the same situation and what it read is unchanged. So after an edit the flight is
 //! resumed at the beginning of the first stretch that read something that has changed, and flown until a leg begins just as it did
-//! before ([`are_alike`]). From there on the former flight is taken over, with its times and numbers shifted. The result
+//! before ([`are_equivalent`]). From there on the former flight is taken over, with its times and numbers shifted. The result
 //! is what a whole new preview would give: the same waypoints at the same times, distances and energy, except for the rounding of
 //! sums. The path rejoins quickly because the preview restarts at every waypoint (see `flight`).
 //!
@@ -12,12 +12,11 @@
 //! a drag; hash and review follow when the plan is left alone.
 
 use super::changes::{Changes, reads_flight};
-use super::equivalence::are_alike;
+use super::equivalence::are_equivalent;
 use super::flight::{Circumstances, Flight, Progress, empty};
 use super::shift::{Marks, Shift};
 use super::situation::Situation;
 use super::{Options, Preview, PreviewError, Scenario, Start};
-use crate::executor::snapshot::bookmarks_mut;
 use aircraft::{Profile, Wind};
 use flight_plan::{Id, Program};
 use foldhash::{HashMap, HashMapExt};
@@ -157,7 +156,7 @@ impl Flown {
         for index in (1..self.stretches.len()).rev() {
             let stretch = self.stretches.get_mut(index).and_then(|s| s.begin.as_mut());
             let found = stretch.is_none_or(|begin| {
-                let mut cursors = bookmarks_mut(&mut begin.executor.state);
+                let mut cursors = begin.executor.horizon_mut().bookmarks_mut();
                 changes.moves.is_empty() || cursors.all(|c| changes.moves.iter().all(|m| m.follow(c)))
             });
             if !found {
@@ -219,12 +218,12 @@ impl Flown {
         let flight = match begin {
             Some(begin) => {
                 let mut at = begin.as_ref().clone();
-                at.executor.program = self.program.clone();
+                at.executor.swap_program(self.program.clone());
                 Flight::resumed(given, at)
             }
             None => {
                 let executor = &self.end.executor;
-                let (profile, terrain) = (executor.profile.clone(), executor.terrain.clone());
+                let (profile, terrain) = (executor.profile().clone(), executor.terrain().clone());
                 Flight::new(&self.program, &profile, &terrain, self.start, given, true)?
             }
         };
@@ -289,7 +288,7 @@ impl Flown {
         let place = at.moment.place.as_ref()?;
         let alike = |index: &&usize| {
             let begin = self.stretches.get(**index).and_then(|s| s.begin.as_ref());
-            begin.is_some_and(|begin| are_alike(at, begin))
+            begin.is_some_and(|begin| are_equivalent(at, begin))
         };
         known.get(&place.leg)?.iter().find(alike).copied()
     }
@@ -346,15 +345,15 @@ impl Flown {
 impl Stretch {
     fn beginning(at: &Situation, before: Marks, none: &Arc<Program>) -> Self {
         let mut begin = Box::new(at.clone());
-        begin.executor.program = none.clone();
-        begin.executor.proposed = None;
+        begin.executor.swap_program(none.clone());
+        begin.executor.set_proposed(None);
         Self { begin: Some(begin), before, reads: ahead_of(at) }
     }
 }
 
 /// What was read on the last of these stretches.
 fn note_reads(stretches: &mut [Stretch], at: &Situation) {
-    let (Some(last), Some(seen)) = (stretches.last_mut(), at.executor.seen.as_ref()) else { return };
+    let (Some(last), Some(seen)) = (stretches.last_mut(), at.executor.seen()) else { return };
     last.reads.extend(seen.take());
     last.reads.sort_unstable();
     last.reads.dedup();
@@ -362,17 +361,17 @@ fn note_reads(stretches: &mut [Stretch], at: &Situation) {
 
 /// Legs that are read once more while the waypoints ahead are flown.
 fn ahead_of(at: &Situation) -> Vec<Id> {
-    let state = &at.executor.state;
+    let horizon = at.executor.horizon();
     let mut ids: Vec<Id> = Vec::new();
-    for issued in &state.issued {
+    for issued in horizon.iter() {
         ids.push(issued.place.leg.clone());
         ids.push(issued.place.stage.clone());
         ids.extend(issued.place.iterations.iter().map(|i| i.leg.clone()));
-        ids.extend(issued.silent_legs.iter().map(|mark| mark.leg.clone()));
+        ids.extend(issued.silent_legs.iter().map(|silent| silent.leg.clone()));
         ids.extend(issued.choices.iter().map(|choice| choice.leg().clone()));
     }
-    ids.extend(state.passages.iter().map(|passage| passage.leg.clone()));
-    if let Some(tail) = &state.tail {
+    ids.extend(at.executor.acting_legs().cloned());
+    if let Some(tail) = horizon.tail() {
         let world = at.executor.world();
         ids.extend(tail.current_stage(&world).map(|stage| stage.id.clone()));
         ids.extend(tail.chain(&world).iter().map(|leg| leg.id.clone()));

@@ -2,7 +2,7 @@
 
 use super::Preview;
 use super::situation::{Situation, microseconds, seconds};
-use crate::api::{Event, Token};
+use crate::api::{Event, Time, Token};
 
 /// How many entries of each list of a preview there are up to a certain point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -101,8 +101,8 @@ pub(super) struct Shift {
 impl Shift {
     /// From a situation to one that is alike, later or earlier.
     pub fn between(from: &Situation, to: &Situation) -> Self {
-        let token = |at: &Situation| at.renumbering.token(at.executor.state.last_token) as i64;
-        let passage = |at: &Situation| at.renumbering.passage(at.executor.state.last_passage) as i64;
+        let token = |at: &Situation| at.renumbering.token(at.executor.last_token().0) as i64;
+        let passage = |at: &Situation| at.renumbering.passage(at.executor.numbers().passage()) as i64;
         Self {
             time_us: to.now_us as i64 - from.now_us as i64,
             distance_m: to.distance_m - from.distance_m,
@@ -161,7 +161,8 @@ impl Shift {
             *due_us = moved(*due_us);
         }
         at.moment.time_s = at.time_s();
-        at.executor.last_step = at.executor.last_step.map(|_| crate::api::Time::from_micros(at.told_us));
+        let last_step = at.executor.last_step().map(|_| Time::from_micros(at.told_us));
+        at.executor.set_last_step(last_step);
         at.distance_m += self.distance_m;
         at.aircraft.use_energy(self.energy_j);
         at.passages = at.passages.saturating_add_signed(self.indices);

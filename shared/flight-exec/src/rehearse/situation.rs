@@ -84,11 +84,11 @@ impl Situation {
     /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.
     /// `None`: nothing is being flown, or nothing is known of the aircraft.
     pub fn under_way(mut executor: Executor, triggers: usize) -> Option<Self> {
-        let told = executor.state.aircraft.filter(|_| executor.is_flying())?;
+        let told = executor.aircraft().filter(|_| executor.is_flying())?;
         // a preview counts time from its own beginning; the executor's clock goes on
-        executor.last_step = Some(Time::ZERO);
+        executor.set_last_step(Some(Time::ZERO));
         let place = |new: fn(Profile, geometry::LatLon, f64, f64) -> Aircraft| {
-            new(executor.profile.clone(), told.position, told.altitude_amsl_m, told.track_deg)
+            new(executor.profile().clone(), told.position, told.altitude_amsl_m, told.track_deg)
         };
         let mut aircraft = place(if told.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
         aircraft.set_battery_share(told.battery);

@@ -34,9 +34,9 @@ use std::sync::Arc;
 /// [`Conditions::start_unix_s`] is now; the path up to the waypoints that can't be altered any more counts as well.
 pub fn review_ahead(flight: &Executor, conditions: Conditions) -> Vec<Problem> {
     let Some(flights) = Flights::ahead(flight, conditions.wind) else { return Vec::new() };
-    let (program, terrain) = (flight.program.as_ref(), flight.terrain.as_ref());
+    let (program, terrain) = (flight.active().as_ref(), flight.terrain().as_ref());
     let variables = flight.variables().clone();
-    View::new(program, &flight.profile, terrain, conditions, variables, flights).problems()
+    View::new(program, flight.profile(), terrain, conditions, variables, flights).problems()
 }
 
 /// What a command of `by` would bring about (see [`Executor::changes_what_is_flown`]): errors forbid it. None, if the executor
@@ -48,7 +48,7 @@ pub fn review_command(
     conditions: Conditions,
 ) -> Vec<Problem> {
     if *command == Command::Start {
-        return super::review(&flight.program, &flight.profile, &flight.terrain, conditions);
+        return super::review(flight.active(), flight.profile(), flight.terrain(), conditions);
     }
     let mut changed = flight.clone();
     match changed.command(command.clone(), by, &mut Vec::new()) {
@@ -73,9 +73,9 @@ pub fn compile_and_review_ahead(
     flight: &Executor,
     conditions: Conditions,
 ) -> Result<Arc<Program>, Vec<Problem>> {
-    reviewed(document, &flight.profile, &flight.terrain, |program| {
+    reviewed(document, flight.profile(), flight.terrain(), |program| {
         let mut changed = flight.clone();
-        changed.proposed = Some(program.clone());
+        changed.set_proposed(Some(program.clone()));
         match changed.commit(program.hash(), None, &mut Vec::new()) {
             Ok(()) => brought_about(flight, &changed, conditions),
             Err(_) => Vec::new(),
@@ -99,11 +99,11 @@ impl Executor {
     /// A command that leads to where nobody has looked: in flight another plan, or a value that legs are laid out from; on the ground the
     /// start of a plan that came in flight, or after a start of which nothing came. It is for [`review_command`] before it is given.
     pub fn changes_what_is_flown(&self, command: &Command) -> bool {
-        let anew = *command == Command::Start && self.state.seen_ahead_only && self.may_start();
+        let anew = *command == Command::Start && self.is_reviewed_ahead_only() && self.may_start();
         let otherwise = self.is_under_way()
             && match command {
                 Command::Commit { .. } => true,
-                Command::SetVariable { name, .. } => laid_out_from(&self.program).contains(name),
+                Command::SetVariable { name, .. } => laid_out_from(self.active()).contains(name),
                 _ => false,
             };
         anew || otherwise

@@ -14,6 +14,7 @@ use crate::api::{AircraftState, Command, Event, Output};
 use crate::executor::Executor;
 use crate::layout::cursor::Cursor;
 use crate::layout::path::{Level, PathEnd, PathState};
+use crate::layout::stretch::IssuedWaypoint;
 use crate::rehearse::{
     Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
 };
@@ -84,7 +85,9 @@ impl Circumstances<'_> {
         if self.under_way {
             let mut flight = self.moved_to(from);
             // an emergency plan is flown whatever is being answered now
-            flight.state.emergency.take_if(|_| alarm);
+            if alarm {
+                flight.forget_emergency();
+            }
             return preview_on(flight, self.wind, &scenario, &options);
         }
         preview(self.program, self.profile, self.terrain, self.wind, from.start(), &scenario, &options)
@@ -93,7 +96,7 @@ impl Circumstances<'_> {
     /// The flight under way as it would be somewhere else.
     fn moved_to(&self, to: Beginning) -> Executor {
         let mut executor = self.executor.clone();
-        executor.state.aircraft = executor.state.aircraft.map(|aircraft| AircraftState {
+        let aircraft = executor.aircraft().map(|aircraft| AircraftState {
             position: to.position,
             altitude_amsl_m: to.altitude_amsl_m,
             track_deg: to.heading_deg,
@@ -101,6 +104,7 @@ impl Circumstances<'_> {
             on_ground: to.on_ground,
             ..aircraft
         });
+        executor.put_aircraft(aircraft);
         executor
     }
 
@@ -110,12 +114,12 @@ impl Circumstances<'_> {
             return from.outset(None, &self.tireless);
         }
         let near = self.executor.alterable_from();
-        let laid_out = |h: &crate::layout::stretch::IssuedWaypoint| LaidOut {
+        let laid_out = |h: &IssuedWaypoint| LaidOut {
             waypoint: h.waypoint.clone(),
             wanted_amsl_m: h.waypoint.altitude_amsl_m,
             passage: h.passage,
         };
-        let kept = self.executor.state.issued.iter().take(near).map(laid_out).collect();
+        let kept = self.executor.horizon().iter().take(near).map(laid_out).collect();
         Outset { kept, cursor: self.executor.bookmark(near) }
     }
 }
@@ -141,14 +145,14 @@ impl Flights {
 
     /// Those ahead of a flight under way; `None`: nothing is being flown, or nothing is known of the aircraft.
     pub fn ahead(flight: &Executor, wind: Wind) -> Option<Self> {
-        let aircraft = flight.state.aircraft.filter(|_| flight.is_flying())?;
+        let aircraft = flight.aircraft().filter(|_| flight.is_flying())?;
         let mut executor = flight.clone();
         let mut told = Vec::new();
         // the legs under way as they will be in a moment
-        if executor.state.refresh_due_s.is_some() {
+        if executor.has_refresh_due() {
             executor.refresh(&mut told);
         }
-        let (program, profile, terrain) = (&flight.program, &flight.profile, &flight.terrain);
+        let (program, profile, terrain) = (flight.active(), flight.profile(), flight.terrain());
         let (tireless, under_way) = (tireless(profile), true);
         let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
         let mut flights = Self::flown(&given, Beginning::of(&aircraft, profile));
@@ -339,10 +343,7 @@ fn variants(program: &Program) -> u64 {
 }
 
 fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Executor {
-    let mut executor = Executor::new(Config::default(), terrain.clone(), profile.clone());
-    executor.state.variables = Variables::initial(program.flown());
-    executor.program = program.clone();
-    executor
+    Executor::with_program(program, Config::default(), terrain.clone(), profile.clone())
 }
 
 /// On the runway; without a take-off, over the first place that the plan names, at the height at which it asks to be there.

@@ -31,13 +31,23 @@ fn list<'a>(snapshot: &'a mut Value, name: &str) -> &'a mut Vec<Value> {
 fn a_snapshot_whose_state_says_less_is_not_read() {
     let (_, whole) = snapshot();
     assert!(whole.deserialized::<Snapshot>().is_ok());
-    for name in ["written", "late", "seen_ahead_only", "counts"] {
+    let fields = [
+        ("life.values", "written"),
+        ("life.revision", "reviewed_ahead_only"),
+        ("flight.questions", "late"),
+        ("flight.overrides", "counts"),
+        ("flight.acting", "acted_s"),
+    ];
+    let life = ["mode", "clock", "numbers", "revision", "values"].map(|name| ("life", name));
+    let flight = ["horizon", "questions", "acting", "overrides", "emergencies", "reported"];
+    let parts = life.into_iter().chain(flight.map(|name| ("flight", name)));
+    for (of, name) in fields.into_iter().chain(parts) {
         let mut value = whole.clone();
-        let state = part(&mut value, "state").as_map_mut().unwrap();
-        let said = state.len();
-        state.retain(|(key, _)| key.as_text() != Some(name));
-        assert_eq!(state.len(), said - 1, "{name}");
-        assert!(value.deserialized::<Snapshot>().is_err(), "{name}");
+        let fields = of.split('.').fold(&mut value, part).as_map_mut().unwrap();
+        let said = fields.len();
+        fields.retain(|(key, _)| key.as_text() != Some(name));
+        assert_eq!(fields.len(), said - 1, "{of}.{name}");
+        assert!(value.deserialized::<Snapshot>().is_err(), "{of}.{name}");
     }
 }
 

@@ -1,13 +1,11 @@
 //! When actions are due.
 
-use super::{Done, Passage, Piece, is_wait};
+use super::{Done, Passage, Piece, Scene, is_wait};
 use crate::api::Output;
-use crate::executor::Executor;
 use crate::layout::cursor::LayoutError;
 use crate::layout::cursor::control::is_control;
 use crate::layout::stretch::IssuedWaypoint;
-use crate::layout::world::World;
-use flight_plan::{Act, EvalError, LegAction, Place, Trigger};
+use flight_plan::{Act, EvalError, LegAction, Trigger};
 use geometry::{LatLon, LocalFrame};
 
 /// So near to a piece's ends a position counts as beside it, metres.
@@ -51,86 +49,89 @@ impl Moment {
     }
 }
 
-impl Executor {
-    /// Does what is due on a passage, in the order of its path.
-    pub(super) fn act_on(&mut self, passage: &mut Passage, moment: &Moment, out: &mut Vec<Output>) {
-        let program = self.program.clone();
-        let actions = program.leg(&passage.leg).map_or(&[][..], |leg| &leg.actions);
+impl Passage {
+    /// Does what is due, in the order of the path.
+    pub(super) fn act(&mut self, moment: &Moment, scene: &mut Scene, out: &mut Vec<Output>) {
+        let program = scene.program;
+        let actions = program.leg(&self.leg).map_or(&[][..], |leg| &leg.actions);
         let mut due = Vec::new();
         let mut up_to_m = Vec::new();
-        for (number, (action, done)) in actions.iter().zip(&passage.done).enumerate() {
-            let ways_m = self.due(passage, *done, action, moment).unwrap_or_else(|reason| {
-                let leg = passage.leg.clone();
-                self.tell_trouble(LayoutError::Expression { leg, reason }, out);
+        for (number, (action, done)) in actions.iter().zip(&self.done).enumerate() {
+            let ways_m = self.due(*done, action, moment, scene).unwrap_or_else(|reason| {
+                scene.reported.report(LayoutError::Expression { leg: self.leg.clone(), reason }, out);
                 Vec::new()
             });
-            let caught_up_m = ways_m.get(MOST_AT_ONCE - 1).copied().unwrap_or(moment.way_m - passage.began_m);
+            let caught_up_m = ways_m.get(MOST_AT_ONCE - 1).copied().unwrap_or(moment.way_m - self.began_m);
             up_to_m.push(caught_up_m.max(done.up_to_m));
             due.extend(ways_m.into_iter().map(|way_m| (way_m, number, &action.act)));
         }
-        let beyond = self.beyond(passage, actions, moment);
-        for ((done, ahead), up_to_m) in passage.done.iter_mut().zip(beyond).zip(up_to_m) {
+        let beyond = self.beyond(actions, moment, scene);
+        for ((done, ahead), up_to_m) in self.done.iter_mut().zip(beyond).zip(up_to_m) {
             (done.ahead, done.up_to_m) = (ahead.unwrap_or(done.ahead), up_to_m);
         }
         due.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, number, act) in due {
-            self.fulfil(passage, number, act, out);
+            self.fulfil(number, act, scene, out);
         }
     }
 
-    /// Does what is due at the end of a passage.
-    pub(super) fn act_at_the_end(&mut self, passage: &mut Passage, out: &mut Vec<Output>) {
-        let program = self.program.clone();
-        let leg = program.leg(&passage.leg);
+    /// Does what is due at the end.
+    pub(super) fn act_at_the_end(&mut self, scene: &mut Scene, out: &mut Vec<Output>) {
+        let program = scene.program;
+        let leg = program.leg(&self.leg);
         let actions = leg.map_or(&[][..], |leg| &leg.actions);
         for (number, action) in actions.iter().enumerate() {
-            let done = passage.done.get(number);
+            let done = self.done.get(number);
             let due = action.trigger == Trigger::End && done.is_some_and(|d| d.times == 0);
             if due && (!is_wait(&action.act) || leg.is_some_and(is_control)) {
-                self.fulfil(passage, number, &action.act, out);
+                self.fulfil(number, &action.act, scene, out);
             }
         }
     }
 
-    fn fulfil(&mut self, passage: &mut Passage, number: usize, act: &Act, out: &mut Vec<Output>) {
-        passage.done.iter_mut().skip(number).take(1).for_each(|done| done.times += 1);
-        self.perform(passage.leg.clone(), passage.number, passage.iteration, act, out);
+    fn fulfil(&mut self, number: usize, act: &Act, scene: &mut Scene, out: &mut Vec<Output>) {
+        self.done.iter_mut().skip(number).take(1).for_each(|done| done.times += 1);
+        self.perform(act, scene, out);
     }
 
     /// Path lengths at which an action is due by now, one for each time.
     fn due(
         &self,
-        passage: &Passage,
         done: Done,
         action: &LegAction,
         moment: &Moment,
+        scene: &Scene,
     ) -> Result<Vec<f64>, String> {
-        let world = self.world().in_iteration(passage.iteration);
-        let way_m = moment.way_m - passage.began_m;
+        let (program, env) = (scene.program, scene.env(self.iteration));
+        let way_m = moment.way_m - self.began_m;
         if let Trigger::Every(every) = &action.trigger {
-            let every_m = world.number(every).map_err(|why| why.to_string())?;
+            let every_m = program.eval_number(every, &env).map_err(|why| why.to_string())?;
             return multiples(every_m, done.up_to_m, way_m);
         }
         if done.times > 0 {
             return Ok(Vec::new());
         }
         let once = |due: bool, at_m: f64| if due { vec![at_m] } else { Vec::new() };
-        let number = |value| world.number(value).map_err(|why: EvalError| why.to_string());
+        let number = |value| program.eval_number(value, &env).map_err(|why: EvalError| why.to_string());
         Ok(match &action.trigger {
             Trigger::Start => once(true, f64::NEG_INFINITY),
             Trigger::Distance(metres) => number(metres).map(|m| once(way_m >= m, m))?,
-            Trigger::Time(seconds) => once(passage.flown_s >= number(seconds)?, way_m),
-            Trigger::Abeam(place) => once(is_abeam(place, done, moment, &world)?, way_m),
+            Trigger::Time(seconds) => once(self.flown_s >= number(seconds)?, way_m),
+            Trigger::Abeam(place) => {
+                let place = program.eval_place(place, &env).map_err(|why| why.to_string())?;
+                once(is_abeam(place, done, moment), way_m)
+            }
             Trigger::End | Trigger::Every(_) => Vec::new(),
         })
     }
 
     /// Which positions lie beyond the end of a piece that is complete; `None`: nothing new is known.
-    fn beyond(&self, passage: &Passage, actions: &[LegAction], moment: &Moment) -> Vec<Option<bool>> {
-        let world = self.world().in_iteration(passage.iteration);
+    fn beyond(&self, actions: &[LegAction], moment: &Moment, scene: &Scene) -> Vec<Option<bool>> {
+        let env = scene.env(self.iteration);
         let of = |action: &LegAction| {
             let Trigger::Abeam(place) = &action.trigger else { return None };
-            let beside = world.place(place).ok().and_then(|p| moment.piece.beside(p));
+            let place = scene.program.eval_place(place, &env).ok();
+            let beside = place.and_then(|p| moment.piece.beside(p));
             beside.filter(|_| moment.complete).map(|(along_m, length_m)| along_m > length_m)
         };
         actions.iter().map(of).collect()
@@ -138,13 +139,12 @@ impl Executor {
 }
 
 /// The aircraft has passed the position of an action on this piece of the path, or on the corner before it.
-fn is_abeam(place: &Place, done: Done, moment: &Moment, world: &World) -> Result<bool, String> {
-    let place = world.place(place).map_err(|why| why.to_string())?;
-    let Some((along_m, length_m)) = moment.piece.beside(place) else { return Ok(false) };
+fn is_abeam(place: LatLon, done: Done, moment: &Moment) -> bool {
+    let Some((along_m, length_m)) = moment.piece.beside(place) else { return false };
     let on_corner = done.ahead && along_m < 0.0;
     let on_piece = (-NEAR_M..=length_m + NEAR_M).contains(&along_m);
     let flown_m = moment.piece.beside(moment.at).map_or(0.0, |(flown_m, _)| flown_m);
-    Ok(on_corner || (on_piece && (moment.complete || flown_m >= along_m)))
+    on_corner || (on_piece && (moment.complete || flown_m >= along_m))
 }
 
 impl Piece {
@@ -157,7 +157,7 @@ impl Piece {
     }
 }
 
-/// Multiples of a distance on the way made since `up_to_m`, metres.
+/// Multiples of a distance on the distance flown since `up_to_m`, metres.
 fn multiples(every_m: f64, up_to_m: f64, way_m: f64) -> Result<Vec<f64>, String> {
     if every_m < LEAST_EVERY_M {
         return Err(format!("an action every {every_m} m can't be done: give it {LEAST_EVERY_M} m or more"));

@@ -43,10 +43,10 @@ impl Cursor {
     }
 
     /// Why a leg is passed over on the way to the next waypoint, if it is.
-    pub(crate) fn trouble_with(mut self, leg: &Id, world: &World) -> Option<LayoutError> {
+    pub(crate) fn error_with(mut self, leg: &Id, world: &World) -> Option<LayoutError> {
         let Step::Waypoint(emission) = self.next(world) else { return None };
         let passed = self.leg(world).is_none_or(|now| now.id != *leg);
-        let of_leg = |trouble: &LayoutError| matches!(trouble, LayoutError::Leg { leg: of, .. } if of == leg);
+        let of_leg = |error: &LayoutError| matches!(error, LayoutError::Leg { leg: of, .. } if of == leg);
         emission.notes.errors.into_iter().find(of_leg).filter(|_| passed)
     }
 
