@@ -8,6 +8,7 @@ mod say;
 
 pub mod app;
 pub mod assets;
+pub mod chart;
 pub mod command;
 pub mod demo;
 pub mod document;

@@ -3,6 +3,7 @@
 use super::polyline;
 use super::view::{Mercator, View};
 use crate::assets::{self, Basemap, Polyline, basemap::Bounds};
+use crate::chart::labels::Labels;
 use crate::theme::Palette;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, epaint::Vertex};
 use geometry::LatLon;
@@ -88,7 +89,7 @@ fn corners_of(corners: &[Pos2], [a, b, c]: [u32; 3]) -> Option<[Pos2; 3]> {
 /// Names of countries big enough on the screen, without overlaps.
 fn draw_names(painter: &Painter, map: &Basemap, view: &View, p: &Palette) {
     let most = (view.points_per_metre() * 4.0e6).clamp(4.0, 300.0) as u32;
-    let mut taken: Vec<Rect> = Vec::new();
+    let mut placed = Labels::new(view.rect.into());
     for label in map.labels().iter().filter(|l| l.rank < most) {
         let at = view.place(label.position);
         if !view.rect.contains(at) {
@@ -96,9 +97,9 @@ fn draw_names(painter: &Painter, map: &Basemap, view: &View, p: &Palette) {
         }
         let galley = painter.layout_no_wrap(label.name.clone(), FontId::proportional(11.5), p.weak);
         let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
-        if taken.iter().all(|t| !t.intersects(rect.expand(4.0))) {
+        if placed.is_free(&rect.expand(4.0).into()) {
             painter.galley(rect.min, galley, p.weak);
-            taken.push(rect);
+            placed.take(rect.into());
         }
     }
 }

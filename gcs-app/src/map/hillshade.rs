@@ -1,6 +1,7 @@
 //! Terrain as a shaded picture: computed once on a worker thread, then a texture.
 
 use super::view::{Mercator, View};
+use crate::chart::relief::{Grid, Style};
 use egui::{
     Color32, ColorImage, Context, Mesh, Painter, Pos2, Rect, Shape, TextureHandle, TextureOptions, pos2,
 };
@@ -21,8 +22,6 @@ pub struct Ground {
 
 /// Pixels along the longer side.
 const SIZE: usize = 1100;
-/// Ground metres per metre of relief when shading: more than 1 exaggerates.
-const EXAGGERATION: f64 = 1.6;
 
 /// The layer: a picture for the dark theme and one for the light.
 #[derive(Default)]
@@ -79,103 +78,52 @@ impl Layer {
 
 /// Dark and light pictures of the ground, in the map's projection.
 fn paint(ground: &Ground) -> [ColorImage; 2] {
-    let heights = Heights::sample(ground);
-    [true, false].map(|dark| {
-        let mut pixels = Vec::with_capacity(heights.width * heights.height);
-        for row in 0..heights.height {
-            for column in 0..heights.width {
-                pixels.push(heights.colour(column, row, dark));
-            }
-        }
-        ColorImage::new([heights.width, heights.height], pixels)
-    })
+    let (low, high) = (Mercator::from(ground.south_west), Mercator::from(ground.north_east));
+    let (dx, dy) = ((high.x - low.x).max(1e-9), (low.y - high.y).max(1e-9));
+    let longer = dx.max(dy);
+    let pixels = |extent: f64| ((SIZE as f64 * extent / longer).round() as usize).clamp(2, SIZE);
+    let (width, height) = (pixels(dx), pixels(dy));
+    let latitude = ground.south_west.lat_deg.to_radians();
+    let metres_per_pixel = dx * 40_075_016.686 * latitude.cos() / width as f64;
+    let grid = Grid::sample((width, height), metres_per_pixel, |column, row| {
+        let x = low.x + dx * (column as f64 + 0.5) / width as f64;
+        let y = high.y + dy * (row as f64 + 0.5) / height as f64;
+        ground.terrain.elevation_m(Mercator { x, y }.to_geo())
+    });
+    let colour = |c: Option<[u8; 3]>| c.map_or(Color32::TRANSPARENT, |[r, g, b]| Color32::from_rgb(r, g, b));
+    [DARK, LIGHT].map(|style| ColorImage::new([width, height], grid.paint(&style).map(colour).collect()))
 }
 
-struct Heights {
-    width: usize,
-    height: usize,
-    metres_per_pixel: f64,
-    values: Vec<Option<f64>>,
-}
-
-impl Heights {
-    fn sample(ground: &Ground) -> Self {
-        let (low, high) = (Mercator::from(ground.south_west), Mercator::from(ground.north_east));
-        let (dx, dy) = ((high.x - low.x).max(1e-9), (low.y - high.y).max(1e-9));
-        let longer = dx.max(dy);
-        let pixels = |extent: f64| ((SIZE as f64 * extent / longer).round() as usize).clamp(2, SIZE);
-        let (width, height) = (pixels(dx), pixels(dy));
-        let place = |i: usize| Mercator {
-            x: low.x + dx * ((i % width) as f64 + 0.5) / width as f64,
-            y: high.y + dy * ((i / width) as f64 + 0.5) / height as f64,
-        };
-        let values = (0..width * height).map(|i| ground.terrain.elevation_m(place(i).to_geo())).collect();
-        let latitude = ground.south_west.lat_deg.to_radians();
-        let metres_per_pixel = dx * 40_075_016.686 * latitude.cos() / width as f64;
-        Self { width, height, metres_per_pixel, values }
-    }
-
-    fn at(&self, column: usize, row: usize) -> Option<f64> {
-        let (column, row) = (column.min(self.width - 1), row.min(self.height - 1));
-        *self.values.get(row * self.width + column)?
-    }
-
-    fn colour(&self, column: usize, row: usize, dark: bool) -> Color32 {
-        let around = (
-            self.at(column, row),
-            self.at(column + 1, row),
-            self.at(column.saturating_sub(1), row),
-            self.at(column, row + 1),
-            self.at(column, row.saturating_sub(1)),
-        );
-        let (Some(here), Some(east), Some(west), Some(south), Some(north)) = around else {
-            return Color32::TRANSPARENT;
-        };
-        let run = 2.0 * self.metres_per_pixel / EXAGGERATION;
-        tint(here, shade((east - west) / run, (north - south) / run), dark)
-    }
-}
-
-/// Light from the north-west, 45° high, on a slope (rise per run eastwards and northwards): 0..1,
-/// 0.71 on the level.
-fn shade(slope_east: f64, slope_north: f64) -> f64 {
-    let light = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
-    let normal = [-slope_east, -slope_north, 1.0];
-    let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-    (normal.iter().zip(light).map(|(n, l)| n * l).sum::<f64>() / length).max(0.0)
-}
-
-/// Elevation steps of the tint, metres AMSL.
-const STEPS: [f64; 5] = [0.0, 300.0, 500.0, 750.0, 1100.0];
-const DARK: [[f64; 3]; 5] =
-    [[30., 46., 40.], [38., 52., 42.], [52., 62., 48.], [70., 72., 58.], [94., 92., 82.]];
-const LIGHT: [[f64; 3]; 5] =
-    [[206., 220., 196.], [216., 226., 200.], [230., 230., 206.], [236., 224., 200.], [242., 236., 226.]];
-
-fn tint(elevation_m: f64, shade: f64, dark: bool) -> Color32 {
-    let colours = if dark { &DARK } else { &LIGHT };
-    let upper = STEPS.iter().position(|s| *s > elevation_m).unwrap_or(STEPS.len() - 1).max(1);
-    let share = ((elevation_m - STEPS[upper - 1]) / (STEPS[upper] - STEPS[upper - 1])).clamp(0.0, 1.0);
-    // level ground keeps its colour; slopes are lighter or darker than it
-    let light = 1.0 + (shade - 0.707) * if dark { 1.5 } else { 0.85 };
-    let channel = |i: usize| {
-        let base = colours[upper - 1][i] * (1.0 - share) + colours[upper][i] * share;
-        (base * light).clamp(0.0, 255.0) as u8
-    };
-    Color32::from_rgb(channel(0), channel(1), channel(2))
-}
+const LIGHT: Style = Style {
+    tints: [
+        (0.0, [206.0, 220.0, 196.0]),
+        (300.0, [216.0, 226.0, 200.0]),
+        (500.0, [230.0, 230.0, 206.0]),
+        (750.0, [236.0, 224.0, 200.0]),
+        (1100.0, [242.0, 236.0, 226.0]),
+    ],
+    exaggeration: 1.6,
+    contrast: 0.6,
+    light: (0.0, 2.0),
+    contour_m: None,
+    // from pixel to pixel
+    slope_m: 0.0,
+};
+const DARK: Style = Style {
+    tints: [
+        (0.0, [30.0, 46.0, 40.0]),
+        (300.0, [38.0, 52.0, 42.0]),
+        (500.0, [52.0, 62.0, 48.0]),
+        (750.0, [70.0, 72.0, 58.0]),
+        (1100.0, [94.0, 92.0, 82.0]),
+    ],
+    contrast: 1.06,
+    ..LIGHT
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn slopes_towards_the_light_are_brighter() {
-        assert!(shade(0.5, 0.0) > shade(0.0, 0.0), "a slope that rises eastwards faces west");
-        assert!(shade(0.0, -0.5) > shade(0.0, 0.0), "one that falls northwards faces north");
-        assert!(shade(-0.5, 0.5) < shade(0.0, 0.0));
-        assert!(shade(1e9, -1e9) <= 1.0 && shade(-1e9, 1e9) >= 0.0);
-    }
 
     #[test]
     fn unknown_ground_is_transparent_and_the_picture_has_the_ground_s_proportions() {

@@ -1,18 +1,27 @@
 //! Long lines, drawn with no more vertices than the screen can show.
 
 use super::view::{Mercator, View};
-use egui::{Color32, Painter, Pos2, Shape, Stroke};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
 /// The parts of a line that are near the screen, with at most about one vertex per screen point.
 pub fn visible_parts(line: &[Mercator], view: &View) -> Vec<Vec<Pos2>> {
-    let near = view.rect.expand(view.rect.width().max(view.rect.height()));
+    parts(line.iter().map(|m| view.screen(*m)), view.rect)
+}
+
+/// As [`visible_parts`], of a line in screen points.
+pub fn visible(line: &[Pos2], screen: Rect) -> Vec<Vec<Pos2>> {
+    parts(line.iter().copied(), screen)
+}
+
+fn parts(line: impl ExactSizeIterator<Item = Pos2>, screen: Rect) -> Vec<Vec<Pos2>> {
+    let near = screen.expand(screen.width().max(screen.height()));
+    let last = line.len();
     let mut parts = Vec::new();
     let mut part: Vec<Pos2> = Vec::new();
     let mut before: Option<Pos2> = None;
-    for (i, m) in line.iter().enumerate() {
-        let p = view.screen(*m);
+    for (i, p) in line.enumerate() {
         let shown = match before {
-            Some(b) => near.intersects(egui::Rect::from_two_pos(b, p)),
+            Some(b) => near.intersects(Rect::from_two_pos(b, p)),
             None => true,
         };
         if !shown {
@@ -20,7 +29,7 @@ pub fn visible_parts(line: &[Mercator], view: &View) -> Vec<Vec<Pos2>> {
         } else if part.is_empty() {
             part.extend(before);
             part.push(p);
-        } else if i + 1 == line.len() || part.last().is_none_or(|last| last.distance_sq(p) >= 1.0) {
+        } else if i + 1 == last || part.last().is_none_or(|last| last.distance_sq(p) >= 1.0) {
             part.push(p);
         }
         before = Some(p);

@@ -1,5 +1,6 @@
 //! Text on the map.
 
+use crate::chart::Room;
 use crate::theme::Palette;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, vec2};
 
@@ -21,4 +22,10 @@ pub fn haloed(
     }
     painter.galley_with_override_text_color(rect.min, galley, colour);
     rect
+}
+
+impl From<Rect> for Room {
+    fn from(rect: Rect) -> Self {
+        Self { left: rect.left(), top: rect.top(), right: rect.right(), bottom: rect.bottom() }
+    }
 }

@@ -2,19 +2,17 @@
 
 use super::polyline::{self, Style};
 use super::text;
-use super::view::{Mercator, View};
+use super::view::View;
+use crate::chart::Point;
+use crate::chart::zones::{self as chart, Look, Surface};
 use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
-use egui::{Align2, Painter, Pos2, Rect, Stroke, pos2};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2};
 use flight_plan::{Altitude, Value, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
-
-/// Corners of the polygon that stands for a circle.
-const CIRCLE_CORNERS: u32 = 96;
-/// Distance between lines of the hatching, points.
-const HATCH: f32 = 11.0;
+use std::convert::Infallible;
 
 /// Every zone of the plan.
 pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
@@ -25,42 +23,64 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
 }
 
 fn draw_zone(painter: &Painter, view: &View, zone: &Zone, selected: bool, units: Units, p: &Palette) {
-    let outline = outline(zone);
-    let points: Vec<Pos2> = outline.iter().map(|at| view.place(*at)).collect();
-    let Some(bounds) = bounds(&points).filter(|bounds| bounds.intersects(view.rect)) else { return };
-    let closed: Vec<Mercator> = outline.iter().chain(outline.first()).map(|at| (*at).into()).collect();
-    let parts = polyline::visible_parts(&closed, view);
-    let width = if selected { 2.4 } else { 1.6 };
-    match zone.kind {
-        ZoneKind::KeepOut => {
-            hatch(painter, &points, bounds.intersect(view.rect), Stroke::new(0.8, p.contingency));
-            polyline::draw(painter, &parts, Stroke::new(width, p.contingency), Style::Solid, p.halo);
-        }
-        ZoneKind::KeepIn => {
-            polyline::draw(painter, &parts, Stroke::new(width + 3.0, p.contingency), Style::Solid, p.halo);
-            polyline::draw(painter, &parts, Stroke::new(width + 0.6, p.halo), Style::Solid, p.contingency);
-        }
+    let ring: Vec<Point> = chart::outline(zone).iter().map(|at| view.place(*at).into()).collect();
+    let bounds = Rect::from_points(&ring.iter().map(|at| Pos2::from(*at)).collect::<Vec<_>>());
+    if ring.len() < 3 || !bounds.intersects(view.rect) {
+        return;
     }
+    chart::paint(
+        &mut Screen { painter, view },
+        &ring,
+        &look(zone.kind, selected, p),
+        bounds.intersect(view.rect).into(),
+    );
     let at = pos2(bounds.center().x, bounds.top() + 4.0);
     if view.is_near(at) && bounds.width() > 40.0 {
         text::haloed(painter, at, Align2::CENTER_TOP, &label(zone, units), 11.5, p.contingency, p);
     }
 }
 
-/// The corners of a zone; of a circle, points on it.
-pub fn outline(zone: &Zone) -> Vec<LatLon> {
-    match &zone.shape {
-        ZoneShape::Polygon(corners) => corners.iter().copied().filter(|c| c.is_valid()).collect(),
-        ZoneShape::Circle { centre, radius_m } if centre.is_valid() && *radius_m < 1.0e6 => {
-            let on = |i| centre.destination(f64::from(i) * 360.0 / f64::from(CIRCLE_CORNERS), *radius_m);
-            (0..CIRCLE_CORNERS).map(on).collect()
+/// A line on the map and the colour of its halo.
+type Pen = (Stroke, Color32);
+
+fn look(kind: ZoneKind, selected: bool, p: &Palette) -> Look<Pen, Infallible> {
+    let width = if selected { 2.4 } else { 1.6 };
+    let (hatching, outlines) = match kind {
+        ZoneKind::KeepOut => {
+            let hatching = (Stroke::new(0.8, p.contingency), p.halo);
+            (Some(hatching), vec![(Stroke::new(width, p.contingency), p.halo)])
         }
-        ZoneShape::Circle { .. } => Vec::new(),
-    }
+        ZoneKind::KeepIn => {
+            let outer = (Stroke::new(width + 3.0, p.contingency), p.halo);
+            (None, vec![outer, (Stroke::new(width + 0.6, p.halo), p.contingency)])
+        }
+    };
+    Look { fill: None, hatching, outlines }
 }
 
-fn bounds(points: &[Pos2]) -> Option<Rect> {
-    (points.len() > 2).then(|| Rect::from_points(points))
+/// The map as what zones are drawn on. Nothing is filled: the ground is to be seen.
+struct Screen<'a> {
+    painter: &'a Painter,
+    view: &'a View,
+}
+
+impl Surface for Screen<'_> {
+    type Pen = Pen;
+    type Ink = Infallible;
+
+    fn fill(&mut self, _: &[Point], ink: &Infallible) {
+        match *ink {}
+    }
+
+    fn outline(&mut self, ring: &[Point], (stroke, halo): &Pen) {
+        let closed: Vec<Pos2> = ring.iter().chain(ring.first()).map(|at| Pos2::from(*at)).collect();
+        let parts = polyline::visible(&closed, self.view.rect);
+        polyline::draw(self.painter, &parts, *stroke, Style::Solid, *halo);
+    }
+
+    fn line(&mut self, from: Point, to: Point, (stroke, _): &Pen) {
+        self.painter.line_segment([from.into(), to.into()], *stroke);
+    }
 }
 
 /// `Keep out: quarry, 0 ft AGL to 1500 ft AMSL`.
@@ -69,7 +89,7 @@ fn label(zone: &Zone, units: Units) -> String {
         ZoneKind::KeepIn => "Keep in",
         ZoneKind::KeepOut => "Keep out",
     };
-    let name = if zone.name.is_empty() { zone.id.as_str() } else { &zone.name };
+    let name = chart::name(zone);
     match band(zone, units) {
         Some(band) => format!("{kind}: {name}, {band}"),
         None => format!("{kind}: {name}"),
@@ -89,33 +109,6 @@ pub fn band(zone: &Zone, units: Units) -> Option<String> {
         (None, Some(ceiling)) => Some(format!("up to {}", shown(ceiling))),
         (Some(floor), None) => Some(format!("from {}", shown(floor))),
         (Some(floor), Some(ceiling)) => Some(format!("{} to {}", shown(floor), shown(ceiling))),
-    }
-}
-
-/// Diagonal lines inside a polygon on the screen, concave ones too, as far as they are in `within`.
-fn hatch(painter: &Painter, polygon: &[Pos2], within: Rect, stroke: Stroke) {
-    // along a line x + y = c; it enters and leaves the polygon in turn
-    let sum = |at: Pos2| at.x + at.y;
-    let (first, last) = (sum(within.min), sum(within.max));
-    let mut c = (first / HATCH).ceil() * HATCH;
-    while c < last {
-        let mut crossings: Vec<f32> = Vec::new();
-        for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-            let (from, to) = (sum(*a) - c, sum(*b) - c);
-            if (from < 0.0) != (to < 0.0) {
-                crossings.push(a.x + (b.x - a.x) * from / (from - to));
-            }
-        }
-        crossings.sort_by(f32::total_cmp);
-        for pair in crossings.chunks_exact(2) {
-            let &[enters, leaves] = pair else { continue };
-            let left = enters.max(within.left()).max(c - within.bottom());
-            let right = leaves.min(within.right()).min(c - within.top());
-            if left < right {
-                painter.line_segment([pos2(left, c - left), pos2(right, c - right)], stroke);
-            }
-        }
-        c += HATCH;
     }
 }
 

@@ -4,7 +4,9 @@ use super::canvas::{Canvas, Pen, Type};
 use super::labels::Labels;
 use super::style::*;
 use super::view::View;
-use flight_plan::{Zone, ZoneKind, ZoneShape};
+use crate::chart::Point;
+use crate::chart::zones::{self as chart, Look, Surface};
+use flight_plan::{Zone, ZoneKind};
 use geometry::LatLon;
 
 /// The outline of a zone, as pictures and their legends show it.
@@ -22,32 +24,36 @@ const fn ink(kind: ZoneKind) -> Ink {
 /// The corners of zones to keep out of that the path comes near to: a picture shows them whole.
 pub fn near(zones: &[Zone], path: &[LatLon]) -> Vec<LatLon> {
     let near = Bounds::around(path).grown(0.25);
-    let zones = zones.iter().filter(|zone| zone.kind == ZoneKind::KeepOut).map(ring);
+    let zones = zones.iter().filter(|zone| zone.kind == ZoneKind::KeepOut).map(chart::outline);
     zones.filter(|ring| Bounds::around(ring).meets(near)).flatten().collect()
 }
 
 /// Draws all of them with their names, on a picture of this colour.
 pub fn draw(canvas: &mut Canvas, view: &View, labels: &mut Labels, zones: &[Zone], paper: Ink) {
+    let within = labels.window();
     for zone in zones {
-        let points = view.pixels(&ring(zone));
-        if zone.kind == ZoneKind::KeepOut {
-            canvas.polygon(&points, KEEP_OUT.faded(34));
-        }
-        canvas.outline(&points, pen(zone.kind));
-        let name = if zone.name.is_empty() { zone.id.as_str() } else { &zone.name };
-        labels.at_ring(canvas, &points, name, Type::bold(15.0, ink(zone.kind)).on(paper));
+        let points = view.pixels(&chart::outline(zone));
+        let fill = (zone.kind == ZoneKind::KeepOut).then_some(KEEP_OUT.faded(34));
+        let look = Look { fill, hatching: None, outlines: vec![pen(zone.kind)] };
+        chart::paint(canvas, &points, &look, within);
+        labels.at_ring(canvas, &points, chart::name(zone), Type::bold(15.0, ink(zone.kind)).on(paper));
     }
 }
 
-/// The outline of a zone; of a circle: enough of its points.
-fn ring(zone: &Zone) -> Vec<LatLon> {
-    const CORNERS: u32 = 90;
-    let bearing = |i: u32| f64::from(i) * 360.0 / f64::from(CORNERS);
-    match &zone.shape {
-        ZoneShape::Polygon(corners) => corners.clone(),
-        ZoneShape::Circle { centre, radius_m } => {
-            (0..CORNERS).map(|i| centre.destination(bearing(i), *radius_m)).collect()
-        }
+impl Surface for Canvas {
+    type Pen = Pen;
+    type Ink = Ink;
+
+    fn fill(&mut self, ring: &[Point], ink: &Ink) {
+        self.polygon(ring, *ink);
+    }
+
+    fn outline(&mut self, ring: &[Point], pen: &Pen) {
+        self.outline(ring, *pen);
+    }
+
+    fn line(&mut self, from: Point, to: Point, pen: &Pen) {
+        self.line(&[from, to], *pen);
     }
 }
 
@@ -101,6 +107,7 @@ mod tests {
     use super::*;
     use crate::report::canvas::count;
     use crate::report::{Findings, made_up_record, map};
+    use flight_plan::ZoneShape;
 
     fn zone(kind: ZoneKind, bearing_deg: f64, distance_m: f64) -> Zone {
         let record = made_up_record();

@@ -2,6 +2,7 @@
 //! one undo step.
 
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
+use crate::chart::labels::Labels;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::sketch::{Handle, Handled, Sketch, radius_edit};
 use crate::map::{path, text};
@@ -152,12 +153,12 @@ fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
 /// Names that do not overlap; what is selected or under the pointer comes first.
 fn draw_labels(painter: &Painter, mut labels: Vec<Label>, p: &Palette) {
     labels.sort_by_key(|l| !l.first);
-    let mut taken: Vec<Rect> = Vec::new();
+    let mut placed = Labels::new(painter.clip_rect().into());
     for label in labels {
         let size = vec2(label.text.chars().count() as f32 * 7.0, 13.0);
         let rect = label.anchor.anchor_size(label.at, size);
-        if label.first || !taken.iter().any(|t| t.intersects(rect)) {
-            taken.push(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p));
+        if label.first || placed.is_free(&rect.into()) {
+            placed.take(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p).into());
         }
     }
 }
