@@ -1,6 +1,7 @@
 //! What the window may ask for. Panels and map borrow the state and push commands; the app carries
 //! them out between two frames.
 
+use crate::panels::PanelId;
 use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
@@ -63,8 +64,10 @@ pub enum ViewCommand {
     Tool(&'static str),
     /// Other units.
     Units(Units),
-    /// Another tab below the map.
-    BottomTab(BottomTab),
+    /// Show a panel, or hide it.
+    ShowPanel(PanelId, bool),
+    /// Put all panels back to where they are by default.
+    ResetLayout,
     /// Move the cursor along the preview, seconds from its start; `None` hides it.
     Scrub(Option<f64>),
     /// Run the preview's cursor, or stop it.
@@ -145,18 +148,6 @@ impl Selection {
             | Self::Procedure(id) => id,
         }
     }
-}
-
-/// What is shown below the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum BottomTab {
-    /// Altitude and terrain along the path.
-    #[default]
-    Profile,
-    /// The plan as a table.
-    Table,
-    /// Commands with their answers, and events.
-    Log,
 }
 
 /// Commands on their way to the app.

@@ -11,6 +11,7 @@ pub mod assets;
 pub mod chart;
 pub mod command;
 pub mod demo;
+pub mod dock;
 pub mod document;
 pub mod files;
 pub mod forecast;

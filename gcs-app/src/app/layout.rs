@@ -1,51 +1,36 @@
-//! Where the panels are.
+//! Where the parts of the window are: the bar above, the dock with map and panels below, and what
+//! floats over it.
 
 use super::{App, Now};
-use crate::command::{BottomTab, DocumentCommand, Queue, ViewCommand};
-use crate::panels::{
-    Scene, alarms, bar, decision, flight, inspector, log, pfd, problems, profile, push, table,
-};
+use crate::command::{DocumentCommand, Queue, ViewCommand};
+use crate::dock::Content;
+use crate::panels::bar::PanelEntry;
+use crate::panels::{self, Scene, bar, decision, flight, push};
 use crate::theme;
-use crate::units;
-use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, ScrollArea, Ui};
+use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
-        let Self { document, vehicles, view, analysis, map, tree, .. } = self;
+        let Self { document, vehicles, view, analysis, map, panels, dock, .. } = self;
         let vehicle = vehicles.shown();
         let scene = Scene { document, analysis, vehicle, vehicles, view, now_s: now.window_s, utc: now.utc };
+        let entry = |panel: &dyn panels::Panel| PanelEntry {
+            id: panel.id(),
+            name: panel.name(),
+            shown: dock.shows(panel.id()),
+        };
+        let entries: Vec<PanelEntry> = panels.iter().map(|panel| entry(panel.as_ref())).collect();
         let frame = theme::panel(ui);
         Panel::top("bar")
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
-            .show(ui, |ui| bar::show(ui, &scene, queue));
+            .show(ui, |ui| bar::show(ui, &scene, &entries, queue));
         notice(ui, &scene, queue);
-        Panel::left("plan").default_size(268.0).size_range(200.0..=460.0).frame(frame).show(ui, |ui| {
-            let height = if scene.problems().next().is_some() { 168.0 } else { 64.0 };
-            Panel::bottom("problems").resizable(false).exact_size(height).frame(Frame::new()).show(
-                ui,
-                |ui| {
-                    ui.add_space(6.0);
-                    problems::show(ui, &scene, queue);
-                },
-            );
-            tree.show(ui, &scene, queue);
-        });
-        Panel::right("details")
-            .default_size(324.0)
-            .size_range(324.0..=460.0)
-            .frame(frame)
-            .show(ui, |ui| right(ui, &scene, queue));
-        Panel::bottom("below")
-            .default_size(196.0)
-            .size_range(120.0..=480.0)
-            .resizable(true)
-            .frame(frame)
-            .show(ui, |ui| below(ui, &scene, queue));
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
-            map.show(ui, &scene, queue);
-            over_map(ui, &scene, queue);
+            let whole = ui.max_rect();
+            let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
+            over_map(ui, floor(map, whole), &scene, queue);
         });
         push::show(ui, &scene, queue);
         dropped_files(ui, queue);
@@ -65,78 +50,19 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
-/// Inspector above; below it, once a vehicle was heard, the flight.
-fn right(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    if scene.vehicle.heard_s.is_some() {
-        Panel::bottom("flight")
-            .default_size(460.0)
-            .size_range(220.0..=640.0)
-            .resizable(true)
-            .frame(Frame::new())
-            .show(ui, |ui| {
-                ui.add_space(8.0);
-                pfd::show(ui, scene);
-                ui.add_space(4.0);
-                ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
-                    alarms::show(ui, scene);
-                    ui.add_space(4.0);
-                    flight::show(ui, scene);
-                });
-            });
-    }
-    inspector::show(ui, scene, queue);
+/// Smallest map that the commands fit on, screen points.
+const LEAST_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
+
+/// On a map that is narrower the commands take several lines, screen points.
+const ONE_LINE: f32 = 600.0;
+
+/// Where the decision and the commands float: over the map, or over everything where there is no room on it.
+fn floor(map: Option<Rect>, whole: Rect) -> Rect {
+    map.filter(|m| m.width() >= LEAST_MAP.x && m.height() >= LEAST_MAP.y).unwrap_or(whole)
 }
 
-fn below(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    ui.horizontal(|ui| {
-        for (tab, text) in
-            [(BottomTab::Profile, "Profile"), (BottomTab::Table, "Table"), (BottomTab::Log, "Log")]
-        {
-            if ui.selectable_label(scene.view.bottom == tab, text).clicked() {
-                queue.view(ViewCommand::BottomTab(tab));
-            }
-        }
-        ui.separator();
-        timeline(ui, scene, queue);
-    });
-    match scene.view.bottom {
-        BottomTab::Profile => profile::show(ui, scene, queue),
-        BottomTab::Table => table::show(ui, scene, queue),
-        BottomTab::Log => log::show(ui, scene),
-    }
-}
-
-/// Play and pause of the preview, and what it comes to.
-fn timeline(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let forecast = scene.forecast();
-    let text = if scene.view.playing { "⏸ Pause" } else { "▶ Preview" };
-    if ui.add_enabled(!forecast.points.is_empty(), egui::Button::new(text)).on_hover_text("Space").clicked() {
-        queue.view(ViewCommand::Play(!scene.view.playing));
-    }
-    if scene.view.cursor_s.is_some() && ui.button("✖").on_hover_text("Hide the cursor").clicked() {
-        queue.view(ViewCommand::Scrub(None));
-    }
-    let p = theme::of(ui);
-    let sum = format!(
-        "{} · {} · {} waypoints{}",
-        scene.units().distance().show(forecast.length_m()),
-        units::duration(forecast.duration_s()),
-        forecast.waypoints.len(),
-        forecast.battery_left.map_or_else(String::new, |b| format!(" · {:.0} % energy left", b * 100.0)),
-    );
-    ui.label(RichText::new(sum).color(p.weak));
-    if scene.analysis.version != scene.document.version() {
-        ui.spinner();
-    }
-    if let Some(why) = forecast.cut_short.as_ref().or(scene.analysis.no_forecast.as_ref()) {
-        ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
-            .on_hover_text(why);
-    }
-}
-
-/// The decision above and the commands below, both over the map.
-fn over_map(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let map = ui.min_rect();
+/// The decision above and the commands below; nothing hides them.
+fn over_map(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if let Some((request, left_s)) = decision::open(scene) {
         floating(ui, "decision", map, Align2::CENTER_TOP, |ui| {
             ui.set_width(300.0);
@@ -145,12 +71,18 @@ fn over_map(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     if scene.vehicle.status.is_some() && flight::has_commands(scene) {
         // clear of legend, scale and sources
-        let clear = Rect::from_min_max(map.min + egui::vec2(96.0, 0.0), map.max - egui::vec2(0.0, 8.0));
+        let aside = if map.width() < ONE_LINE { 0.0 } else { 96.0 };
+        let clear = Rect::from_min_max(map.min + egui::vec2(aside, 0.0), map.max - egui::vec2(0.0, 8.0));
         floating(ui, "commands", clear, Align2::CENTER_BOTTOM, |ui| {
             flight::last_command(ui, scene);
             // a button held for one vehicle is not held for another
             ui.push_id(scene.vehicles.shown_name(), |ui| {
-                ui.horizontal(|ui| flight::commands(ui, scene, queue));
+                let mut row = |ui: &mut Ui| flight::commands(ui, scene, queue);
+                if map.width() < ONE_LINE {
+                    ui.horizontal_wrapped(&mut row)
+                } else {
+                    ui.horizontal(&mut row)
+                };
             });
         });
     }
@@ -169,5 +101,21 @@ fn dropped_files(ui: &Ui, queue: &mut Queue) {
     let dropped = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
     if let Some(path) = dropped {
         queue.document(DocumentCommand::Open(path));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{pos2, vec2};
+
+    #[test]
+    fn commands_float_over_everything_where_the_map_has_no_room() {
+        let whole = Rect::from_min_size(pos2(0.0, 42.0), vec2(960.0, 558.0));
+        let large = Rect::from_min_size(pos2(270.0, 42.0), vec2(400.0, 300.0));
+        let small = Rect::from_min_size(pos2(270.0, 42.0), vec2(100.0, 300.0));
+        for (map, expected) in [(Some(large), large), (Some(small), whole), (None, whole)] {
+            assert_eq!(floor(map, whole), expected);
+        }
     }
 }

@@ -10,13 +10,14 @@ mod window;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
-use crate::command::{BottomTab, Queue};
+use crate::command::Queue;
+use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::{FileNews, Files};
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
-use crate::panels::{Scene, ViewState, tree::Tree};
+use crate::panels::{self, Panel, Scene, ViewState};
 use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
@@ -33,7 +34,8 @@ pub struct App {
     view: ViewState,
     analysis: Analysis,
     map: MapState,
-    tree: Tree,
+    panels: Vec<Box<dyn Panel>>,
+    dock: Dock,
     queue: Queue,
     links: Links,
     worker: Worker,
@@ -47,7 +49,6 @@ pub struct App {
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Remembered {
     units: Units,
-    bottom: BottomTab,
 }
 
 const STORAGE_KEY: &str = "legwork";
@@ -88,13 +89,15 @@ impl App {
         };
         let remembered: Remembered =
             creation.storage.and_then(|s| eframe::get_value(s, STORAGE_KEY)).unwrap_or_default();
+        let panels = panels::all();
         let mut app = Self {
             document,
             vehicles: Vehicles::default(),
-            view: ViewState { units: remembered.units, bottom: remembered.bottom, ..ViewState::default() },
+            view: ViewState { units: remembered.units, ..ViewState::default() },
             analysis: Analysis::default(),
             map: MapState::default(),
-            tree: Tree::default(),
+            dock: Dock::new(&panels, creation.storage),
+            panels,
             queue: Queue::default(),
             links,
             worker: Worker::spawn(terrain, wake.clone())?,
@@ -126,6 +129,10 @@ impl App {
     /// What the operator looks at.
     pub fn view(&self) -> &ViewState {
         &self.view
+    }
+    /// Where the panels are.
+    pub fn dock(&self) -> &Dock {
+        &self.dock
     }
     /// What was found out about the plan.
     pub fn analysis(&self) -> &Analysis {
@@ -275,7 +282,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        let remembered = Remembered { units: self.view.units, bottom: self.view.bottom };
-        eframe::set_value(storage, STORAGE_KEY, &remembered);
+        eframe::set_value(storage, STORAGE_KEY, &Remembered { units: self.view.units });
+        self.dock.save(storage);
     }
 }

@@ -91,7 +91,8 @@ impl App {
             }
             ViewCommand::Tool(id) => self.map.choose_tool(id),
             ViewCommand::Units(units) => self.view.units = units,
-            ViewCommand::BottomTab(tab) => self.view.bottom = tab,
+            ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
+            ViewCommand::ResetLayout => self.dock.reset(&self.panels),
             ViewCommand::Scrub(cursor_s) => {
                 self.view.cursor_s = cursor_s;
                 self.view.playing = false;

@@ -1,6 +1,6 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
 
-use super::Scene;
+use super::{PanelId, Scene};
 use crate::command::{DocumentCommand, FlyCommand, Queue, ViewCommand};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
@@ -9,10 +9,21 @@ use crate::units::{self, Units};
 use egui::{Color32, RichText, Ui};
 use flight_exec::Phase;
 
+/// A panel in the menu.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PanelEntry {
+    /// Its identifier.
+    pub id: PanelId,
+    /// For people.
+    pub name: &'static str,
+    /// It is not hidden.
+    pub shown: bool,
+}
+
 /// Draws the bar.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queue) {
     ui.horizontal_centered(|ui| {
-        menus(ui, scene, queue);
+        menus(ui, scene, panels, queue);
         ui.separator();
         super::link::show(ui, scene, queue);
         state(ui, scene);
@@ -48,7 +59,7 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
     ui.add(egui::Label::new(RichText::new(text).color(p.weak)).truncate()).on_hover_text(hover);
 }
 
-fn menus(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queue) {
     ui.menu_button(RichText::new("Legwork").strong(), |ui| {
         let file: [(&str, &str, DocumentCommand); 5] = [
             ("New", "Ctrl+N", DocumentCommand::New),
@@ -73,6 +84,8 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         }
         ui.separator();
         view_menu(ui, scene, queue);
+        ui.separator();
+        panel_menu(ui, panels, queue);
     });
     let undo = ui.add_enabled(scene.document.can_undo(), egui::Button::new("↶"));
     named(&undo, "Undo");
@@ -90,6 +103,22 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn named(response: &egui::Response, name: &'static str) {
     let enabled = response.enabled();
     response.widget_info(move || egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
+}
+
+/// Which panels are shown, and the way back to the default layout.
+fn panel_menu(ui: &mut Ui, panels: &[PanelEntry], queue: &mut Queue) {
+    ui.menu_button("Panels", |ui| {
+        for PanelEntry { id, name, mut shown } in panels.iter().copied() {
+            if ui.checkbox(&mut shown, name).clicked() {
+                queue.view(ViewCommand::ShowPanel(id, shown));
+            }
+        }
+        ui.separator();
+        if ui.button("Default layout").on_hover_text("Put every panel back to its place").clicked() {
+            queue.view(ViewCommand::ResetLayout);
+            ui.close();
+        }
+    });
 }
 
 fn view_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

@@ -1,17 +1,46 @@
 //! The flight: what the vehicle does now, every value with its age, and the strip of commands.
 
-use super::{Scene, age_of, field, value_with_age};
+use super::{Panel, PanelId, Place, Scene, age_of, alarms, field, pfd, value_with_age};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Outcome, Request};
 use crate::theme;
 use crate::units;
-use egui::{RichText, Ui};
+use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, IterationPlace, Phase};
 use flight_plan::{Cause, Id};
 use usal::contract::GatewayState;
 
-/// Draws what the vehicle does now.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
+/// The panel: the primary flight display, alarms, and every value with its age.
+#[derive(Debug)]
+pub struct Flight;
+
+impl Panel for Flight {
+    fn id(&self) -> PanelId {
+        "flight"
+    }
+    fn name(&self) -> &'static str {
+        "Flight"
+    }
+    fn place(&self) -> Place {
+        Place::Right { height: 468.0 }
+    }
+    /// Once a vehicle was heard.
+    fn is_relevant(&self, scene: &Scene<'_>) -> bool {
+        scene.vehicle.heard_s.is_some()
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
+        pfd::show(ui, scene);
+        ui.add_space(4.0);
+        ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
+            alarms::show(ui, scene);
+            ui.add_space(4.0);
+            values(ui, scene);
+        });
+    }
+}
+
+/// What the vehicle does now.
+fn values(ui: &mut Ui, scene: &Scene<'_>) {
     ui.spacing_mut().item_spacing.y = 1.0;
     // nothing here is clicked: rows hardly higher than their text
     ui.spacing_mut().interact_size.y = 17.0;

@@ -2,8 +2,8 @@
 
 mod leg;
 
-use super::Scene;
 use super::field::{self, Change};
+use super::{Panel, PanelId, Place, Scene};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Selection};
 use crate::document::procedure_leg;
 use crate::theme;
@@ -16,8 +16,26 @@ use flight_plan::{
 };
 use wire::Convert;
 
-/// Draws the inspector.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// The panel.
+#[derive(Debug)]
+pub struct Inspector;
+
+impl Panel for Inspector {
+    fn id(&self) -> PanelId {
+        "inspector"
+    }
+    fn name(&self) -> &'static str {
+        "Inspector"
+    }
+    fn place(&self) -> Place {
+        Place::Right { height: 290.0 }
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        selected(ui, scene, queue);
+    }
+}
+
+fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 5.0;
         ui.set_width(ui.available_width());

@@ -1,19 +1,34 @@
 //! Commands with what became of them, and what happened.
 
-use super::Scene;
+use super::{Panel, PanelId, Place, Scene};
+use crate::command::Queue;
 use crate::state::{Level, Line, Outcome, Request};
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
 
-/// Commands on the left, events on the right.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
-    ui.columns(2, |columns| {
-        if let [left, right] = columns {
-            commands(left, scene);
-            events(right, scene);
-        }
-    });
+/// The panel: commands on the left, events on the right.
+#[derive(Debug)]
+pub struct EventLog;
+
+impl Panel for EventLog {
+    fn id(&self) -> PanelId {
+        "log"
+    }
+    fn name(&self) -> &'static str {
+        "Log"
+    }
+    fn place(&self) -> Place {
+        Place::Below
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
+        ui.columns(2, |columns| {
+            if let [left, right] = columns {
+                commands(left, scene);
+                events(right, scene);
+            }
+        });
+    }
 }
 
 fn commands(ui: &mut Ui, scene: &Scene<'_>) {

@@ -1,4 +1,6 @@
 //! The panels around the map. Each borrows the scene, draws it, and pushes commands.
+//!
+//! To add a panel: a file here with a value that implements [`Panel`], and its line in [`all`].
 
 pub mod alarms;
 pub mod bar;
@@ -13,9 +15,10 @@ pub mod problems;
 pub mod profile;
 pub mod push;
 pub mod table;
+pub mod timeline;
 pub mod tree;
 
-use crate::command::{BottomTab, Selection};
+use crate::command::{Queue, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
 use crate::state::{Aged, Vehicle, Vehicles};
@@ -24,6 +27,67 @@ use crate::units::{self, Units};
 use egui::{RichText, Ui};
 use flight_plan::Problem;
 
+/// A panel's identifier; never changes, for layouts are stored with it.
+pub type PanelId = &'static str;
+
+/// All panels, in the order of the menu.
+pub fn all() -> Vec<Box<dyn Panel>> {
+    vec![
+        Box::new(tree::Tree::default()),
+        Box::new(problems::Problems),
+        Box::new(inspector::Inspector),
+        Box::new(flight::Flight),
+        Box::new(profile::Profile),
+        Box::new(table::Table),
+        Box::new(log::EventLog),
+    ]
+}
+
+/// A panel that can be docked.
+pub trait Panel: std::fmt::Debug {
+    /// Its identifier.
+    fn id(&self) -> PanelId;
+
+    /// For people.
+    fn name(&self) -> &'static str;
+
+    /// Where it is unless the operator has put it elsewhere.
+    fn place(&self) -> Place;
+
+    /// What its title says now.
+    fn title(&self, _scene: &Scene<'_>) -> String {
+        self.name().into()
+    }
+
+    /// It has something to show; else its place is given to its neighbours.
+    fn is_relevant(&self, _scene: &Scene<'_>) -> bool {
+        true
+    }
+
+    /// A row of small things beside its title.
+    fn header(&mut self, _ui: &mut Ui, _scene: &Scene<'_>, _queue: &mut Queue) {}
+
+    /// Draws it; its place may be of any size.
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue);
+}
+
+/// Where a panel is in the default layout. Heights are for a window of 1280 by 800 points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Place {
+    /// On the left, below those before it.
+    Left {
+        /// Screen points.
+        height: f32,
+    },
+    /// On the right, below those before it.
+    Right {
+        /// Screen points.
+        height: f32,
+    },
+    /// A tab below the map.
+    Below,
+}
+
 /// What the operator looks at.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ViewState {
@@ -31,8 +95,6 @@ pub struct ViewState {
     pub units: Units,
     /// What is selected.
     pub selection: Option<Selection>,
-    /// What is below the map.
-    pub bottom: BottomTab,
     /// The map follows the aircraft.
     pub follow: bool,
     /// Cursor in the preview, seconds from its start.

@@ -1,21 +1,41 @@
 //! What is wrong with the plan, with a jump to its place and, often, a remedy.
 
-use super::Scene;
+use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
 use egui::{RichText, ScrollArea, Sense, Ui};
 use flight_plan::{FlightPlan, Id, Problem};
 
-/// Lists the problems.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// The panel.
+#[derive(Debug)]
+pub struct Problems;
+
+impl Panel for Problems {
+    fn id(&self) -> PanelId {
+        "problems"
+    }
+    fn name(&self) -> &'static str {
+        "Problems"
+    }
+    fn place(&self) -> Place {
+        Place::Left { height: 188.0 }
+    }
+    fn title(&self, scene: &Scene<'_>) -> String {
+        format!("Problems ({})", scene.problems().count())
+    }
+    fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
+        if scene.analysis.version != scene.document.version() || !scene.analysis.reviewed {
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The path is being reviewed");
+        }
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        list(ui, scene, queue);
+    }
+}
+
+fn list(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let problems: Vec<&Problem> = scene.problems().collect();
     let p = theme::of(ui);
-    ui.horizontal(|ui| {
-        super::group_title(ui, &format!("Problems ({})", problems.len()));
-        if scene.analysis.version != scene.document.version() || !scene.analysis.reviewed {
-            ui.spinner().on_hover_text("The path is being looked at");
-        }
-    });
     // warnings are for people to weigh
     if !problems.iter().any(|problem| problem.is_error()) {
         ui.label(RichText::new("✔ This plan can be flown").color(p.good));

@@ -1,14 +1,36 @@
 //! Altitude along the path, with the ground below, stages as bands, and a cursor on the timeline.
 
-use super::Scene;
+use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, ViewCommand};
 use crate::forecast::{Forecast, Passage, Point};
 use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-/// Draws the profile; dragging on it moves the cursor.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// The panel.
+#[derive(Debug)]
+pub struct Profile;
+
+impl Panel for Profile {
+    fn id(&self) -> PanelId {
+        "profile"
+    }
+    fn name(&self) -> &'static str {
+        "Profile"
+    }
+    fn place(&self) -> Place {
+        Place::Below
+    }
+    fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        timeline::show(ui, scene, queue);
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        plot(ui, scene, queue);
+    }
+}
+
+/// The profile; dragging on it moves the cursor.
+fn plot(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let forecast = scene.forecast();

@@ -1,6 +1,6 @@
 //! The plan as it will be flown, one row per passage of a leg. Only the rows in view are laid out.
 
-use super::Scene;
+use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::forecast::{Passage, Point};
 use crate::theme;
@@ -8,8 +8,29 @@ use crate::units;
 use egui::{RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder};
 
-/// Draws the table.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// The panel.
+#[derive(Debug)]
+pub struct Table;
+
+impl Panel for Table {
+    fn id(&self) -> PanelId {
+        "table"
+    }
+    fn name(&self) -> &'static str {
+        "Table"
+    }
+    fn place(&self) -> Place {
+        Place::Below
+    }
+    fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        timeline::show(ui, scene, queue);
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        rows(ui, scene, queue);
+    }
+}
+
+fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let u = scene.units();
     let heads = [
         "Leg".into(),

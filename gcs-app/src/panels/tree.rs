@@ -1,6 +1,6 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
-use super::Scene;
+use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
@@ -30,9 +30,17 @@ pub struct Tree {
 
 const HEIGHT: f32 = 23.0;
 
-impl Tree {
-    /// Draws the tree.
-    pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+impl Panel for Tree {
+    fn id(&self) -> PanelId {
+        "plan"
+    }
+    fn name(&self) -> &'static str {
+        "Plan"
+    }
+    fn place(&self) -> Place {
+        Place::Left { height: 570.0 }
+    }
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         if self.version != Some(scene.document.version()) {
             self.rows = rows(scene.document.plan(), &self.folded);
             self.version = Some(scene.document.version());

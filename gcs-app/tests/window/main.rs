@@ -2,6 +2,7 @@
 //! the link that the test plays.
 #![cfg(test)]
 
+mod dock;
 mod fleet;
 mod flying;
 mod planning;
@@ -28,12 +29,18 @@ struct Window {
 
 impl Window {
     fn open(text: &str) -> Self {
+        Self::open_with(text, vec2(1280.0, 800.0), None)
+    }
+
+    /// A window of some size that remembers an earlier one.
+    fn open_with(text: &str, size: Vec2, storage: Option<&'static dyn eframe::Storage>) -> Self {
         let (links, far) = Links::pair();
         let document = Document::read(text.as_bytes(), None);
         let harness =
-            Harness::builder().with_size(vec2(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(
-                move |creation| App::new(creation, document, links, assets::demo_terrain()).unwrap(),
-            );
+            Harness::builder().with_size(size).with_step_dt(1.0 / 60.0).build_eframe(move |creation| {
+                creation.storage = storage;
+                App::new(creation, document, links, assets::demo_terrain()).unwrap()
+            });
         Self { harness, far }
     }
 

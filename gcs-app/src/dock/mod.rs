@@ -1,0 +1,105 @@
+//! The dock: where the panels are. Tiles beside, above and behind one another, with the map among them;
+//! they are dragged by their titles, and the layout is remembered from run to run.
+
+mod content;
+mod fit;
+mod layout;
+
+pub use content::Content;
+
+use crate::panels::{Panel, PanelId};
+use egui::{Rect, Ui};
+use egui_tiles::{Tile, TileId, Tree};
+use layout::Stored;
+use std::collections::BTreeSet;
+
+type PanelTree = Tree<PanelId>;
+
+/// The map: the one tile that is always there and cannot be dragged.
+pub const MAP: PanelId = "map";
+/// Where the layout is stored.
+const STORAGE_KEY: &str = "layout";
+/// Between two tiles, screen points.
+const GAP: f32 = 1.0;
+/// Height of the titles, screen points.
+const TAB_BAR: f32 = 26.0;
+
+/// Where the panels are.
+#[derive(Debug)]
+pub struct Dock {
+    tree: PanelTree,
+    /// Panels that the operator has hidden; they keep their places.
+    hidden: BTreeSet<PanelId>,
+}
+
+impl Dock {
+    /// The layout of the last run; the default one if there is none, or none that makes sense.
+    pub fn new(panels: &[Box<dyn Panel>], storage: Option<&dyn eframe::Storage>) -> Self {
+        let stored: Option<Stored> = storage.and_then(|s| eframe::get_value(s, STORAGE_KEY));
+        stored.and_then(|stored| Self::of(&stored, panels)).unwrap_or_else(|| Self::default_of(panels))
+    }
+
+    fn default_of(panels: &[Box<dyn Panel>]) -> Self {
+        let empty = || Self { tree: PanelTree::empty(egui::Id::unique("dock")), hidden: BTreeSet::new() };
+        // a test shows that it is sound
+        Self::of(&Stored::default_of(panels), panels).unwrap_or_else(empty)
+    }
+
+    fn of(stored: &Stored, panels: &[Box<dyn Panel>]) -> Option<Self> {
+        let ids = || panels.iter().map(|panel| panel.id());
+        let known: Vec<PanelId> = std::iter::once(MAP).chain(ids()).collect();
+        let hidden = ids().filter(|id| stored.hidden.contains(*id)).collect();
+        Some(Self { tree: stored.tree(&known)?, hidden })
+    }
+
+    /// Stores the layout for the next run.
+    pub fn save(&self, storage: &mut dyn eframe::Storage) {
+        if let Some(stored) = Stored::of(&self.tree, &self.hidden) {
+            eframe::set_value(storage, STORAGE_KEY, &stored);
+        }
+    }
+
+    /// Back to the default layout, with every panel.
+    pub fn reset(&mut self, panels: &[Box<dyn Panel>]) {
+        *self = Self::default_of(panels);
+    }
+
+    /// Is this panel shown, as far as the operator is concerned?
+    pub fn shows(&self, panel: PanelId) -> bool {
+        !self.hidden.contains(panel)
+    }
+
+    /// Shows a panel, in front of others, or hides it.
+    pub fn show_panel(&mut self, panel: PanelId, shown: bool) {
+        if shown {
+            self.hidden.remove(panel);
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(id) if *id == panel));
+        } else {
+            self.hidden.insert(panel);
+        }
+    }
+
+    /// Draws everything. Returns where the map is, if no other tile is in front of it.
+    pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>) -> Option<Rect> {
+        for (tile, panel) in self.panes() {
+            self.tree.set_visible(tile, self.shows(panel) && content.is_relevant(panel));
+        }
+        if let Some(root) = self.tree.root() {
+            fit::fit(&mut self.tree.tiles, root, ui.available_size());
+        }
+        content.begin(&self.tree.tiles);
+        self.tree.ui(content, ui);
+        for panel in content.take_closed() {
+            self.show_panel(panel, false);
+        }
+        content.map_rect()
+    }
+
+    fn panes(&self) -> Vec<(TileId, PanelId)> {
+        let pane = |(id, tile): (&TileId, &Tile<PanelId>)| match tile {
+            Tile::Pane(panel) => Some((*id, *panel)),
+            Tile::Container(_) => None,
+        };
+        self.tree.tiles.iter().filter_map(pane).collect()
+    }
+}
