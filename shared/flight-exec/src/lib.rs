@@ -3,7 +3,11 @@
 //! [`api`] is the whole conversation: inputs and outputs are closed enums, time is an argument,
 //! waypoints carry tokens and answers carry them back.
 //!
-//! A [`layout::cursor`] walks the program and gives waypoint after waypoint; the [`Executor`] hands them out a bounded way
+//! The modules lie in layers, each of which uses only those before it (`tests/layers.rs`):
+//! [`api`] and [`value`] (plain values), [`layout`] (a place in the plan gives a stretch of waypoints), `flight` (the parts of what is
+//! remembered), the [`Executor`] (dispatches inputs to them), [`rehearse`] (flies it ahead of time), [`review`] (rules over flown paths).
+//!
+//! A [`layout::cursor`] walks the program and gives waypoint after waypoint; the [`Executor`] issues them a bounded way
 //! ahead, each with the bookmark (a clone of the cursor) it was made from. Whatever changes (a variable, a decision, a count,
 //! the plan) is answered in one way: go back to the first bookmark that may still be altered, lay the path out anew, and
 //! feed what differs as one transaction. Choices made ahead (loops, intersections, holdings) are provisional: they are read again

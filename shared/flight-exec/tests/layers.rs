@@ -1,5 +1,5 @@
 //! The layers of this crate, held by its `use` lines: each may use those before it, and none behind it.
-#![allow(clippy::expect_used)]
+#![cfg(test)]
 
 use std::path::{Path, PathBuf};
 

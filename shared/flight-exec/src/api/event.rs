@@ -1,4 +1,4 @@
-//! What is told as it happens.
+//! What is reported as it happens.
 
 use super::{DecisionRequest, Phase, PlacePointer, ResolvedAct};
 use flight_plan::{Cause, Id, VariableValue};

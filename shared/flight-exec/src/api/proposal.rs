@@ -1,4 +1,4 @@
-//! What is told about a proposed plan.
+//! What is reported about a proposed plan.
 
 use flight_plan::Id;
 use geometry::LatLon;

@@ -228,7 +228,7 @@ impl Executor {
     }
 
     /// The cursor behind the waypoint steered to; before it, and before the choices that would lead to it, while its leg isn't entered:
-    /// what nobody was told of has not happened.
+    /// what was not reported has not happened.
     pub(super) fn place_reached(&self) -> Cursor {
         let horizon = &self.flight.horizon;
         let entered = horizon.front().is_none_or(|front| horizon.is_entered(front));

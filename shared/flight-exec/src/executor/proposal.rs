@@ -110,7 +110,7 @@ impl Executor {
     }
 }
 
-/// As they are told to people, with code and place; not all of very many.
+/// As people read them, with code and place; not all of very many.
 fn listed<'a>(problems: impl Iterator<Item = &'a Problem>) -> Vec<String> {
     let mut problems = problems.map(ToString::to_string);
     let mut told: Vec<String> = problems.by_ref().take(PROBLEMS_MAX).collect();

@@ -153,7 +153,7 @@ impl Executor {
         let mut begun = before.clone();
         self.flight.horizon.is_entered(first).then(|| begun.next(world))?;
         if begun.place(world).leg != first.place.leg {
-            // what it waits for is there: that choice is made, and told, by laying the path out
+            // what it waits for is there: that choice is made, and reported, by laying the path out
             let to = &first.place.leg;
             let moves_on = !first.is_loiter() && begun.passes_over_to(to, before.path, world);
             moves_on.then_some(())?;

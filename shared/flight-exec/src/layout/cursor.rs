@@ -68,7 +68,7 @@ pub struct Cursor {
     pub uncounted: u64,
 }
 
-/// What a leg was laid out from, so that it can be told whether its own values have changed since.
+/// What a leg was laid out from, to know whether its own values have changed since.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
     /// The end of the path.
@@ -291,7 +291,7 @@ impl Cursor {
         self.expansion.as_ref().is_none_or(|e| e.count().is_none_or(|n| self.given >= n))
     }
 
-    /// Moves the end of the path to where the aircraft is: what follows is flown from there, and what lay ahead is no way made.
+    /// Moves the end of the path to where the aircraft is: what follows is flown from there, and what lay ahead counts as not flown.
     pub fn move_path_to(&mut self, here: PathState) {
         self.path = here;
         self.rejoined = None;

@@ -142,7 +142,7 @@ impl Stretch {
             action: Action::Fly,
             fly_over: true,
             wait_s: None,
-            // what led to the end is told there
+            // what led to the end is reported there
             notes: CursorLog::default(),
             sealed: None,
         };

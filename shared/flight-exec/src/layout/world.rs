@@ -30,7 +30,7 @@ pub fn turn_radius_m(profile: &Profile, airspeed_mps: f64, measured_mps: f64, de
     profile.turn_radius_m(airspeed_mps + wind_mps)
 }
 
-/// Stages and legs that cursors came to: what the path laid out so far depends on, taken or only looked at.
+/// Stages and legs that cursors came to: what the path laid out so far depends on, taken or only read.
 #[derive(Debug, Clone, Default)]
 pub struct ReadSet(RefCell<Vec<Id>>);
 

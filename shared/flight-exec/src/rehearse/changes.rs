@@ -54,7 +54,7 @@ impl Move {
     }
 }
 
-/// Looks at two plans.
+/// Compares two plans.
 struct Comparison<'a> {
     old: &'a Program,
     new: &'a Program,

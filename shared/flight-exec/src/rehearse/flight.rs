@@ -29,7 +29,7 @@ const ADVANCE_EVERY_US: u64 = 10_000_000;
 /// Waiting longer than this for nobody, microseconds.
 const PATIENCE_US: u64 = 600_000_000;
 
-/// Told how far it is; says whether to go on.
+/// Gets how far it is; says whether to go on.
 pub(super) type Progress<'a> = &'a mut dyn FnMut(&Advance) -> bool;
 
 /// What doesn't change in flight.
@@ -125,7 +125,7 @@ impl<'a> Flight<'a> {
         self.at.executor.status_phase() == Phase::Finished || self.at.ended
     }
 
-    /// What is due by now; true: the executor was told, and may have changed its mind.
+    /// What is due by now; true: the executor got an input, and may have changed the path.
     fn attend(&mut self, progress: Progress) -> Result<bool, PreviewError> {
         let now_us = self.at.now_us;
         if now_us >= self.at.due.advance_us {
@@ -260,7 +260,7 @@ impl<'a> Flight<'a> {
             Output::Answer { result: Ok(Answer::Proposal(report)), .. } => {
                 self.result.proposals.push((self.at.time_s(), *report));
             }
-            // an action is told by its event as well
+            // an action is reported by its event as well
             Output::Answer { .. } | Output::Act { .. } => {}
             Output::Event(event) => {
                 if let Event::LegEntered { place } = &event {
@@ -436,7 +436,7 @@ pub(super) fn empty() -> Preview {
     }
 }
 
-/// What the guidance is told to steer to.
+/// What the guidance steers to.
 impl From<&Waypoint> for Target {
     fn from(waypoint: &Waypoint) -> Self {
         Target {

@@ -196,7 +196,7 @@ pub enum PreviewError {
     Cancelled,
 }
 
-/// What the progress callback is told.
+/// What the progress callback gets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advance {
     /// Simulated seconds so far.

@@ -99,7 +99,7 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    /// From a situation to one that is alike, later or earlier.
+    /// From a situation to an equivalent one, later or earlier.
     pub fn between(from: &Situation, to: &Situation) -> Self {
         let token = |at: &Situation| at.renumbering.token(at.executor.last_token().0) as i64;
         let passage = |at: &Situation| at.renumbering.passage(at.executor.numbers().passage()) as i64;

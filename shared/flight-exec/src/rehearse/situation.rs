@@ -22,7 +22,7 @@ pub(super) struct Situation {
     /// Since the start, microseconds: whole numbers, so that two flights that differ by a shift in time tell the same time.
     pub now_us: u64,
     pub due: Due,
-    /// What the executor was told last happened then.
+    /// The last input of the executor was then.
     pub told_us: u64,
     /// Holding or waiting for so long.
     pub waiting_us: u64,

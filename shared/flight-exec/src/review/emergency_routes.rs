@@ -9,9 +9,9 @@ use flight_plan::{Id, Problem};
 use geometry::PathElement;
 use std::collections::HashSet;
 
-/// Seconds between points from which a way is looked at.
+/// Seconds between points from which a way is reviewed.
 const EVERY_S: f64 = 20.0;
-/// Distance between looks at the ground, metres.
+/// Distance between samples of the ground, metres.
 const SPACING_M: f64 = 150.0;
 /// Most looks on one way.
 const MOST_LOOKS: f64 = 500.0;

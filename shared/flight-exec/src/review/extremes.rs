@@ -18,7 +18,7 @@ pub const MOST_TRIALS: usize = 24;
 /// Every problem that the plan gets when its variables change, as a warning that says at which values; for a leg none that it has
 /// already (`found`: what the review said), and with two values none that it has with one of them.
 ///
-/// `progress` is told how many of how many trials are done before each of them; it returns false to end the work.
+/// `progress` gets the number of trials done and of all trials before each of them; it returns false to end the work.
 pub fn review_extremes(
     program: &Program,
     profile: &Profile,
@@ -30,7 +30,7 @@ pub fn review_extremes(
     let variables = used(program);
     let trials = trials(&variables);
     let nothing = Trial(Vec::new());
-    // at which values each problem of a leg was told
+    // at which values each problem of a leg was reported
     let mut told: HashMap<(&str, Option<Id>), Vec<&Trial>> = HashMap::new();
     for known in program.warnings.iter().chain(found) {
         told.insert((known.code, known.subject.clone()), vec![&nothing]);

@@ -1,4 +1,4 @@
-//! Which flights are looked at.
+//! Which flights are reviewed.
 //!
 //! The main plan once for each branch of the intersection that has most, then once for each branch that was not taken so far, at
 //! most [`MOST_FLIGHTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
@@ -33,7 +33,7 @@ pub(super) const MOST_EMERGENCY_PLANS: usize = 16;
 
 /// The flights of a plan.
 pub(super) struct Flights {
-    /// Each with the rest of what its lay-out told.
+    /// Each with the rest of what laying it out reported.
     pub main: Vec<Flown>,
     /// By emergency plan.
     pub emergencies: BTreeMap<usize, Flown>,

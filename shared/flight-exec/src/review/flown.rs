@@ -47,7 +47,7 @@ pub(super) struct Flown {
 }
 
 impl Flown {
-    /// On the way into an emergency plan, from where it was flown: the ways from everywhere are looked at by another rule.
+    /// On the way into an emergency plan, from where it was flown: another rule reviews the ways from everywhere.
     pub fn enters(&self, point: &Point) -> bool {
         let passage = |index: usize| self.waypoints.get(index).map(|w| w.passage);
         self.emergency.is_some() && passage(point.waypoint) == passage(0)

@@ -1,7 +1,7 @@
 //! `glide-out-of-reach`: if the engine fails at some point, the glide along the emergency plan that answers there ends before its
 //! runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered. The worst point is named.
 //!
-//! A plan that is named for an engine failure promises that all of it is within the glide. The fallback does not: it is told where
+//! A plan that is named for an engine failure promises that all of it is within the glide. The fallback does not: it is reported where
 //! its runway is so far away that even a glide straight there ends before it (whoever steers may leave out the rest of the plan),
 //! and on how much of the flight.
 //!
@@ -16,7 +16,7 @@ use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
 use geometry::{LatLon, PathElement};
 
-/// Distance between looks at the ground, metres.
+/// Distance between samples of the ground, metres.
 const SPACING_M: f64 = 150.0;
 /// Most looks on one way.
 const MOST_LOOKS: f64 = 500.0;

@@ -30,7 +30,7 @@ fn endless(landing: &Result<Preview, PreviewError>) -> Option<(String, Option<&I
         | PreviewError::TooManyWaypoints { leg, .. }
         | PreviewError::OutOfEnergy { leg, .. }
         | PreviewError::Waiting { leg, .. } => Some((error.to_string(), Some(leg))),
-        // that it can't be begun is told of the plan
+        // that it can't be begun is reported of the plan
         PreviewError::NoStart | PreviewError::Refused(_) | PreviewError::Cancelled => None,
     }
 }

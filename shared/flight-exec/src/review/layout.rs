@@ -1,4 +1,4 @@
-//! A plan laid out as waypoints, with the ways that are to be looked at chosen beforehand.
+//! A plan laid out as waypoints, with the ways to be reviewed chosen beforehand.
 
 use crate::api::{Action, Token, Waypoint};
 use crate::executor::Executor;

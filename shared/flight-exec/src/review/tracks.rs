@@ -103,7 +103,7 @@ impl Track {
 
 impl Late {
     fn problem(&self, view: &View, leg: &Id) -> Problem {
-        // to the next point that was looked at, and to full tens of metres
+        // to the next point that was reviewed, and to full tens of metres
         let overshoot_m = ((self.needed_m + POINTS_M) / 10.0).ceil() * 10.0;
         let scan = view.program.leg(leg).filter(|leg| matches!(leg.kind, LegKind::Scan(_)));
         let advice = match scan {

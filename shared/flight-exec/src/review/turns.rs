@@ -1,6 +1,6 @@
 //! `turn-too-tight`: a circle or another turn that the wind given doesn't let the aircraft fly, not even with its steepest bank.
 //!
-//! In still air the check of the plan has looked at each radius. With the wind behind an aircraft needs the radius that belongs to its
+//! In still air the check of the plan has checked each radius. With the wind behind an aircraft needs the radius that belongs to its
 //! speed over the ground (guidance: r = V² / (g · tan φ) with V + W). Holdings, turn-rounds and the turns between parallel tracks
 //! are laid out for the wind that is measured, so they are no matter of this.
 
@@ -48,7 +48,7 @@ struct Turn {
     circle: bool,
 }
 
-/// What a leg's turns belong to: `Some(true)` to circles, `None`: they are looked at by nobody here.
+/// What a leg's turns belong to: `Some(true)` to circles, `None`: nobody reviews them here.
 fn is_circle(view: &View, leg: &Id) -> Option<bool> {
     match &view.program.leg(leg)?.kind {
         LegKind::Rf { .. } | LegKind::Orbit { .. } | LegKind::Pattern(Pattern::FigureEight { .. }) => {

@@ -1,7 +1,7 @@
 //! `wind-too-strong`: on a part of the path the aircraft does not come forward, or is carried off the track.
 //!
-//! Told once: the remedy is another wind or another airspeed, not another leg. That the energy does not last then, that an emergency
-//! plan does not end or is out of reach, is the wind's doing and not told. In flight it is the other way round: nobody can wait for less wind there, so it is
+//! Reported once: the remedy is another wind or another airspeed, not another leg. That the energy does not last then, that an emergency
+//! plan does not end or is out of reach, is the wind's doing and not reported. In flight it is the other way round: nobody can wait for less wind there, so it is
 //! a warning, and a change is judged by what follows from it.
 
 use super::View;

@@ -1,7 +1,7 @@
 //! `keep-out`: the path, turns and holdings included, goes into a zone to keep out of; `keep-in`: it leaves those to stay in;
 //! `bad-zone`: one that no path can be held against.
 //!
-//! The plan as it stands is looked at with its real times. A flight that was cut short, or an emergency, may be later: it is told as a
+//! The plan as it stands is reviewed with its real times. A flight that was cut short, or an emergency, may be later: it is reported as a
 //! warning if it meets a zone only then.
 
 use super::View;

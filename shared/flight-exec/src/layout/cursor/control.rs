@@ -36,7 +36,7 @@ impl Cursor {
         self.go_on_from(leg, flown, None, world);
     }
 
-    /// The leg's place is where the path is, which passes it as high and as fast as the leg says. A wait there has told of it.
+    /// The leg's place is where the path is, which passes it as high and as fast as the leg says. A wait there has reported it.
     fn passes_where_it_is(&mut self, leg: &Leg, world: &World, notes: &mut CursorLog) {
         if has_own_waypoints(leg) {
             (self.path.last.level, self.path.last.airspeed_mps) = (self.level, self.airspeed_mps);

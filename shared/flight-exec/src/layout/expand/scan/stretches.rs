@@ -8,7 +8,7 @@ use geometry::scan::ScanError;
 use geometry::{LatLon, Vec2};
 use std::ops::Range;
 
-/// Edges of the area that are looked at to find all the ways of a sweep: a quarter of a second.
+/// Edges of the area that are tried to find all the ways of a sweep: a quarter of a second.
 const MOST_EDGES: u64 = 40_000_000;
 
 /// The order in which the tracks of a pattern are flown.
