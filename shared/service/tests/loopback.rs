@@ -99,7 +99,9 @@ impl Service for Adder {
             }
             Input::Ponder(request) => {
                 self.waiting.push(request.reply);
-                out.work(|| 0.5, Input::Pondered);
+                let sum = self.now.sum;
+                let ponder = move || if sum > 0.0 { 0.5 } else { panic!("nothing to ponder, for the test") };
+                out.work(ponder, Input::Pondered);
             }
             Input::Pondered(found) => {
                 let answer = self.add(found.unwrap_or(f64::NAN), out);
@@ -148,6 +150,9 @@ async fn requests_are_answered_events_emitted_and_variables_published() {
     let net = Net::open(|config| config).await;
     let mut events = net.client.listen(ADDED, Start::Remembered).unwrap();
     let mut sum = net.client.follow(SUM).unwrap();
+    // work that panics ends in an answer, and nothing else ends
+    let panicked = within(net.client.call(PONDER, &Empty {}, DEADLINE)).await;
+    assert!(matches!(panicked, Err(CallError::Refused(_))), "{panicked:?}");
     assert!((net.add(2.0).await.unwrap().sum - 2.0).abs() < 1e-9);
     assert!(matches!(net.add(-1.0).await, Err(CallError::Refused(refusal)) if refusal.code == "negative"));
     let Occurrence::Event { event, .. } = within(events.recv()).await.unwrap() else { panic!("a gap") };
