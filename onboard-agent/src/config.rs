@@ -1,6 +1,7 @@
 //! What the agent is started with: command line over configuration file over defaults.
 
 use crate::registry::{Entry, SERVICES};
+use crate::services::storage;
 use crate::{fp_manager, gateway, supervisor};
 use aircraft::Profile;
 use anyhow::{Context, bail};
@@ -13,6 +14,8 @@ use terrain::{Terrain, Tile, Tiles};
 
 /// Larger plans and configurations are not read, bytes.
 const FILE_MAX: u64 = 64 << 20;
+/// Folder of the recordings in the state directory.
+const RECORDINGS: &str = "recordings";
 const DEFAULT_VEHICLE: &str = "uav1";
 const DEFAULT_AUTOPILOT: &str = "udp:127.0.0.1:14550";
 const DEFAULT_AIRCRAFT: &str = "trainer";
@@ -103,9 +106,15 @@ pub struct Options {
     /// Flight plan to begin with, unless one is restored from the state directory.
     #[arg(long, value_name = "FILE")]
     pub plan: Option<PathBuf>,
-    /// Where plan, place and runways survive a crash; without it they do not.
+    /// Where plan, place and runways survive a crash, and recordings go (into `recordings`); without it, neither.
     #[arg(long, value_name = "DIR")]
     pub state_dir: Option<PathBuf>,
+    /// All flight recordings together take at most so many MiB, the oldest go first [default: 4096].
+    #[arg(long, value_name = "MIB")]
+    pub record_quota_mib: Option<u64>,
+    /// So many MiB of the disk are left free by the recordings [default: 512].
+    #[arg(long, value_name = "MIB")]
+    pub record_reserve_mib: Option<u64>,
     /// Configuration file (JSON) for what is not given here.
     #[arg(long, value_name = "FILE")]
     #[serde(skip)]
@@ -135,6 +144,8 @@ impl Options {
             terrain: if self.terrain.is_empty() { file.terrain } else { self.terrain },
             plan: self.plan.or(file.plan),
             state_dir: self.state_dir.or(file.state_dir),
+            record_quota_mib: self.record_quota_mib.or(file.record_quota_mib),
+            record_reserve_mib: self.record_reserve_mib.or(file.record_reserve_mib),
             config: None,
             simulated: self.simulated || file.simulated,
         })
@@ -186,11 +197,32 @@ impl Options {
         })
     }
 
+    /// Storage's configuration.
+    ///
+    /// # Errors
+    /// There is no state directory, or a profile or tile can't be read.
+    pub fn storage(&self) -> anyhow::Result<storage::Config> {
+        let folder = self.state_dir.as_ref().context("recordings need a folder: give --state-dir")?;
+        let connect = self.connect.as_deref().unwrap_or(self.listen());
+        let usual = storage::Config::new(self.vehicle(), connect, folder.join(RECORDINGS));
+        let bytes = |mib: Option<u64>, usual: u64| mib.map_or(usual, |mib| mib.saturating_mul(1 << 20));
+        Ok(storage::Config {
+            limits: storage::Limits {
+                quota_bytes: bytes(self.record_quota_mib, usual.limits.quota_bytes),
+                reserve_bytes: bytes(self.record_reserve_mib, usual.limits.reserve_bytes),
+            },
+            simulated: self.simulated,
+            profile: self.profile()?,
+            terrain: Arc::new(self.tiles()?.unwrap_or_default()),
+            ..usual
+        })
+    }
+
     /// The command lines of the services' processes.
     pub fn processes(&self) -> Vec<supervisor::Process> {
         let arguments = self.arguments();
         let process = |entry: &Entry| supervisor::Process::new(entry.spec.name, arguments.clone());
-        SERVICES.iter().map(process).collect()
+        SERVICES.iter().filter(|entry| (entry.is_wanted)(self)).map(process).collect()
     }
 
     /// As they would be typed.
@@ -209,6 +241,13 @@ impl Options {
         let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir)];
         for (name, value) in paths.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
             arguments.extend([name.into(), value.into()]);
+        }
+        let sizes = [
+            ("--record-quota-mib", self.record_quota_mib),
+            ("--record-reserve-mib", self.record_reserve_mib),
+        ];
+        for (name, value) in sizes.into_iter().filter_map(|(name, value)| Some((name, value?))) {
+            arguments.extend([name.into(), value.to_string().into()]);
         }
         for tile in &self.terrain {
             arguments.extend(["--terrain".into(), tile.into()]);
@@ -269,7 +308,7 @@ mod tests {
     #[test]
     fn every_option_reaches_the_children() {
         let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 \
-                    --aircraft trainer --plan p.xml --state-dir s --terrain a.hgt --terrain b.hgt --simulated";
+                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
             ["onboard-agent".into(), "gateway".into()]

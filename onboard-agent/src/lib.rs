@@ -1,9 +1,10 @@
-//! Shell: FCS Gateway, FP Manager and their supervisor.
+//! Shell: FCS Gateway, FP Manager, storage and their supervisor.
 
 pub mod config;
 pub mod fp_manager;
 pub mod gateway;
 pub mod registry;
+pub mod services;
 pub mod supervisor;
 
 pub use service::{Shutdown, Trigger, shutdown, single_instance};

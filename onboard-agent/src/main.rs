@@ -41,7 +41,7 @@ async fn perform(task: Task) -> ExitCode {
 
 async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
     // what is wrong is better said once than by every child
-    for entry in SERVICES {
+    for entry in SERVICES.iter().filter(|entry| (entry.is_wanted)(&options)) {
         drop((entry.start)(&options, shutdown.clone())?);
     }
     let program = std::env::current_exe()?;

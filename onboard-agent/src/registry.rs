@@ -1,6 +1,7 @@
 //! The services aboard: a new one is a line here. Command line, supervisor and descriptions follow.
 
 use crate::config::Options;
+use crate::services::storage;
 use crate::{Shutdown, fp_manager, gateway};
 use std::fmt;
 use std::pin::Pin;
@@ -13,16 +14,29 @@ pub type Running = Pin<Box<dyn Future<Output = anyhow::Result<()>> + Send>>;
 pub struct Entry {
     /// What it is called and says.
     pub spec: &'static Spec,
+    /// With these options `run` starts it.
+    pub is_wanted: fn(&Options) -> bool,
     /// Makes it of the options, unless these are wrong.
     pub start: fn(&Options, Shutdown) -> anyhow::Result<Running>,
 }
 
 /// The services aboard, in the order in which they are started.
 pub const SERVICES: &[Entry] = &[
-    Entry { spec: &spec::GATEWAY, start: |options, end| Ok(Box::pin(gateway::run(options.gateway()?, end))) },
+    Entry {
+        spec: &spec::GATEWAY,
+        is_wanted: |_| true,
+        start: |options, end| Ok(Box::pin(gateway::run(options.gateway()?, end))),
+    },
     Entry {
         spec: &spec::FP_MANAGER,
+        is_wanted: |_| true,
         start: |options, end| Ok(Box::pin(fp_manager::run(options.fp_manager()?, end))),
+    },
+    Entry {
+        spec: &spec::STORAGE,
+        // without a folder there is nowhere to record to
+        is_wanted: |options| options.state_dir.is_some(),
+        start: |options, end| Ok(Box::pin(storage::run(options.storage()?, storage::Heard::default(), end))),
     },
 ];
 
@@ -47,7 +61,7 @@ mod tests {
         assert_eq!(names(&aboard), names(spec::SERVICES));
         let command = Cli::command();
         let told: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-        assert_eq!(told, ["run", "gateway", "fp-manager", "describe"]);
+        assert_eq!(told, ["run", "gateway", "fp-manager", "storage", "describe"]);
         let followed = service::followed::<fp_manager::FpManager>();
         assert!(followed.iter().any(|topic| topic.kind == Kind::Event));
         for topic in followed {

@@ -28,6 +28,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "aircraft",
             "flight-plan",
             "flight-exec",
+            "interchange",
             "journal",
             "recording",
             "usal",

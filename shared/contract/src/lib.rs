@@ -14,6 +14,7 @@ mod gateway;
 mod keys;
 mod plan;
 mod plan_event;
+mod recording;
 pub mod spec;
 mod status;
 mod telemetry;
@@ -34,6 +35,7 @@ pub use geodesy::LatLon;
 pub use keys::{Key, KeyError, Kind, every_name, every_service, is_segment};
 pub use plan::{EntryReport, PlanDocument, PlanInfo, PlanVariable, PlanVariables, ProposalReport, Propose};
 pub use plan_event::{FpManagerEvent, PlanEvent, ResolvedAct};
+pub use recording::Recording;
 pub use status::{
     BranchOption, Branching, DecisionRequest, Heartbeat, IterationPlace, Phase, PlacePointer, PlanStatus,
 };

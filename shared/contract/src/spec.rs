@@ -104,7 +104,7 @@ impl Spec {
 }
 
 /// The services that this version knows, in the order of the contract.
-pub const SERVICES: &[&Spec] = &[&GATEWAY, &FP_MANAGER];
+pub const SERVICES: &[&Spec] = &[&GATEWAY, &FP_MANAGER, &STORAGE];
 
 /// The FCS Gateway. The position's freshness is a matter of a second; the rest may be seen a little longer.
 pub const GATEWAY: Spec = {
@@ -153,4 +153,11 @@ pub const FP_MANAGER: Spec = {
             Said::file(PLAN_FILE),
         ],
     }
+};
+
+/// Storage, the flight recorder. Without contents of its own: what it records is what the others say.
+pub const STORAGE: Spec = Spec {
+    name: topics::STORAGE,
+    about: "the flight recorder: everything that is said, as MCAP files",
+    says: &[Said::variable(topics::storage::RECORDING, Rate::Changed { repeated_ms: 1000 }, 3.0)],
 };

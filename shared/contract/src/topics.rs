@@ -7,6 +7,8 @@ use std::marker::PhantomData;
 pub const GATEWAY: &str = "gateway";
 /// The FP Manager's name.
 pub const FP_MANAGER: &str = "fp-manager";
+/// The flight recorder's name.
+pub const STORAGE: &str = "storage";
 
 /// A variable: `Stamped<T>` on the wire.
 pub struct Variable<T> {
@@ -94,6 +96,15 @@ pub mod gateway {
     pub const JOIN: Invocation<Join, JoinAnswer> = Invocation::new(GATEWAY, "join");
     /// What people and services may ask of it.
     pub const REQUEST: Invocation<GatewayRequest, Empty> = Invocation::new(GATEWAY, "request");
+}
+
+/// The flight recorder.
+pub mod storage {
+    use super::{STORAGE, Variable};
+    use crate::Recording;
+
+    /// How the recording goes.
+    pub const RECORDING: Variable<Recording> = Variable::new(STORAGE, "recording");
 }
 
 /// The FP Manager.

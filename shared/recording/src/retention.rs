@@ -43,16 +43,18 @@ pub fn excess(
     let mut kept: u64 = stored.iter().fold(wanted_bytes, |sum, file| sum.saturating_add(file.bytes));
     let mut free = free_bytes.unwrap_or(u64::MAX);
     let needed = limits.reserve_bytes.saturating_add(wanted_bytes);
-    let mut room = Room::default();
-    for file in stored.into_iter().filter(|file| Some(file.name.as_str()) != current) {
-        if kept <= limits.quota_bytes && free >= needed {
+    stored.retain(|file| Some(file.name.as_str()) != current);
+    let all_free = stored.iter().fold(free, |sum, file| sum.saturating_add(file.bytes));
+    // where others fill the disk, no recording is sacrificed in vain
+    let mut room = Room { remove: Vec::new(), full: all_free < needed };
+    for file in stored {
+        if kept <= limits.quota_bytes && (free >= needed || room.full) {
             break;
         }
         kept = kept.saturating_sub(file.bytes);
         free = free.saturating_add(file.bytes);
         room.remove.push(file.name);
     }
-    room.full = free < needed;
     room
 }
 
@@ -85,8 +87,15 @@ mod tests {
     #[test]
     fn current_file_never_goes() {
         let files = stored(&[("current", 500, 1), ("other", 10, 2)]);
-        let room = excess(files, Some("current"), Some(0), 10, LIMITS);
-        assert_eq!(room, Room { remove: vec!["other".into()], full: true });
+        let room = excess(files, Some("current"), Some(55), 10, LIMITS);
+        assert_eq!(room, Room { remove: vec!["other".into()], full: false });
+    }
+
+    #[test]
+    fn disk_that_others_have_filled_costs_no_recording() {
+        let files = stored(&[("old", 20, 1), ("new", 20, 2)]);
+        let room = excess(files, None, Some(0), 11, LIMITS);
+        assert_eq!(room, Room { remove: vec![], full: true });
     }
 
     proptest! {
@@ -103,7 +112,9 @@ mod tests {
             let kept: u64 = files.iter().map(|f| f.1).sum::<u64>() - gone;
             let all_gone = room.remove.len() + 1 >= files.len();
             prop_assert!(kept + wanted <= LIMITS.quota_bytes || all_gone);
-            prop_assert_eq!(room.full, free + gone < LIMITS.reserve_bytes + wanted);
+            let removable: u64 = files.iter().skip(1).map(|f| f.1).sum();
+            prop_assert_eq!(room.full, free + removable < LIMITS.reserve_bytes + wanted);
+            prop_assert!(room.full || free + gone >= LIMITS.reserve_bytes + wanted);
         }
     }
 }

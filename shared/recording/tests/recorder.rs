@@ -31,8 +31,11 @@ fn rig() -> Rig {
 fn frame_becomes_a_message_of_its_key_with_its_schema() {
     let mut rig = rig();
     let schema = br#"{"type":"object"}"#;
-    let of_count =
-        Schema { of: "counter/variable/count".into(), name: "Count".into(), text: schema.to_vec() };
+    let of_count = Schema {
+        key: "legwork/any/counter/variable/count".into(),
+        name: "Count".into(),
+        text: schema.to_vec(),
+    };
     rig.step(ms(0), Input::Schema(of_count));
     rig.frame(ms(10), numbered("uav1", 7, ms(10)));
     let odd = json!({"a": [1, null, "ü"]});

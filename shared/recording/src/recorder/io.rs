@@ -41,8 +41,8 @@ impl Config {
 /// How the payloads of a key are built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Schema {
-    /// The key without its vehicle: `<service>/<kind>/<name>`.
-    pub of: String,
+    /// The key, of any vehicle.
+    pub key: String,
     /// What the schema is called.
     pub name: String,
     /// JSON Schema.

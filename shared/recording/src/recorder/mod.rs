@@ -96,7 +96,9 @@ impl Recorder {
         match input {
             Input::Clock(unix) => self.clock(now, unix, out),
             Input::Schema(schema) => {
-                self.schemas.insert(schema.of, (schema.name, schema.text));
+                if let Some(of) = without_vehicle(&schema.key) {
+                    self.schemas.insert(of.to_owned(), (schema.name, schema.text));
+                }
             }
             Input::Frame(frame) => {
                 self.frame(now, frame, out);

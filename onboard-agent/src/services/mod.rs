@@ -1,0 +1,3 @@
+//! Services beside gateway and FP Manager: a folder each.
+
+pub mod storage;
