@@ -15,7 +15,7 @@
 //!
 //! A go-to, a skip and a return to the main plan take effect at once, because whoever gives one may be in a hurry to get out of
 //! somewhere. The direct track that they take is reviewed right afterwards ([`review_turn`], `fp_manager/background_review`), and what is
-//! wrong with it is reported (`problem-ahead`). Variables that no leg is laid out from take effect at once; the review before the flight has
+//! wrong with it is reported as an event. Variables that no leg is laid out from take effect at once; the review before the flight has
 //! flown what the plan's own actions write. A plan that was reviewed only ahead, or that came between a start without effect and
 //! the next start, is reviewed whole before it is started on the ground.
 
