@@ -113,7 +113,7 @@ async fn bare_hop() -> Hop {
 }
 
 async fn frame_hop(endpoint: &str, link: &str) -> Hop {
-    let session = Session::open(Config::client("bench", endpoint)).await.unwrap();
+    let session = Session::open(Config::client("bench", endpoint).named("bench")).await.unwrap();
     let mut position = session.follow(topics::gateway::POSITION).unwrap();
     let (sender, received) = mpsc::channel(16);
     tokio::spawn(async move {

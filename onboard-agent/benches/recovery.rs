@@ -94,7 +94,7 @@ impl Hub {
             state: session.publish(gateway::STATE).unwrap(),
             position: session.publish(gateway::POSITION).unwrap(),
             _announcement: session.announce(GATEWAY).unwrap(),
-            client: Session::open(usal::Config::client("bench", endpoint)).await.unwrap(),
+            client: Session::open(usal::Config::client("bench", endpoint).named("bench")).await.unwrap(),
         }
     }
 

@@ -42,9 +42,9 @@ def decode(sample):
     return cbor2.loads(sample.payload.to_bytes())
 
 
-def call(session, service, name, request):
-    """One invocation in JSON; the decoded answer, or None."""
-    key = f"{VEHICLE}/{service}/invocation/{name}"
+def call(session, service, name, request, parameters="from=peer"):
+    """One invocation in JSON; the decoded answer, or None. Who asks is a parameter of the selector."""
+    key = f"{VEHICLE}/{service}/invocation/{name}?{parameters}"
     payload = json.dumps(request)
     for reply in session.get(key, payload=payload, encoding=zenoh.Encoding.APPLICATION_JSON, timeout=5.0):
         body = reply.ok if reply.ok is not None else reply.err
@@ -109,3 +109,20 @@ def test_garbage_on_a_variable_does_no_harm(agent):
         agent.put(f"{VEHICLE}/fp-manager/variable/heartbeat", b"\xff\x00garbage")
     answer = until(lambda: call(agent, "gateway", "describe", {}), 20, "an answer")
     assert answer["service"] == "gateway", answer
+
+
+def test_who_does_not_say_a_name_may_only_read(agent):
+    answer = until(lambda: call(agent, "fp-manager", "command", {"command": "start"}, ""), 20, "an answer")
+    assert answer["code"] == "anonymous" and "from=" in answer["reason"], answer
+    answer = call(agent, "fp-manager", "command", {"command": "start"}, "from=a b")
+    assert answer["code"] == "bad-name", answer
+    answer = call(agent, "gateway", "describe", {}, "")
+    assert answer["service"] == "gateway", answer
+
+
+@pytest.mark.parametrize("version, code", [("1", None), ("2", "version"), ("one", "version")])
+def test_another_version_of_the_contract_is_told(agent, version, code):
+    answer = until(lambda: call(agent, "gateway", "describe", {}, f"from=peer;version={version}"), 20, "an answer")
+    assert answer.get("code") == code, answer
+    if code:
+        assert "version" in answer["reason"], answer

@@ -110,7 +110,7 @@ struct Ground {
 
 impl Ground {
     async fn open(endpoint: &str, pace: Pace) -> anyhow::Result<Self> {
-        let session = Session::open(Config::client(VEHICLE, endpoint)).await?;
+        let session = Session::open(Config::client(VEHICLE, endpoint).named("operator")).await?;
         Ok(Self {
             plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
             gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,

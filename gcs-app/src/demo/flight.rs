@@ -118,7 +118,7 @@ impl<'a> Flight<'a> {
         progress: &'a Progress,
         watcher: &'a Watcher,
     ) -> anyhow::Result<Self> {
-        let session = Session::open(Config::client(VEHICLE, &components.endpoint)).await?;
+        let session = Session::open(Config::client(VEHICLE, &components.endpoint).named("mission")).await?;
         Ok(Self {
             heard: Heard::listen(&session)?,
             clock: Participant::join(&session, "mission")?,

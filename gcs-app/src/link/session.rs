@@ -6,18 +6,20 @@ use super::{
 };
 use crate::state::{ActivePlan, Ticket, VehicleName};
 use flight_exec::Command;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::mpsc;
-use usal::contract::{Empty, PlanEvent, Stamped};
-use usal::topics::{Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
+use usal::contract::{Empty, OPERATOR, OTHER_VERSION, PlanEvent, Stamped};
+use usal::topics::{self, Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
 use wire::Convert;
 
 /// A command is answered within this time, or the operator learns that it was not.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
+/// A service says within this time what it is.
+const DESCRIBE_TIMEOUT: Duration = Duration::from_secs(1);
 /// A plan is checked aboard, and what changes the flight is flown ahead; a big one takes its time.
 const PLAN_TIMEOUT: Duration = Duration::from_secs(30);
 
@@ -127,7 +129,8 @@ async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, C
 }
 
 async fn connect(endpoint: &str, outlet: &Outlet) -> Result<Open, usal::SessionError> {
-    let session = Session::open(usal::Config::client(outlet.vehicle.as_str(), endpoint)).await?;
+    let session =
+        Session::open(usal::Config::client(outlet.vehicle.as_str(), endpoint).named(OPERATOR)).await?;
     let mut open = Open { session, tasks: tokio::task::JoinSet::new() };
     open.follow(gateway::POSITION, Telemetry::Position, outlet)?;
     open.follow(gateway::ATTITUDE, Telemetry::Attitude, outlet)?;
@@ -202,16 +205,15 @@ impl Open {
         Ok(())
     }
 
-    /// Tells whether the vehicle's services are there.
+    /// Tells whether the vehicle's services are there, and speak our version.
     fn watch(&mut self, endpoint: &str, outlet: &Outlet) -> Result<(), usal::SessionError> {
         let mut presence = self.session.presence()?;
-        let (endpoint, outlet) = (endpoint.to_owned(), outlet.clone());
+        let (session, endpoint, outlet) = (self.session.clone(), endpoint.to_owned(), outlet.clone());
         self.tasks.spawn(async move {
             let mut services = Some(presence.services());
             while let Some(alive) = services {
-                let there = [GATEWAY, FP_MANAGER].iter().any(|s| alive.contains(*s));
-                let state = if there { LinkState::Connected } else { LinkState::Connecting };
-                outlet.tell(LinkEvent::Link(state(endpoint.clone()))).await;
+                let state = link_state(&session, &alive, &endpoint).await;
+                outlet.tell(LinkEvent::Link(state)).await;
                 services = presence.changed().await;
             }
         });
@@ -225,6 +227,29 @@ impl Open {
         // tasks that are done are let go
         while self.tasks.try_join_next().is_some() {}
     }
+}
+
+/// How far the session has come, with these services there.
+async fn link_state(session: &Session, alive: &BTreeSet<String>, endpoint: &str) -> LinkState {
+    let mut state = LinkState::Connecting(endpoint.to_owned());
+    for service in [GATEWAY, FP_MANAGER] {
+        if !alive.contains(service) {
+            continue;
+        }
+        state = LinkState::Connected(endpoint.to_owned());
+        let described = session.call(topics::describe(service), &Empty {}, DESCRIBE_TIMEOUT).await;
+        match described {
+            Err(CallError::Refused(refusal)) if refusal.code == OTHER_VERSION => {
+                return LinkState::Failed(format!(
+                    "The agent's {service} is not of this ground station's version: {}",
+                    refusal.reason
+                ));
+            }
+            // a service that is slow to describe itself may speak well otherwise
+            Ok(_) | Err(_) => {}
+        }
+    }
+    state
 }
 
 async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) {
@@ -273,6 +298,30 @@ mod tests {
     fn gps(time_s: f64) -> Telemetry {
         let value = usal::contract::Gps { fix_3d: true, satellites: 9, hdop: 1.0, unix_s: None };
         Telemetry::Gps(Stamped { time_s, validity_s: 2.0, value })
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn an_agent_of_another_version_is_told_as_a_failed_link() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
+        drop(listener);
+        let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let mut describe = hub.serve_description(GATEWAY).unwrap();
+        let agent = tokio::spawn(async move {
+            let refusals = [usal::contract::check_version(Some("2")), Ok(())];
+            for checked in refusals {
+                let incoming = describe.recv().await.unwrap();
+                incoming.answer(checked.map(|()| usal::spec::GATEWAY.describe()));
+            }
+        });
+        let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+        let nobody = link_state(&client, &BTreeSet::new(), "there").await;
+        assert_eq!(nobody, LinkState::Connecting("there".into()));
+        let alive = BTreeSet::from([GATEWAY.to_owned()]);
+        let refused = link_state(&client, &alive, "there").await;
+        assert!(matches!(&refused, LinkState::Failed(why) if why.contains("version 2")), "{refused:?}");
+        assert_eq!(link_state(&client, &alive, "there").await, LinkState::Connected("there".into()));
+        agent.await.unwrap();
     }
 
     #[test]

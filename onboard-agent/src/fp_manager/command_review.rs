@@ -2,7 +2,7 @@
 //! a thread of their own, one after the other in the order in which they came, and given only then.
 
 use super::listed;
-use super::manager::{Manager, OPERATOR};
+use super::manager::Manager;
 use super::proposals::broken;
 use super::service::{Input, Out};
 use flight_exec::{Command, Refusal, review_command};
@@ -108,7 +108,8 @@ impl CommandReview {
 impl From<Request<contract::Command, Empty>> for Asked {
     fn from(request: Request<contract::Command, Empty>) -> Self {
         let Request { request, caller, id, reply } = request;
-        let by = caller.unwrap_or_else(|| OPERATOR.to_owned());
+        // a command without a name is refused before it gets here
+        let by = caller.unwrap_or_else(|| contract::ANONYMOUS.to_owned());
         Self { command: request.convert(), by, id, reply }
     }
 }

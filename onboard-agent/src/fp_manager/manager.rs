@@ -49,8 +49,6 @@ pub enum Effect {
     Sync,
 }
 
-/// Who asks for a command that comes without a name.
-pub const OPERATOR: &str = "operator";
 /// Answers remembered, should a request be repeated after a restart.
 const REPLIES: usize = 64;
 /// Longer names of requests are not remembered, bytes.

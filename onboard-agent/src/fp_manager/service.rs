@@ -4,7 +4,7 @@ use super::Config;
 use super::background_review::BackgroundReview;
 use super::command_review::{Asked, CommandReview, Verdict};
 use super::journal::{Entry, Saved};
-use super::manager::{Effect, Manager, OPERATOR};
+use super::manager::{Effect, Manager};
 use super::proposals::{
     Asked as Proposed, Conclusion, Looked, ProposalReview, Sight, good_for_now, looked_at,
 };
@@ -188,7 +188,13 @@ impl FpManager {
         let loaded = plan.map(|xml| {
             let program = looked_at(&xml, &self.config, &self.sight(now))?;
             let report = self.propose(now, program, None, out)?;
-            self.command(now, Command::Commit { hash: report.hash, entry: None }, OPERATOR, None, out)
+            self.command(
+                now,
+                Command::Commit { hash: report.hash, entry: None },
+                usal::contract::OPERATOR,
+                None,
+                out,
+            )
         });
         if let Some(Err(refusal)) = loaded {
             out.fail(anyhow::anyhow!("the plan: {refusal}"));

@@ -59,7 +59,7 @@ impl Flight {
     async fn over(terrain: Arc<dyn terrain::Terrain>, state_dir: Option<&Path>) -> Self {
         let endpoint = free_endpoint();
         let gateway = FakeGateway::open(&endpoint).await;
-        let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+        let client = Session::open(usal::Config::client("uav1", &endpoint).named("operator")).await.unwrap();
         let config = fp_manager::Config {
             simulated: true,
             terrain,
@@ -277,7 +277,9 @@ async fn a_plan_calls_a_service_once_where_it_says_so() {
     let mut flight = Flight::new(None).await;
     let invocation: usal::topics::Invocation<serde_json::Value, Empty> =
         usal::topics::Invocation::new("payload", "drop");
-    let service = Session::open(usal::Config::client("uav1", &flight.config.connect)).await.unwrap();
+    let service = Session::open(usal::Config::client("uav1", &flight.config.connect).named("plan-service"))
+        .await
+        .unwrap();
     let mut drops = service.serve(invocation).unwrap();
     let action =
         r#"<action on="end"><invoke service="payload" operation="drop" argument='{"bay": 2}'/></action>"#;

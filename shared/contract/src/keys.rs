@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 const ROOT: &str = "legwork";
-const SEGMENT_MAX: usize = 64;
+pub(crate) const SEGMENT_MAX: usize = 64;
 
 /// What kind of primitive a key names.
 #[derive(

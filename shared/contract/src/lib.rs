@@ -5,6 +5,7 @@
 //! compiles neither plan nor executor. Angles are in degrees, the rest in SI units, and units are part of the field names.
 //! The type names and the documentation of the payloads are part of their JSON Schemas, which a golden file keeps.
 
+mod admission;
 mod alarm;
 mod basic;
 mod clock;
@@ -22,6 +23,7 @@ pub mod topics;
 mod value;
 mod waypoint;
 
+pub use admission::{ANONYMOUS, OPERATOR, OTHER_VERSION, VERSION, check_caller, check_version};
 pub use alarm::{Alarm, Cause, Severity};
 pub use basic::{Empty, FileManifest, Refusal, Stamped};
 pub use clock::{ClockAck, ClockTick};

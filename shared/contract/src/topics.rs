@@ -34,7 +34,21 @@ pub struct Invocation<Q, A> {
     pub service: &'static str,
     /// Its name.
     pub name: &'static str,
+    /// It changes nothing: anybody may ask, also who does not say a name.
+    pub reads_only: bool,
     payload: PhantomData<fn(Q) -> A>,
+}
+
+impl<Q, A> Invocation<Q, A> {
+    /// Of a service, by name. It changes something: who asks has to say a name.
+    pub const fn new(service: &'static str, name: &'static str) -> Self {
+        Self { service, name, reads_only: false, payload: PhantomData }
+    }
+
+    /// Of a service, by name. It changes nothing: anybody may ask.
+    pub const fn reading(service: &'static str, name: &'static str) -> Self {
+        Self { service, name, reads_only: true, payload: PhantomData }
+    }
 }
 
 macro_rules! copyable {
@@ -45,21 +59,29 @@ macro_rules! copyable {
             }
         }
         impl<$($parameter),+> Copy for $type<$($parameter),+> {}
-        impl<$($parameter),+> $type<$($parameter),+> {
-            /// Of a service, by name.
-            pub const fn new(service: &'static str, name: &'static str) -> Self {
-                Self { service, name, payload: PhantomData }
-            }
-        }
     };
 }
 copyable!(Variable<T>);
 copyable!(Events<T>);
 copyable!(Invocation<Q, A>);
 
+impl<T> Variable<T> {
+    /// Of a service, by name.
+    pub const fn new(service: &'static str, name: &'static str) -> Self {
+        Self { service, name, payload: PhantomData }
+    }
+}
+
+impl<T> Events<T> {
+    /// Of a service, by name.
+    pub const fn new(service: &'static str, name: &'static str) -> Self {
+        Self { service, name, payload: PhantomData }
+    }
+}
+
 /// What a service is and can.
 pub const fn describe(service: &'static str) -> Invocation<Empty, Description> {
-    Invocation::new(service, "describe")
+    Invocation::reading(service, "describe")
 }
 
 /// The FCS Gateway.
@@ -134,7 +156,7 @@ pub mod fp_manager {
     /// What people and services may ask of the executor.
     pub const COMMAND: Invocation<Command, Empty> = Invocation::new(FP_MANAGER, "command");
     /// The active plan's document.
-    pub const PLAN_DOCUMENT: Invocation<Empty, PlanDocument> = Invocation::new(FP_MANAGER, "plan");
+    pub const PLAN_DOCUMENT: Invocation<Empty, PlanDocument> = Invocation::reading(FP_MANAGER, "plan");
     /// File: the active plan's canonical XML; its hash is the plan's.
     pub const PLAN_FILE: &str = "plan";
 }

@@ -19,7 +19,7 @@ fn main() {
     runtime.block_on(async {
         let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
         let hub = Session::open(Config::hub("bench", &endpoint)).await.unwrap();
-        let client = Session::open(Config::client("bench", &endpoint)).await.unwrap();
+        let client = Session::open(Config::client("bench", &endpoint).named("bench")).await.unwrap();
         // interleaved, so that whatever else the machine does hits both
         let mut bare = bare_hop(&endpoint).await;
         let mut variable = variable_hop(&hub, &client).await;

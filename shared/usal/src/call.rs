@@ -1,8 +1,7 @@
 //! Calling invocations, without blocking.
 
 use crate::codec::{self, Format};
-use crate::contract::Kind;
-use crate::contract::Refusal;
+use crate::contract::{Kind, Refusal, VERSION};
 use crate::session::{Inner, Session};
 use crate::topics::Invocation;
 use crate::variable::PRIORITY;
@@ -136,7 +135,12 @@ impl Request {
         let from = inner.name.as_ref().map(|name| format!(";from={name}")).unwrap_or_default();
         inner
             .zenoh
-            .get(format!("{}?id={};timeout_ms={}{from}", self.name, self.id, execute_within.as_millis()))
+            .get(format!(
+                "{}?version={VERSION};id={};timeout_ms={}{from}",
+                self.name,
+                self.id,
+                execute_within.as_millis()
+            ))
             .payload(self.payload.clone())
             .encoding(Format::Cbor.encoding())
             .consolidation(ConsolidationMode::None)

@@ -1,15 +1,20 @@
 //! Serving invocations: one typed answer each, repeated requests executed once.
 //!
-//! A request may carry, as parameters of its selector, `id` (any text without `;`; the same request of the
-//! same asker under the same id is executed once and answered again from memory), `timeout_ms` (after which it is not
-//! executed any more) and `from` (who asks: a service's name, a key segment; a claim, not a proof). The refusals `busy`
-//! and `expired` are about the moment: under the same id it can be asked again. A refusal is an error reply of the form `{code, reason}`. Answers come in
-//! the format of the request.
+//! A request may carry parameters in its selector:
+//!
+//! - `from`: who asks, a key segment like a service's name; a claim, not a proof. Without it the request is anonymous, and may
+//!   only read.
+//! - `version`: the contract's major version that the asker speaks; another one is refused. Without it, it is taken to be ours.
+//! - `id`: any text without `;`. The same request of the same asker under the same id is executed once and answered
+//!   again from memory. The refusals `busy` and `expired` are about the moment: under the same id it can be asked again.
+//! - `timeout_ms`: after which it is not executed any more.
+//!
+//! A refusal is an error reply of the form `{code, reason}`. Answers come in the format of the request.
 
 use crate::SessionError;
 use crate::audit::{AuditHook, Audited, Document};
 use crate::codec::{self, Format};
-use crate::contract::{Description, Empty, Kind, Refusal, is_segment};
+use crate::contract::{Description, Empty, Kind, Refusal, check_caller, check_version};
 use crate::health::Health;
 use crate::session::Session;
 use crate::topics::{self, Invocation};
@@ -87,7 +92,7 @@ impl<Q, A: Serialize> Incoming<Q, A> {
         self.reply.name.as_ref().map(|name| name.id.as_str())
     }
 
-    /// Who asks, if it says so: a service's name.
+    /// Who asks: a service's name, or `operator`; `None`: anonymous, of an invocation that only reads.
     pub fn from(&self) -> Option<&str> {
         self.reply.from.as_deref()
     }
@@ -128,9 +133,12 @@ impl Session {
     {
         let key = self.key(invocation.service, Kind::Invocation, invocation.name)?.to_string();
         let (sender, receiver) = mpsc::channel(QUEUE);
-        let memory = Arc::new(Mutex::new(Memory::default()));
-        let health = self.inner.health.clone();
-        let audit = self.inner.audit.clone();
+        let desk = Desk {
+            reads_only: invocation.reads_only,
+            memory: Arc::default(),
+            health: self.inner.health.clone(),
+            audit: self.inner.audit.clone(),
+        };
         let wake = self.inner.wake.clone();
         let queryable = self
             .inner
@@ -138,7 +146,7 @@ impl Session {
             .declare_queryable(key)
             .complete(true)
             .callback(move |query| {
-                if let Some(reply) = admit(&memory, &health, &audit, query) {
+                if let Some(reply) = admit(&desk, query) {
                     receive(&sender, reply);
                     wake();
                 }
@@ -167,7 +175,7 @@ fn receive<Q: DeserializeOwned, A: Serialize>(sender: &mpsc::Sender<Incoming<Q, 
     let encoding = reply.query.encoding().unwrap_or(&Encoding::ZENOH_BYTES);
     match codec::decode::<Q>(payload, encoding) {
         Err(reason) => {
-            reply.health.undecodable(reply.query.key_expr().as_str(), &reason);
+            reply.desk.health.undecodable(reply.query.key_expr().as_str(), &reason);
             reply.answer::<A>(&Err(refusal("bad-request", &reason)));
         }
         Ok(request) => {
@@ -186,18 +194,18 @@ fn timeout(query: &Query) -> Duration {
     asked.map_or(TIMEOUT_MAX, Duration::from_millis).min(TIMEOUT_MAX)
 }
 
-/// Lets a request through to the service unless it repeats an earlier one.
-fn admit(
-    memory: &Arc<Mutex<Memory>>,
-    health: &Arc<Health>,
-    audit: &Arc<OnceLock<AuditHook>>,
-    query: Query,
-) -> Option<Replier> {
-    let from = query.parameters().get("from").filter(|from| is_segment(from)).map(str::to_owned);
+/// Lets a request through to the service, unless it may not ask or repeats an earlier one.
+fn admit(desk: &Desk, query: Query) -> Option<Replier> {
+    let from = match caller(&query, desk.reads_only) {
+        Ok(from) => from,
+        Err(refusal) => {
+            Replier::new(desk, query, None, None).answer::<()>(&Err(refusal));
+            return None;
+        }
+    };
     let name = Name::of(&query, from.as_deref());
-    let format = query.encoding().map_or(Format::Cbor, Format::of);
     if let Some(name) = &name {
-        let mut memory = memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut memory = desk.memory.lock().unwrap_or_else(PoisonError::into_inner);
         match memory.requests.get_mut(name) {
             Some(Request::Running(waiting)) => {
                 if waiting.len() < WAITING {
@@ -206,14 +214,20 @@ fn admit(
                 return None;
             }
             Some(Request::Done(reply)) => {
-                send(&query, reply, health);
+                send(&query, reply, &desk.health);
                 return None;
             }
             None => memory.begin(name.clone()),
         }
     }
-    let (memory, health, audit) = (memory.clone(), health.clone(), audit.clone());
-    Some(Replier { query, format, name, from, memory, health, audit, answered: false })
+    Some(Replier::new(desk, query, name, from))
+}
+
+/// Who asks; `None`: anonymous, and may do so.
+fn caller(query: &Query, reads_only: bool) -> Result<Option<String>, Refusal> {
+    let parameters = query.parameters();
+    check_version(parameters.get("version"))?;
+    Ok(check_caller(parameters.get("from"), reads_only)?.map(str::to_owned))
 }
 
 /// By which a request is known when it is repeated: two clients may well use the same ids.
@@ -234,29 +248,41 @@ impl Name {
     }
 }
 
+/// Where the requests of one invocation come in.
+#[derive(Clone)]
+struct Desk {
+    reads_only: bool,
+    memory: Arc<Mutex<Memory>>,
+    health: Arc<Health>,
+    audit: Arc<OnceLock<AuditHook>>,
+}
+
 /// The duty to answer one request, and those that repeat it.
 struct Replier {
     query: Query,
     format: Format,
     name: Option<Name>,
     from: Option<String>,
-    memory: Arc<Mutex<Memory>>,
-    health: Arc<Health>,
-    audit: Arc<OnceLock<AuditHook>>,
+    desk: Desk,
     answered: bool,
 }
 
 impl Replier {
+    fn new(desk: &Desk, query: Query, name: Option<Name>, from: Option<String>) -> Self {
+        let format = query.encoding().map_or(Format::Cbor, Format::of);
+        Self { query, format, name, from, desk: desk.clone(), answered: false }
+    }
+
     fn answer<A: Serialize>(&mut self, answer: &Result<A, Refusal>) {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
-        send(&self.query, &reply, &self.health);
+        send(&self.query, &reply, &self.desk.health);
         self.tell(&reply);
         if let Some(name) = &self.name {
             let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
-            let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut memory = self.desk.memory.lock().unwrap_or_else(PoisonError::into_inner);
             for waiting in if passing { memory.forget(name) } else { memory.finish(name, &reply) } {
-                send(&waiting, &reply, &self.health);
+                send(&waiting, &reply, &self.desk.health);
             }
         }
     }
@@ -265,7 +291,7 @@ impl Replier {
 impl Replier {
     /// Tells who keeps the books.
     fn tell(&self, reply: &Reply) {
-        let Some(hook) = self.audit.get() else { return };
+        let Some(hook) = self.desk.audit.get() else { return };
         let request = self.query.payload().map(ZBytes::to_bytes).unwrap_or_default();
         let invocation = self.query.key_expr().as_str().rsplit('/').next().unwrap_or_default();
         hook(Audited {

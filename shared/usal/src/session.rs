@@ -45,7 +45,7 @@ pub struct Config {
     pub vehicle: String,
     /// Hub or client.
     pub role: Role,
-    /// Who asks, told with every request: a service's name. `None`: nobody in particular.
+    /// Who asks, told with every request: a service's name, `operator` for people. `None`: anonymous, who may only read.
     pub name: Option<String>,
     /// For windows: repaint.
     pub wake: Option<Wake>,

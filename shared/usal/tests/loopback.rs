@@ -65,7 +65,7 @@ async fn variables_pass_from_client_to_client_through_the_hub() {
 #[tokio::test(flavor = "multi_thread")]
 async fn hub_absent_a_client_opens_at_once_and_connects_when_it_comes() {
     let endpoint = free_endpoint();
-    let client = within(Session::open(usal::Config::client("uav1", &endpoint))).await.unwrap();
+    let client = within(Session::open(usal::Config::client("uav1", &endpoint).named("test"))).await.unwrap();
     // the stand-in that it was opened at goes away
     until(async || !client.is_connected().await).await;
     let mut subscriber = client.follow(gateway::AIR).unwrap();
@@ -160,16 +160,61 @@ async fn a_request_gets_its_answer_or_its_refusal() {
 async fn a_request_says_who_asks_if_its_session_has_a_name() {
     let net = Net::open().await;
     let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let mut describe = net.hub.serve_description(topics::GATEWAY).unwrap();
     let config = usal::Config::client("uav1", &net.endpoint);
-    for (config, from) in [(config.clone().named("fire-watch"), Some("fire-watch")), (config, None)] {
-        let client = within(Session::open(config)).await.unwrap();
-        let _call = client.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
-        let incoming = within(server.recv()).await.unwrap();
-        assert_eq!(incoming.from(), from);
-        assert!(incoming.id().is_some());
+    let named = within(Session::open(config.clone().named("fire-watch"))).await.unwrap();
+    let _call = named.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+    let incoming = within(server.recv()).await.unwrap();
+    assert_eq!(incoming.from(), Some("fire-watch"));
+    assert!(incoming.id().is_some());
+    let nameless = within(Session::open(config.clone())).await.unwrap();
+    let _call = nameless.call(topics::describe(topics::GATEWAY), &Empty {}, DEADLINE);
+    assert_eq!(within(describe.recv()).await.unwrap().from(), None);
+    let refused = within(nameless.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE)).await;
+    assert!(matches!(&refused, Err(CallError::Refused(r)) if r.code == "anonymous"), "{refused:?}");
+    assert!(server.try_recv().is_none(), "who may not ask does not reach the service");
+    assert!(within(Session::open(config.named("a;id=1"))).await.is_err());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn who_asks_and_in_which_version_is_looked_at_before_the_request() {
+    let net = Net::open().await;
+    let (executed, service) = counting(&net);
+    let mut plan = net.hub.serve(fp_manager::PLAN_DOCUMENT).unwrap();
+    let reader = tokio::spawn(async move {
+        while let Some(incoming) = plan.recv().await {
+            incoming.answer(Ok(PlanDocument::default()));
+        }
+    });
+    let outside = outside_client(&net.endpoint).await;
+    // (parameters, code of the refusal of a request and of a question for the plan; empty: taken)
+    let cases = [
+        ("", "anonymous", ""),
+        ("from=anonymous", "anonymous", ""),
+        ("from=", "bad-name", "bad-name"),
+        ("from=a b", "bad-name", "bad-name"),
+        ("from=camera", "", ""),
+        ("from=camera;version=1", "", ""),
+        ("from=camera;version=2", "version", "version"),
+        ("version=2", "version", "version"),
+        ("from=camera;version=one", "version", "version"),
+        ("from=camera;version=", "version", "version"),
+    ];
+    let mut taken = 0;
+    for (parameters, changing, reading) in cases {
+        let (json, hold) = (Encoding::APPLICATION_JSON, br#"{"request":"hold"}"#);
+        let asked = ask_with(&outside, "gateway", "request", parameters, hold, json.clone()).await;
+        let read = ask_with(&outside, "fp-manager", "plan", parameters, b"", json).await;
+        for (answer, code) in [(asked, changing), (read, reading)] {
+            let told = answer.err().unwrap_or_default();
+            assert_eq!(told.is_empty(), code.is_empty(), "{parameters}: {told}");
+            assert!(told.contains(code), "{parameters}: {told}");
+        }
+        taken += usize::from(changing.is_empty());
+        assert_eq!(executed.load(Ordering::SeqCst), taken, "{parameters}");
     }
-    let unusable = usal::Config::client("uav1", &net.endpoint).named("a;id=1");
-    assert!(within(Session::open(unusable)).await.is_err());
+    service.abort();
+    reader.abort();
 }
 
 #[tokio::test(flavor = "multi_thread")]

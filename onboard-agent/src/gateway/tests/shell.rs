@@ -20,7 +20,7 @@ async fn a_lockstep_simulator_is_seen_on_the_network_and_time_runs_fast() {
     let (trigger, shutdown) = crate::shutdown();
     let config = Config { simulated: true, ..Config::new("test", &listen, autopilot) };
     let task = tokio::spawn(run(config, shutdown));
-    let session = Session::open(usal::Config::client("test", &listen)).await.unwrap();
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
     let mut state = session.follow(gateway::STATE).unwrap();
     let wait = async {
         loop {
@@ -53,7 +53,7 @@ async fn killed_after_an_answer_what_was_accepted_is_on_the_disk() {
     let state_dir = Some(directory.path().to_owned());
     let config = Config { state_dir, ..Config::new("test", &listen, "udp:127.0.0.1:0".parse().unwrap()) };
     let task = tokio::spawn(run(config, shutdown));
-    let session = Session::open(usal::Config::client("test", &listen)).await.unwrap();
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
     for id in ["A", "B", "C", "D"] {
         let runway = SafeRunway {
             id: id.into(),

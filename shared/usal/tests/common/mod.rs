@@ -41,7 +41,7 @@ pub fn free_endpoint() -> String {
 
 /// A client that has found its hub.
 pub async fn client(endpoint: &str) -> Session {
-    let session = Session::open(Config::client("uav1", endpoint)).await.unwrap();
+    let session = Session::open(Config::client("uav1", endpoint).named("test")).await.unwrap();
     until(async || session.is_connected().await).await;
     session
 }
@@ -85,8 +85,21 @@ pub async fn ask(
     payload: &[u8],
     encoding: Encoding,
 ) -> Result<String, String> {
-    let selector = format!("legwork/uav1/{service}/invocation/{name}?id={id}");
-    let selector = if id.is_empty() { selector.replace("?id=", "") } else { selector };
+    let id = if id.is_empty() { String::new() } else { format!("id={id}") };
+    let from = if id.contains("from=") { "" } else { ";from=outside" };
+    ask_with(session, service, name, &format!("{id}{from}"), payload, encoding).await
+}
+
+/// The same, with these parameters of the selector.
+pub async fn ask_with(
+    session: &zenoh::Session,
+    service: &str,
+    name: &str,
+    parameters: &str,
+    payload: &[u8],
+    encoding: Encoding,
+) -> Result<String, String> {
+    let selector = format!("legwork/uav1/{service}/invocation/{name}?{parameters}");
     let replies = session.get(selector).payload(payload).encoding(encoding).await.unwrap();
     let reply = within(replies.recv_async()).await.expect("an answer");
     let text = |bytes: &zenoh::bytes::ZBytes| String::from_utf8_lossy(&bytes.to_bytes()).into_owned();
