@@ -133,7 +133,6 @@ pub(super) fn broken(error: &str) -> Problem {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use aircraft::Profile;
     use flight_exec::{AircraftState, Command, Input, RequestId, Time};

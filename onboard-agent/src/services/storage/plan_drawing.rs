@@ -16,7 +16,7 @@ const DRAWING_MAX: usize = 1 << 20;
 /// # Errors
 /// A sentence: the plan can't be drawn.
 pub fn draw(xml: &str, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Result<String, String> {
-    let plan = flight_plan::read(xml.as_bytes().to_vec()).plan;
+    let plan = flight_plan::read(xml.as_bytes()).plan;
     let steps = path(xml, profile, terrain).unwrap_or_default();
     let written =
         write(Format::GeoJson, &Export { plan: &plan, steps: &steps }).map_err(|e| e.to_string())?;
