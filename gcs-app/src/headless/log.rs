@@ -52,7 +52,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
         });
         let contents = contents.with_context(cannot)?;
-        good &= contents.ending != Ending::Foreign && !(args.check && !is_whole(&contents));
+        good &= contents.ending != Ending::Foreign && (!args.check || is_whole(&contents));
         match args.json {
             true => documents.push(document(path, &contents)),
             false => print(path, &contents),
