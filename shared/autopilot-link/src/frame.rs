@@ -2,6 +2,8 @@
 //!
 //! The decoder gives frames as they are on the wire. Whoever needs the message asks for it: a value that
 //! the dialect does not know loses the message and not the frame, so that even it can be answered.
+// the bytes come from a link
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAV_STX, MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message, calculate_crc};
@@ -189,10 +191,11 @@ pub fn encode(sender: Sender, sequence: u8, message: &MavMessage) -> Vec<u8> {
 
 /// A MAVLink 2 frame around a payload made by hand; what is beyond 255 bytes is cut off.
 pub fn encode_payload(sender: Sender, sequence: u8, id: u32, payload: &[u8]) -> Vec<u8> {
-    let payload = payload.get(..255).unwrap_or(payload);
+    let length = u8::try_from(payload.len()).unwrap_or(u8::MAX);
+    let payload = payload.get(..length.into()).unwrap_or(payload);
     let [id0, id1, id2, _] = id.to_le_bytes();
     let Sender { system, component } = sender;
-    let mut bytes = vec![MAV_STX_V2, payload.len() as u8, 0, 0, sequence, system, component, id0, id1, id2];
+    let mut bytes = vec![MAV_STX_V2, length, 0, 0, sequence, system, component, id0, id1, id2];
     bytes.extend_from_slice(payload);
     let crc = calculate_crc(bytes.get(1..).unwrap_or_default(), MavMessage::extra_crc(id));
     bytes.extend_from_slice(&crc.to_le_bytes());

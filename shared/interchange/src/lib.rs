@@ -4,6 +4,8 @@
 //! Missions (`mission`: QGC plans and WPL lists) become stages and legs; drawings (`drawing`: KML, KMZ, GeoJSON, GPX)
 //! become fixes, legs, scans and zones. Written are the waypoints that are flown, as the executor expands them, so that
 //! another program flies the same path.
+// all of it comes from outside
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 pub mod csv;
 mod drawing;
@@ -215,6 +217,12 @@ fn text_of(bytes: &[u8]) -> Result<&str, Error> {
         Error::malformed(format!("byte {}", error.valid_up_to()), "not UTF-8 text: save the file as UTF-8")
     })?;
     Ok(text.trim_start_matches('\u{feff}'))
+}
+
+/// A whole number that is written as a float; one beyond the range is the greatest or the least.
+#[expect(clippy::cast_possible_truncation, reason = "a cast of floats saturates")]
+fn saturated(number: f64) -> i64 {
+    number as i64
 }
 
 #[cfg(test)]

@@ -82,9 +82,14 @@ fn item(number: usize, line: &str, notes: &mut Notes) -> Result<Item, Error> {
     if auto == 0.0 {
         notes.again("autocontinue", &place, "an item that waits for the operator continues by itself");
     }
-    // a number beyond its range is saturated, and then no known frame or command
     let params = [a, b, c, d, lat, lon, altitude].map(|p: f64| if p.is_finite() { p } else { f64::NAN });
-    Ok(Item { place, number: number as i64, frame: frame as u16, command: command as u16, params })
+    Ok(Item { place, number: crate::saturated(number), frame: code(frame), command: code(command), params })
+}
+
+/// One beyond its range is saturated, and then no known frame or command.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast of floats saturates")]
+fn code(number: f64) -> u16 {
+    number as u16
 }
 
 fn short(field: &str) -> String {

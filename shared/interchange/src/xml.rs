@@ -60,16 +60,21 @@ pub fn parse(text: &str) -> Result<Element, Error> {
     let mut builder = Builder { text, counted: (0, 1), elements: 0, open: vec![Element::default()] };
     let mut reader = Reader::from_str(text);
     loop {
-        let at = reader.buffer_position() as usize;
+        let at = offset(reader.buffer_position());
         match reader.read_event() {
             Ok(Event::Eof) => return builder.finish(at),
             Ok(event) => builder.take(at, event)?,
             Err(error) => {
-                let at = reader.error_position() as usize;
+                let at = offset(reader.error_position());
                 return Err(builder.malformed(at, format!("correct the XML here: {error}")));
             }
         }
     }
+}
+
+/// Places in a text are no longer than what holds it.
+fn offset(bytes: u64) -> usize {
+    usize::try_from(bytes).unwrap_or(usize::MAX)
 }
 
 struct Builder<'a> {

@@ -1,5 +1,7 @@
 //! A segment of the journal as bytes. Whatever the bytes are, reading them neither panics
 //! nor allocates more than a reference per frame.
+// the bytes may be damaged
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 /// First bytes of every segment.
 const MAGIC: [u8; 8] = *b"LEGWORKJ";
@@ -166,7 +168,7 @@ mod tests {
     fn segment(payloads: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = header(7).to_vec();
         for (index, payload) in payloads.iter().enumerate() {
-            append(7, index as u32, payload, &mut bytes).unwrap();
+            append(7, u32::try_from(index).unwrap(), payload, &mut bytes).unwrap();
         }
         bytes
     }
@@ -220,7 +222,7 @@ mod tests {
             payloads in payloads(), half in 0usize..FRAME_BYTES, zeros in 1usize..40,
         ) {
             let mut last = Vec::new();
-            append(7, payloads.len() as u32, b"last", &mut last).unwrap();
+            append(7, u32::try_from(payloads.len()).unwrap(), b"last", &mut last).unwrap();
             let bytes = [&segment(&payloads), &last[..half], &vec![0; zeros]].concat();
             let scan = scan(&bytes).unwrap();
             prop_assert_eq!(scan.payloads, payloads);

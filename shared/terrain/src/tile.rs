@@ -4,6 +4,8 @@
 //! metres above the EGM96 geoid; the outermost rows and columns lie on the whole degrees, so that neighbours
 //! share them. 1201 samples a side are 3″, 3601 are 1″. −32768 is a void. The name gives the south-west corner.
 //! (USGS, *SRTM Topo*, "Documentation".)
+// the bytes come from outside
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use geometry::LatLon;
 
@@ -65,7 +67,7 @@ impl Tile {
             .into_iter()
             .find(|side| bytes.len() == side * side * 2)
             .ok_or(TileError::Length(bytes.len()))?;
-        let samples_m: Vec<i16> = bytes.chunks_exact(2).map(sample).collect();
+        let samples_m: Vec<i16> = bytes.as_chunks::<2>().0.iter().copied().map(sample).collect();
         if samples_m.iter().all(|s| *s == VOID) {
             return Err(TileError::Empty);
         }
@@ -105,7 +107,7 @@ impl Tile {
         }
         let (row, column) = (down.floor().min(last - 1.0), right.floor().min(last - 1.0));
         let (v, u) = (down - row, right - column);
-        let (row, column) = (row as usize, column as usize);
+        let (row, column) = (whole(row), whole(column));
         let upper = self.blend(row, column, u);
         let lower = self.blend(row + 1, column, u);
         mix(upper, lower, v)
@@ -122,7 +124,7 @@ impl Tile {
         {
             return None;
         }
-        let block = |samples: f64| (samples.clamp(0.0, last) as usize / BLOCK).min(last as usize / BLOCK);
+        let block = |samples: f64| whole(samples.clamp(0.0, last)) / BLOCK;
         let down = |lat_deg: f64| block((f64::from(self.south_deg) + 1.0 - lat_deg) * last);
         let right = |lon_deg: f64| block((lon_deg - f64::from(self.west_deg)) * last);
         let columns = right(south_west.lon_deg)..=right(north_east.lon_deg);
@@ -149,6 +151,12 @@ impl Tile {
             f64::from(self.west_deg) + column as f64 * step,
         )
     }
+}
+
+/// A number of samples, which is nowhere more than a tile has a side.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast of floats saturates")]
+fn whole(samples: f64) -> usize {
+    samples as usize
 }
 
 fn blocks_a_side(side: usize) -> usize {
@@ -181,8 +189,8 @@ fn mix(a: Option<f64>, b: Option<f64>, share_of_b: f64) -> Option<f64> {
     }
 }
 
-fn sample(pair: &[u8]) -> i16 {
-    let value = i16::from_be_bytes([pair[0], pair[1]]);
+fn sample(pair: [u8; 2]) -> i16 {
+    let value = i16::from_be_bytes(pair);
     if PLAUSIBLE_M.contains(&value) { value } else { VOID }
 }
 
@@ -213,6 +221,8 @@ fn signed(sign: u8, plus: u8, minus: u8, digits: &[u8], count: usize, limit: i32
 
 #[cfg(test)]
 pub(crate) mod tests {
+    #![expect(clippy::cast_possible_truncation, reason = "made-up elevations are small")]
+
     use super::*;
     use proptest::prelude::*;
 

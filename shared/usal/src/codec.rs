@@ -1,4 +1,6 @@
 //! Bytes on the wire: CBOR by default, JSON from anyone who says so.
+// payloads come from the network
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -5,6 +5,8 @@
 //! file, so chunks of a replaced file never mix with those of the new one: they are refused as
 //! `replaced`, and the receiver begins anew. The manifest is also published as variable
 //! `file.<name>`, from which receivers learn of a new version.
+// manifests and chunks come from the network
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use crate::codec::{self, Format};
 use crate::contract::Kind;

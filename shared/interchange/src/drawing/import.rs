@@ -280,6 +280,11 @@ impl Importer<'_> {
 }
 
 /// A whole number from 1 on.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "it is within the range and whole"
+)]
 fn priority(number: f64) -> Option<u32> {
     (number.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
 }

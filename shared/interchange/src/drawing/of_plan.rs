@@ -39,7 +39,10 @@ fn path(export: &Export<'_>, notes: &mut Notes) -> Option<Feature> {
             kind: csv::action(&s.waypoint.action).into(),
         })
         .collect();
-    let crosses = vertices.windows(2).any(|w| (w[0].position.lon_deg - w[1].position.lon_deg).abs() > 180.0);
+    let crosses = vertices
+        .iter()
+        .zip(vertices.iter().skip(1))
+        .any(|(a, b)| (a.position.lon_deg - b.position.lon_deg).abs() > 180.0);
     if crosses {
         notes.push(
             "antimeridian",

@@ -216,7 +216,7 @@ impl Importer<'_> {
         // what was to be done before the jump is done at the end of each pass
         self.flush_at_end();
         let (target, repeats) = (item.param(1), item.param(2));
-        let target = if target.is_finite() { target as i64 } else { i64::MAX };
+        let target = if target.is_finite() { crate::saturated(target) } else { i64::MAX };
         match jumps::close(&mut self.legs, target, item.number, repeats, self.names) {
             Ok(()) if repeats != 0.0 => self.looped(item, repeats),
             Ok(()) => {}

@@ -80,7 +80,8 @@ fn survey(
 ) -> Scan {
     let crossed = flag(transect, "Refly90Degrees");
     let angle_deg = number(item, "angle").map(|a| geometry::geodesy::normalise_360(a % 360.0));
-    let named = item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(e as usize));
+    let named =
+        item.get("entryLocation").and_then(Json::as_u64).and_then(|e| ENTRIES.get(usize::try_from(e).ok()?));
     let begun = way::ends(item).zip(angle_deg).and_then(|((first, _), deg)| way::entry(first, &corners, deg));
     if begun.is_none() && named.is_some() {
         let message = "the file has no transects for this survey: QGC might begin at another corner";

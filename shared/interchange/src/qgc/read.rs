@@ -139,8 +139,8 @@ impl Reader<'_> {
             return self.notes.push("bad-item", place, "this item is left out: it has no params");
         };
         let whole = |key: &str| item.get(key).and_then(Value::as_u64).unwrap_or(u64::MAX);
-        let mut frame = whole("frame").min(u16::MAX.into()) as u16;
-        let command = whole("command").min(u16::MAX.into()) as u16;
+        let code = |key: &str| u16::try_from(whole(key)).unwrap_or(u16::MAX);
+        let (mut frame, command) = (code("frame"), code("command"));
         // altitude mode 3: QGC has worked out AMSL from terrain; what was meant is the height above it, but a runway needs the other
         if whole("AltitudeMode") == 3
             && !matches!(command, commands::LAND | commands::VTOL_LAND)
