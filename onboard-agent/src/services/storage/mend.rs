@@ -53,6 +53,9 @@ fn write_whole(path: &Path, whole: &Path) -> io::Result<u64> {
     let torn = File::open(path)?;
     let mut out = BufWriter::new(File::create(whole)?);
     let contents = repair(BufReader::new(&torn), &mut out)?;
+    if contents.ending == Ending::Foreign && contents.bytes > 0 {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "it does not begin as a recording"));
+    }
     let out = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     out.set_modified(torn.metadata()?.modified()?)?;
     out.sync_all()?;

@@ -151,11 +151,13 @@ fn killed_processes_leave_readable_files() {
         let mut recorded = Vec::new();
         for path in recordings(folder.path()) {
             let file = std::fs::File::open(path).unwrap();
+            // killed before the first chunk was due: nothing was written yet
+            let is_empty = file.metadata().unwrap().len() == 0;
             let contents = scan(file, &mut |m| {
                 let value: serde_json::Value = serde_json::from_slice(m.data).unwrap();
                 recorded.push((value["number"].as_u64().unwrap(), value["at_ms"].as_u64().unwrap()));
             });
-            assert!(matches!(contents.unwrap().ending, Ending::Torn { .. }));
+            assert!(is_empty || matches!(contents.unwrap().ending, Ending::Torn { .. }));
         }
         assert!(recorded.iter().zip(0..).all(|((number, _), index)| *number == index), "no gap");
         lost_ms.push(last_said - recorded.last().map_or(0, |(_, at)| *at));
