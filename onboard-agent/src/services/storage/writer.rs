@@ -235,14 +235,16 @@ impl Hand {
             match output {
                 Output::Tell(report) => tracing::warn!("{report}"),
                 output => {
-                    if let Output::Begin { name } = &output {
-                        let file = self.folder.join(name);
-                        self.shared.progress.lock().unwrap_or_else(PoisonError::into_inner).files.push(file);
-                    }
+                    let begun = match &output {
+                        Output::Begin { name } => Some(self.folder.join(name)),
+                        _ => None,
+                    };
                     if let Err(error) = self.disk.perform(output) {
                         // nothing behind it is done: the recorder begins anew
                         return self.step(Input::Failed { why: error.to_string() });
                     }
+                    // only now is there something to read
+                    self.shared.progress.lock().unwrap_or_else(PoisonError::into_inner).files.extend(begun);
                 }
             }
         }
