@@ -7,14 +7,13 @@ import subprocess
 import jsonschema
 import pytest
 from conftest import BIN, HOME, TOP, free_port, until
-from foxglove.messages import GeoJson, LocationFix, Log, LogLevel, Timestamp
+from foxglove.messages import GeoJson, LocationFix, LocationFixPositionCovarianceType, Log, LogLevel, Timestamp
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap.records import Channel, Message
 
 CONTRACT = json.loads((TOP / "shared/usal/contract.json").read_text())
-COVARIANCE = [0.0] * 9
 
 
 @pytest.fixture
@@ -96,7 +95,9 @@ def test_recording_is_whole_valid_and_foxgloves(agent):
     # Foxglove's own types take what we wrote, field by field
     schema, fix = first["foxglove/peer/location"]
     assert schema.name == "foxglove.LocationFix"
-    LocationFix(**{**fix, "timestamp": Timestamp(**fix["timestamp"]), "position_covariance_type": None})
+    assert fix["position_covariance_type"] == 0
+    covariance = LocationFixPositionCovarianceType.Unknown
+    LocationFix(**{**fix, "timestamp": Timestamp(**fix["timestamp"]), "position_covariance_type": covariance})
     assert math.hypot(fix["latitude"] - float(HOME.split(",")[0]), fix["longitude"] - float(HOME.split(",")[1])) < 0.01
     schema, line = first["foxglove/peer/log"]
     assert schema.name == "foxglove.Log"
