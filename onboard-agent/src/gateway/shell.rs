@@ -2,7 +2,7 @@
 
 use super::config::Config;
 use super::core::Settings;
-use super::driver::{self, Driver};
+use super::driver::{self, Registration};
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
 use anyhow::Context;
@@ -13,8 +13,8 @@ use usal::Role;
 /// The autopilot's link.
 struct AutopilotLink {
     link: Link,
-    /// Tells the autopilot's datagrams from others'.
-    ear: Box<dyn Driver>,
+    /// A datagram from an unknown sender is from the autopilot.
+    recognises: fn(&[u8]) -> bool,
     received: Vec<u8>,
 }
 
@@ -40,15 +40,16 @@ async fn open(config: Config, beginning: Beginning) -> anyhow::Result<(FcsGatewa
         tracing::info!(%at, "listening for the autopilot");
     }
     let settings = Settings { vehicle: config.vehicle, profile: config.profile, terrain: config.terrain };
-    let station = Station::new(settings, restored, driver::for_autopilot(config.simulated));
-    let ear = driver::for_autopilot(config.simulated);
-    Ok((FcsGateway::new(station), AutopilotLink { link, ear, received: Vec::new() }))
+    let Registration { recognises, make } = driver::ARDUPILOT;
+    let station = Station::new(settings, restored, make(config.simulated));
+    Ok((FcsGateway::new(station), AutopilotLink { link, recognises, received: Vec::new() }))
 }
 
 impl Adapter<FcsGateway> for AutopilotLink {
     async fn next(&mut self) -> Input {
-        let event = self.link.next(&mut self.received, |datagram| self.ear.recognises(datagram)).await;
-        Input::Received(event, self.received.clone())
+        let event = self.link.next(&mut self.received, self.recognises).await;
+        // the bytes go on to the driver as they are, and the next ones get a buffer of their own
+        Input::Received(event, std::mem::take(&mut self.received))
     }
 
     async fn perform(&mut self, _: Time, outputs: Vec<Output>, _: bool, _: &mut Tasks<Input>) {

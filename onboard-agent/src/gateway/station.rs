@@ -34,11 +34,6 @@ impl Station {
         &self.gateway
     }
 
-    /// A datagram from somebody unknown sounds like an autopilot's.
-    pub fn recognises(&self, datagram: &[u8]) -> bool {
-        self.driver.recognises(datagram)
-    }
-
     /// Takes in what the link brought; [`Self::process`] looks at it.
     pub fn receive(&mut self, incoming: FromLink<'_>) {
         self.driver.receive(incoming);

@@ -23,9 +23,6 @@ pub enum FromLink<'a> {
 
 /// A state machine without socket and clock that speaks with one autopilot.
 pub trait Driver: Send + Sync {
-    /// A datagram sounds like an autopilot's: whoever sent it may be answered.
-    fn recognises(&self, datagram: &[u8]) -> bool;
-
     /// Takes in what the link brought; [`Self::process`] looks at it.
     fn receive(&mut self, incoming: FromLink<'_>);
 
@@ -60,8 +57,15 @@ pub trait Driver: Send + Sync {
     fn hello(&mut self) {}
 }
 
-/// The driver for the autopilot at the other end; it says in [`Report::Capability`] whether it knows that one.
-/// `lockstep`: the autopilot is a simulator that asks for leave before each step.
-pub fn for_autopilot(lockstep: bool) -> Box<dyn Driver> {
-    Box::new(arduplane::ArduPlane::new(lockstep))
+/// A kind of driver, and how to get one.
+#[derive(Debug, Clone, Copy)]
+pub struct Registration {
+    /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner.
+    pub recognises: fn(&[u8]) -> bool,
+    /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
+    /// autopilot at the other end. `true`: lockstep, the simulator asks before each step.
+    pub make: fn(bool) -> Box<dyn Driver>,
 }
+
+/// ArduPilot's ArduPlane.
+pub const ARDUPILOT: Registration = arduplane::REGISTRATION;

@@ -4,7 +4,7 @@
 use super::flights::{settings, take_off, zigzag};
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input};
-use crate::gateway::driver::{Driver, FromLink};
+use crate::gateway::driver::{Driver, FromLink, Registration};
 use crate::gateway::order::{Aim, Course, Fed, Fix, Mode, Order, OrderId, Report, Serial, Target, Time};
 use autopilot_link::Outbox;
 use std::collections::VecDeque;
@@ -142,11 +142,12 @@ impl GliderDriver {
     }
 }
 
-impl Driver for GliderDriver {
-    fn recognises(&self, datagram: &[u8]) -> bool {
-        datagram.starts_with(b"GLIDER")
-    }
+const REGISTRATION: Registration = Registration {
+    recognises: |datagram| datagram.starts_with(b"GLIDER"),
+    make: |_| Box::<GliderDriver>::default(),
+};
 
+impl Driver for GliderDriver {
     fn receive(&mut self, from: FromLink<'_>) {
         match from {
             FromLink::Connected => self.received.clear(),
@@ -261,8 +262,8 @@ impl Rig {
 
 #[test]
 fn an_autopilot_with_a_protocol_of_its_own_is_flown_by_the_same_core() {
-    let station = Station::new(settings(), None, Box::<GliderDriver>::default());
-    assert!(station.recognises(b"GLIDER 1") && !station.recognises(b"\xFD"));
+    let station = Station::new(settings(), None, (REGISTRATION.make)(false));
+    assert!((REGISTRATION.recognises)(b"GLIDER 1") && !(REGISTRATION.recognises)(b"\xFD"));
     let (glider, outbox) = (Glider::default(), Outbox::default());
     let mut rig = Rig { glider, station, outbox, now: Time::ZERO, events: vec![] };
     rig.run_until("heard", |r| r.state() == GatewayState::Stop);

@@ -15,7 +15,7 @@ use super::mavlink::Peer;
 use super::mavlink::commands::{Client, Wish};
 use super::mavlink::mission::Outcome;
 use super::mavlink::session::{self, News, Session};
-use super::{Driver, FromLink};
+use super::{Driver, FromLink, Registration};
 use crate::gateway::order::{Aim, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
 use geometry::LatLon;
@@ -23,6 +23,10 @@ use list::{List, Step};
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
 use std::collections::VecDeque;
 use window::Change;
+
+/// How to get this driver.
+pub const REGISTRATION: Registration =
+    Registration { recognises: session::recognises, make: |lockstep| Box::new(ArduPlane::new(lockstep)) };
 
 /// The driver. See the module's text.
 #[derive(Debug, Default)]
@@ -178,10 +182,6 @@ impl ArduPlane {
 }
 
 impl Driver for ArduPlane {
-    fn recognises(&self, datagram: &[u8]) -> bool {
-        session::recognises(datagram)
-    }
-
     fn receive(&mut self, from: FromLink<'_>) {
         self.session.receive(from);
     }

@@ -367,7 +367,7 @@ fn an_autopilot_that_is_not_supported_is_refused_in_plain_words() {
         ..HEARTBEAT_DATA::DEFAULT
     };
     let bytes = encode(AUTOPILOT, 0, &MavMessage::HEARTBEAT(beat));
-    assert!(driver.recognises(&bytes) && !driver.recognises(b"hello"));
+    assert!((REGISTRATION.recognises)(&bytes) && !(REGISTRATION.recognises)(b"hello"));
     driver.receive(FromLink::Datagram(&bytes));
     assert!(driver.process(Time::ZERO));
     let told = std::iter::from_fn(|| driver.next_report()).find_map(|r| match r {
