@@ -1,5 +1,6 @@
 //! What the agent is started with: command line over configuration file over defaults.
 
+use crate::gateway::driver::{self, Registration};
 use crate::registry::{Entry, SERVICES};
 use crate::services::storage;
 use crate::{fp_manager, gateway, supervisor};
@@ -97,6 +98,9 @@ pub struct Options {
     /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT or tcp:HOST:PORT [default: udp:127.0.0.1:14550].
     #[arg(long, value_name = "ADDRESS")]
     pub autopilot: Option<String>,
+    /// The autopilot's driver, by its name.
+    #[arg(long, value_name = "NAME", help = driver_help())]
+    pub driver: Option<String>,
     /// Aircraft: the name of a built-in profile or a JSON file [default: trainer].
     #[arg(long, value_name = "NAME|FILE")]
     pub aircraft: Option<String>,
@@ -140,6 +144,7 @@ impl Options {
             listen: self.listen.or(file.listen),
             connect: self.connect.or(file.connect),
             autopilot: self.autopilot.or(file.autopilot),
+            driver: self.driver.or(file.driver),
             aircraft: self.aircraft.or(file.aircraft),
             terrain: if self.terrain.is_empty() { file.terrain } else { self.terrain },
             plan: self.plan.or(file.plan),
@@ -169,6 +174,7 @@ impl Options {
             vehicle: self.vehicle().to_owned(),
             listen: self.listen().to_owned(),
             autopilot: autopilot.parse().context("--autopilot")?,
+            driver: self.driver()?,
             profile: self.profile()?,
             terrain: match self.tiles()? {
                 Some(tiles) => Some(Arc::new(tiles)),
@@ -233,6 +239,7 @@ impl Options {
             ("--listen", &self.listen),
             ("--connect", &self.connect),
             ("--autopilot", &self.autopilot),
+            ("--driver", &self.driver),
             ("--aircraft", &self.aircraft),
         ];
         for (name, value) in texts.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
@@ -258,6 +265,13 @@ impl Options {
         arguments
     }
 
+    fn driver(&self) -> anyhow::Result<Registration> {
+        let Some(name) = self.driver.as_deref() else { return Ok(driver::DEFAULT) };
+        driver::by_name(name).with_context(|| {
+            format!("--driver: there is no driver `{name}`; choose from: {}", driver::names())
+        })
+    }
+
     fn profile(&self) -> anyhow::Result<Profile> {
         let name = self.aircraft.as_deref().unwrap_or(DEFAULT_AIRCRAFT);
         if !name.ends_with(".json") {
@@ -280,6 +294,10 @@ impl Options {
         }
         Ok((!self.terrain.is_empty()).then_some(tiles))
     }
+}
+
+fn driver_help() -> String {
+    format!("The autopilot's driver: {} [default: {}]", driver::names(), driver::DEFAULT.name)
 }
 
 fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
@@ -307,7 +325,7 @@ mod tests {
 
     #[test]
     fn every_option_reaches_the_children() {
-        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 \
+        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --driver d \
                     --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
@@ -357,5 +375,21 @@ mod tests {
             assert!(format!("{error:#}").contains(told), "{error:#}");
         }
         assert!(parse("onboard-agent run --autopilot carrier-pigeon").gateway().is_err());
+    }
+
+    #[test]
+    fn every_driver_is_chosen_by_its_name_and_an_unknown_name_gives_the_list() {
+        use clap::CommandFactory;
+        let chosen = |line: &str| parse(line).gateway().map(|config| config.driver.name);
+        for known in driver::DRIVERS {
+            let line = format!("onboard-agent gateway --driver {}", known.name);
+            assert_eq!(chosen(&line).unwrap(), known.name);
+        }
+        assert_eq!(chosen("onboard-agent gateway").unwrap(), "ardupilot");
+        let error = format!("{:#}", chosen("onboard-agent gateway --driver kite").unwrap_err());
+        assert!(error.contains("`kite`") && error.contains(&driver::names()), "{error}");
+        let mut command = Cli::command();
+        let help = command.find_subcommand_mut("run").unwrap().render_long_help().to_string();
+        assert!(help.contains(&driver_help()), "{help}");
     }
 }

@@ -1,5 +1,6 @@
 //! What the gateway is started with.
 
+use super::driver::{self, Registration};
 use aircraft::Profile;
 use autopilot_link::Address;
 use std::path::PathBuf;
@@ -13,8 +14,10 @@ pub struct Config {
     pub vehicle: String,
     /// Where the session listens, `tcp/127.0.0.1:7447`.
     pub listen: String,
-    /// The autopilot.
+    /// The autopilot's address.
     pub autopilot: Address,
+    /// The autopilot's driver.
+    pub driver: Registration,
     /// The aircraft.
     pub profile: Profile,
     /// The ground, if known: waypoints below it are refused, Safe mode flies above it.
@@ -32,6 +35,7 @@ impl Config {
             vehicle: vehicle.into(),
             listen: listen.into(),
             autopilot,
+            driver: driver::DEFAULT,
             profile: Profile::default(),
             terrain: None,
             state_dir: None,

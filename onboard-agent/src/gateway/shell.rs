@@ -2,7 +2,7 @@
 
 use super::config::Config;
 use super::core::Settings;
-use super::driver::{self, Registration};
+use super::driver::Registration;
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
 use anyhow::Context;
@@ -40,7 +40,7 @@ async fn open(config: Config, beginning: Beginning) -> anyhow::Result<(FcsGatewa
         tracing::info!(%at, "listening for the autopilot");
     }
     let settings = Settings { vehicle: config.vehicle, profile: config.profile, terrain: config.terrain };
-    let Registration { recognises, make } = driver::ARDUPILOT;
+    let Registration { recognises, make, .. } = config.driver;
     let station = Station::new(settings, restored, make(config.simulated));
     Ok((FcsGateway::new(station), AutopilotLink { link, recognises, received: Vec::new() }))
 }

@@ -1,8 +1,8 @@
 //! Pure: drivers. A driver is all that knows one kind of autopilot: bytes in, bytes out, orders in, reports out.
 //!
 //! It owns the codec, the modes, the strategy for the autopilot's list and what is known of its abilities; the
-//! core knows waypoints and intentions ([`super::order`]), and the link carries bytes. `mavlink` is what
-//! drivers of MAVLink autopilots share; `arduplane` is the one driver so far.
+//! core knows waypoints and intentions ([`super::order`]), and the link carries bytes. [`DRIVERS`] lists them.
+//! `mavlink` is what drivers of MAVLink autopilots share; `arduplane` is the one driver so far.
 
 mod arduplane;
 mod mavlink;
@@ -57,15 +57,30 @@ pub trait Driver: Send + Sync {
     fn hello(&mut self) {}
 }
 
-/// A kind of driver, and how to get one.
+/// A driver in the list of drivers.
 #[derive(Debug, Clone, Copy)]
 pub struct Registration {
+    /// Its name in the configuration.
+    pub name: &'static str,
     /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner.
     pub recognises: fn(&[u8]) -> bool,
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
-    /// autopilot at the other end. `true`: lockstep, the simulator asks before each step.
-    pub make: fn(bool) -> Box<dyn Driver>,
+    /// autopilot at the other end. In lockstep the simulator asks before each step.
+    pub make: fn(lockstep: bool) -> Box<dyn Driver>,
 }
 
-/// ArduPilot's ArduPlane.
-pub const ARDUPILOT: Registration = arduplane::REGISTRATION;
+/// The drivers: a new one is a line here.
+pub const DRIVERS: &[Registration] = &[arduplane::REGISTRATION];
+
+/// The driver that is used unless the configuration names another.
+pub const DEFAULT: Registration = arduplane::REGISTRATION;
+
+/// The driver with this name.
+pub fn by_name(name: &str) -> Option<Registration> {
+    DRIVERS.iter().copied().find(|driver| driver.name == name)
+}
+
+/// The names of all drivers, for people.
+pub fn names() -> String {
+    DRIVERS.iter().map(|driver| driver.name).collect::<Vec<_>>().join(", ")
+}

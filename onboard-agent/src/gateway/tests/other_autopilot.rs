@@ -14,8 +14,9 @@ use usal::contract::*;
 
 /// The autopilot: it holds a whole route, and says ten times a second how it is.
 #[derive(Default)]
-struct Glider {
-    out: String,
+pub struct Glider {
+    /// What it sends.
+    pub out: String,
     /// Number, latitude, longitude, altitude.
     route: VecDeque<(u64, f64, f64, f64)>,
     place: (f64, f64, f64),
@@ -52,7 +53,7 @@ impl Glider {
     }
 
     /// 100 ms; a waypoint takes two seconds.
-    fn step(&mut self) {
+    pub fn step(&mut self) {
         self.steps += 1;
         if self.steps == 1 {
             self.place = (36.3190, -84.1730, 349.0);
@@ -142,7 +143,9 @@ impl GliderDriver {
     }
 }
 
-const REGISTRATION: Registration = Registration {
+/// The driver as it would stand in the list of drivers.
+pub const REGISTRATION: Registration = Registration {
+    name: "glider",
     recognises: |datagram| datagram.starts_with(b"GLIDER"),
     make: |_| Box::<GliderDriver>::default(),
 };

@@ -1,7 +1,8 @@
 //! The whole gateway over sockets: simulator, link, session.
 
+use super::other_autopilot::{self, Glider};
 use crate::gateway::{Address, Config, run};
-use std::net::TcpListener;
+use std::net::{TcpListener, UdpSocket};
 use std::time::{Duration, Instant};
 use usal::Session;
 use usal::contract::{GatewayRequest, GatewayState, LatLon, SafeRunway};
@@ -43,6 +44,42 @@ async fn a_lockstep_simulator_is_seen_on_the_network_and_time_runs_fast() {
     trigger.shut_down();
     tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
     sim.stop();
+}
+
+/// The driver of the configuration says whose datagrams are the autopilot's and what they mean.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn the_autopilot_of_another_driver_is_seen_on_the_network() {
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let listen = free_endpoint();
+    let (trigger, shutdown) = crate::shutdown();
+    let config = Config {
+        driver: other_autopilot::REGISTRATION,
+        ..Config::new("test", &listen, format!("udp:{port}").parse().unwrap())
+    };
+    let task = tokio::spawn(run(config, shutdown));
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
+    let mut state = session.follow(gateway::STATE).unwrap();
+    let mut glider = Glider::default();
+    let wait = async {
+        loop {
+            // a datagram that comes too early is lost
+            glider.step();
+            let lines = format!("GLIDER 1\n{}", std::mem::take(&mut glider.out));
+            socket.send_to(lines.as_bytes(), port).unwrap();
+            let next = tokio::time::timeout(Duration::from_millis(100), state.changed()).await;
+            if let Ok(Some(status)) = next
+                && status.stamped.value.autopilot_mode == "manual"
+            {
+                return status.stamped.value.state;
+            }
+        }
+    };
+    let seen =
+        tokio::time::timeout(Duration::from_secs(60), wait).await.expect("the gateway sees the glider");
+    assert_eq!(seen, GatewayState::Stop);
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

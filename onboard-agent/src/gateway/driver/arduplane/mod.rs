@@ -24,9 +24,12 @@ use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
 use std::collections::VecDeque;
 use window::Change;
 
-/// How to get this driver.
-pub const REGISTRATION: Registration =
-    Registration { recognises: session::recognises, make: |lockstep| Box::new(ArduPlane::new(lockstep)) };
+/// This driver in the list of drivers.
+pub const REGISTRATION: Registration = Registration {
+    name: "ardupilot",
+    recognises: session::recognises,
+    make: |lockstep| Box::new(ArduPlane::new(lockstep)),
+};
 
 /// The driver. See the module's text.
 #[derive(Debug, Default)]

@@ -41,7 +41,7 @@ pub fn settings() -> Settings {
 
 /// A station that starts, in lockstep with the simulator.
 pub fn station(restored: Option<Snapshot>) -> Station {
-    Station::new(settings(), restored, (driver::ARDUPILOT.make)(true))
+    Station::new(settings(), restored, (driver::DEFAULT.make)(true))
 }
 
 impl Flight {
