@@ -29,9 +29,10 @@ fn a_flight_as_planned_succeeds_and_leaves_its_report() {
     assert_eq!(run.status.code(), Some(0), "{out}\n{err}");
     assert!(out.contains("The mission was flown as planned."), "{out}");
     assert!(!err.contains("zenoh"), "log noise before the user: {err}");
-    for file in ["report.html", "report.md", "legs.csv", "events.jsonl", "log.jsonl"] {
+    for file in ["report.html", "report.md", "legs.csv", "events.jsonl"] {
         assert!(std::fs::metadata(folder.path().join(file)).unwrap().len() > 100, "{file}");
     }
+    recording_is_whole(&folder.path().join("recordings"));
     for picture in ["map.png", "profile.png"] {
         let bytes = std::fs::read(folder.path().join(picture)).unwrap();
         assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 10_000, "{picture}: {} bytes", bytes.len());
@@ -39,6 +40,25 @@ fn a_flight_as_planned_succeeds_and_leaves_its_report() {
     let legs = std::fs::read_to_string(folder.path().join("legs.csv")).unwrap();
     for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
         assert!(legs.lines().any(|line| line.starts_with(leg)), "{leg} is missing:\n{legs}");
+    }
+}
+
+/// One file, whole for `legwork log --check`, with what the report was made from.
+fn recording_is_whole(folder: &Path) {
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let recordings: Vec<_> = files.iter().filter(|f| f.extension().is_some_and(|e| e == "mcap")).collect();
+    let [recording] = recordings[..] else { panic!("{files:?}") };
+    let run =
+        Command::new(env!("CARGO_BIN_EXE_legwork")).args(["log", "--check"]).arg(recording).output().unwrap();
+    let listed = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(0), "{listed}\n{}", text(&run.stderr));
+    for channel in [
+        "simulator/variable/truth",
+        "fp-manager/event/events",
+        "fp-manager/invocation/plan",
+        "gateway/variable/position",
+    ] {
+        assert!(listed.contains(&format!("legwork/demo/{channel}")), "{channel} is missing:\n{listed}");
     }
 }
 

@@ -1,17 +1,19 @@
-//! Simulator, gateway and FP Manager, started in this process and watched. They talk as they always do: MAVLink
+//! Simulator, gateway, FP Manager and recorder, started in this process and watched. They talk as they always do: MAVLink
 //! over TCP, Zenoh over TCP, both on ports of the loopback that were free.
 
+use super::recording::Recording;
 use aircraft::Wind;
 use anyhow::Context;
 use flight_plan::Runway;
 use onboard_agent::{Shutdown, Trigger, fp_manager, gateway, shutdown};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::Path;
 use std::sync::Arc;
 use terrain::Terrain;
-use tokio::task::JoinHandle;
+use tokio::task::{JoinError, JoinHandle};
 
-/// The vehicle's name in the demo.
-pub const VEHICLE: &str = "demo";
+pub use super::recorded::VEHICLE;
+
 /// Simulated seconds between points of the flown track.
 const TRACK_INTERVAL_S: f64 = 0.5;
 
@@ -24,6 +26,8 @@ pub struct Components {
     pub simulator: sim::Handle,
     /// Zenoh endpoint of the gateway.
     pub endpoint: String,
+    /// The recorder; `None` when its recording was finished.
+    pub recording: Option<Recording>,
     services: Vec<Service>,
     trigger: Trigger,
 }
@@ -41,6 +45,8 @@ pub struct Setup<'a> {
     pub speed: f64,
     /// The ground.
     pub terrain: Arc<dyn Terrain>,
+    /// Where the recording goes.
+    pub recordings: &'a Path,
 }
 
 impl Components {
@@ -67,7 +73,8 @@ impl Components {
         let endpoint = format!("tcp/{}", free_address()?);
         let (trigger, shutdown) = shutdown();
         let services = services(setup, simulator.address(), &endpoint, &shutdown)?;
-        Ok(Self { simulator, endpoint, services, trigger })
+        let recording = Some(Recording::start(setup, &endpoint, setup.recordings));
+        Ok(Self { simulator, endpoint, recording, services, trigger })
     }
 
     /// The first component that has ended, and why; `None` while all are running.
@@ -75,13 +82,14 @@ impl Components {
         if self.simulator.is_finished() {
             return Some("the simulator has ended".into());
         }
-        let ended = self.services.iter().position(|(_, task)| task.is_finished())?;
-        let (name, task) = self.services.remove(ended);
-        Some(match task.await {
-            Ok(Ok(())) => format!("the {name} has ended by itself"),
-            Ok(Err(error)) => format!("the {name} has failed: {error:#}"),
-            Err(error) => format!("the {name} has crashed: {error}"),
-        })
+        if let Some(ended) = self.services.iter().position(|(_, task)| task.is_finished()) {
+            let (name, task) = self.services.remove(ended);
+            return Some(why_ended(name, task.await));
+        }
+        match &mut self.recording {
+            Some(recording) if recording.has_ended() => Some(recording.why_ended().await),
+            _ => None,
+        }
     }
 
     /// Ends everything; what does not end in time is cut off.
@@ -94,6 +102,15 @@ impl Components {
             }
         }
         self.simulator.stop();
+    }
+}
+
+/// Why a service is not there any more.
+pub fn why_ended(name: &str, ended: Result<anyhow::Result<()>, JoinError>) -> String {
+    match ended {
+        Ok(Ok(())) => format!("the {name} has ended by itself"),
+        Ok(Err(error)) => format!("the {name} has failed: {error:#}"),
+        Err(error) => format!("the {name} has crashed: {error}"),
     }
 }
 

@@ -4,16 +4,17 @@ use super::components::{Components, VEHICLE};
 use super::judge::Outcome;
 use super::mission::{Act, Script, Step};
 use super::progress::Progress;
-use super::recorder::Recorder;
+use super::recorded::{GATEWAY_EVENTS, PLAN_EVENTS, Recorded, refusal};
+use super::recording::{Count, Recording};
 use super::watcher::Watcher;
 use crate::report::TrackPoint;
 use anyhow::{Context, bail, ensure};
 use flight_exec::{Command, Event, Phase, Status};
 use flight_plan::{Edit, FlightPlan, Runway};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use usal::contract::{
-    Air, Attitude, ClockTick, FpManagerEvent, GatewayState, GatewayStatus, Navigation, PlanStatus, Position,
-    Power, Propose, TimedGatewayEvent,
+    ClockTick, FpManagerEvent, GatewayState, GatewayStatus, PlanStatus, Propose, TimedGatewayEvent,
 };
 use usal::topics::{fp_manager, gateway};
 use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start, VariableSubscriber};
@@ -42,9 +43,15 @@ pub struct Flight<'a> {
     clock: Participant,
     heard: Heard,
     script: Script,
-    recorder: Recorder,
     /// With its updates.
     plan: FlightPlan,
+    /// Hash of the plan that was committed last.
+    hash: Arc<str>,
+    /// Why something of the plan was refused last.
+    last_refusal: Option<String>,
+    /// Events heard of FP Manager and gateway, and those that were lost on the way here.
+    plan_events: Tally,
+    gateway_events: Tally,
     progress: &'a Progress,
     watcher: &'a Watcher,
     planned_s: f64,
@@ -54,14 +61,17 @@ pub struct Flight<'a> {
     wall: Instant,
 }
 
+/// Events of a stream.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    heard: u64,
+    lost: u64,
+}
+
 /// What was seen of a flight.
 pub struct Ending {
-    /// Where the aircraft really was.
-    pub points: Vec<TrackPoint>,
-    /// What the executor told.
-    pub events: Vec<(f64, Event)>,
-    /// The plan with its updates.
-    pub plan: FlightPlan,
+    /// What was recorded; times count from the start of the plan.
+    pub recorded: Recorded,
     /// For the judge.
     pub outcome: Outcome,
 }
@@ -72,11 +82,6 @@ struct Heard {
     gateway_events: EventSubscriber<TimedGatewayEvent>,
     state: VariableSubscriber<GatewayStatus>,
     status: VariableSubscriber<PlanStatus>,
-    position: VariableSubscriber<Position>,
-    attitude: VariableSubscriber<Attitude>,
-    air: VariableSubscriber<Air>,
-    power: VariableSubscriber<Power>,
-    navigation: VariableSubscriber<Navigation>,
 }
 
 impl Heard {
@@ -86,11 +91,6 @@ impl Heard {
             gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,
             state: session.follow(gateway::STATE)?,
             status: session.follow(fp_manager::STATUS)?,
-            position: session.follow(gateway::POSITION)?,
-            attitude: session.follow(gateway::ATTITUDE)?,
-            air: session.follow(gateway::AIR)?,
-            power: session.follow(gateway::POWER)?,
-            navigation: session.follow(gateway::NAVIGATION)?,
         })
     }
 
@@ -113,7 +113,6 @@ impl<'a> Flight<'a> {
         components: &Components,
         plan: FlightPlan,
         script: Script,
-        recorder: Recorder,
         planned_s: f64,
         progress: &'a Progress,
         watcher: &'a Watcher,
@@ -124,8 +123,11 @@ impl<'a> Flight<'a> {
             clock: Participant::join(&session, "mission")?,
             session,
             script,
-            recorder,
             plan,
+            hash: Arc::default(),
+            last_refusal: None,
+            plan_events: Tally::default(),
+            gateway_events: Tally::default(),
             progress,
             watcher,
             planned_s,
@@ -161,7 +163,6 @@ impl<'a> Flight<'a> {
             }
         }
         self.look(components);
-        self.recorder.flush();
         Ok(())
     }
 
@@ -197,10 +198,20 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// What was seen of the flight so far; times count from the start of the plan.
-    pub fn ending(&mut self, components: &Components, destination: &Runway) -> Ending {
+    /// Events heard of each stream: the recording has them, too.
+    pub fn counts(&self) -> [Count; 2] {
+        [
+            (PLAN_EVENTS.to_owned(), self.plan_events.heard),
+            (GATEWAY_EVENTS.to_owned(), self.gateway_events.heard),
+        ]
+    }
+
+    /// What became of the flight, as it was recorded and as it is now.
+    pub fn ending(&self, mut recorded: Recorded, components: &Components, destination: &Runway) -> Ending {
+        recorded.ends_with(&self.hash);
+        recorded.lost(self.plan_events.lost, "events of the FP Manager were lost");
+        recorded.lost(self.gateway_events.lost, "events of the gateway were lost");
         let truth = components.simulator.truth();
-        let recorder = &mut self.recorder;
         let outcome = Outcome {
             stands_at: truth.position,
             on_ground: truth.on_ground,
@@ -208,21 +219,16 @@ impl<'a> Flight<'a> {
             ground_speed_mps: truth.ground_speed_mps,
             runway: destination.clone(),
             phase: self.heard.status().map_or(Phase::Idle, |s| s.phase),
-            states: std::mem::take(&mut recorder.states),
+            states: std::mem::take(&mut recorded.states),
             missing_steps: self.script.missing().map(|s| s.name.to_owned()).collect(),
             steps: self.script.steps(),
-            refusals: std::mem::take(&mut recorder.refusals),
+            refusals: std::mem::take(&mut recorded.refusals),
         };
-        let mut points = std::mem::take(&mut recorder.points);
-        points.retain(|p| p.time_s >= self.started_s);
-        points.iter_mut().for_each(|p| p.time_s -= self.started_s);
-        let mut events = std::mem::take(&mut recorder.events);
-        events.iter_mut().for_each(|(time_s, _)| *time_s -= self.started_s);
-        Ending { points, events, plan: self.plan.clone(), outcome }
+        Ending { recorded: recorded.since(self.started_s), outcome }
     }
 
     fn last_refusal(&self) -> &str {
-        self.recorder.refusals.last().map_or("nothing was refused", String::as_str)
+        self.last_refusal.as_deref().unwrap_or("nothing was refused")
     }
 
     async fn wait_until_ready(&mut self, components: &mut Components) -> anyhow::Result<()> {
@@ -231,13 +237,16 @@ impl<'a> Flight<'a> {
             let tick = self.next_tick(components).await?;
             self.look(components);
             self.clock.acknowledge(tick);
-            if self.heard.gateway_state() == Some(GatewayState::Stop) && self.heard.status().is_some() {
+            let is_recorded = components.recording.as_ref().is_some_and(Recording::has_begun);
+            let is_there =
+                self.heard.gateway_state() == Some(GatewayState::Stop) && self.heard.status().is_some();
+            if is_there && is_recorded {
                 return Ok(());
             }
             self.progress.say("waiting for the agent");
             ensure!(
                 Instant::now() < deadline,
-                "the agent is not ready after {} s: gateway {:?}, FP Manager {:?}",
+                "the agent is not ready after {} s: gateway {:?}, FP Manager {:?}, recording: {is_recorded}",
                 READY_WITHIN.as_secs(),
                 self.heard.gateway_state(),
                 self.heard.status().map(|s| s.phase)
@@ -270,29 +279,24 @@ impl<'a> Flight<'a> {
 
     /// Takes in what has come, without waiting.
     fn look(&mut self, components: &Components) {
-        let recorder = &mut self.recorder;
-        recorder.points.extend(components.simulator.take_track().into_iter().map(|p| TrackPoint {
-            time_s: p.time_s,
-            position: p.position,
-            altitude_amsl_m: p.altitude_amsl_m,
-        }));
+        for point in components.simulator.take_track() {
+            let (time_s, position, altitude_amsl_m) = (point.time_s, point.position, point.altitude_amsl_m);
+            if let Some(recording) = &components.recording {
+                recording.truth(&TrackPoint { time_s, position, altitude_amsl_m });
+            }
+        }
         while let Some(occurrence) = self.heard.plan_events.try_recv() {
             match occurrence {
-                Occurrence::Event { event, .. } => self.script.hear(recorder.plan_event(event)),
-                Occurrence::Gap { missed } => {
-                    recorder.refusals.push(format!("{missed} events of the FP Manager were lost"))
-                }
+                Occurrence::Event { event, .. } => self.plan_event(event),
+                Occurrence::Gap { missed } => self.plan_events.lost += missed,
             }
         }
         while let Some(occurrence) = self.heard.gateway_events.try_recv() {
             match occurrence {
-                Occurrence::Event { event, .. } => recorder.gateway_event(&event),
-                Occurrence::Gap { missed } => {
-                    recorder.refusals.push(format!("{missed} events of the gateway were lost"))
-                }
+                Occurrence::Event { .. } => self.gateway_events.heard += 1,
+                Occurrence::Gap { missed } => self.gateway_events.lost += missed,
             }
         }
-        self.log_variables();
         if let Some(status) = self.heard.status() {
             self.script.steers_to(status.place.as_ref(), status.current);
             self.progress.show(
@@ -303,24 +307,13 @@ impl<'a> Flight<'a> {
         }
     }
 
-    fn log_variables(&mut self) {
-        let (heard, recorder) = (&mut self.heard, &mut self.recorder);
-        macro_rules! log {
-            ($($field:ident: $topic:literal),+ $(,)?) => {
-                $(if let Some(received) = heard.$field.take_new() {
-                    recorder.log($topic, &received.stamped);
-                })+
-            };
+    fn plan_event(&mut self, stamped: FpManagerEvent) {
+        self.plan_events.heard += 1;
+        let event: Event = stamped.value.convert();
+        if let Some(why) = refusal(&event) {
+            self.last_refusal = Some(why.to_owned());
         }
-        log!(
-            position: "gateway/position",
-            attitude: "gateway/attitude",
-            air: "gateway/air",
-            power: "gateway/power",
-            navigation: "gateway/navigation",
-            state: "gateway/state",
-            status: "fp-manager/status",
-        );
+        self.script.hear(&event);
     }
 
     /// Does the steps of the mission logic that are due; time stands still meanwhile.
@@ -354,10 +347,11 @@ impl<'a> Flight<'a> {
         Ok(())
     }
 
-    async fn send_plan(&self, plan: &FlightPlan) -> anyhow::Result<()> {
+    async fn send_plan(&mut self, plan: &FlightPlan) -> anyhow::Result<()> {
         let request = Propose { xml: flight_plan::write(plan), seen_revision: None };
         let report = self.session.call(fp_manager::PROPOSE, &request, ANSWER_WITHIN).await?;
         ensure!(report.acceptable, "{}", report.problems.join("; "));
+        self.hash = report.hash.clone();
         self.command(Command::Commit { hash: report.hash, entry: None }).await
     }
 

@@ -9,7 +9,8 @@ mod judge;
 mod mission;
 mod plan;
 mod progress;
-mod recorder;
+mod recorded;
+mod recording;
 mod summary;
 mod watcher;
 
@@ -20,11 +21,10 @@ use crate::report::{self, Findings, Record};
 use aircraft::Wind;
 use anyhow::Context;
 use components::{Components, Setup, VEHICLE};
-use flight::Flight;
+use flight::{Ending, Flight};
 use plan::Prepared;
 use progress::Progress;
-use recorder::Recorder;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -37,6 +37,8 @@ const WATCHABLE_SPEED: f64 = 20.0;
 const SPARE_S: f64 = 180.0;
 /// The slowest pace at which a flight "as fast as possible" is still waited for, × real time.
 const LEAST_PACE: f64 = 5.0;
+/// The recordings' folder inside of the report's.
+const RECORDINGS: &str = "recordings";
 /// When the window is closed, everything else must have ended after this, wall-clock.
 const CLOSING: Duration = Duration::from_secs(60);
 
@@ -158,20 +160,21 @@ async fn fly(
     std::fs::create_dir_all(&args.report).with_context(|| {
         format!("can't make the report folder {}: choose another with --report", args.report.display())
     })?;
-    let recorder = Recorder::new(&args.report.join("log.jsonl"))?;
-    let components = Components::start(&setup(args, prepared, speed))?;
+    let recordings = args.report.join(RECORDINGS);
+    let components = Components::start(&setup(args, prepared, speed, &recordings))?;
     // without a window nobody listens
     let _ = endpoint.send(components.endpoint.clone());
-    fly_with(args, prepared, components, recorder, watcher).await
+    fly_with(args, prepared, components, watcher).await
 }
 
-fn setup<'a>(args: &Args, prepared: &'a Prepared, speed: f64) -> Setup<'a> {
+fn setup<'a>(args: &Args, prepared: &'a Prepared, speed: f64, recordings: &'a Path) -> Setup<'a> {
     Setup {
         home: &prepared.home,
         profile: prepared.profile.clone(),
         wind: args.wind,
         speed,
         terrain: prepared.terrain.clone(),
+        recordings,
     }
 }
 
@@ -180,7 +183,6 @@ async fn fly_with(
     args: &Args,
     prepared: &Prepared,
     mut components: Components,
-    recorder: Recorder,
     watcher: &Watcher,
 ) -> anyhow::Result<ExitCode> {
     let began = Instant::now();
@@ -188,18 +190,30 @@ async fn fly_with(
     let script = mission::Script::new(prepared.steps.clone());
     let plan = prepared.program.plan.as_ref().clone();
     let mut flight =
-        Flight::join(&components, plan, script, recorder, prepared.planned.duration_s(), &progress, watcher)
-            .await?;
+        Flight::join(&components, plan, script, prepared.planned.duration_s(), &progress, watcher).await?;
     let flown = flight.fly(&mut components).await;
     progress.end();
-    let ending = flight.ending(&components, &prepared.destination);
+    let ending = ending(&flight, &mut components, prepared).await;
     flight.leave().await;
-    let good = conclude(args, prepared, &ending, began.elapsed().as_secs_f64());
+    let wall_s = began.elapsed().as_secs_f64();
+    let good = ending.and_then(|ending| conclude(args, prepared, &ending, wall_s));
     stay_open(watcher, flown.as_ref().err()).await;
     components.stop().await;
-    let good = good?;
+    // why the flight failed says more than why its report did
     flown?;
+    let good = good?;
     Ok(ExitCode::from(u8::from(!good)))
+}
+
+/// Ends the recording: what was recorded, and how the aircraft stands.
+async fn ending(
+    flight: &Flight<'_>,
+    components: &mut Components,
+    prepared: &Prepared,
+) -> anyhow::Result<Ending> {
+    let recording = components.recording.take().context("the recording is finished already")?;
+    let recorded = recording.finish(&flight.counts()).await?;
+    Ok(flight.ending(recorded, components, &prepared.destination))
 }
 
 /// The window shows where the aircraft stands, until it is closed.
@@ -215,7 +229,7 @@ async fn stay_open(watcher: &Watcher, failure: Option<&anyhow::Error>) {
 }
 
 /// Judges the flight, writes the report, prints the summary; gives whether everything is as planned.
-fn conclude(args: &Args, prepared: &Prepared, ending: &flight::Ending, wall_s: f64) -> anyhow::Result<bool> {
+fn conclude(args: &Args, prepared: &Prepared, ending: &Ending, wall_s: f64) -> anyhow::Result<bool> {
     let mut record: Record = prepared.record(ending, &args.wind);
     record.verdict = judge::verdict(&record, &Findings::of(&record), &ending.outcome);
     if record.flown.points().is_empty() {
@@ -244,11 +258,10 @@ mod tests {
             after: 0.0,
         };
         let prepared = plan::prepare(&args).unwrap();
-        let recorder = Recorder::new(&folder.path().join("log.jsonl")).unwrap();
         let result = runtime().unwrap().block_on(async {
-            let components = Components::start(&setup(&args, &prepared, 0.0)).unwrap();
+            let components = Components::start(&setup(&args, &prepared, 0.0, folder.path())).unwrap();
             assert!(components.simulator.control(sim::Control::Stop));
-            fly_with(&args, &prepared, components, recorder, &Watcher::nobody()).await
+            fly_with(&args, &prepared, components, &Watcher::nobody()).await
         });
         let why = result.map(|_| ()).unwrap_err().to_string();
         assert_eq!(why, "the simulator has ended");

@@ -131,9 +131,12 @@ fn preview(
 impl Prepared {
     /// The record of a flight, without a verdict yet. Times count from the start of the plan.
     pub fn record(&self, ending: &Ending, wind: &Wind) -> Record {
-        let (last_plan, _) = flight_plan::instantiate(&ending.plan);
-        let plans = [self.program.flown(), last_plan.as_ref()];
-        let flown = assemble::track(&ending.points, &ending.events, &plans);
+        let recorded = &ending.recorded;
+        let flown_plans: Vec<_> =
+            recorded.plans.iter().map(|(_, plan)| flight_plan::instantiate(plan).0).collect();
+        let mut plans = vec![self.program.flown()];
+        plans.extend(flown_plans.iter().map(|plan| plan.as_ref()));
+        let flown = assemble::track(&recorded.points, &recorded.events, &plans);
         let turn_radius_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps + wind.speed_mps());
         Record {
             title: self.program.plan.name.clone(),
@@ -143,12 +146,12 @@ impl Prepared {
                 format!("plan {}", self.program.hash().get(..12).unwrap_or(self.program.hash())),
             ],
             planned: self.planned.clone(),
-            authored: authored::paths(&self.program, &plans, &flown, &ending.events, turn_radius_m),
+            authored: authored::paths(&self.program, &plans, &flown, &recorded.events, turn_radius_m),
             places: assemble::places(&self.program.plan),
             zones: self.program.plan.zones.clone(),
-            areas: assemble::areas(&self.program, &flown, &ending.events),
+            areas: assemble::areas(&self.program, &flown, &recorded.events),
             flown,
-            happenings: ending.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
+            happenings: recorded.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
             verdict: Vec::new(),
             terrain: self.terrain.clone(),
         }
