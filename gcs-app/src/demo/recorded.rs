@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn states_and_events_are_taken_in_order() {
         let state = |from: &str, to: &str| {
-            let value = json!({"event": "state-changed", "from": from, "to": to});
+            let value = json!({"event": "state-changed", "from": from, "to": to, "cause": ""});
             (GATEWAY_EVENTS, json!({"time_s": 1.0, "validity_s": 1.0, "value": value}))
         };
         let taken = recorded(&[
