@@ -3,7 +3,7 @@
 use super::log_export;
 use super::output::Output;
 use anyhow::{Context, bail};
-use interchange::Format;
+use interchange::{Format, MAX_POINTS};
 use recording::{Contents, Ending};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -11,6 +11,9 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Longer texts of a file are cut where they are printed, characters.
+const SHOWN_MAX: usize = 200;
 
 /// What is looked at, and what is wanted of it.
 #[derive(Debug, Clone, clap::Args)]
@@ -62,6 +65,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         say!("{:#}", json!(documents));
     }
     if let Some((to, format)) = export {
+        let left_out = flights.left_out();
+        if left_out > 0 {
+            eprintln!(
+                "{left_out} points and events are not written: {MAX_POINTS} are the most that fit into one file"
+            );
+        }
         let flights = flights.finish();
         if flights.iter().all(|f| f.track.is_empty() && f.events.is_empty()) {
             bail!("there is no track and no event to be written: these are no recordings of a flight");
@@ -107,10 +116,10 @@ fn print(path: &Path, contents: &Contents) {
         say!("  {} to {}, {seconds:.1} s, {} chunks", time(first), time(last), contents.chunks);
     }
     for channel in contents.channels.values() {
-        say!("  {:>9}  {}  {}", channel.messages, channel.topic, schema(&channel.schema));
+        say!("  {:>9}  {}  {}", channel.messages, shown(&channel.topic), schema(&channel.schema));
     }
     for attachment in &contents.attachments {
-        say!("  attachment {}, {} bytes", attachment.name, attachment.bytes);
+        say!("  attachment {}, {} bytes", shown(&attachment.name), attachment.bytes);
     }
     for finding in &contents.findings {
         eprintln!("{}: {finding}", path.display());
@@ -120,8 +129,28 @@ fn print(path: &Path, contents: &Contents) {
     }
 }
 
-fn schema(name: &str) -> &str {
-    if name.is_empty() { "(no schema)" } else { name }
+fn schema(name: &str) -> String {
+    if name.is_empty() { "(no schema)".into() } else { shown(name) }
+}
+
+/// A text of a file that anybody may have written: nothing in it can steer a terminal or flood it.
+fn shown(text: &str) -> String {
+    let mut shown: String = text.chars().take(SHOWN_MAX).flat_map(visible).collect();
+    if text.chars().nth(SHOWN_MAX).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+fn visible(character: char) -> impl Iterator<Item = char> {
+    let is_plain = !character.is_control() && !is_invisible(character);
+    let escaped = (!is_plain).then(|| character.escape_unicode());
+    is_plain.then_some(character).into_iter().chain(escaped.into_iter().flatten())
+}
+
+/// Characters that change the direction or the place of others.
+fn is_invisible(character: char) -> bool {
+    matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 /// RFC 3339, to the millisecond.
@@ -218,6 +247,13 @@ mod tests {
         assert_eq!(status(&Args { check: false, ..foreign }), bad);
         let missing = Args { files: vec![folder.path().join("missing")], ..args(folder.path(), "x", b"") };
         assert!(run(&missing).unwrap_err().to_string().contains("missing"));
+    }
+
+    #[test]
+    fn names_of_a_file_cannot_steer_the_terminal() {
+        assert_eq!(shown("legwork/uav1/ü"), "legwork/uav1/ü");
+        assert_eq!(shown("a\u{1b}[2J\u{202e}"), "a\\u{1b}[2J\\u{202e}");
+        assert_eq!(shown(&"x".repeat(SHOWN_MAX + 1)), format!("{}…", "x".repeat(SHOWN_MAX)));
     }
 
     #[test]

@@ -17,18 +17,24 @@ pub struct Flights {
     flights: BTreeMap<String, RecordedFlight>,
     /// Points and events of all.
     entries: usize,
+    /// Those that found no room.
+    left_out: u64,
 }
 
 impl Flights {
     /// Takes in a message: a position of the gateway, or an event; nothing else is exported.
     pub fn message(&mut self, message: &Message<'_>) {
-        if self.entries >= MAX_POINTS || message.channel.encoding != "json" {
+        if message.channel.encoding != "json" {
             return;
         }
         let Ok(key) = message.channel.topic.parse::<Key>() else { return };
         match (key.kind, key.service.as_str(), key.name.as_str()) {
+            (Kind::Event, _, "log") => {}
+            (Kind::Variable, "gateway", "position") | (Kind::Event, ..) if self.entries >= MAX_POINTS => {
+                self.left_out += 1;
+            }
             (Kind::Variable, "gateway", "position") => self.position(key, message),
-            (Kind::Event, _, name) if name != "log" => self.event(key, message),
+            (Kind::Event, ..) => self.event(key, message),
             _ => {}
         }
     }
@@ -61,6 +67,11 @@ impl Flights {
         self.flights
             .entry(vehicle.clone())
             .or_insert_with(|| RecordedFlight { vehicle, ..RecordedFlight::default() })
+    }
+
+    /// Points and events for which there was no room.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
     }
 
     /// The flights, by the vehicles' names.

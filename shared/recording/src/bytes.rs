@@ -1,5 +1,6 @@
 //! Records of an MCAP file as bytes. Numbers are little-endian, texts and lists are behind their length in bytes.
 //! Source: the specification at mcap.dev/spec.
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
 //! One MCAP file, as the bytes that are to be appended to it.
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer, records::MessageHeader};

@@ -1,4 +1,5 @@
 //! CBOR as JSON, without a tree in between: a message is looked at once.
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use serde::de::DeserializeSeed;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};

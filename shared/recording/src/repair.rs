@@ -1,4 +1,5 @@
 //! A torn file, written again as a whole one.
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use crate::{Channel, Contents, Ending, scan};
 use mcap::write::NoSeek;

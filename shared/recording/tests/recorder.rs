@@ -274,3 +274,18 @@ fn drained(bytes: &[u8], next: &mut [u64; 20]) -> u64 {
     assert_eq!(contents.unwrap().findings, []);
     count
 }
+
+#[test]
+fn name_that_is_taken_costs_what_was_underway_and_nothing_else() {
+    let mut rig = rig();
+    rig.taken.push("uav1-20251123T080000Z-001.mcap".into());
+    for n in 0..10 {
+        rig.frame(ms(10 * n), numbered("uav1", n, ms(10 * n)));
+    }
+    rig.step(ms(200), Input::Close);
+    assert_eq!(rig.files.len(), 1);
+    assert_eq!(rig.files[0].0, "uav1-20251123T080000Z-002.mcap");
+    let status = rig.recorder.status();
+    assert_eq!((status.missed, status.failure), (1, None), "the frame with which the file began");
+    assert_eq!(of(&read(&rig.files[0].1).1, "legwork/uav1/counter/variable/count").len(), 9);
+}

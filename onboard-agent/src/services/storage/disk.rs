@@ -24,7 +24,11 @@ pub struct SyncCost {
 pub struct Disk {
     folder: PathBuf,
     limits: Limits,
-    current: Option<(String, File)>,
+    current: Option<File>,
+    /// Names of the files of this run, in their order.
+    own: Vec<String>,
+    /// Nothing was appended to the current file yet.
+    is_empty: bool,
     /// May be written before the room is looked at again, bytes.
     allowed: u64,
     /// What syncing has cost so far.
@@ -32,20 +36,23 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// A folder, which is made if need be.
-    ///
-    /// # Errors
-    /// It can't be made.
-    pub fn new(folder: &Path, limits: Limits) -> io::Result<Self> {
-        fs::create_dir_all(folder)?;
-        let cost = SyncCost::default();
-        Ok(Self { folder: folder.into(), limits, current: None, allowed: 0, cost })
+    /// A folder. It is made when the first file is begun.
+    pub fn new(folder: &Path, limits: Limits) -> Self {
+        Self {
+            folder: folder.into(),
+            limits,
+            current: None,
+            own: Vec::new(),
+            is_empty: false,
+            allowed: 0,
+            cost: SyncCost::default(),
+        }
     }
 
     /// Does what the recorder wants; [`Output::Tell`] is not the disk's.
     ///
     /// # Errors
-    /// It could not be done. The file is left as it is.
+    /// It could not be done. The file is left as it is; an empty one is removed.
     pub fn perform(&mut self, output: Output) -> io::Result<()> {
         let done = match output {
             Output::Begin { name } => self.begin(name),
@@ -54,27 +61,29 @@ impl Disk {
             Output::Tell(_) => Ok(()),
         };
         if done.is_err() {
-            self.current = None;
+            self.give_up();
         }
         done
     }
 
     fn begin(&mut self, name: String) -> io::Result<()> {
-        self.allowed = 0;
+        (self.allowed, self.current) = (0, None);
+        fs::create_dir_all(&self.folder)?;
         self.make_room(0)?;
-        let file = File::options().write(true).create_new(true).open(self.folder.join(&name))?;
-        sync_folder(&self.folder)?;
-        self.current = Some((name, file));
-        Ok(())
+        self.current = Some(File::options().write(true).create_new(true).open(self.folder.join(&name))?);
+        self.own.push(name);
+        self.is_empty = true;
+        sync_folder(&self.folder)
     }
 
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.make_room(bytes.len() as u64)?;
-        let Some((_, file)) = &mut self.current else { return Err(io::ErrorKind::NotFound.into()) };
+        let Some(file) = &mut self.current else { return Err(io::ErrorKind::NotFound.into()) };
         file.write_all(bytes)?;
         let began = Instant::now();
         file.sync_data()?;
         let took = began.elapsed();
+        self.is_empty = false;
         self.cost = SyncCost {
             count: self.cost.count + 1,
             total: self.cost.total + took,
@@ -83,9 +92,20 @@ impl Disk {
         Ok(())
     }
 
+    /// Leaves the current file as it is. One in which nothing stands would be one more at each new try.
+    fn give_up(&mut self) {
+        if self.current.take().is_some()
+            && self.is_empty
+            && let Some(name) = self.own.pop()
+        {
+            // where nothing can be written, it may not be removable either
+            let _ = fs::remove_file(self.folder.join(name));
+        }
+    }
+
     fn finish(&mut self) -> io::Result<()> {
         match self.current.take() {
-            Some((_, file)) => file.sync_all(),
+            Some(file) => file.sync_all(),
             None => Ok(()),
         }
     }
@@ -97,8 +117,10 @@ impl Disk {
             return Ok(());
         }
         let wanted = bytes.max(LOOK_EVERY);
-        let current = self.current.as_ref().map(|(name, _)| name.as_str());
-        let room = excess(stored(&self.folder)?, current, free_bytes(&self.folder), wanted, self.limits);
+        let current = self.own.last().filter(|_| self.current.is_some()).map(String::as_str);
+        let mut stored = stored(&self.folder)?;
+        stored.iter_mut().for_each(|file| self.date(file));
+        let room = excess(stored, current, free_bytes(&self.folder), wanted, self.limits);
         for name in &room.remove {
             tracing::info!("removing {name}: the recordings' quota or the disk is used up");
             fs::remove_file(self.folder.join(name))?;
@@ -109,6 +131,13 @@ impl Disk {
         }
         self.allowed = wanted - bytes;
         Ok(())
+    }
+
+    /// The files of this run are the newest, in their order, whatever the machine's clock says.
+    fn date(&self, file: &mut Stored) {
+        if let Some(age) = self.own.iter().rev().position(|name| *name == file.name) {
+            file.modified = Duration::from_secs(u64::MAX - age as u64);
+        }
     }
 }
 
@@ -164,7 +193,7 @@ mod tests {
             file.set_len(4 << 20).unwrap();
             file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(seconds)).unwrap();
         }
-        let mut disk = Disk::new(folder.path(), LIMITS).unwrap();
+        let mut disk = Disk::new(folder.path(), LIMITS);
         begin(&mut disk, "current.mcap").unwrap();
         disk.perform(Output::Append { bytes: vec![0; 5 << 20] }).unwrap();
         let mut left: Vec<_> = stored(folder.path()).unwrap().into_iter().map(|s| s.name).collect();
@@ -177,17 +206,67 @@ mod tests {
     #[test]
     fn reserve_is_kept_and_what_fails_is_told() {
         let folder = tempfile::tempdir().unwrap();
-        let mut disk = Disk::new(folder.path(), Limits { reserve_bytes: u64::MAX >> 1, ..LIMITS }).unwrap();
+        let mut disk = Disk::new(folder.path(), Limits { reserve_bytes: u64::MAX >> 1, ..LIMITS });
         assert!(begin(&mut disk, "a.mcap").unwrap_err().to_string().contains("reserve"));
-        let mut disk = Disk::new(folder.path(), LIMITS).unwrap();
+        let mut disk = Disk::new(folder.path(), LIMITS);
         begin(&mut disk, "a.mcap").unwrap();
         assert!(begin(&mut disk, "a.mcap").is_err(), "it is there already");
         assert!(
             disk.perform(Output::Append { bytes: vec![1] }).is_err(),
             "and no file is open after a failure"
         );
-        let file = folder.path().join("file");
-        fs::write(&file, b"").unwrap();
-        assert!(Disk::new(&file, LIMITS).is_err(), "a file is no folder");
+    }
+
+    #[test]
+    fn folder_is_made_as_soon_as_it_can_be() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("state").join("recordings");
+        fs::write(outer.path().join("state"), b"a file is no folder").unwrap();
+        let mut disk = Disk::new(&folder, LIMITS);
+        assert!(begin(&mut disk, "a.mcap").is_err());
+        fs::remove_file(outer.path().join("state")).unwrap();
+        begin(&mut disk, "a.mcap").unwrap();
+        assert!(folder.join("a.mcap").exists());
+    }
+
+    #[test]
+    fn file_in_which_nothing_could_be_written_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut disk = Disk::new(folder.path(), LIMITS);
+        begin(&mut disk, "empty.mcap").unwrap();
+        disk.limits.reserve_bytes = u64::MAX >> 1;
+        disk.allowed = 0;
+        assert!(disk.perform(Output::Append { bytes: vec![1] }).is_err());
+        assert_eq!(stored(folder.path()).unwrap(), []);
+        disk.limits.reserve_bytes = 0;
+        begin(&mut disk, "good.mcap").unwrap();
+        disk.perform(Output::Append { bytes: vec![1] }).unwrap();
+        disk.limits.reserve_bytes = u64::MAX >> 1;
+        disk.allowed = 0;
+        assert!(disk.perform(Output::Append { bytes: vec![1] }).is_err());
+        assert_eq!(stored(folder.path()).unwrap().len(), 1, "what was written stays");
+    }
+
+    #[test]
+    fn files_of_this_run_go_last_whatever_the_clock_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let earlier = File::create(folder.path().join("from-the-future.mcap")).unwrap();
+        earlier.set_len(4 << 20).unwrap();
+        earlier.set_modified(SystemTime::now() + Duration::from_secs(1 << 20)).unwrap();
+        let mut disk = Disk::new(folder.path(), LIMITS);
+        for name in ["b.mcap", "a.mcap"] {
+            begin(&mut disk, name).unwrap();
+            disk.perform(Output::Append { bytes: vec![0; 4 << 20] }).unwrap();
+            disk.perform(Output::Finish).unwrap();
+        }
+        let left = || {
+            let mut names: Vec<_> = stored(folder.path()).unwrap().into_iter().map(|s| s.name).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(left(), ["a.mcap", "b.mcap"]);
+        begin(&mut disk, "c.mcap").unwrap();
+        disk.perform(Output::Append { bytes: vec![0; 4 << 20] }).unwrap();
+        assert_eq!(left(), ["a.mcap", "c.mcap"], "the first of this run goes first");
     }
 }

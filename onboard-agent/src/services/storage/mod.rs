@@ -32,6 +32,9 @@ use writer::Writer;
 /// The plan's document is there within this time.
 const ANSWER_WITHIN: Duration = Duration::from_secs(5);
 
+/// So many files have room in the quota at least.
+const FILES_MIN: u64 = 4;
+
 /// What it is started with.
 #[derive(Clone)]
 pub struct Config {
@@ -69,7 +72,7 @@ impl Config {
 /// Records until `shutdown`; `heard` tells others in this process how far it is.
 ///
 /// # Errors
-/// The folder can't be made, another storage runs, or the session can't be had.
+/// Another storage runs, or the session can't be had.
 pub async fn run(config: Config, heard: Heard, shutdown: Shutdown) -> anyhow::Result<()> {
     let mut of_service = service::Config::client(&config.vehicle, &config.connect);
     of_service.state_dir = Some(config.folder.clone());
@@ -80,6 +83,8 @@ pub async fn run(config: Config, heard: Heard, shutdown: Shutdown) -> anyhow::Re
 
 fn begin(config: Config, heard: &Heard, beginning: &Beginning) -> anyhow::Result<(Storage, Recorder)> {
     let mut how = recording::Config::new(&config.vehicle);
+    // so that the quota holds several files, however small it is
+    how.file_bytes = how.file_bytes.min(config.limits.quota_bytes / FILES_MIN);
     let clock = if config.simulated { "simulated" } else { "machine" };
     how.about = vec![
         ("program".into(), concat!("legwork ", env!("CARGO_PKG_VERSION")).into()),
@@ -91,7 +96,7 @@ fn begin(config: Config, heard: &Heard, beginning: &Beginning) -> anyhow::Result
     let everything = follow::everything(beginning, inlet.clone(), heard)?;
     heard.begin(inlet.clone());
     Ok((
-        Storage { config, inlet, plan: None, asked: false },
+        Storage { config, inlet, recorded: None, asked: false },
         Recorder { writer: Some(writer), everything: Some(everything) },
     ))
 }
@@ -123,13 +128,13 @@ struct Storage {
     config: Config,
     inlet: Inlet,
     /// Hash of the plan whose document is recorded.
-    plan: Option<String>,
+    recorded: Option<String>,
+    /// Its document was asked for; the answer is not there yet.
     asked: bool,
 }
 
 /// All that can happen to it.
 enum Input {
-    Tick,
     /// The active plan's hash.
     Plan(Option<String>),
     Document(Result<PlanDocument, CallError>),
@@ -143,13 +148,12 @@ impl Service for Storage {
 
     fn wire(wiring: &mut Wiring<Input>) {
         wiring.follow(fp_manager::PLAN, |received| Input::Plan(received.stamped.value.hash.clone()));
-        wiring.tick(|| Input::Tick);
     }
 
     fn step(&mut self, _: Time, input: Input, out: &mut Out<Input>) {
         match input {
-            Input::Tick => {}
-            Input::Plan(hash) if hash.is_none() || hash == self.plan || self.asked => {}
+            // told every second: what changes while it is asked for is asked for then
+            Input::Plan(hash) if hash.is_none() || hash == self.recorded || self.asked => {}
             Input::Plan(_) => {
                 self.asked = true;
                 out.call(fp_manager::PLAN_DOCUMENT, Empty {}, ANSWER_WITHIN, Input::Document);
@@ -183,7 +187,7 @@ impl Storage {
             }
         };
         let Ok(text) = serde_json::to_vec(&document) else { return };
-        self.plan = document.info.hash;
+        self.recorded.clone_from(&document.info.hash);
         if let Some(key) = follow::document_key(&self.config.vehicle, FP_MANAGER, "plan") {
             self.inlet.document(key, Payload::Json(text));
         }

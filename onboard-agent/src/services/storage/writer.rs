@@ -120,7 +120,7 @@ impl Writer {
     /// Begins to record into a folder, which is made if need be.
     ///
     /// # Errors
-    /// The folder or the thread can't be made.
+    /// The thread can't be made.
     pub fn start(
         folder: &Path,
         config: Config,
@@ -128,7 +128,6 @@ impl Writer {
         schemas: Vec<Schema>,
         simulated: bool,
     ) -> io::Result<Self> {
-        let disk = Disk::new(folder, limits)?;
         let (sender, receiver) = sync_channel(QUEUE);
         let shared = Arc::new(Shared {
             began: Instant::now(),
@@ -140,7 +139,7 @@ impl Writer {
         let inlet = Inlet { sender, shared: shared.clone() };
         let hand = Hand {
             recorder: Recorder::new(config),
-            disk,
+            disk: Disk::new(folder, limits),
             began: shared.began,
             shared,
             clock_due: Duration::ZERO,
@@ -241,7 +240,8 @@ impl Hand {
                     };
                     if let Err(error) = self.disk.perform(output) {
                         // nothing behind it is done: the recorder begins anew
-                        return self.step(Input::Failed { why: error.to_string() });
+                        let is_taken = error.kind() == io::ErrorKind::AlreadyExists;
+                        return self.step(Input::Failed { why: error.to_string(), is_taken });
                     }
                     // only now is there something to read
                     self.shared.progress.lock().unwrap_or_else(PoisonError::into_inner).files.extend(begun);
@@ -320,11 +320,11 @@ mod tests {
     }
 
     #[test]
-    fn folder_that_goes_away_is_told_and_does_no_harm() {
-        let folder = tempfile::tempdir().unwrap();
-        let inside = folder.path().join("recordings");
+    fn folder_that_cannot_be_made_is_told_and_does_no_harm() {
+        let outer = tempfile::tempdir().unwrap();
+        let inside = outer.path().join("recordings");
+        fs::write(&inside, b"a file is no folder").unwrap();
         let writer = start(&inside);
-        fs::remove_dir_all(&inside).unwrap();
         let inlet = writer.inlet();
         say(&inlet, 0);
         until("the failure is told", || {

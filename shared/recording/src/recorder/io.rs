@@ -80,6 +80,8 @@ pub enum Input {
     Failed {
         /// Why.
         why: String,
+        /// The name of the file to begin is taken: another one will do.
+        is_taken: bool,
     },
     /// Time has passed.
     Wake,

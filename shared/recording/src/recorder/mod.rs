@@ -110,7 +110,7 @@ impl Recorder {
             }
             Input::Line { level, message } => self.line(now, level, NAME, &message, out),
             Input::Missed { count, why } => self.miss(count, why),
-            Input::Failed { why } => self.failed(now, why, out),
+            Input::Failed { why, is_taken } => self.failed(now, why, is_taken, out),
             Input::Wake => {}
             Input::Close => return self.close(out),
         }
@@ -341,11 +341,15 @@ impl Recorder {
     }
 
     /// The disk did not do what it was told: the file is left as it is, and mended at the next start.
-    fn failed(&mut self, now: Duration, why: String, out: &mut Vec<Output>) {
+    fn failed(&mut self, now: Duration, why: String, is_taken: bool, out: &mut Vec<Output>) {
         self.name = None;
         let open = self.file.take().map_or(0, |file| file.chunk().messages);
         let lost = open + std::mem::take(&mut self.underway);
         self.messages = self.messages.saturating_sub(lost);
+        if is_taken {
+            // the next file has the next number
+            return self.miss(lost, "the name of a file was taken");
+        }
         self.miss(lost, "the disk can't be written");
         if self.failure.is_none() {
             out.push(Output::Tell(Report::Failed { why: why.clone() }));

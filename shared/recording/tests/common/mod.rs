@@ -21,6 +21,8 @@ pub struct Rig {
     pub appended: Vec<(Duration, usize)>,
     /// The disk does nothing any more.
     pub broken: bool,
+    /// Files of this name are there already.
+    pub taken: Vec<String>,
 }
 
 impl Rig {
@@ -32,6 +34,7 @@ impl Rig {
             reports: Vec::new(),
             appended: Vec::new(),
             broken: false,
+            taken: Vec::new(),
         };
         rig.step(Duration::ZERO, Input::Clock(UNIX));
         rig
@@ -43,7 +46,12 @@ impl Rig {
         for output in out {
             match output {
                 Output::Tell(report) => self.reports.push(report),
-                _ if self.broken => return self.step(now, Input::Failed { why: "no space left".into() }),
+                _ if self.broken => {
+                    return self.step(now, Input::Failed { why: "no space left".into(), is_taken: false });
+                }
+                Output::Begin { name } if self.taken.contains(&name) => {
+                    return self.step(now, Input::Failed { why: "it exists".into(), is_taken: true });
+                }
                 Output::Begin { name } => {
                     assert!(self.files.iter().all(|(known, _)| *known != name), "{name} twice");
                     self.files.push((name, Vec::new()));

@@ -1,8 +1,14 @@
 //! Reads a file from its beginning to its end.
+#![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+mod contents;
+mod source;
 
 use crate::bytes::{Content, HEAD_BYTES, MAGIC, op};
 use crate::{Damage, Finding};
-use std::collections::{BTreeMap, HashMap};
+pub use contents::{Attachment, Channel, Contents, Ending, Message};
+use source::Source;
+use std::collections::HashMap;
 use std::io::{self, Read};
 use std::sync::Arc;
 
@@ -17,148 +23,16 @@ const NAME_MAX: usize = 64 << 10;
 /// Schemas, metadata and names of a file that are held in memory, bytes.
 const HELD_MAX: usize = 64 << 20;
 
-/// What a message's channel is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Channel {
-    /// Its number in the file.
-    pub id: u16,
-    /// Its name: a key of the contract, or another program's.
-    pub topic: String,
-    /// How its messages are encoded: `json`, `cbor`, `protobuf`, …
-    pub encoding: String,
-    /// Name of their schema; empty without one.
-    pub schema: String,
-    /// How the schema is written: `jsonschema`, …
-    pub schema_encoding: String,
-    /// The schema itself.
-    pub schema_data: Arc<[u8]>,
-    /// What else is said about it.
-    pub metadata: BTreeMap<String, String>,
-    /// Messages that were read.
-    pub messages: u64,
-}
-
-/// A message, as it stands in the file.
-#[derive(Debug, Clone, Copy)]
-pub struct Message<'a> {
-    /// Its channel, as far as it is known by then.
-    pub channel: &'a Channel,
-    /// Its number on the channel.
-    pub sequence: u32,
-    /// When it was recorded, nanoseconds since 1970.
-    pub log_ns: u64,
-    /// When it was published, nanoseconds since 1970.
-    pub publish_ns: u64,
-    /// Its payload.
-    pub data: &'a [u8],
-}
-
-/// Something that is attached to a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Attachment {
-    /// Its name.
-    pub name: String,
-    /// Its media type.
-    pub media_type: String,
-    /// Its size, bytes.
-    pub bytes: u64,
-}
-
-/// How a file ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
-    /// As it should: what tools with an index need is there.
-    Finished,
-    /// Its writer died, or is still writing.
-    Torn {
-        /// Bytes from the beginning that are whole records.
-        good_bytes: u64,
-    },
-    /// It is no MCAP file.
-    Foreign,
-}
-
-/// What a file holds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Contents {
-    /// What kind of recording it says to be.
-    pub profile: String,
-    /// Which program wrote it.
-    pub library: String,
-    /// By number.
-    pub channels: BTreeMap<u16, Channel>,
-    /// Named lists of texts.
-    pub metadata: Vec<(String, BTreeMap<String, String>)>,
-    /// Attachments, without what is in them.
-    pub attachments: Vec<Attachment>,
-    /// Messages that were read.
-    pub messages: u64,
-    /// Earliest and latest time of recording, nanoseconds since 1970.
-    pub span_ns: Option<(u64, u64)>,
-    /// Chunks that were read.
-    pub chunks: u64,
-    /// The file's size, bytes.
-    pub bytes: u64,
-    /// How it ends.
-    pub ending: Ending,
-    /// What is wrong with it, in the order of the file.
-    pub findings: Vec<Finding>,
-    /// More findings than are listed.
-    pub more_findings: u64,
-}
-
 /// Reads a file and calls `each` with every message that can be read, in the order of the file.
 ///
 /// # Errors
 /// The source can't be read. What the bytes are is no error: see [`Contents::findings`].
 pub fn scan(source: impl Read, each: &mut dyn FnMut(&Message<'_>)) -> io::Result<Contents> {
     let mut scanner = Scanner::new(each);
-    let mut source = Source { inner: source, offset: 0, hasher: crc32fast::Hasher::new(), body: Vec::new() };
+    let mut source = Source::new(source);
     scanner.file(&mut source)?;
     scanner.contents.bytes = source.offset;
     Ok(scanner.contents)
-}
-
-/// The bytes, read once.
-struct Source<R> {
-    inner: R,
-    /// Bytes read so far.
-    offset: u64,
-    /// Over all of them.
-    hasher: crc32fast::Hasher,
-    body: Vec<u8>,
-}
-
-impl<R: Read> Source<R> {
-    /// The next bytes, fewer at the end of the file. Memory grows with what is there, not with what is asked for.
-    fn next(&mut self, length: u64) -> io::Result<&[u8]> {
-        self.body.clear();
-        let read = self.inner.by_ref().take(length).read_to_end(&mut self.body)?;
-        self.offset += read as u64;
-        self.hasher.update(&self.body);
-        Ok(&self.body)
-    }
-
-    /// Passes over bytes; gives how many there were.
-    fn skip(&mut self, length: u64) -> io::Result<u64> {
-        let mut sink = Hashing(&mut self.hasher);
-        let skipped = io::copy(&mut self.inner.by_ref().take(length), &mut sink)?;
-        self.offset += skipped;
-        Ok(skipped)
-    }
-}
-
-struct Hashing<'a>(&'a mut crc32fast::Hasher);
-
-impl io::Write for Hashing<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.update(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 #[derive(Clone)]
@@ -188,20 +62,7 @@ struct Scanner<'a> {
 
 impl<'a> Scanner<'a> {
     fn new(each: &'a mut dyn FnMut(&Message<'_>)) -> Self {
-        let contents = Contents {
-            profile: String::new(),
-            library: String::new(),
-            channels: BTreeMap::new(),
-            metadata: Vec::new(),
-            attachments: Vec::new(),
-            messages: 0,
-            span_ns: None,
-            chunks: 0,
-            bytes: 0,
-            ending: Ending::Foreign,
-            findings: Vec::new(),
-            more_findings: 0,
-        };
+        let contents = Contents::new();
         Self { each, contents, schemas: HashMap::new(), held: 0, section: Section::Data, at: 0 }
     }
 
