@@ -68,12 +68,18 @@ impl Disk {
 
     fn begin(&mut self, name: String) -> io::Result<()> {
         (self.allowed, self.current) = (0, None);
-        fs::create_dir_all(&self.folder)?;
+        self.make_folder()?;
         self.make_room(0)?;
         self.current = Some(File::options().write(true).create_new(true).open(self.folder.join(&name))?);
         self.own.push(name);
         self.is_empty = true;
         sync_folder(&self.folder)
+    }
+
+    /// Where something else stands in its place, that is no file whose name is taken: another kind of error.
+    fn make_folder(&self) -> io::Result<()> {
+        let cannot = |e| io::Error::other(format!("can't make the folder {}: {e}", self.folder.display()));
+        fs::create_dir_all(&self.folder).map_err(cannot)
     }
 
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
