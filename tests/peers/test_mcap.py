@@ -6,12 +6,14 @@ import subprocess
 
 import jsonschema
 import pytest
+import zenoh
 from conftest import BIN, HOME, TOP, free_port, until
 from foxglove.messages import GeoJson, LocationFix, LocationFixPositionCovarianceType, Log, LogLevel, Timestamp
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap.records import Channel, Message
+from test_zenoh import call, opened
 
 CONTRACT = json.loads((TOP / "shared/usal/contract.json").read_text())
 
@@ -20,9 +22,9 @@ CONTRACT = json.loads((TOP / "shared/usal/contract.json").read_text())
 def agent(start, simulator, tmp_path):
     """Starts the agent beside a simulator, with its recordings in a folder; gives that folder and how to start it."""
 
-    def go():
+    def go(endpoint=None):
         return start(
-            "onboard-agent", "run", "--vehicle", "peer", "--listen", f"tcp/127.0.0.1:{free_port()}",
+            "onboard-agent", "run", "--vehicle", "peer", "--listen", endpoint or f"tcp/127.0.0.1:{free_port()}",
             "--autopilot", f"tcp:127.0.0.1:{simulator}", "--state-dir", tmp_path / "state",
             "--plan", TOP / "assets/plans/square.xml",
         )
@@ -114,7 +116,62 @@ def test_recording_is_whole_valid_and_foxgloves(agent):
     assert document["state"] == "whole" and document["messages"] == sum(seen.values())
 
 
-def test_killed_recorder_leaves_what_can_be_read_and_the_next_one_mends_it(agent, tmp_path):
+def of_topic(path, topic):
+    """The values of a topic in a recording."""
+    with path.open("rb") as file:
+        return [json.loads(message.data) for _, _, message in make_reader(file).iter_messages(topics=[topic])]
+
+
+def test_requests_stand_in_it_with_who_asked_and_each_plan_with_its_document(agent):
+    folder, go = agent
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    process = go(endpoint)
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    session = until(lambda: opened(config), 30, "the hub listens")
+    until(lambda: flown(folder), 60, "a recording with the first plan")
+    plan = (TOP / "assets/plans/square.xml").read_text().replace('name="', 'name="Another ', 1)
+    report = call(session, "fp-manager", "propose", {"xml": plan, "seen_revision": None}, "from=planner")
+    assert report["acceptable"], report
+    call(session, "fp-manager", "command", {"command": "commit", "hash": report["hash"], "entry": None}, "from=planner")
+    assert call(session, "fp-manager", "command", {"command": "start"}, "")["code"] == "anonymous"
+    # a name is a claim: whoever says so is recorded as the FP Manager
+    call(session, "gateway", "describe", {}, "from=fp-manager")
+    topic = "legwork/peer/fp-manager/invocation/plan"
+    until(lambda: streamed(recordings(folder)[0].read_bytes())[0].count(topic) >= 2, 30, "the second plan's document")
+    session.close()
+    process.stop()
+
+    path = recordings(folder)[0]
+    documents = of_topic(path, topic)
+    assert len({document["info"]["hash"] for document in documents}) == 2
+    assert documents[-1]["info"]["hash"] == report["hash"]
+    asked = [entry["value"] for entry in of_topic(path, "legwork/peer/fp-manager/event/audit")]
+    commits = [a for a in asked if a["caller"] == "planner" and a["invocation"] == "command"]
+    assert [a["accepted"] for a in commits] == [True], asked
+    nameless = [a for a in asked if a["caller"] is None and a["invocation"] == "command"]
+    assert [(a["accepted"], a["answer"]["code"]) for a in nameless] == [(False, "anonymous")], asked
+
+
+def test_recording_of_the_demo_is_whole_and_holds_the_flight(tmp_path):
+    command = [BIN / "legwork", "demo", "--headless", "--plan", TOP / "assets/plans/square.xml", "--report", tmp_path]
+    subprocess.run(command, check=True, capture_output=True, timeout=300)
+    [path] = recordings(tmp_path / "recordings")
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        topics = {channel.topic for _, channel, _ in reader.iter_messages()}
+    assert {"foxglove/demo/location", "foxglove/demo/path", "foxglove/demo/plan"} <= topics
+    events = [entry["value"]["event"] for entry in of_topic(path, "legwork/demo/fp-manager/event/events")]
+    assert "leg-entered" in events and events.count("plan-finished") <= 1
+    places = of_topic(path, "legwork/demo/simulator/variable/truth")
+    times = [place["time_s"] for place in places]
+    assert len(times) > 100 and times == sorted(times)
+    assert max(place["value"]["altitude_amsl_m"] for place in places) - places[0]["value"]["altitude_amsl_m"] > 50
+
+
+def test_torn_recording_is_read_up_to_its_tear_and_mended_by_the_next_recorder(agent, tmp_path):
     folder, go = agent
     go()
     data = until(lambda: flown(folder), 60, "a recording")

@@ -128,11 +128,13 @@ fn says_numbers_where_it_is_told_to() {
     }
 }
 
-/// SIGKILL, at times that differ. How much is lost depends on the machine's load, too: the best of them shows the promise.
+/// SIGKILL, at times that differ. How much is lost depends on the machine's load, too: the best of them shows the promise. More of them: `LEGWORK_KILLS=200`.
 #[test]
 fn killed_processes_leave_readable_files() {
+    let kills: usize = std::env::var("LEGWORK_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(5);
     let mut lost_ms = Vec::new();
-    for lines in [20usize, 133, 250, 377, 500] {
+    // 113 is prime: the kills come at all ages of a chunk
+    for lines in (0..kills).map(|kill| 20 + 113 * kill % 500) {
         let folder = tempfile::tempdir().unwrap();
         let mut child = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "services::storage::tests::says_numbers_where_it_is_told_to", "--nocapture"])
@@ -164,4 +166,6 @@ fn killed_processes_leave_readable_files() {
     }
     assert!(lost_ms.iter().min().is_some_and(|least| *least <= 100), "{lost_ms:?}");
     assert!(lost_ms.iter().all(|lost| *lost <= 5000), "{lost_ms:?}");
+    let late = lost_ms.iter().filter(|lost| **lost > 100).count();
+    println!("{late} of {kills} kills lost more than 100 ms, {:?} at most", lost_ms.iter().max());
 }
