@@ -73,6 +73,10 @@ impl Document {
     pub fn is_dirty(&self) -> bool {
         !self.history.is_saved()
     }
+    /// It has no file and was never edited: nothing is lost when another takes its place.
+    pub fn is_nobodys(&self) -> bool {
+        self.path.is_none() && !self.can_undo() && !self.can_redo()
+    }
     /// There is a step to take back.
     pub fn can_undo(&self) -> bool {
         self.history.can_undo()

@@ -40,8 +40,8 @@ pub struct App {
     links: Links,
     worker: Worker,
     files: Files,
-    /// Version of the document that is the plan aboard.
-    mirrored: Option<u64>,
+    /// The vehicle whose plan aboard the document is, and the document's version.
+    mirrored: Option<(VehicleName, u64)>,
     screenshot: Option<Screenshot>,
 }
 
@@ -186,22 +186,34 @@ impl App {
 
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
     fn adopt_plan_aboard(&mut self) {
+        let Some(shown) = self.vehicles.shown_name().cloned() else { return };
+        self.drop_plan_of_another(&shown);
         let Some(aboard) = &self.vehicles.shown().aboard else { return };
         let version = self.document.version();
         let here = self.analysis.hash_of(version);
         if here.is_some_and(|hash| *hash == *aboard.hash) {
-            self.mirrored = Some(version);
+            self.mirrored = Some((shown, version));
             return;
         }
-        let untouched =
-            self.document.path().is_none() && !self.document.can_undo() && !self.document.can_redo();
         let is_empty = self.document.plan().stages.is_empty();
-        let was_aboard = here.is_some() && self.mirrored == Some(version);
-        if untouched && (is_empty || was_aboard) {
+        let was_aboard = here.is_some() && self.mirrored == Some((shown.clone(), version));
+        if self.document.is_nobodys() && (is_empty || was_aboard) {
             self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
+            self.mirrored = Some((shown, self.document.version()));
             if is_empty {
                 self.map.fit();
             }
+        }
+    }
+
+    /// Another vehicle's plan is not to be seen under this one.
+    fn drop_plan_of_another(&mut self, shown: &VehicleName) {
+        let version = self.document.version();
+        let is_anothers = self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
+        if is_anothers && self.document.is_nobodys() {
+            self.document = Document::default();
+            self.view.selection = None;
+            self.view.cursor_s = None;
         }
     }
 

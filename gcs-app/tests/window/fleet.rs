@@ -5,8 +5,9 @@ use super::vehicle::{position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
-use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, Telemetry};
-use gcs_app::state::Outcome;
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, Reply, Telemetry};
+use gcs_app::state::{ActivePlan, Outcome};
+use std::sync::Arc;
 use usal::contract::Stamped;
 
 const ONE: LinkId = LinkId(1);
@@ -74,6 +75,40 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
     connected(&mut window, "uav2", TWO, 900.0);
     assert_eq!(window.app().vehicle().position.as_ref().unwrap().value.altitude_amsl_m, 900.0);
     assert!(window.shows("● uav2 · Link 0."));
+}
+
+/// The vehicle tells which plan is aboard, is asked for it, and gives it.
+fn tells_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) {
+    let plan = flight_plan::read(SQUARE.replace("Square circuit", name).as_bytes()).plan;
+    let hash = Arc::<str>::from(format!("hash of {name}"));
+    let value = flight_exec::Status { plan: Some(hash.clone()), ..status(Phase::Flying) };
+    let stamped = Stamped { time_s: 2.0, validity_s: 2.0, value };
+    window.tell_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
+    window.steps(2);
+    let asked = |order: Order| match order {
+        Order::Call { link: to, ticket, call: Call::PlanAboard } if to == link => Some(ticket),
+        _ => None,
+    };
+    let ticket = orders(window).into_iter().find_map(asked).unwrap();
+    let aboard = ActivePlan { hash, plan: Arc::new(plan) };
+    window.tell_of(vehicle, link, LinkEvent::Answer { ticket, result: Ok(Reply::Plan(Some(aboard))) });
+    window.steps(2);
+}
+
+#[test]
+fn plan_aboard_one_vehicle_does_not_stay_under_another() {
+    const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='Empty' aircraft='trainer'/>";
+    let mut window = Window::open(EMPTY);
+    window.click("○ Connect");
+    window.click("Connect");
+    connected(&mut window, "uav1", ONE, 500.0);
+    tells_its_plan(&mut window, "uav1", ONE, "Plan of one");
+    assert_eq!(window.app().document().plan().name, "Plan of one");
+    connect_by_form(&mut window, "uav2");
+    assert!(window.app().document().plan().stages.is_empty(), "{}", window.app().document().plan().name);
+    connected(&mut window, "uav2", TWO, 900.0);
+    tells_its_plan(&mut window, "uav2", TWO, "Plan of two");
+    assert_eq!(window.app().document().plan().name, "Plan of two");
 }
 
 #[test]
