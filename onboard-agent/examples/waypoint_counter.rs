@@ -6,8 +6,8 @@ use usal::contract::{Empty, GatewayEvent, TimedGatewayEvent};
 use usal::topics::{Invocation, gateway};
 use usal::{Occurrence, Said, Spec, Start};
 
-/// What it is asked.
-pub const HOW_MANY: Invocation<Empty, u64> = Invocation::new("waypoint-counter", "how-many");
+/// What anybody may ask it.
+pub const HOW_MANY: Invocation<Empty, u64> = Invocation::reading("waypoint-counter", "how-many");
 
 /// The service: what it remembers.
 #[derive(Default)]

@@ -188,6 +188,20 @@ fn payload_service_compiles_neither_plan_nor_executor() {
     assert!(!contract.contains("zenoh") && !contract.contains("tokio"), "{contract:?}");
 }
 
+/// `cargo bench` prints benches, not a list of the tests that it leaves out.
+#[test]
+fn libraries_have_no_benches_among_their_tests() {
+    let metadata: serde_json::Value =
+        serde_json::from_slice(&cargo(&["metadata", "--no-deps", "--format-version", "1"])).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    assert!(packages.len() > 15);
+    for package in packages {
+        let manifest = std::fs::read_to_string(text(&package["manifest_path"])).unwrap();
+        let has_library = package["targets"].as_array().unwrap().iter().any(|t| t["kind"][0] == "lib");
+        assert!(!has_library || manifest.contains("[lib]\nbench = false"), "{}", package["name"]);
+    }
+}
+
 #[test]
 fn pure_crates_have_no_runtime() {
     let dependencies = dependencies();

@@ -188,13 +188,7 @@ impl FpManager {
         let loaded = plan.map(|xml| {
             let program = looked_at(&xml, &self.config, &self.sight(now))?;
             let report = self.propose(now, program, None, out)?;
-            self.command(
-                now,
-                Command::Commit { hash: report.hash, entry: None },
-                usal::contract::OPERATOR,
-                None,
-                out,
-            )
+            self.command(now, Command::Commit { hash: report.hash, entry: None }, Self::SPEC.name, None, out)
         });
         if let Some(Err(refusal)) = loaded {
             out.fail(anyhow::anyhow!("the plan: {refusal}"));

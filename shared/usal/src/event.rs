@@ -221,6 +221,8 @@ impl<T: DeserializeOwned> Inlet<T> {
                 if let Some(inner) = self.inner.upgrade() {
                     inner.health.undecodable(sample.key_expr().as_str(), &reason);
                 }
+                // something happened, and nobody here knows what
+                self.push(Occurrence::Gap { missed: 1 });
             }
         }
     }

@@ -409,6 +409,11 @@ async fn garbage_payload_is_counted_and_ignored() {
     put(&outside, "gateway/variable/air", &good, Encoding::APPLICATION_JSON).await;
     assert_eq!(within(subscriber.changed()).await.unwrap().stamped.value, air(9.0));
     until(async || net.hub.health().undecodable == 3).await;
+    assert_eq!(
+        events.try_recv(),
+        Some(Occurrence::Gap { missed: 1 }),
+        "an event that nobody can read is lost"
+    );
     assert!(events.try_recv().is_none());
 }
 

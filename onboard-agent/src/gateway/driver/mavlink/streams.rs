@@ -13,7 +13,7 @@ const LOOK: Duration = Duration::from_secs(3);
 const MOST_DOUBLINGS: u32 = 5;
 
 /// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
-const WANTED: [(u32, u32); 13] = [
+const WANTED: [(u32, u32); 14] = [
     (GLOBAL_POSITION_INT_DATA::ID, 100),
     (ATTITUDE_DATA::ID, 100),
     (MISSION_CURRENT_DATA::ID, 100),
@@ -23,6 +23,7 @@ const WANTED: [(u32, u32); 13] = [
     (WIND_DATA::ID, 500),
     (RPM_DATA::ID, 500),
     (EFI_STATUS_DATA::ID, 1000),
+    (FUEL_STATUS_DATA::ID, 1000),
     (SCALED_PRESSURE_DATA::ID, 1000),
     (SYSTEM_TIME_DATA::ID, 1000),
     (EXTENDED_SYS_STATE_DATA::ID, 500),
@@ -102,4 +103,23 @@ fn ask(id: u32, interval_ms: u32, peer: Peer) -> MavMessage {
         target_component: peer.component,
         confirmation: 0,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mavlink::Message;
+
+    /// What is read and never asked for stays away from an autopilot that sends nothing by itself.
+    #[test]
+    fn whatever_telemetry_reads_is_asked_for() {
+        let source = include_str!("telemetry.rs");
+        let read = source.split("MavMessage::").skip(1).filter_map(|rest| rest.split_once("(m)"));
+        let names: Vec<&str> = read.map(|(name, _)| name).collect();
+        assert!(names.len() > 10 && names.contains(&"FUEL_STATUS"), "{names:?}");
+        for name in names {
+            let id = MavMessage::message_id_from_name(name).unwrap();
+            assert!(WANTED.iter().any(|(wanted, _)| *wanted == id), "{name} is read and not asked for");
+        }
+    }
 }
