@@ -36,7 +36,9 @@ pub const SERVICES: &[Entry] = &[
         spec: &spec::STORAGE,
         // without a folder there is nowhere to record to
         is_wanted: |options| options.state_dir.is_some(),
-        start: |options, end| Ok(Box::pin(storage::run(options.storage()?, storage::Heard::default(), end))),
+        start: |options, end| {
+            Ok(Box::pin(storage::run(options.storage()?, storage::Monitor::default(), end)))
+        },
     },
 ];
 

@@ -41,17 +41,17 @@ impl Process {
 /// # Errors
 /// A process can't be started, or says that it was started wrongly.
 pub async fn run(program: &Path, processes: &[Process], shutdown: Shutdown) -> anyhow::Result<()> {
-    let mut keepers = JoinSet::new();
+    let mut supervised = JoinSet::new();
     for process in processes {
-        keepers.spawn(keep(program.to_owned(), process.clone(), shutdown.clone()));
+        supervised.spawn(keep(program.to_owned(), process.clone(), shutdown.clone()));
     }
     let mut outcome = Ok(());
-    while let Some(ended) = keepers.join_next().await {
-        let ended = ended.context("a keeper of a process failed").flatten();
+    while let Some(ended) = supervised.join_next().await {
+        let ended = ended.context("the supervision of a process failed").flatten();
         if ended.is_err() && outcome.is_ok() {
             outcome = ended;
             // dropping the others' children kills them
-            keepers.abort_all();
+            supervised.abort_all();
         }
     }
     outcome

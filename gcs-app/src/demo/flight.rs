@@ -41,7 +41,7 @@ const REST_WITHIN_S: f64 = 90.0;
 pub struct Flight<'a> {
     session: Session,
     clock: Participant,
-    heard: Heard,
+    subscribed: Subscriptions,
     script: Script,
     /// With its updates.
     plan: FlightPlan,
@@ -77,14 +77,14 @@ pub struct Ending {
 }
 
 /// What comes in.
-struct Heard {
+struct Subscriptions {
     plan_events: EventSubscriber<FpManagerEvent>,
     gateway_events: EventSubscriber<TimedGatewayEvent>,
     state: VariableSubscriber<GatewayStatus>,
     status: VariableSubscriber<PlanStatus>,
 }
 
-impl Heard {
+impl Subscriptions {
     fn listen(session: &Session) -> anyhow::Result<Self> {
         Ok(Self {
             plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
@@ -119,7 +119,7 @@ impl<'a> Flight<'a> {
     ) -> anyhow::Result<Self> {
         let session = Session::open(Config::client(VEHICLE, &components.endpoint).named("mission")).await?;
         Ok(Self {
-            heard: Heard::listen(&session)?,
+            subscribed: Subscriptions::listen(&session)?,
             clock: Participant::join(&session, "mission")?,
             session,
             script,
@@ -154,7 +154,7 @@ impl<'a> Flight<'a> {
             self.look(components);
             self.react().await?;
             self.clock.acknowledge(tick);
-            let now = self.heard.status().map_or(Phase::Idle, |s| s.phase);
+            let now = self.subscribed.status().map_or(Phase::Idle, |s| s.phase);
             if now != phase {
                 (phase, since_s) = (now, self.now_s);
             }
@@ -218,7 +218,7 @@ impl<'a> Flight<'a> {
             disarmed: !truth.armed,
             ground_speed_mps: truth.ground_speed_mps,
             runway: destination.clone(),
-            phase: self.heard.status().map_or(Phase::Idle, |s| s.phase),
+            phase: self.subscribed.status().map_or(Phase::Idle, |s| s.phase),
             states: std::mem::take(&mut recorded.states),
             missing_steps: self.script.missing().map(|s| s.name.to_owned()).collect(),
             steps: self.script.steps(),
@@ -238,8 +238,8 @@ impl<'a> Flight<'a> {
             self.look(components);
             self.clock.acknowledge(tick);
             let is_recorded = components.recording.as_ref().is_some_and(Recording::has_begun);
-            let is_there =
-                self.heard.gateway_state() == Some(GatewayState::Stop) && self.heard.status().is_some();
+            let is_there = self.subscribed.gateway_state() == Some(GatewayState::Stop)
+                && self.subscribed.status().is_some();
             if is_there && is_recorded {
                 return Ok(());
             }
@@ -248,8 +248,8 @@ impl<'a> Flight<'a> {
                 Instant::now() < deadline,
                 "the agent is not ready after {} s: gateway {:?}, FP Manager {:?}, recording: {is_recorded}",
                 READY_WITHIN.as_secs(),
-                self.heard.gateway_state(),
-                self.heard.status().map(|s| s.phase)
+                self.subscribed.gateway_state(),
+                self.subscribed.status().map(|s| s.phase)
             );
         }
     }
@@ -285,19 +285,19 @@ impl<'a> Flight<'a> {
                 recording.truth(&TrackPoint { time_s, position, altitude_amsl_m });
             }
         }
-        while let Some(occurrence) = self.heard.plan_events.try_recv() {
+        while let Some(occurrence) = self.subscribed.plan_events.try_recv() {
             match occurrence {
                 Occurrence::Event { event, .. } => self.plan_event(event),
                 Occurrence::Gap { missed } => self.plan_events.lost += missed,
             }
         }
-        while let Some(occurrence) = self.heard.gateway_events.try_recv() {
+        while let Some(occurrence) = self.subscribed.gateway_events.try_recv() {
             match occurrence {
                 Occurrence::Event { .. } => self.gateway_events.heard += 1,
                 Occurrence::Gap { missed } => self.gateway_events.lost += missed,
             }
         }
-        if let Some(status) = self.heard.status() {
+        if let Some(status) = self.subscribed.status() {
             self.script.steers_to(status.place.as_ref(), status.current);
             self.progress.show(
                 self.now_s - self.started_s,

@@ -4,7 +4,7 @@ use super::components::{Setup, VEHICLE};
 use super::recorded::{Recorded, TRUTH, Truth};
 use crate::report::TrackPoint;
 use anyhow::Context;
-use onboard_agent::services::storage::{self, Heard, Limits, Payload};
+use onboard_agent::services::storage::{self, Limits, Monitor, Payload};
 use onboard_agent::{Trigger, shutdown};
 use std::fs::File;
 use std::io::BufReader;
@@ -24,7 +24,7 @@ const CLOSED_WITHIN: Duration = Duration::from_secs(30);
 
 /// The running recorder.
 pub struct Recording {
-    heard: Heard,
+    monitor: Monitor,
     trigger: Trigger,
     service: JoinHandle<anyhow::Result<()>>,
 }
@@ -41,14 +41,14 @@ impl Recording {
         config.profile = setup.profile.clone();
         config.terrain = setup.terrain.clone();
         let (trigger, shutdown) = shutdown();
-        let heard = Heard::default();
-        let service = tokio::spawn(storage::run(config, heard.clone(), shutdown));
-        Self { heard, trigger, service }
+        let monitor = Monitor::default();
+        let service = tokio::spawn(storage::run(config, monitor.clone(), shutdown));
+        Self { monitor, trigger, service }
     }
 
     /// What is said from now on is recorded.
     pub fn has_begun(&self) -> bool {
-        self.heard.inlet().is_some()
+        self.monitor.inlet().is_some()
     }
 
     /// The service has ended; nobody asked it to.
@@ -63,7 +63,7 @@ impl Recording {
 
     /// Where the aircraft really is, which only the simulator knows.
     pub fn truth(&self, point: &TrackPoint) {
-        let Some(inlet) = self.heard.inlet() else { return };
+        let Some(inlet) = self.monitor.inlet() else { return };
         let value = Truth { position: point.position, altitude_amsl_m: point.altitude_amsl_m };
         let stamped = Stamped { time_s: point.time_s, validity_s: 1.0, value };
         if let Ok(text) = serde_json::to_vec(&stamped) {
@@ -83,14 +83,14 @@ impl Recording {
             anyhow::bail!("the recorder does not end");
         };
         ended.context("the recorder has crashed")?.context("the recorder has failed")?;
-        let progress = self.heard.inlet().context("the recording never began")?.progress();
+        let progress = self.monitor.inlet().context("the recording never began")?.progress();
         if let Some(why) = progress.status.failure {
             anyhow::bail!("the flight could not be recorded: {why}");
         }
         let mut recorded = read(&progress.files)?;
         recorded.lost(progress.status.missed, "messages were not recorded");
         for (key, count) in events {
-            let missing = count.saturating_sub(self.heard.events(key));
+            let missing = count.saturating_sub(self.monitor.events(key));
             recorded.lost(missing, &format!("events of {key} were not recorded"));
         }
         Ok(recorded)
@@ -98,7 +98,7 @@ impl Recording {
 
     async fn wait_for(&self, events: &[Count]) {
         let deadline = Instant::now() + RECORDED_WITHIN;
-        let is_recorded = |(key, count): &Count| self.heard.events(key) >= *count;
+        let is_recorded = |(key, count): &Count| self.monitor.events(key) >= *count;
         while !events.iter().all(is_recorded) && !self.has_ended() && Instant::now() < deadline {
             tokio::time::sleep(LOOK_EVERY).await;
         }

@@ -22,18 +22,18 @@ pub struct BackgroundReview {
 
 impl BackgroundReview {
     /// Has a way looked at.
-    pub fn look(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static, out: &mut Out) {
+    pub fn review(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static, out: &mut Out) {
         if std::mem::replace(&mut self.looking, true) {
             self.next = Some(Box::new(review));
         } else {
-            out.work(review, Input::WayLooked);
+            out.work(review, Input::WayReviewed);
         }
     }
 
     /// What there is to be told of the way that was taken last.
-    pub fn looked(&mut self, problems: Result<Vec<Problem>, String>, out: &mut Out) -> Vec<Event> {
+    pub fn reviewed(&mut self, problems: Result<Vec<Problem>, String>, out: &mut Out) -> Vec<Event> {
         if let Some(review) = self.next.take() {
-            out.work(review, Input::WayLooked);
+            out.work(review, Input::WayReviewed);
             return Vec::new();
         }
         self.looking = false;
@@ -59,11 +59,11 @@ mod tests {
     fn only_the_way_taken_last_is_told_of() {
         let (mut review, mut out) = (BackgroundReview::default(), Out::new(Duration::ZERO));
         for count in 1..=3 {
-            review.look(move || problems(count), &mut out);
+            review.review(move || problems(count), &mut out);
         }
-        let told = review.looked(Ok(problems(1)), &mut out);
+        let told = review.reviewed(Ok(problems(1)), &mut out);
         assert!(told.is_empty(), "of the first, which is not flown any more");
-        let told = review.looked(Ok(problems(3)), &mut out);
+        let told = review.reviewed(Ok(problems(3)), &mut out);
         assert!(told.len() == 3 && told.iter().all(|told| format!("{told:?}").contains("of 3")), "{told:?}");
         assert!(!review.looking);
     }
@@ -71,10 +71,10 @@ mod tests {
     #[test]
     fn very_many_problems_and_a_review_that_fails() {
         let (mut review, mut out) = (BackgroundReview::default(), Out::new(Duration::ZERO));
-        review.look(|| problems(1000), &mut out);
-        assert_eq!(review.looked(Ok(problems(1000)), &mut out).len(), MOST_TOLD);
-        review.look(Vec::new, &mut out);
-        let told = review.looked(Err("panicked, for the test".into()), &mut out);
+        review.review(|| problems(1000), &mut out);
+        assert_eq!(review.reviewed(Ok(problems(1000)), &mut out).len(), MOST_TOLD);
+        review.review(Vec::new, &mut out);
+        let told = review.reviewed(Err("panicked, for the test".into()), &mut out);
         assert!(told.len() == 1 && format!("{told:?}").contains("not-reviewed"), "{told:?}");
     }
 }

@@ -44,7 +44,7 @@ pub enum Verdict {
 pub struct CommandReview {
     waiting: VecDeque<Waiting>,
     /// One is being looked at, for the flight as it was after so many turns.
-    looks_at: Option<u64>,
+    reviewing: Option<u64>,
 }
 
 struct Waiting {
@@ -71,7 +71,7 @@ impl CommandReview {
 
     /// Begins to look at the first that waits, unless one is being looked at; gives that which needs no look (any more).
     pub fn begin(&mut self, manager: &Manager, now: Time, out: &mut Out) -> Option<Asked> {
-        let first = self.waiting.front_mut().filter(|_| self.looks_at.is_none())?;
+        let first = self.waiting.front_mut().filter(|_| self.reviewing.is_none())?;
         let (command, by) = (first.asked.command.clone(), first.asked.by.clone());
         if !manager.executor().changes_what_is_flown(&command) {
             return self.waiting.pop_front().map(|waiting| waiting.asked);
@@ -79,21 +79,21 @@ impl CommandReview {
         first.looks += 1;
         let (flight, conditions) = (manager.executor().clone(), manager.conditions(now));
         let review = move || review_command(&flight, &by, &command, conditions);
-        out.work(review, Input::CommandLooked);
-        self.looks_at = Some(manager.turns());
+        out.work(review, Input::CommandReviewed);
+        self.reviewing = Some(manager.turns());
         None
     }
 
-    /// What becomes of the first that waits, now that it has been looked at; `None`: nothing was.
+    /// What becomes of the first that waits, now that it has been reviewed; `None`: nothing was.
     pub fn decide(&mut self, problems: Result<Vec<Problem>, String>, manager: &Manager) -> Option<Verdict> {
-        let looked_at = self.looks_at.take()?;
+        let reviewed_at = self.reviewing.take()?;
         let first = self.waiting.pop_front()?;
         let problems = problems.unwrap_or_else(|error| vec![broken(&error)]);
         if let Some(error) = problems.iter().find(|problem| problem.is_error()) {
             let refusal = Refusal { code: error.code.into(), reason: listed(&problems) };
             return Some(Verdict::Refuse(first.asked, refusal));
         }
-        if looked_at == manager.turns() {
+        if reviewed_at == manager.turns() {
             return Some(Verdict::Give(first.asked));
         }
         if first.looks >= MOST_LOOKS {

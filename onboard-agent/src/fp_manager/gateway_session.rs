@@ -20,23 +20,23 @@ pub struct GatewaySession {
     joined_at: Option<Time>,
     state: Option<GatewayState>,
     controlled: bool,
-    wanted: Option<Wish>,
+    wanted: Option<Pending>,
     /// The storing of runways; it waits for nothing and stands in nobody's way.
-    runways: Option<Wish>,
+    runways: Option<Pending>,
     asking: bool,
     last_reason: String,
 }
 
 /// Something wanted of the gateway and not granted yet.
 #[derive(Debug)]
-struct Wish {
+struct Pending {
     request: GatewayRequest,
     refusals: u32,
     not_before: Option<Time>,
     last_reason: String,
 }
 
-impl Wish {
+impl Pending {
     fn new(request: GatewayRequest) -> Self {
         Self { request, refusals: 0, not_before: None, last_reason: String::new() }
     }
@@ -63,7 +63,7 @@ impl Wish {
 impl GatewaySession {
     /// As an earlier process knew it: what it wanted, and whether it had control.
     pub fn restored(wanted: Option<GatewayRequest>, controlled: bool) -> Self {
-        Self { wanted: wanted.map(Wish::new), controlled, ..Self::default() }
+        Self { wanted: wanted.map(Pending::new), controlled, ..Self::default() }
     }
 
     /// The gateway takes our waypoints.
@@ -142,7 +142,7 @@ impl GatewaySession {
 
     /// What is wanted of the gateway and not granted yet.
     pub fn wanted(&self) -> Option<&GatewayRequest> {
-        self.wanted.as_ref().map(|wish| &wish.request)
+        self.wanted.as_ref().map(|pending| &pending.request)
     }
 
     /// Wants something; what was wanted before is no longer. Who waits for Safe mode doesn't make do with a hold.
@@ -150,12 +150,12 @@ impl GatewaySession {
         if request == GatewayRequest::Hold && self.wanted() == Some(&GatewayRequest::Safe) {
             return;
         }
-        self.wanted = Some(Wish::new(request));
+        self.wanted = Some(Pending::new(request));
     }
 
     /// Wants runways stored, best first; Safe mode needs them.
     pub fn want_runways(&mut self, runways: Vec<SafeRunway>) {
-        self.runways = Some(Wish::new(GatewayRequest::SetRunways { runways }));
+        self.runways = Some(Pending::new(GatewayRequest::SetRunways { runways }));
     }
 
     /// This is no longer wanted.
@@ -178,8 +178,10 @@ impl GatewaySession {
         if self.asking {
             return None;
         }
-        let ready = |wish: &&Wish| fed || matches!(wish.request, GatewayRequest::Hold | GatewayRequest::Safe);
-        let due = |wish: &&Wish| wish.is_due(now);
+        let ready = |pending: &&Pending| {
+            fed || matches!(pending.request, GatewayRequest::Hold | GatewayRequest::Safe)
+        };
+        let due = |pending: &&Pending| pending.is_due(now);
         let runways = self.runways.as_ref().filter(due);
         let request = runways.or(self.wanted.as_ref().filter(due).filter(ready))?.request.clone();
         self.asking = true;
@@ -198,13 +200,13 @@ impl GatewaySession {
             GatewayRequest::SetRunways { .. } => &mut self.runways,
             _ => &mut self.wanted,
         };
-        let wish = slot.as_mut().filter(|wish| wish.request == *request)?;
+        let pending = slot.as_mut().filter(|pending| pending.request == *request)?;
         let Err(reason) = answer else {
             *slot = None;
             return None;
         };
-        let new = wish.refused(now, &reason);
-        if wish.is_hopeless() {
+        let new = pending.refused(now, &reason);
+        if pending.is_hopeless() {
             tracing::error!(request = request.name(), "given up: {reason}");
             *slot = None;
         }

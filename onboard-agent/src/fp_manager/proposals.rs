@@ -21,8 +21,8 @@ pub struct Fit {
     pub xml: Vec<u8>,
 }
 
-/// What a plan is looked at for.
-pub struct Sight {
+/// What a plan is reviewed for.
+pub struct Situation {
     /// Wind and time of day.
     pub conditions: Conditions,
     /// The flight that it would take over; `None`: on the ground.
@@ -30,7 +30,7 @@ pub struct Sight {
 }
 
 /// What was found.
-pub type Looked = Result<Fit, Vec<Problem>>;
+pub type Reviewed = Result<Fit, Vec<Problem>>;
 type Outcome = Result<Arc<Program>, Refusal>;
 
 /// The proposal that is being reviewed, if there is one.
@@ -44,32 +44,33 @@ struct Proposal {
     fit: Option<Arc<Program>>,
 }
 
-/// A proposal that has been looked at and is kept.
+/// A proposal that has been reviewed and is kept.
 pub struct Conclusion {
     /// What was asked.
     pub asked: Asked,
-    /// It was looked at for a flight under way: what lies ahead of that.
+    /// It was reviewed for a flight under way: what lies ahead of that.
     pub in_flight: bool,
     /// The plan, if it may be proposed.
     pub outcome: Outcome,
 }
 
 impl ProposalReview {
-    /// Begins to look at a proposal; one that comes while another is being reviewed is refused.
-    pub fn take(&mut self, asked: Asked, config: &Config, sight: Sight, out: &mut Out) {
+    /// Begins to review a proposal; one that comes while another is being reviewed is refused.
+    pub fn take(&mut self, asked: Asked, config: &Config, situation: Situation, out: &mut Out) {
         if self.0.is_some() {
             let reason = "another proposal is being looked at: propose again in a moment";
             let refusal = Refusal { code: "busy".into(), reason: reason.into() };
             return out.answer(asked.reply, Err(refusal.convert()));
         }
-        let (xml, config, in_flight) = (asked.request.xml.clone(), config.clone(), sight.flight.is_some());
-        out.work(move || look(&xml, &config, &sight), Input::ProposalLooked);
+        let (xml, config, in_flight) =
+            (asked.request.xml.clone(), config.clone(), situation.flight.is_some());
+        out.work(move || review(&xml, &config, &situation), Input::ProposalReviewed);
         self.0 = Some(Proposal { asked, in_flight, fit: None });
     }
 
-    /// It has been looked at: its document is kept, unless it is refused.
-    pub fn looked(&mut self, looked: Result<Looked, String>, out: &mut Out) -> Option<Conclusion> {
-        match outcome(looked.unwrap_or_else(|error| Err(vec![broken(&error)]))) {
+    /// It has been reviewed: its document is kept, unless it is refused.
+    pub fn reviewed(&mut self, reviewed: Result<Reviewed, String>, out: &mut Out) -> Option<Conclusion> {
+        match outcome(reviewed.unwrap_or_else(|error| Err(vec![broken(&error)]))) {
             Ok(Fit { program, xml }) => {
                 out.push(Output::Document { hash: program.hash().clone(), xml });
                 self.0.as_mut()?.fit = Some(program);
@@ -91,7 +92,7 @@ impl ProposalReview {
     }
 }
 
-/// What was looked at for a flight under way is good for that one: once it is over, nobody has looked at all of the plan.
+/// What was reviewed for a flight under way is good for that one: once it is over, nobody has reviewed all of the plan.
 ///
 /// # Errors
 /// The flight is over.
@@ -103,18 +104,18 @@ pub fn good_for_now(in_flight: bool, executor: &Executor) -> Result<(), Refusal>
     Ok(())
 }
 
-/// Looks at a document, here and now.
+/// Reviews a document, here and now.
 ///
 /// # Errors
 /// Its problems.
-pub fn looked_at(xml: &str, config: &Config, sight: &Sight) -> Outcome {
-    outcome(look(xml, config, sight)).map(|fit| fit.program)
+pub fn reviewed(xml: &str, config: &Config, situation: &Situation) -> Outcome {
+    outcome(review(xml, config, situation)).map(|fit| fit.program)
 }
 
-fn look(xml: &str, config: &Config, sight: &Sight) -> Looked {
-    let program = match &sight.flight {
-        Some(flight) => compile_and_review_ahead(xml.as_bytes(), flight, sight.conditions)?,
-        None => compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, sight.conditions)?,
+fn review(xml: &str, config: &Config, situation: &Situation) -> Reviewed {
+    let program = match &situation.flight {
+        Some(flight) => compile_and_review_ahead(xml.as_bytes(), flight, situation.conditions)?,
+        None => compile_and_review(xml.as_bytes(), &config.profile, &config.terrain, situation.conditions)?,
     };
     // neither is for the flight to wait for: the hash is worked out when it is first asked for
     program.hash();
@@ -122,8 +123,8 @@ fn look(xml: &str, config: &Config, sight: &Sight) -> Looked {
     Ok(Fit { program, xml })
 }
 
-fn outcome(looked: Looked) -> Result<Fit, Refusal> {
-    looked.map_err(|problems| Refusal { code: "plan-errors".into(), reason: listed(&problems) })
+fn outcome(reviewed: Reviewed) -> Result<Fit, Refusal> {
+    reviewed.map_err(|problems| Refusal { code: "plan-errors".into(), reason: listed(&problems) })
 }
 
 /// A review that broke off.
@@ -172,7 +173,7 @@ mod tests {
 
     /// A landing ends the flight while the plan is looked at, or while its document is kept.
     #[test]
-    fn a_plan_looked_at_for_a_flight_that_is_over_is_not_put_forward() {
+    fn a_plan_reviewed_for_a_flight_that_is_over_is_not_put_forward() {
         let mut executor = flying();
         let refused = |in_flight, executor: &Executor| good_for_now(in_flight, executor).is_err();
         assert!(!refused(true, &executor) && !refused(false, &executor));

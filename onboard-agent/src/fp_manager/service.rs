@@ -6,7 +6,7 @@ use super::command_review::{Asked, CommandReview, Verdict};
 use super::journal::{Entry, Saved};
 use super::manager::{Effect, Manager};
 use super::proposals::{
-    Asked as Proposed, Conclusion, Looked, ProposalReview, Sight, good_for_now, looked_at,
+    Asked as Proposed, Conclusion, ProposalReview, Reviewed, Situation, good_for_now, reviewed,
 };
 use super::publish;
 use flight_exec::{Command, Event, Refusal};
@@ -60,13 +60,13 @@ pub enum Input {
     /// The gateway's answer.
     Requested(GatewayRequest, Result<Empty, CallError>),
     /// The proposal has been looked at.
-    ProposalLooked(Result<Looked, String>),
+    ProposalReviewed(Result<Reviewed, String>),
     /// The proposal's document is on the disk.
     ProposalKept,
-    /// The command that was the first to wait has been looked at.
-    CommandLooked(Result<Vec<Problem>, String>),
+    /// The command that was the first to wait has been reviewed.
+    CommandReviewed(Result<Vec<Problem>, String>),
     /// A way that was taken at once has been looked at.
-    WayLooked(Result<Vec<Problem>, String>),
+    WayReviewed(Result<Vec<Problem>, String>),
     /// The journal has something to tell people.
     Journal(Event),
     /// The journal wants a new state.
@@ -141,8 +141,8 @@ impl Service for FpManager {
             Input::Propose(asked) => self.proposed(now, asked, out),
             Input::Command(request) => self.asked(now, Asked::from(request), out),
             Input::Plan(request) => out.answer(request.reply, Ok(self.document())),
-            Input::ProposalLooked(looked) => {
-                if let Some(conclusion) = self.proposal_review.looked(looked, out) {
+            Input::ProposalReviewed(looked) => {
+                if let Some(conclusion) = self.proposal_review.reviewed(looked, out) {
                     self.concluded(now, conclusion, out);
                 }
             }
@@ -151,9 +151,9 @@ impl Service for FpManager {
                     self.concluded(now, conclusion, out);
                 }
             }
-            Input::CommandLooked(problems) => self.looked_ahead(now, problems, out),
-            Input::WayLooked(problems) => {
-                let events = self.background_review.looked(problems, out);
+            Input::CommandReviewed(problems) => self.command_reviewed(now, problems, out),
+            Input::WayReviewed(problems) => {
+                let events = self.background_review.reviewed(problems, out);
                 tell(events, out);
             }
             Input::Journal(event) => tell([event], out),
@@ -186,7 +186,7 @@ impl FpManager {
         tell(troubles.map(|reason| Event::NotJournalled { reason }), out);
         let plan = self.config.plan.take().filter(|_| self.manager.executor().program().is_none());
         let loaded = plan.map(|xml| {
-            let program = looked_at(&xml, &self.config, &self.sight(now))?;
+            let program = reviewed(&xml, &self.config, &self.situation(now))?;
             let report = self.propose(now, program, None, out)?;
             self.command(now, Command::Commit { hash: report.hash, entry: None }, Self::SPEC.name, None, out)
         });
@@ -234,14 +234,14 @@ impl FpManager {
             let refusal = Refusal { code: "stale-revision".into(), reason };
             return out.answer(asked.reply, Err(refusal.convert()));
         }
-        let sight = self.sight(now);
-        self.proposal_review.take(asked, &self.config, sight, out);
+        let situation = self.situation(now);
+        self.proposal_review.take(asked, &self.config, situation, out);
     }
 
     /// What a plan put forward now is looked at for.
-    fn sight(&self, now: Time) -> Sight {
+    fn situation(&self, now: Time) -> Situation {
         let flight = Some(self.manager.executor()).filter(|executor| executor.is_under_way());
-        Sight { conditions: self.manager.conditions(now), flight: flight.cloned() }
+        Situation { conditions: self.manager.conditions(now), flight: flight.cloned() }
     }
 
     /// A proposal has been looked at. The executor sees to it that the plan it was made for is still the one being flown.
@@ -266,11 +266,11 @@ impl FpManager {
         report
     }
 
-    /// What leads to where nobody has looked is looked at first.
+    /// What leads to where nothing was reviewed is reviewed first.
     fn asked(&mut self, now: Time, asked: Asked, out: &mut Out) {
         if self.command_review.concern(&asked, &self.manager) {
             self.command_review.take(asked, out);
-            return self.look_on(now, out);
+            return self.go_on(now, out);
         }
         self.give(now, asked, out);
     }
@@ -280,18 +280,18 @@ impl FpManager {
         asked.answer(answer, out);
     }
 
-    /// The command that was the first to wait has been looked at.
-    fn looked_ahead(&mut self, now: Time, problems: Result<Vec<Problem>, String>, out: &mut Out) {
+    /// The command that was the first to wait has been reviewed.
+    fn command_reviewed(&mut self, now: Time, problems: Result<Vec<Problem>, String>, out: &mut Out) {
         match self.command_review.decide(problems, &self.manager) {
             Some(Verdict::Give(asked)) => self.give(now, asked, out),
             Some(Verdict::Refuse(asked, refusal)) => asked.answer(Err(refusal), out),
             Some(Verdict::Again) | None => {}
         }
-        self.look_on(now, out);
+        self.go_on(now, out);
     }
 
-    /// Goes on with what waits for a look.
-    fn look_on(&mut self, now: Time, out: &mut Out) {
+    /// Goes on with what waits for a review.
+    fn go_on(&mut self, now: Time, out: &mut Out) {
         while let Some(asked) = self.command_review.begin(&self.manager, now, out) {
             self.give(now, asked, out);
         }
@@ -312,7 +312,7 @@ impl FpManager {
         if let (Ok(()), Some(before)) = (&answer, before) {
             let (after, conditions) = (self.manager.executor().clone(), self.manager.conditions(now));
             let review = move || flight_exec::review_turn(&before, &after, conditions);
-            self.background_review.look(review, out);
+            self.background_review.review(review, out);
         }
         perform(effects, out);
         answer

@@ -13,7 +13,7 @@ pub fn show(now: Time, gateway: &Gateway, board: &mut Board) {
     board.measured(topic::GPS, t.gps);
     board.measured(topic::ENGINE, t.engine);
     board.measured(topic::POWER, t.power);
-    let conduct = gateway.conduct();
-    board.changing(topic::NAVIGATION, conduct, |_| gateway.navigation());
-    board.changing(topic::STATE, conduct, |_| gateway.status(now));
+    let urgent = gateway.urgent();
+    board.changing(topic::NAVIGATION, urgent, |_| gateway.navigation());
+    board.changing(topic::STATE, urgent, |_| gateway.status(now));
 }

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! The complement makes every damaged length evident, the index every frame that is missing or in a wrong place. The
-//! first payload is a [`Saved`], each further one a turn, a list of [`Entry`]. What its keeper notes beside the executor is its
+//! first payload is a [`Saved`], each further one a turn, a list of [`Entry`]. What its owner notes beside the executor is its
 //! own affair: the type `N`.
 
 pub mod frame;

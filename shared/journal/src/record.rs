@@ -34,7 +34,7 @@ pub enum Record<N> {
     },
     /// The gateway has seen this token: the executor numbers on behind it.
     NumberAfter(Token),
-    /// What the keeper itself has to remember, whenever it changes.
+    /// What its owner has to remember, whenever it changes.
     Notes(N),
     /// A command was answered.
     Answered(Reply),
@@ -82,7 +82,7 @@ pub struct Chapter<N> {
     pub number: u64,
     /// The state it begins with.
     pub saved: Saved<N>,
-    /// Each whole turn of the keeper: all of it happened, or none.
+    /// Each whole turn of its owner: all of it happened, or none.
     pub turns: Vec<Vec<Entry<N>>>,
     /// What was dropped behind them, for people.
     pub dropped: Option<String>,

@@ -133,7 +133,7 @@ impl Session {
     {
         let key = self.key(invocation.service, Kind::Invocation, invocation.name)?.to_string();
         let (sender, receiver) = mpsc::channel(QUEUE);
-        let desk = Desk {
+        let serving = Serving {
             reads_only: invocation.reads_only,
             memory: Arc::default(),
             health: self.inner.health.clone(),
@@ -146,7 +146,7 @@ impl Session {
             .declare_queryable(key)
             .complete(true)
             .callback(move |query| {
-                if let Some(reply) = admit(&desk, query) {
+                if let Some(reply) = admit(&serving, query) {
                     receive(&sender, reply);
                     wake();
                 }
@@ -175,7 +175,7 @@ fn receive<Q: DeserializeOwned, A: Serialize>(sender: &mpsc::Sender<Incoming<Q, 
     let encoding = reply.query.encoding().unwrap_or(&Encoding::ZENOH_BYTES);
     match codec::decode::<Q>(payload, encoding) {
         Err(reason) => {
-            reply.desk.health.undecodable(reply.query.key_expr().as_str(), &reason);
+            reply.serving.health.undecodable(reply.query.key_expr().as_str(), &reason);
             reply.answer::<A>(&Err(refusal("bad-request", &reason)));
         }
         Ok(request) => {
@@ -195,17 +195,17 @@ fn timeout(query: &Query) -> Duration {
 }
 
 /// Lets a request through to the service, unless it may not ask or repeats an earlier one.
-fn admit(desk: &Desk, query: Query) -> Option<Replier> {
-    let from = match caller(&query, desk.reads_only) {
+fn admit(serving: &Serving, query: Query) -> Option<Replier> {
+    let from = match caller(&query, serving.reads_only) {
         Ok(from) => from,
         Err(refusal) => {
-            Replier::new(desk, query, None, None).answer::<()>(&Err(refusal));
+            Replier::new(serving, query, None, None).answer::<()>(&Err(refusal));
             return None;
         }
     };
     let name = Name::of(&query, from.as_deref());
     if let Some(name) = &name {
-        let mut memory = desk.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut memory = serving.memory.lock().unwrap_or_else(PoisonError::into_inner);
         match memory.requests.get_mut(name) {
             Some(Request::Running(waiting)) => {
                 if waiting.len() < WAITING {
@@ -214,13 +214,13 @@ fn admit(desk: &Desk, query: Query) -> Option<Replier> {
                 return None;
             }
             Some(Request::Done(reply)) => {
-                send(&query, reply, &desk.health);
+                send(&query, reply, &serving.health);
                 return None;
             }
             None => memory.begin(name.clone()),
         }
     }
-    Some(Replier::new(desk, query, name, from))
+    Some(Replier::new(serving, query, name, from))
 }
 
 /// Who asks; `None`: anonymous, and may do so.
@@ -248,9 +248,9 @@ impl Name {
     }
 }
 
-/// Where the requests of one invocation come in.
+/// What the requests of one invocation share.
 #[derive(Clone)]
-struct Desk {
+struct Serving {
     reads_only: bool,
     memory: Arc<Mutex<Memory>>,
     health: Arc<Health>,
@@ -263,26 +263,26 @@ struct Replier {
     format: Format,
     name: Option<Name>,
     from: Option<String>,
-    desk: Desk,
+    serving: Serving,
     answered: bool,
 }
 
 impl Replier {
-    fn new(desk: &Desk, query: Query, name: Option<Name>, from: Option<String>) -> Self {
+    fn new(serving: &Serving, query: Query, name: Option<Name>, from: Option<String>) -> Self {
         let format = query.encoding().map_or(Format::Cbor, Format::of);
-        Self { query, format, name, from, desk: desk.clone(), answered: false }
+        Self { query, format, name, from, serving: serving.clone(), answered: false }
     }
 
     fn answer<A: Serialize>(&mut self, answer: &Result<A, Refusal>) {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
-        send(&self.query, &reply, &self.desk.health);
+        send(&self.query, &reply, &self.serving.health);
         self.tell(&reply);
         if let Some(name) = &self.name {
             let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
-            let mut memory = self.desk.memory.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut memory = self.serving.memory.lock().unwrap_or_else(PoisonError::into_inner);
             for waiting in if passing { memory.forget(name) } else { memory.finish(name, &reply) } {
-                send(&waiting, &reply, &self.desk.health);
+                send(&waiting, &reply, &self.serving.health);
             }
         }
     }
@@ -291,7 +291,7 @@ impl Replier {
 impl Replier {
     /// Tells who keeps the books.
     fn tell(&self, reply: &Reply) {
-        let Some(hook) = self.desk.audit.get() else { return };
+        let Some(hook) = self.serving.audit.get() else { return };
         let request = self.query.payload().map(ZBytes::to_bytes).unwrap_or_default();
         let invocation = self.query.key_expr().as_str().rsplit('/').next().unwrap_or_default();
         hook(Audited {

@@ -4,7 +4,7 @@ use crate::plans::{of_hash, revived};
 use ::journal::{End, Record, Unusable, encode, frame, read, scan};
 use flight_exec::{Executor, Input};
 
-/// What the keeper notes is its own affair: anything.
+/// What its owner notes is its own affair: anything.
 type Notes = ciborium::Value;
 type Chapter = ::journal::Chapter<Notes>;
 type Entry = ::journal::Entry<Notes>;

@@ -41,7 +41,7 @@ fn writer(disk: &Faulty) -> Writer<Faulty> {
 }
 
 /// A writer with a state and turns 1 to `turns`, all on the disk.
-fn clerk_with(disk: &Faulty, turns: u64) -> Writer<Faulty> {
+fn writer_with(disk: &Faulty, turns: u64) -> Writer<Faulty> {
     let mut writer = writer(disk);
     let jobs = std::iter::once(state()).chain((1..=turns).map(|n| job(n, true)));
     writer.perform(Time::ZERO, jobs.collect());
@@ -60,7 +60,7 @@ fn found(disk: &Faulty) -> (Vec<u64>, bool) {
 fn what_was_synced_survives_a_loss_of_power_the_rest_may() {
     for seed in 0..50 {
         let disk = Faulty::default();
-        let mut writer = clerk_with(&disk, 3);
+        let mut writer = writer_with(&disk, 3);
         writer.perform(Time::ZERO, (4..=6).map(|n| job(n, false)).collect());
         disk.reboot(Death::PowerLoss, &mut Random(seed));
         let (turns, incomplete) = found(&disk);
@@ -72,7 +72,7 @@ fn what_was_synced_survives_a_loss_of_power_the_rest_may() {
 #[test]
 fn what_leads_to_nothing_is_synced_within_a_second() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 1);
+    let mut writer = writer_with(&disk, 1);
     writer.perform(Time::from_millis(2000), vec![job(2, false)]);
     let due = writer.due().expect("a sync");
     assert!(due <= Time::from_millis(3000), "{due:?}");
@@ -85,7 +85,7 @@ fn what_leads_to_nothing_is_synced_within_a_second() {
 /// A fault comes and goes: it is told, the flight goes on, and a new state brings the journal back.
 fn fault_comes_and_goes(strike: impl Fn(&Faulty), advice: &str) {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 2);
+    let mut writer = writer_with(&disk, 2);
     strike(&disk);
     writer.perform(Time::from_secs(1), vec![job(3, true)]);
     let trouble = writer.report(Time::from_secs(1)).trouble.expect("it is told");
@@ -135,7 +135,7 @@ fn names_cannot_be_synced() {
 #[test]
 fn killed_after_the_names_could_not_be_synced_it_is_known_that_something_is_missing() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 2);
+    let mut writer = writer_with(&disk, 2);
     disk.fail(Operation::SyncNames, ErrorKind::Other);
     writer.perform(Time::from_secs(1), vec![state(), job(3, true)]);
     disk.reboot(Death::Kill, &mut Random(1));
@@ -145,7 +145,7 @@ fn killed_after_the_names_could_not_be_synced_it_is_known_that_something_is_miss
 #[test]
 fn no_room_for_a_new_segment_the_old_one_goes_on_up_to_its_greatest_length() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 11);
+    let mut writer = writer_with(&disk, 11);
     assert!(writer.report(Time::ZERO + Time::from_secs(1)).wants_state);
     disk.fail(Operation::Create, ErrorKind::StorageFull);
     writer.perform(Time::from_secs(1), vec![state(), job(12, true)]);
@@ -159,7 +159,7 @@ fn no_room_for_a_new_segment_the_old_one_goes_on_up_to_its_greatest_length() {
 #[test]
 fn segment_that_failed_in_flight_is_known_as_incomplete() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 2);
+    let mut writer = writer_with(&disk, 2);
     disk.limit(disk.size());
     writer.perform(Time::from_secs(1), vec![job(3, true)]);
     assert_eq!(found(&disk), (vec![1, 2], true));
@@ -168,7 +168,7 @@ fn segment_that_failed_in_flight_is_known_as_incomplete() {
 #[test]
 fn turns_lost_before_a_disk_that_does_not_keep_up_are_never_skipped_over() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 2);
+    let mut writer = writer_with(&disk, 2);
     writer.overrun(Time::from_secs(1));
     writer.perform(Time::from_secs(1), vec![job(9, true)]);
     assert!(writer.report(Time::from_secs(1)).trouble.is_some());
@@ -178,7 +178,7 @@ fn turns_lost_before_a_disk_that_does_not_keep_up_are_never_skipped_over() {
 #[test]
 fn damage_in_the_middle_stops_the_replay_there() {
     let disk = Faulty::default();
-    clerk_with(&disk, 5);
+    writer_with(&disk, 5);
     let bytes_of_a_turn = encode(&turn(1)).unwrap().len() + frame::FRAME_BYTES;
     disk.damage("segment-00000001.journal", |bytes| {
         let third = bytes.len() - 3 * bytes_of_a_turn;
@@ -190,7 +190,7 @@ fn damage_in_the_middle_stops_the_replay_there() {
 #[test]
 fn state_damaged_the_segment_before_leads_up_to_it() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 4);
+    let mut writer = writer_with(&disk, 4);
     writer.perform(Time::from_secs(1), vec![state(), job(5, true)]);
     disk.damage("segment-00000002.journal", |bytes| bytes[frame::HEADER_BYTES + 40] ^= 1);
     assert_eq!(found(&disk).0, [1, 2, 3, 4]);
@@ -204,7 +204,7 @@ fn state_damaged_the_segment_before_leads_up_to_it() {
 #[test]
 fn old_segments_go_when_the_state_is_on_the_disk_and_not_before() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 1);
+    let mut writer = writer_with(&disk, 1);
     for second in 1..5 {
         writer.perform(Time::from_secs(second), vec![state()]);
     }
@@ -234,7 +234,7 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
 #[test]
 fn turn_that_cannot_be_replayed_stops_the_replay_before_it() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 2);
+    let mut writer = writer_with(&disk, 2);
     let missing =
         Record::Propose { request: RequestId(1), plan: "0123".into(), based_on: None, forbidden: false };
     let payload = encode(&vec![Entry { at: Time::from_secs(3), what: missing }]).unwrap();
@@ -283,26 +283,26 @@ impl Storage for Stuck {
 #[tokio::test]
 async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
     let lock = Arc::new(std::sync::Mutex::new(()));
-    let mut keeper =
+    let mut writer =
         JournalHandle::start(Writer::new(Log::open(Stuck(lock.clone()), LIMITS).0, None)).unwrap();
-    assert_eq!(keeper.news(), None);
+    assert_eq!(writer.news(), None);
     let held = lock.lock();
-    keeper.give(state());
-    keeper.done().await;
+    writer.give(state());
+    writer.done().await;
     assert!(
-        matches!(keeper.news(), Some(flight_exec::Event::NotJournalled { reason }) if reason.contains("slow"))
+        matches!(writer.news(), Some(flight_exec::Event::NotJournalled { reason }) if reason.contains("slow"))
     );
     for n in 0..50 {
         // each would take the whole patience, if it waited
-        keeper.give(job(n, true));
-        keeper.done().await;
-        assert_eq!(keeper.news(), None, "told once");
+        writer.give(job(n, true));
+        writer.done().await;
+        assert_eq!(writer.news(), None, "told once");
     }
     drop(held);
     let caught_up = async {
-        while keeper.news() != Some(flight_exec::Event::Journalled) {
+        while writer.news() != Some(flight_exec::Event::Journalled) {
             tokio::task::yield_now().await;
-            keeper.done().await;
+            writer.done().await;
         }
     };
     tokio::time::timeout(std::time::Duration::from_secs(30), caught_up).await.unwrap();
@@ -311,7 +311,7 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
 #[test]
 fn document_of_a_proposal_is_kept_between_the_turns_of_the_flight() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 0);
+    let mut writer = writer_with(&disk, 0);
     let xml: Vec<u8> = (0..2_000_000_u32).map(|n| n as u8).collect();
     writer.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: xml.clone() }]);
     let mut turns = 0;
@@ -331,7 +331,7 @@ fn document_of_a_proposal_is_kept_between_the_turns_of_the_flight() {
 #[test]
 fn document_that_cannot_be_kept_beforehand_does_not_stop_the_recording() {
     let disk = Faulty::default();
-    let mut writer = clerk_with(&disk, 1);
+    let mut writer = writer_with(&disk, 1);
     disk.fail(Operation::Create, ErrorKind::StorageFull);
     writer.perform(Time::ZERO, vec![Job::Document { hash: "0123".into(), xml: vec![1; 9] }]);
     writer.write_piece();
@@ -344,7 +344,7 @@ fn document_that_cannot_be_kept_beforehand_does_not_stop_the_recording() {
 fn plans_that_were_only_proposed_do_not_pile_up() {
     let xml = include_str!("../../../../assets/plans/square.xml");
     let (disk, config) = (Faulty::default(), config());
-    let mut writer = clerk_with(&disk, 0);
+    let mut writer = writer_with(&disk, 0);
     for n in 0..20 {
         let other = xml.replace("Square circuit", &format!("Circuit {n}"));
         let program = Arc::new(compile(other.as_bytes(), &config).unwrap());

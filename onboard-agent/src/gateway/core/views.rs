@@ -25,8 +25,8 @@ impl Gateway {
         &self.telemetry
     }
 
-    /// What has to be told at once when it changes: waypoint steered to, state, armed, alarms.
-    pub fn conduct(&self) -> (Option<Token>, GatewayState, bool, usize) {
+    /// What is published at once when it changes: waypoint steered to, state, armed, alarms.
+    pub fn urgent(&self) -> (Option<Token>, GatewayState, bool, usize) {
         let current = self.buffer.current().map(|w| w.token);
         (current, self.state, self.telemetry.armed, self.alarms.raised().len())
     }

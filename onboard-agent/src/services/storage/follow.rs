@@ -16,7 +16,7 @@ const STREAMS_MAX: usize = 256;
 
 /// How far the recording is, for others in this process; cheap to clone.
 #[derive(Clone, Default)]
-pub struct Heard(Arc<State>);
+pub struct Monitor(Arc<State>);
 
 #[derive(Default)]
 struct State {
@@ -25,7 +25,7 @@ struct State {
     events: Mutex<HashMap<String, u64>>,
 }
 
-impl Heard {
+impl Monitor {
     /// Where to put what is to be recorded besides; `None` before the recording begins.
     pub fn inlet(&self) -> Option<Inlet> {
         self.0.inlet.get().cloned()
@@ -56,13 +56,13 @@ impl Heard {
 ///
 /// # Errors
 /// The session is closed.
-pub fn everything(beginning: &Beginning, inlet: Inlet, heard: &Heard) -> anyhow::Result<Everything> {
-    let heard = heard.clone();
-    Ok(beginning.follow_everything(Start::Remembered, move |raw| take(raw, &inlet, &heard))?)
+pub fn everything(beginning: &Beginning, inlet: Inlet, monitor: &Monitor) -> anyhow::Result<Everything> {
+    let monitor = monitor.clone();
+    Ok(beginning.follow_everything(Start::Remembered, move |raw| take(raw, &inlet, &monitor))?)
 }
 
 /// From the network's thread into the queue.
-fn take(raw: Raw, inlet: &Inlet, heard: &Heard) {
+fn take(raw: Raw, inlet: &Inlet, monitor: &Monitor) {
     let (key, format, payload) = match raw {
         Raw::Gap { missed } => return inlet.missed(missed),
         Raw::Sample { key, format, payload, .. } => (key, format, payload),
@@ -72,7 +72,7 @@ fn take(raw: Raw, inlet: &Inlet, heard: &Heard) {
     }
     let name = key.to_string();
     if key.kind == Kind::Event {
-        heard.event(&name);
+        monitor.event(&name);
     }
     inlet.say(
         name,

@@ -13,7 +13,7 @@ mod tests;
 mod writer;
 
 pub use disk::SyncCost;
-pub use follow::Heard;
+pub use follow::Monitor;
 pub use recording::{Limits, Payload};
 pub use writer::{Inlet, Progress};
 
@@ -69,19 +69,19 @@ impl Config {
     }
 }
 
-/// Records until `shutdown`; `heard` tells others in this process how far it is.
+/// Records until `shutdown`; `monitor` tells others in this process how far it is.
 ///
 /// # Errors
 /// Another storage runs, or the session can't be had.
-pub async fn run(config: Config, heard: Heard, shutdown: Shutdown) -> anyhow::Result<()> {
+pub async fn run(config: Config, monitor: Monitor, shutdown: Shutdown) -> anyhow::Result<()> {
     let mut of_service = service::Config::client(&config.vehicle, &config.connect);
     of_service.state_dir = Some(config.folder.clone());
-    let made = async move |beginning: Beginning| begin(config, &heard, &beginning);
+    let made = async move |beginning: Beginning| begin(config, &monitor, &beginning);
     // whatever goes wrong, it may be tried again, and the flight goes on: it is nobody's wrong start
     service::run(of_service, shutdown, made).await.map_err(|error| anyhow::anyhow!("{error:#}"))
 }
 
-fn begin(config: Config, heard: &Heard, beginning: &Beginning) -> anyhow::Result<(Storage, Recorder)> {
+fn begin(config: Config, monitor: &Monitor, beginning: &Beginning) -> anyhow::Result<(Storage, Recorder)> {
     let mut how = recording::Config::new(&config.vehicle);
     // so that the quota holds several files, however small it is
     how.file_bytes = how.file_bytes.min(config.limits.quota_bytes / FILES_MIN);
@@ -93,8 +93,8 @@ fn begin(config: Config, heard: &Heard, beginning: &Beginning) -> anyhow::Result
     let writer = Writer::start(&config.folder, how, config.limits, schemas(), config.simulated)?;
     let inlet = writer.inlet();
     mend::begin(&config.folder, inlet.clone());
-    let everything = follow::everything(beginning, inlet.clone(), heard)?;
-    heard.begin(inlet.clone());
+    let everything = follow::everything(beginning, inlet.clone(), monitor)?;
+    monitor.begin(inlet.clone());
     Ok((
         Storage { config, inlet, recorded: None, asked: false },
         Recorder { writer: Some(writer), everything: Some(everything) },

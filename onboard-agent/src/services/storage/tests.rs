@@ -62,10 +62,10 @@ async fn everything_that_is_said_is_recorded() {
     let positions = hub.publish(gateway::POSITION).unwrap();
     let events = hub.emitter(gateway::EVENTS).unwrap();
     let (trigger, end) = shutdown();
-    let heard = Heard::default();
+    let monitor = Monitor::default();
     let config = Config::new("uav1", &endpoint, folder.path().into());
-    let running = tokio::spawn(run(config, heard.clone(), end));
-    until("it has begun", || heard.inlet().is_some()).await;
+    let running = tokio::spawn(run(config, monitor.clone(), end));
+    until("it has begun", || monitor.inlet().is_some()).await;
     let key = "legwork/uav1/gateway/event/events";
     for n in 0..100 {
         let value = GatewayEvent::AlarmCleared { id: n.to_string() };
@@ -75,7 +75,8 @@ async fn everything_that_is_said_is_recorded() {
     until("positions and events come in", || {
         second += 1;
         positions.set(f64::from(second), 1.0, &position(second));
-        heard.events(key) == 100 && heard.inlet().is_some_and(|inlet| inlet.progress().status.messages > 120)
+        monitor.events(key) == 100
+            && monitor.inlet().is_some_and(|inlet| inlet.progress().status.messages > 120)
     })
     .await;
     trigger.shut_down();

@@ -76,7 +76,7 @@ impl Executor {
         Ok(executor)
     }
 
-    /// What a snapshot leaves to its keeper: the proposal that may still be committed, and when the executor was
+    /// What a snapshot leaves to its owner: the proposal that may still be committed, and when the executor was
     /// last stepped. With them a restored executor answers the inputs that followed as the original did.
     pub fn go_on(&mut self, proposed: Option<Arc<Program>>, last_step: Option<Time>) {
         self.proposed = proposed;

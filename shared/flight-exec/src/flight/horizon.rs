@@ -247,7 +247,7 @@ impl Horizon {
 
     /// A loop around a waypoint will be flown so often.
     pub fn set_count(&mut self, index: usize, leg: &Id, count: u64) {
-        self.issued.iter_mut().skip(index).take(1).for_each(|h| h.tell_count(leg, count));
+        self.issued.iter_mut().skip(index).take(1).for_each(|h| h.set_count(leg, count));
     }
 
     /// The leg is gone on with from the place where the hold was given: laid out anew, it doesn't begin behind the aircraft, and one

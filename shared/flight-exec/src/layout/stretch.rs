@@ -236,7 +236,7 @@ impl IssuedWaypoint {
     }
 
     /// A loop that it is in will be flown so often, as its place says and the choice that led to it.
-    pub fn tell_count(&mut self, of_leg: &Id, count: u64) {
+    pub fn set_count(&mut self, of_leg: &Id, count: u64) {
         let around = self.place.iterations.iter_mut().filter(|i| i.leg == *of_leg);
         around.for_each(|i| i.of = Some(count));
         for choice in &mut self.choices {

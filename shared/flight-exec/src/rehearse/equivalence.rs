@@ -12,7 +12,7 @@ pub(super) fn are_equivalent(one: &Situation, other: &Situation) -> bool {
     // the energy left makes no difference, nor do sums, counts and numbers: what follows is shifted by them
     #[rustfmt::skip]
     let Situation {
-        executor, aircraft, guidance, buffer, moment, now_us, due, told_us, waiting_us, requests: _, fired, ended, entered: _,
+        executor, aircraft, guidance, buffer, moment, now_us, due, stepped_us, waiting_us, requests: _, fired, ended, entered: _,
         distance_m: _, passage: _, steered: _, passages: _, waypoints: _, renumbering: _,
     } = one;
     if !aircraft.moves_as(&other.aircraft) || *guidance != other.guidance {
@@ -20,7 +20,7 @@ pub(super) fn are_equivalent(one: &Situation, other: &Situation) -> bool {
     }
     let Some(offset) = executor.offset_from(&other.executor) else { return false };
     (waiting_us, fired, ended) == (&other.waiting_us, &other.fired, &other.ended)
-        && (now_us == told_us) == (other.now_us == other.told_us)
+        && (now_us == stepped_us) == (other.now_us == other.stepped_us)
         && left_us(due, *now_us) == left_us(&other.due, other.now_us)
         && same_place(moment, &other.moment)
         && all_equivalent(buffer, &other.buffer, |a, b| offset.waypoint(a, b))

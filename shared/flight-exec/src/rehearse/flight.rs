@@ -176,7 +176,7 @@ impl<'a> Flight<'a> {
 
     /// The aircraft is at its waypoint, or was within the last step.
     fn reached(&mut self, guided: &Guided, step_us: u64) -> Result<(), PreviewError> {
-        let since_us = self.at.now_us.saturating_sub(self.at.told_us).min(step_us);
+        let since_us = self.at.now_us.saturating_sub(self.at.stepped_us).min(step_us);
         let late_us = microseconds(guided.late_s).min(since_us);
         self.at.distance_m -= self.at.aircraft.state().ground_speed_mps() * seconds(late_us);
         self.pass(self.at.now_us - late_us);
@@ -233,14 +233,14 @@ impl<'a> Flight<'a> {
             on_ground: state.on_ground,
         };
         let waits = matches!(self.at.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
-        let since_us = self.at.now_us - self.at.told_us;
+        let since_us = self.at.now_us - self.at.stepped_us;
         self.at.waiting_us = if waits { self.at.waiting_us + since_us } else { 0 };
         self.at.due.report_us = self.at.now_us + REPORT_EVERY_US;
         self.tell(Input::Aircraft(state));
     }
 
     fn tell(&mut self, input: Input) {
-        self.at.told_us = self.at.now_us;
+        self.at.stepped_us = self.at.now_us;
         let now = Time::from_micros(self.at.now_us);
         let mut out = std::mem::take(&mut self.out);
         self.at.executor.step(now, input, &mut out);

@@ -156,12 +156,12 @@ impl Shift {
     pub fn apply_to(&self, at: &mut Situation) {
         let moved = |us: u64| us.saturating_add_signed(self.time_us);
         at.now_us = moved(at.now_us);
-        at.told_us = moved(at.told_us);
+        at.stepped_us = moved(at.stepped_us);
         for due_us in [&mut at.due.report_us, &mut at.due.track_us, &mut at.due.advance_us] {
             *due_us = moved(*due_us);
         }
         at.moment.time_s = at.time_s();
-        let last_step = at.executor.last_step().map(|_| Time::from_micros(at.told_us));
+        let last_step = at.executor.last_step().map(|_| Time::from_micros(at.stepped_us));
         at.executor.set_last_step(last_step);
         at.distance_m += self.distance_m;
         at.aircraft.use_energy(self.energy_j);

@@ -22,8 +22,8 @@ pub(super) struct Situation {
     /// Since the start, microseconds: whole numbers, so that two flights that differ by a shift in time tell the same time.
     pub now_us: u64,
     pub due: Due,
-    /// The last input of the executor was then.
-    pub told_us: u64,
+    /// The executor was stepped last then.
+    pub stepped_us: u64,
     /// Holding or waiting for so long.
     pub waiting_us: u64,
     pub requests: u64,
@@ -121,7 +121,7 @@ impl Situation {
             moment: Moment::default(),
             now_us: 0,
             due: Due::default(),
-            told_us: 0,
+            stepped_us: 0,
             waiting_us: 0,
             requests: 0,
             fired: vec![false; triggers],

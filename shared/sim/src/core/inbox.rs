@@ -72,7 +72,7 @@ impl Simulator {
             MavMessage::MISSION_ITEM_INT(wire) => self.mission_item(party, wire),
             MavMessage::MISSION_ITEM(c) => self.mission_item(party, &item::from_float(c)),
             MavMessage::MISSION_ACK(_) => self.autopilot.mission.cancel(party),
-            MavMessage::MISSION_REQUEST_LIST(c) => self.tell_count(party, c.mission_type),
+            MavMessage::MISSION_REQUEST_LIST(c) => self.send_count(party, c.mission_type),
             MavMessage::MISSION_REQUEST_INT(c) => self.tell_item(party, c.seq, c.mission_type, true),
             MavMessage::MISSION_REQUEST(c) => self.tell_item(party, c.seq, c.mission_type, false),
             MavMessage::MISSION_SET_CURRENT(c) => {
@@ -214,7 +214,7 @@ impl Simulator {
     }
 
     /// The count of the mission; of fences and rally points there are none.
-    fn tell_count(&mut self, party: Party, mission_type: MavMissionType) {
+    fn send_count(&mut self, party: Party, mission_type: MavMissionType) {
         if self.autopilot.mission.is_receiving() {
             self.mission_reply(party, Reply::Ack(MavMissionResult::MAV_MISSION_DENIED));
             return;

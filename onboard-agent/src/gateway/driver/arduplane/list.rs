@@ -154,7 +154,7 @@ impl List {
     }
 
     /// How far the autopilot is with the waypoints, if that has changed.
-    pub fn news(&mut self) -> Option<Course> {
+    pub fn new_course(&mut self) -> Option<Course> {
         let w = &self.window;
         let course = Course { aboard: w.installed(), ready: w.ready(), target: w.target() };
         (std::mem::replace(&mut self.told, course) != course).then_some(course)

@@ -12,9 +12,9 @@ mod tests;
 mod window;
 
 use super::mavlink::Peer;
-use super::mavlink::commands::{Client, Wish};
+use super::mavlink::commands::{Client, Command};
 use super::mavlink::mission::Outcome;
-use super::mavlink::session::{self, News, Session};
+use super::mavlink::session::{self, Session, SessionEvent};
 use super::{Driver, FromLink, Registration};
 use crate::gateway::order::{Aim, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
@@ -44,7 +44,7 @@ pub struct ArduPlane {
     stirred: bool,
     reports: VecDeque<Report>,
     /// Always empty between calls; kept for its memory.
-    news: Vec<News>,
+    events: Vec<SessionEvent>,
 }
 
 impl ArduPlane {
@@ -53,66 +53,66 @@ impl ArduPlane {
         Self { session: Session::new(lockstep), ..Self::default() }
     }
 
-    fn steer(&mut self, now: Time, id: OrderId, aim: Aim, news: &mut Vec<News>) {
+    fn steer(&mut self, now: Time, id: OrderId, aim: Aim, events: &mut Vec<SessionEvent>) {
         self.direct = None;
-        let wish = match aim {
+        let command = match aim {
             Aim::Direct { position, altitude_amsl_m } if self.mode == Some(modes::GUIDED) => {
-                Wish::GoTo(position, altitude_amsl_m)
+                Command::GoTo(position, altitude_amsl_m)
             }
             Aim::Direct { position, altitude_amsl_m } => {
                 self.direct = Some((id, position, altitude_amsl_m));
-                Wish::Mode(modes::GUIDED)
+                Command::Mode(modes::GUIDED)
             }
-            Aim::Waypoints | Aim::Hold | Aim::Return => Wish::Mode(modes::number(&aim)),
+            Aim::Waypoints | Aim::Hold | Aim::Return => Command::Mode(modes::number(&aim)),
         };
-        self.session.command(now, Client::Order(id), wish, news);
+        self.session.command(now, Client::Order(id), command, events);
     }
 
-    /// Does what follows from the news, until nothing more follows.
-    fn settle(&mut self, now: Time, mut news: Vec<News>) {
+    /// Does what follows from the events, until nothing more follows.
+    fn settle(&mut self, now: Time, mut events: Vec<SessionEvent>) {
         loop {
             let mut more = vec![];
-            for item in news.drain(..) {
+            for item in events.drain(..) {
                 self.hear(now, item, &mut more);
             }
             if std::mem::take(&mut self.stirred) {
                 self.work(now, &mut more);
             }
-            news.append(&mut more);
-            if news.is_empty() {
+            events.append(&mut more);
+            if events.is_empty() {
                 break;
             }
         }
-        self.news = news;
+        self.events = events;
     }
 
-    fn hear(&mut self, now: Time, news: News, more: &mut Vec<News>) {
-        if let News::Telemetry(report) = news {
+    fn hear(&mut self, now: Time, event: SessionEvent, more: &mut Vec<SessionEvent>) {
+        if let SessionEvent::Telemetry(report) = event {
             self.look_at(&report);
             return self.reports.push_back(report);
         }
         self.stirred = true;
-        match news {
-            News::Bound(beat) => {
+        match event {
+            SessionEvent::Bound(beat) => {
                 let capability = capability(&beat);
                 self.list.supported = capability.is_ok();
                 self.reports.push_back(Report::Capability(capability));
             }
-            News::Heartbeat { mode, armed } => {
+            SessionEvent::Heartbeat { mode, armed } => {
                 self.mode = Some(mode);
                 self.list.flown = armed && mode == modes::AUTO;
                 let report = Report::Heard { mode: modes::meaning(mode), name: modes::name(mode), armed };
                 self.reports.push_back(report);
             }
-            News::Current(seq) => {
+            SessionEvent::Current(seq) => {
                 self.reports.push_back(Report::Alive);
                 self.list.steers_to(now, seq);
             }
-            News::Mission(outcome) => self.list_ended(now, outcome),
-            News::Command(Client::List, Ok(())) => self.list.done(),
-            News::Command(Client::List, Err(why)) => self.list_ended(now, Outcome::Failed(why)),
-            News::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
-            News::Telemetry(_) => {}
+            SessionEvent::Mission(outcome) => self.list_ended(now, outcome),
+            SessionEvent::Command(Client::List, Ok(())) => self.list.done(),
+            SessionEvent::Command(Client::List, Err(why)) => self.list_ended(now, Outcome::Failed(why)),
+            SessionEvent::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
+            SessionEvent::Telemetry(_) => {}
         }
     }
 
@@ -146,11 +146,17 @@ impl ArduPlane {
         self.reports.extend(report);
     }
 
-    fn command_ended(&mut self, now: Time, id: OrderId, result: Result<(), String>, more: &mut Vec<News>) {
+    fn command_ended(
+        &mut self,
+        now: Time,
+        id: OrderId,
+        result: Result<(), String>,
+        more: &mut Vec<SessionEvent>,
+    ) {
         let direct = self.direct.take_if(|(of, ..)| *of == id);
         match (result, direct) {
             (Ok(()), Some((_, position, altitude_amsl_m))) => {
-                self.session.command(now, Client::Order(id), Wish::GoTo(position, altitude_amsl_m), more);
+                self.session.command(now, Client::Order(id), Command::GoTo(position, altitude_amsl_m), more);
             }
             (Ok(()), None) => self.reports.push_back(Report::Done(id)),
             (Err(why), _) => self.reports.push_back(Report::Failed(id, why)),
@@ -158,16 +164,16 @@ impl ArduPlane {
     }
 
     /// Goes on with the list, and tells how far it is.
-    fn work(&mut self, now: Time, news: &mut Vec<News>) {
+    fn work(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
         if let Some(peer) = self.session.peer()
             && let Some(step) = self.list.next(now)
         {
-            self.begin(now, step, peer, news);
+            self.begin(now, step, peer, events);
         }
-        self.reports.extend(self.list.news().map(Report::Course));
+        self.reports.extend(self.list.new_course().map(Report::Course));
     }
 
-    fn begin(&mut self, now: Time, step: Step, peer: Peer, news: &mut Vec<News>) {
+    fn begin(&mut self, now: Time, step: Step, peer: Peer, events: &mut Vec<SessionEvent>) {
         let (mission, out) = self.session.mission();
         match step {
             Step::Read => mission.read(now, peer, out),
@@ -178,7 +184,7 @@ impl ArduPlane {
                 mission.overwrite(now, items::entries(start, &items, peer), items::same, peer, out);
             }
             Step::Change(Change::SetCurrent(seq)) => {
-                self.session.command(now, Client::List, Wish::Current(seq), news);
+                self.session.command(now, Client::List, Command::Current(seq), events);
             }
         }
     }
@@ -190,35 +196,35 @@ impl Driver for ArduPlane {
     }
 
     fn process(&mut self, now: Time) -> bool {
-        let mut news = std::mem::take(&mut self.news);
-        let more = self.session.process(now, &mut news);
-        self.settle(now, news);
+        let mut events = std::mem::take(&mut self.events);
+        let more = self.session.process(now, &mut events);
+        self.settle(now, events);
         more
     }
 
     fn order(&mut self, now: Time, id: OrderId, order: Order) {
-        let mut news = std::mem::take(&mut self.news);
-        let mut command = |wish| self.session.command(now, Client::Order(id), wish, &mut news);
+        let mut events = std::mem::take(&mut self.events);
+        let mut command = |command| self.session.command(now, Client::Order(id), command, &mut events);
         match order {
             Order::Feed { after, waypoints } => self.list.feed(after, waypoints),
             Order::Leave(serial) => self.list.leave(serial),
             Order::Forget => self.list.forget(),
             Order::HandsOff(off) => self.list.hands_off = off,
             Order::Adopt(known) => self.list.adopt(id, known),
-            Order::Steer(aim) => self.steer(now, id, aim, &mut news),
-            Order::Arm => command(Wish::Arm),
-            Order::Speed(mps) => command(Wish::Speed(mps)),
-            Order::Terminate => command(Wish::Terminate),
+            Order::Steer(aim) => self.steer(now, id, aim, &mut events),
+            Order::Arm => command(Command::Arm),
+            Order::Speed(mps) => command(Command::Speed(mps)),
+            Order::Terminate => command(Command::Terminate),
         }
         self.stirred = true;
-        self.settle(now, news);
+        self.settle(now, events);
     }
 
     fn tick(&mut self, now: Time) {
-        let mut news = std::mem::take(&mut self.news);
-        self.session.tick(now, &mut news);
+        let mut events = std::mem::take(&mut self.events);
+        self.session.tick(now, &mut events);
         self.stirred = true;
-        self.settle(now, news);
+        self.settle(now, events);
     }
 
     fn deadline(&self) -> Time {

@@ -31,7 +31,7 @@ enum Ended {
 struct Rig {
     sim: Simulator,
     session: Session,
-    news: Vec<News>,
+    events: Vec<SessionEvent>,
     decoder: Decoder,
     sim_decoder: Decoder,
     now: Time,
@@ -52,7 +52,7 @@ impl Rig {
         let mut rig = Self {
             sim,
             session: Session::new(false),
-            news: vec![],
+            events: vec![],
             decoder: Decoder::default(),
             sim_decoder: Decoder::default(),
             now: Time::ZERO,
@@ -60,7 +60,7 @@ impl Rig {
         while rig.session.peer().is_none() {
             rig.step(&mut |_, _| true);
         }
-        rig.news.clear();
+        rig.events.clear();
         rig
     }
 
@@ -73,11 +73,11 @@ impl Rig {
             while let Some(frame) = self.decoder.next_frame() {
                 let (sender, message) = (frame.sender, frame.message().unwrap());
                 if pass(To::Driver, &message) {
-                    self.session.hear(self.now, sender, &message, &mut self.news);
+                    self.session.hear(self.now, sender, &message, &mut self.events);
                 }
             }
         }
-        self.session.tick(self.now, &mut self.news);
+        self.session.tick(self.now, &mut self.events);
         let own = self.session.own();
         for message in std::mem::take(&mut self.session.out) {
             if pass(To::Autopilot, &message) {
@@ -101,20 +101,24 @@ impl Rig {
                 mission.overwrite(now, items::entries(start, &items, peer), items::same, peer, out);
             }
             Task::Read => mission.read(now, peer, out),
-            Task::Current(seq) => self.command(Wish::Current(seq)),
-            Task::Mode(mode) => self.command(Wish::Mode(mode)),
+            Task::Current(seq) => self.command(Command::Current(seq)),
+            Task::Mode(mode) => self.command(Command::Mode(mode)),
         }
     }
 
-    fn command(&mut self, wish: Wish) {
-        self.session.command(self.now, Client::List, wish, &mut self.news);
+    fn command(&mut self, command: Command) {
+        self.session.command(self.now, Client::List, command, &mut self.events);
     }
 
     fn ended(&mut self) -> Option<Ended> {
-        self.news.drain(..).find_map(|news| match news {
-            News::Mission(Outcome::Verified) | News::Command(_, Ok(())) => Some(Ended::Done),
-            News::Mission(Outcome::Failed(why)) | News::Command(_, Err(why)) => Some(Ended::Failed(why)),
-            News::Mission(Outcome::List(list)) => Some(Ended::List(list.iter().map(items::decode).collect())),
+        self.events.drain(..).find_map(|event| match event {
+            SessionEvent::Mission(Outcome::Verified) | SessionEvent::Command(_, Ok(())) => Some(Ended::Done),
+            SessionEvent::Mission(Outcome::Failed(why)) | SessionEvent::Command(_, Err(why)) => {
+                Some(Ended::Failed(why))
+            }
+            SessionEvent::Mission(Outcome::List(list)) => {
+                Some(Ended::List(list.iter().map(items::decode).collect()))
+            }
             _ => None,
         })
     }
@@ -287,7 +291,7 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
     let mut seed = 5_u32;
     rig.begin(Task::Upload(list.clone()));
     for _ in 0..3000 {
-        rig.session.hear(rig.now, AUTOPILOT, &ack, &mut rig.news);
+        rig.session.hear(rig.now, AUTOPILOT, &ack, &mut rig.events);
         rig.step(&mut |t, m| {
             let is_item = t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_));
             if is_item {
@@ -334,12 +338,12 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
         (own, position(380_000_000)),
         (own, nan),
     ];
-    rig.session.hear(rig.now, own, &position(364_905_000), &mut rig.news);
-    rig.news.clear();
+    rig.session.hear(rig.now, own, &position(364_905_000), &mut rig.events);
+    rig.events.clear();
     for (i, (sender, message)) in cases.into_iter().enumerate() {
         let ignored = rig.session.ignored;
-        rig.session.hear(rig.now, sender, &message, &mut rig.news);
-        assert_eq!(rig.news, [], "case {i}");
+        rig.session.hear(rig.now, sender, &message, &mut rig.events);
+        assert_eq!(rig.events, [], "case {i}");
         assert_eq!(rig.session.ignored, ignored + 1, "case {i}");
     }
 }

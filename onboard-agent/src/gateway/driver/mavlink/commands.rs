@@ -30,7 +30,7 @@ pub enum Client {
 
 /// A command to be given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Wish {
+pub enum Command {
     /// Steer to an entry of the list.
     Current(u16),
     /// Change mode, by the autopilot's own number.
@@ -59,7 +59,7 @@ pub enum Shown {
 #[derive(Debug, Clone)]
 struct Given {
     client: Client,
-    wish: Wish,
+    command: Command,
     tries: u32,
     acked: Option<Time>,
     sent: Time,
@@ -68,7 +68,7 @@ struct Given {
 /// The queue of commands; one is in flight at a time.
 #[derive(Debug, Clone, Default)]
 pub struct Commands {
-    queue: VecDeque<(Client, Wish)>,
+    queue: VecDeque<(Client, Command)>,
     flight: Option<Given>,
     rto: Rto,
 }
@@ -78,14 +78,14 @@ pub type Ended = (Client, Result<(), String>);
 
 impl Commands {
     /// Takes a command.
-    pub fn give(&mut self, client: Client, wish: Wish) -> Option<Ended> {
+    pub fn give(&mut self, client: Client, command: Command) -> Option<Ended> {
         if self.queue.len() >= LONGEST_QUEUE {
             return Some((client, Err("too many commands are waiting".into())));
         }
-        match wish {
+        match command {
             // what is urgent does not wait behind what is not
-            Wish::Terminate | Wish::ForceDisarm => self.queue.push_front((client, wish)),
-            _ => self.queue.push_back((client, wish)),
+            Command::Terminate | Command::ForceDisarm => self.queue.push_front((client, command)),
+            _ => self.queue.push_back((client, command)),
         }
         None
     }
@@ -105,10 +105,10 @@ impl Commands {
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
         let ended = self.check(now, peer, out);
         if self.flight.is_none()
-            && let Some((client, wish)) = self.queue.pop_front()
+            && let Some((client, command)) = self.queue.pop_front()
         {
-            self.flight = Some(Given { client, wish, tries: 1, acked: None, sent: now });
-            out.extend((0..self.rto.copies()).map(|_| encode(wish, 0, peer)));
+            self.flight = Some(Given { client, command, tries: 1, acked: None, sent: now });
+            out.extend((0..self.rto.copies()).map(|_| encode(command, 0, peer)));
             self.rto.start(now);
         }
         ended
@@ -120,19 +120,19 @@ impl Commands {
             Some(at) if now >= at + UNSEEN => {
                 let why = format!(
                     "the autopilot accepted {:?} and has not shown since whether it did it",
-                    given.wish
+                    given.command
                 );
                 self.end(Err(why))
             }
             Some(_) => None,
             None if !self.rto.expired(now) => None,
             None if given.tries >= TRIES => {
-                let why = format!("the autopilot did not answer {:?}", given.wish);
+                let why = format!("the autopilot did not answer {:?}", given.command);
                 self.end(Err(why))
             }
             None => {
                 given.tries += 1;
-                let message = encode(given.wish, given.tries as u8 - 1, peer);
+                let message = encode(given.command, given.tries as u8 - 1, peer);
                 out.extend((0..self.rto.copies()).map(|_| message.clone()));
                 None
             }
@@ -146,28 +146,28 @@ impl Commands {
     /// The autopilot answers a command.
     pub fn acked(&mut self, now: Time, ack: &COMMAND_ACK_DATA) -> Option<Ended> {
         let given = self.flight.as_mut()?;
-        if ack.command != command(given.wish) || given.acked.is_some() {
+        if ack.command != number(given.command) || given.acked.is_some() {
             return None;
         }
         if given.tries == 1 {
             self.rto.sample(now.saturating_sub(given.sent));
         }
         match ack.result {
-            MavResult::MAV_RESULT_ACCEPTED if is_seen(given.wish) => {
+            MavResult::MAV_RESULT_ACCEPTED if is_seen(given.command) => {
                 given.acked = Some(now);
                 None
             }
             MavResult::MAV_RESULT_ACCEPTED => self.end(Ok(())),
             MavResult::MAV_RESULT_IN_PROGRESS => None,
-            refused if given.wish == Wish::Terminate => {
+            refused if given.command == Command::Terminate => {
                 // not every autopilot is set up for it; the engine can be stopped on all
                 tracing::warn!(?refused, "flight termination refused, disarming by force");
-                given.wish = Wish::ForceDisarm;
+                given.command = Command::ForceDisarm;
                 given.tries = 0;
                 None
             }
             refused => {
-                let why = format!("the autopilot refused {:?}: {refused:?}", given.wish);
+                let why = format!("the autopilot refused {:?}: {refused:?}", given.command);
                 self.end(Err(why))
             }
         }
@@ -176,46 +176,46 @@ impl Commands {
     /// The autopilot shows something that may be a command's effect.
     pub fn shown(&mut self, now: Time, shown: Shown) -> Option<Ended> {
         let (given, at) = self.flight.as_ref().and_then(|g| Some((g, g.acked?)))?;
-        let obeyed = match (given.wish, shown) {
-            (Wish::Current(wanted), Shown::Current(seq)) => wanted == seq,
-            (Wish::Mode(wanted), Shown::Mode(mode, _)) => wanted == mode,
-            (Wish::Arm, Shown::Mode(_, armed)) => armed,
+        let obeyed = match (given.command, shown) {
+            (Command::Current(wanted), Shown::Current(seq)) => wanted == seq,
+            (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted == mode,
+            (Command::Arm, Shown::Mode(_, armed)) => armed,
             _ => return None,
         };
         if obeyed {
             return self.end(Ok(()));
         }
-        let why = format!("the autopilot accepted {:?} and did not do it", given.wish);
+        let why = format!("the autopilot accepted {:?} and did not do it", given.command);
         if now >= at + EFFECT { self.end(Err(why)) } else { None }
     }
 }
 
 /// The command has an effect that the autopilot shows.
-fn is_seen(wish: Wish) -> bool {
-    matches!(wish, Wish::Current(_) | Wish::Mode(_) | Wish::Arm)
+fn is_seen(command: Command) -> bool {
+    matches!(command, Command::Current(_) | Command::Mode(_) | Command::Arm)
 }
 
-fn command(wish: Wish) -> MavCmd {
-    match wish {
-        Wish::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
-        Wish::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
-        Wish::Arm | Wish::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
-        Wish::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
-        Wish::GoTo(..) => MavCmd::MAV_CMD_DO_REPOSITION,
-        Wish::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
+fn number(command: Command) -> MavCmd {
+    match command {
+        Command::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
+        Command::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
+        Command::Arm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        Command::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
+        Command::GoTo(..) => MavCmd::MAV_CMD_DO_REPOSITION,
+        Command::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
     }
 }
 
-fn encode(wish: Wish, confirmation: u8, peer: Peer) -> MavMessage {
-    let (param1, param2, param3) = match wish {
-        Wish::Current(seq) => (f32::from(seq), 0.0, 0.0),
+fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessage {
+    let (param1, param2, param3) = match command {
+        Command::Current(seq) => (f32::from(seq), 0.0, 0.0),
         // 1: the number is the autopilot's own
-        Wish::Mode(mode) => (1.0, mode as f32, 0.0),
-        Wish::Arm | Wish::Terminate => (1.0, 0.0, 0.0),
-        Wish::ForceDisarm => (0.0, FORCE, 0.0),
+        Command::Mode(mode) => (1.0, mode as f32, 0.0),
+        Command::Arm | Command::Terminate => (1.0, 0.0, 0.0),
+        Command::ForceDisarm => (0.0, FORCE, 0.0),
         // 0: airspeed; throttle −1: as it is
-        Wish::Speed(mps) => (0.0, mps as f32, -1.0),
-        Wish::GoTo(place, altitude_amsl_m) => return reposition(place, altitude_amsl_m, peer),
+        Command::Speed(mps) => (0.0, mps as f32, -1.0),
+        Command::GoTo(place, altitude_amsl_m) => return reposition(place, altitude_amsl_m, peer),
     };
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
         param1,
@@ -225,7 +225,7 @@ fn encode(wish: Wish, confirmation: u8, peer: Peer) -> MavMessage {
         param5: 0.0,
         param6: 0.0,
         param7: 0.0,
-        command: command(wish),
+        command: number(command),
         target_system: peer.system,
         target_component: peer.component,
         confirmation,

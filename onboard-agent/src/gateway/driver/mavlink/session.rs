@@ -4,7 +4,7 @@
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
 
 use super::Peer;
-use super::commands::{Client, Commands, Shown, Wish};
+use super::commands::{Client, Command, Commands, Shown};
 use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
@@ -26,7 +26,7 @@ const LOG_EVERY: Duration = Duration::from_secs(10);
 
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
-pub enum News {
+pub enum SessionEvent {
     /// The autopilot was heard for the first time.
     Bound(HEARTBEAT_DATA),
     /// Its heartbeat.
@@ -93,11 +93,11 @@ impl Session {
     }
 
     /// Looks at the next message of what was received. False: there is none left.
-    pub fn process(&mut self, now: Time, news: &mut Vec<News>) -> bool {
+    pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
         let Some(frame) = self.decoder.next_frame() else { return false };
         let (sender, message) = (frame.sender, frame.message());
         match message {
-            Some(message) => self.hear(now, sender, &message, news),
+            Some(message) => self.hear(now, sender, &message, events),
             // an unknown value in an enumeration loses this message only
             None => self.ignored += 1,
         }
@@ -114,10 +114,10 @@ impl Session {
     }
 
     /// Gives a command, in its turn.
-    pub fn command(&mut self, now: Time, client: Client, wish: Wish, news: &mut Vec<News>) {
-        let refused = self.commands.give(client, wish);
-        news.extend(refused.map(|(client, result)| News::Command(client, result)));
-        self.tick(now, news);
+    pub fn command(&mut self, now: Time, client: Client, command: Command, events: &mut Vec<SessionEvent>) {
+        let refused = self.commands.give(client, command);
+        events.extend(refused.map(|(client, result)| SessionEvent::Command(client, result)));
+        self.tick(now, events);
     }
 
     /// The autopilot's list: begin something, if nothing is being done to it.
@@ -147,7 +147,7 @@ impl Session {
     }
 
     /// Time passed.
-    pub fn tick(&mut self, now: Time, news: &mut Vec<News>) {
+    pub fn tick(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
         if now >= self.beat_at {
             self.beat_at = now + HEARTBEAT;
             self.out.push(heartbeat());
@@ -156,8 +156,8 @@ impl Session {
         let Some(peer) = self.peer else { return };
         self.streams.tick(now, peer, &mut self.out);
         let ended = self.commands.tick(now, peer, &mut self.out);
-        news.extend(ended.map(|(client, result)| News::Command(client, result)));
-        news.extend(self.mission.tick(now, peer, &mut self.out).map(News::Mission));
+        events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
+        events.extend(self.mission.tick(now, peer, &mut self.out).map(SessionEvent::Mission));
     }
 
     fn log_garbage(&mut self, now: Time) {
@@ -169,16 +169,16 @@ impl Session {
     }
 
     /// A message came in.
-    pub fn hear(&mut self, now: Time, sender: Sender, message: &MavMessage, news: &mut Vec<News>) {
+    pub fn hear(&mut self, now: Time, sender: Sender, message: &MavMessage, events: &mut Vec<SessionEvent>) {
         if let MavMessage::HEARTBEAT(beat) = message {
-            self.bind(sender, beat, news);
+            self.bind(sender, beat, events);
         }
         // a simulator's clock goes on before it has said who it is
         if let (None, MavMessage::TIMESYNC(sync)) = (self.peer, message) {
             if sync.tc1 == 0 {
                 self.synchronise(now, sync.ts1);
             }
-            return self.tick(now, news);
+            return self.tick(now, events);
         }
         let Some(peer) = self.peer.filter(|p| *p == sender) else {
             self.ignored += 1;
@@ -186,48 +186,48 @@ impl Session {
         };
         self.streams.seen(mavlink::Message::message_id(message));
         match message {
-            MavMessage::HEARTBEAT(beat) => self.heard(now, beat, news),
+            MavMessage::HEARTBEAT(beat) => self.heard(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
-                news.extend(ended.map(|(client, result)| News::Command(client, result)));
+                events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
             }
-            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq, news),
+            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq, events),
             _ => match self.mission.hear(now, message, peer, &mut self.out) {
-                Some(outcome) => news.extend(outcome.map(News::Mission)),
-                None => self.readings.take(now, message, news, &mut self.ignored),
+                Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
+                None => self.readings.take(now, message, events, &mut self.ignored),
             },
         }
-        self.tick(now, news);
+        self.tick(now, events);
     }
 
     /// The first autopilot that is heard is ours; the rest are strangers.
-    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA, news: &mut Vec<News>) {
+    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         if self.peer.is_some() || sender.system == 0 || !is_autopilot(beat) {
             return;
         }
         self.peer = Some(sender);
-        news.push(News::Bound(beat.clone()));
+        events.push(SessionEvent::Bound(beat.clone()));
     }
 
-    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA, news: &mut Vec<News>) {
+    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
-        news.push(News::Heartbeat { mode: beat.custom_mode, armed });
-        self.shown(now, Shown::Mode(beat.custom_mode, armed), news);
+        events.push(SessionEvent::Heartbeat { mode: beat.custom_mode, armed });
+        self.shown(now, Shown::Mode(beat.custom_mode, armed), events);
     }
 
-    fn current(&mut self, now: Time, seq: u16, news: &mut Vec<News>) {
+    fn current(&mut self, now: Time, seq: u16, events: &mut Vec<SessionEvent>) {
         // 65535: no current entry
         if seq == u16::MAX {
             return;
         }
-        news.push(News::Current(seq));
-        self.shown(now, Shown::Current(seq), news);
+        events.push(SessionEvent::Current(seq));
+        self.shown(now, Shown::Current(seq), events);
     }
 
-    fn shown(&mut self, now: Time, shown: Shown, news: &mut Vec<News>) {
+    fn shown(&mut self, now: Time, shown: Shown, events: &mut Vec<SessionEvent>) {
         let ended = self.commands.shown(now, shown);
-        news.extend(ended.map(|(client, result)| News::Command(client, result)));
+        events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
     }
 
     fn synchronise(&mut self, now: Time, their_ns: i64) {

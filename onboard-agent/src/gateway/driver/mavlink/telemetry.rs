@@ -1,6 +1,6 @@
 //! Telemetry messages to contract values. No field is trusted.
 
-use super::session::News;
+use super::session::SessionEvent;
 use crate::gateway::order::{Fix, Report, Time};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
@@ -37,18 +37,20 @@ pub struct Readings {
 
 impl Readings {
     /// Takes in a message. What makes no sense is counted in `ignored`.
-    pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<News>, ignored: &mut u64) {
+    pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<SessionEvent>, ignored: &mut u64) {
         let sense = match message {
             MavMessage::GLOBAL_POSITION_INT(m) => {
                 self.boot(m.time_boot_ms, out);
-                self.fix(now, m).map(|f| out.push(News::Telemetry(Report::Fix(f))))
+                self.fix(now, m).map(|f| out.push(SessionEvent::Telemetry(Report::Fix(f))))
             }
-            MavMessage::ATTITUDE(m) => attitude(m).map(|a| out.push(News::Telemetry(Report::Attitude(a)))),
-            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(News::Telemetry(Report::Air(a)))),
+            MavMessage::ATTITUDE(m) => {
+                attitude(m).map(|a| out.push(SessionEvent::Telemetry(Report::Attitude(a))))
+            }
+            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(SessionEvent::Telemetry(Report::Air(a)))),
             MavMessage::WIND(m) => self.wind(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
             MavMessage::GPS_RAW_INT(m) => {
-                out.push(News::Telemetry(Report::Gps(gps(m, self.unix_s(now)))));
+                out.push(SessionEvent::Telemetry(Report::Gps(gps(m, self.unix_s(now)))));
                 Some(())
             }
             MavMessage::SYSTEM_TIME(m) => {
@@ -57,21 +59,27 @@ impl Readings {
                 self.day = unix_s.map(|unix_s| (now, unix_s));
                 Some(())
             }
-            MavMessage::SYS_STATUS(m) => self.power(m).map(|p| out.push(News::Telemetry(Report::Power(p)))),
+            MavMessage::SYS_STATUS(m) => {
+                self.power(m).map(|p| out.push(SessionEvent::Telemetry(Report::Power(p))))
+            }
             MavMessage::FUEL_STATUS(m) => self.tank(m),
-            MavMessage::RPM(m) => self.engine(m.rpm1).map(|e| out.push(News::Telemetry(Report::Engine(e)))),
+            MavMessage::RPM(m) => {
+                self.engine(m.rpm1).map(|e| out.push(SessionEvent::Telemetry(Report::Engine(e))))
+            }
             MavMessage::EFI_STATUS(m) => self.efi(m),
-            MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(News::Telemetry(h))),
-            MavMessage::EXTENDED_SYS_STATE(m) => landed(m.landed_state).map(|r| out.push(News::Telemetry(r))),
+            MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(SessionEvent::Telemetry(h))),
+            MavMessage::EXTENDED_SYS_STATE(m) => {
+                landed(m.landed_state).map(|r| out.push(SessionEvent::Telemetry(r)))
+            }
             _ => Some(()),
         };
         *ignored += u64::from(sense.is_none());
     }
 
-    fn boot(&mut self, ms: u32, out: &mut Vec<News>) {
+    fn boot(&mut self, ms: u32, out: &mut Vec<SessionEvent>) {
         let before = self.boot_ms.replace(ms);
         if before.is_some_and(|b| ms.saturating_add(REBOOT_MS) < b) {
-            out.push(News::Telemetry(Report::Rebooted));
+            out.push(SessionEvent::Telemetry(Report::Rebooted));
         }
     }
 
