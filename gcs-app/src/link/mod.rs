@@ -2,14 +2,16 @@
 //! own owns the sessions; the window talks to it through two channels and never waits for either.
 
 mod session;
+mod subscriptions;
 
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
 use flight_exec::{Command as PlanCommand, Event, ProposalReport, Status};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 use usal::contract::{
     Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation,
-    PlanVariables, Position, Power, Propose, Stamped,
+    PlanVariables, Position, Power, Propose, Recording, Stamped,
 };
 
 /// Which connection. Counts up, never used twice in a run: of two links to a vehicle the greater one holds.
@@ -73,6 +75,8 @@ pub struct LinkMessage {
 pub enum LinkEvent {
     /// The session changed.
     Link(LinkState),
+    /// The services that are there now.
+    Services(Arc<BTreeSet<String>>),
     /// Something was heard of the vehicle.
     Telemetry(Telemetry),
     /// Something was not heard, and never will be.
@@ -135,7 +139,23 @@ pub enum Telemetry {
     Variables(Stamped<PlanVariables>),
     PlanEvent(Numbered<Event>),
     GatewayEvent(Numbered<GatewayEvent>),
+    Recording(Stamped<Recording>),
+    Plain(PlainValue),
 }
+
+/// What a service declares and this window has no place of its own for: as rows of name and text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlainValue {
+    /// Whose.
+    pub service: &'static str,
+    /// The variable's name, or that of the stream of events.
+    pub name: &'static str,
+    /// Its fields; a value without fields is one row without a name.
+    pub rows: Stamped<Rows>,
+}
+
+/// Names and texts.
+pub type Rows = Vec<(String, String)>;
 
 /// How far the session has come.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

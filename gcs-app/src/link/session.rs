@@ -3,15 +3,16 @@
 
 use super::{
     Call, Endpoint, LinkEvent, LinkId, LinkMessage, LinkState, Loss, Numbered, Order, Reply, Telemetry, Wake,
+    subscriptions,
 };
 use crate::state::{ActivePlan, Ticket, VehicleName};
 use flight_exec::Command;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::mpsc;
-use usal::contract::{Empty, OPERATOR, OTHER_VERSION, PlanEvent, Stamped};
+use usal::contract::{Empty, OPERATOR, OTHER_VERSION, Stamped};
 use usal::topics::{self, Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
 use wire::Convert;
@@ -37,12 +38,14 @@ type Calls = mpsc::UnboundedSender<(Ticket, Call)>;
 
 /// Where a link's messages go.
 #[derive(Clone)]
-struct Outlet {
+pub(super) struct Outlet {
     link: LinkId,
     vehicle: VehicleName,
     messages: mpsc::Sender<LinkMessage>,
     /// Values left out since the last that found room.
     left_out: Arc<AtomicU64>,
+    /// The agent is of another version: what it says may mean something else, and is left out.
+    is_foreign: Arc<AtomicBool>,
     wake: Wake,
 }
 
@@ -54,8 +57,15 @@ impl Outlet {
         (self.wake)();
     }
 
+    fn is_foreign(&self) -> bool {
+        self.is_foreign.load(Ordering::Relaxed)
+    }
+
     /// A value; where there is no room for it, it is counted, and the next one is newer anyway.
     fn value(&self, heard: Telemetry) {
+        if self.is_foreign() {
+            return;
+        }
         if self.report_left_out().is_err() || self.try_tell(LinkEvent::Telemetry(heard)).is_err() {
             self.left_out.fetch_add(1, Ordering::Relaxed);
         }
@@ -89,7 +99,14 @@ async fn orders(mut endpoint: Endpoint, wake: Wake) {
             Order::Connect { link, endpoint: at, vehicle } => {
                 links.retain(|_, calls| !calls.is_closed());
                 let messages = endpoint.messages.clone();
-                let outlet = Outlet { link, vehicle, messages, left_out: Arc::default(), wake: wake.clone() };
+                let outlet = Outlet {
+                    link,
+                    vehicle,
+                    messages,
+                    left_out: Arc::default(),
+                    is_foreign: Arc::default(),
+                    wake: wake.clone(),
+                };
                 let (calls, questions) = mpsc::unbounded_channel();
                 links.insert(link, calls);
                 tokio::spawn(run(at, questions, outlet));
@@ -132,37 +149,27 @@ async fn connect(endpoint: &str, outlet: &Outlet) -> Result<Open, usal::SessionE
     let session =
         Session::open(usal::Config::client(outlet.vehicle.as_str(), endpoint).named(OPERATOR)).await?;
     let mut open = Open { session, tasks: tokio::task::JoinSet::new() };
-    open.follow(gateway::POSITION, Telemetry::Position, outlet)?;
-    open.follow(gateway::ATTITUDE, Telemetry::Attitude, outlet)?;
-    open.follow(gateway::AIR, Telemetry::Air, outlet)?;
-    open.follow(gateway::GPS, Telemetry::Gps, outlet)?;
-    open.follow(gateway::ENGINE, Telemetry::Engine, outlet)?;
-    open.follow(gateway::POWER, Telemetry::Power, outlet)?;
-    open.follow(gateway::NAVIGATION, Telemetry::Navigation, outlet)?;
-    open.follow(gateway::STATE, Telemetry::Gateway, outlet)?;
-    open.follow(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status.convert())), outlet)?;
-    open.follow(fp_manager::AHEAD, Telemetry::Ahead, outlet)?;
-    open.follow(fp_manager::VARIABLES, Telemetry::Variables, outlet)?;
-    let plan_event = |Numbered { sequence, event }: Numbered<PlanEvent>| {
-        Telemetry::PlanEvent(Numbered { sequence, event: event.convert() })
-    };
-    open.listen(fp_manager::EVENTS, plan_event, outlet)?;
-    open.listen(gateway::EVENTS, Telemetry::GatewayEvent, outlet)?;
+    for spec in usal::spec::SERVICES {
+        for said in spec.says {
+            subscriptions::subscribe(&mut open, spec.name, said, outlet)?;
+        }
+    }
     open.watch(endpoint, outlet)?;
     Ok(open)
 }
 
 /// A session and the tasks that listen on it; they end with it.
-struct Open {
+pub(super) struct Open {
     session: Session,
     tasks: tokio::task::JoinSet<()>,
 }
 
 impl Open {
-    fn follow<T>(
+    /// A variable: its latest value.
+    pub(super) fn follow<T>(
         &mut self,
         variable: Variable<T>,
-        heard: fn(Stamped<T>) -> Telemetry,
+        heard: impl Fn(Stamped<T>) -> Telemetry + Send + 'static,
         outlet: &Outlet,
     ) -> Result<(), usal::SessionError>
     where
@@ -179,10 +186,10 @@ impl Open {
     }
 
     /// A stream of events: each is told with its number, a gap with its size.
-    fn listen<T>(
+    pub(super) fn listen<T>(
         &mut self,
         events: Events<Stamped<T>>,
-        heard: fn(Numbered<T>) -> Telemetry,
+        heard: impl Fn(Numbered<T>) -> Telemetry + Send + 'static,
         outlet: &Outlet,
     ) -> Result<(), usal::SessionError>
     where
@@ -192,6 +199,9 @@ impl Open {
         let outlet = outlet.clone();
         self.tasks.spawn(async move {
             while let Some(occurrence) = subscriber.recv().await {
+                if outlet.is_foreign() {
+                    continue;
+                }
                 outlet
                     .tell(match occurrence {
                         Occurrence::Event { sequence, event } => {
@@ -213,6 +223,8 @@ impl Open {
             let mut services = Some(presence.services());
             while let Some(alive) = services {
                 let state = link_state(&session, &alive, &endpoint).await;
+                outlet.is_foreign.store(matches!(state, LinkState::Failed(_)), Ordering::Relaxed);
+                outlet.tell(LinkEvent::Services(alive)).await;
                 outlet.tell(LinkEvent::Link(state)).await;
                 services = presence.changed().await;
             }
@@ -314,7 +326,7 @@ mod tests {
                 incoming.answer(checked.map(|()| usal::spec::GATEWAY.describe()));
             }
         });
-        let client = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+        let client = Session::open(usal::Config::client("uav1", &endpoint).named(OPERATOR)).await.unwrap();
         let nobody = link_state(&client, &BTreeSet::new(), "there").await;
         assert_eq!(nobody, LinkState::Connecting("there".into()));
         let alive = BTreeSet::from([GATEWAY.to_owned()]);
@@ -329,7 +341,8 @@ mod tests {
         let (messages, mut window) = mpsc::channel(3);
         let wake: Wake = Arc::new(|| {});
         let (link, vehicle) = (LinkId(4), VehicleName::from("uav1"));
-        let outlet = Outlet { link, vehicle, messages, left_out: Arc::default(), wake };
+        let (left_out, is_foreign) = Default::default();
+        let outlet = Outlet { link, vehicle, messages, left_out, is_foreign, wake };
         for i in 0..10 {
             outlet.value(gps(f64::from(i)));
         }
@@ -340,5 +353,8 @@ mod tests {
         let told = window.try_recv().map(|m| (m.link, m.event));
         assert!(matches!(told, Ok((LinkId(4), LinkEvent::Lost(Loss::Values(7))))), "{told:?}");
         assert!(matches!(window.try_recv().map(|m| m.event), Ok(LinkEvent::Telemetry(_))));
+        outlet.is_foreign.store(true, Ordering::Relaxed);
+        outlet.value(gps(11.0));
+        assert!(window.try_recv().is_err(), "what an agent of another version says is not understood");
     }
 }

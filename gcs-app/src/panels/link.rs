@@ -106,7 +106,8 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 fn disconnect(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let name: Option<&VehicleName> = scene.vehicles.shown_name().filter(|_| scene.vehicle.link.is_wanted());
+    let name: Option<&VehicleName> =
+        scene.vehicles.shown_name().filter(|_| scene.vehicle.open_link().is_some());
     if let Some(name) = name
         && ui.button("Disconnect").on_hover_text(format!("Close the link to {name}")).clicked()
     {

@@ -14,6 +14,7 @@ pub mod pfd;
 pub mod problems;
 pub mod profile;
 pub mod push;
+pub mod services;
 pub mod table;
 pub mod timeline;
 pub mod tree;
@@ -40,6 +41,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(profile::Profile),
         Box::new(table::Table),
         Box::new(log::EventLog),
+        Box::new(services::Services),
     ]
 }
 

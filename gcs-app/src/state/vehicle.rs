@@ -1,13 +1,14 @@
 //! One vehicle: what is known of it, and how old that is.
 
 use super::{Aged, Level, Log, Losses, Outcome, Repeats, Requests, Ticket, Trail, log};
-use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, Reply, Telemetry};
+use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, PlainValue, Reply, Rows, Telemetry};
 use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{FlightPlan, Id};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use usal::contract::{
     Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanVariables,
-    Position, Power, Severity,
+    Position, Power, Recording, Severity, Stamped,
 };
 
 /// A vehicle's name: what everything known of it is kept under.
@@ -64,6 +65,12 @@ pub struct Vehicle {
     pub ahead: Option<Aged<Ahead>>,
     /// Values of the plan's variables.
     pub variables: Option<Aged<PlanVariables>>,
+    /// How the flight recorder does.
+    pub recording: Option<Aged<Recording>>,
+    /// The services that are there.
+    pub services: Arc<BTreeSet<String>>,
+    /// What else they say, by service and name.
+    pub plain: BTreeMap<(&'static str, &'static str), Aged<Rows>>,
     /// The active plan.
     pub aboard: Option<ActivePlan>,
     /// What the last proposal would do, until committed or dropped.
@@ -116,6 +123,7 @@ impl Vehicle {
         }
         match event {
             LinkEvent::Link(state) => self.link_changed(state, now_s),
+            LinkEvent::Services(there) => self.services = there,
             LinkEvent::Telemetry(heard) => {
                 self.heard_s = Some(now_s);
                 self.take(heard, now_s);
@@ -143,6 +151,7 @@ impl Vehicle {
             self.log.add(now_s, link.level(), "link", &link.text());
         }
         if link == LinkState::Off {
+            self.services = Arc::default();
             self.give_up_requests(now_s);
         }
         self.link = link;
@@ -171,7 +180,25 @@ impl Vehicle {
             Telemetry::Variables(v) => remember!(self.variables, v, now_s),
             Telemetry::PlanEvent(event) => self.plan_event(&event, now_s),
             Telemetry::GatewayEvent(event) => self.gateway_event(&event, now_s),
+            Telemetry::Recording(v) => self.recording(v, now_s),
+            Telemetry::Plain(PlainValue { service, name, rows }) => {
+                self.plain.insert((service, name), Aged::new(rows, now_s));
+            }
         }
+    }
+
+    /// A flight that is not recorded any more is told once.
+    fn recording(&mut self, recording: Stamped<Recording>, now_s: f64) {
+        let failure = recording.value.failure.as_ref();
+        let known = self.recording.as_ref().and_then(|known| known.value.failure.as_ref());
+        if failure != known {
+            let (level, text) = match failure {
+                Some(why) => (Level::Caution, format!("the flight is not recorded: {why}")),
+                None => (Level::Info, "the flight is recorded again".to_owned()),
+            };
+            self.log.add(now_s, level, "storage", &text);
+        }
+        self.recording = Some(Aged::new(recording, now_s));
     }
 
     fn lost(&mut self, loss: Loss, now_s: f64) {

@@ -5,10 +5,10 @@ use super::vehicle::{position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
-use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, Reply, Telemetry};
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, PlainValue, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Outcome};
 use std::sync::Arc;
-use usal::contract::Stamped;
+use usal::contract::{Recording, Stamped};
 
 const ONE: LinkId = LinkId(1);
 const TWO: LinkId = LinkId(2);
@@ -112,6 +112,46 @@ fn plan_aboard_one_vehicle_does_not_stay_under_another() {
 }
 
 #[test]
+fn services_are_shown_with_what_they_say_and_only_under_their_vehicle() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    tab(&mut window, "Services");
+    assert!(window.shows("○ storage · not there"));
+    let there = ["gateway", "storage", "my-camera"].map(str::to_owned);
+    window.tell_of("uav2", TWO, LinkEvent::Services(Arc::new(there.into())));
+    let recording = |failure: Option<&str>| {
+        let failure = failure.map(str::to_owned);
+        let file = failure.is_none().then(|| "uav2-1.mcap".to_owned());
+        let value =
+            Recording { file, file_bytes: 5 << 20, messages: 70, missed: 3, failure, longest_sync_ms: 1 };
+        LinkEvent::Telemetry(Telemetry::Recording(Stamped { time_s: 1.0, validity_s: 3.0, value }))
+    };
+    window.tell_of("uav2", TWO, recording(None));
+    let rows = Stamped { time_s: 1.0, validity_s: 3.0, value: vec![("revision".into(), "7".into())] };
+    let plan = PlainValue { service: "fp-manager", name: "plan", rows };
+    window.tell_of("uav2", TWO, LinkEvent::Telemetry(Telemetry::Plain(plan)));
+    let shown = [
+        "● storage · running",
+        "● my-camera",
+        "uav2-1.mcap · 5.0 MiB",
+        "70 recorded, 3 missed",
+        "plan revision",
+    ];
+    for text in shown {
+        assert!(window.shows(text), "{text}");
+    }
+    window.tell_of("uav2", TWO, recording(Some("no space left")));
+    assert!(window.shows("⚠ Services") && window.shows("⚠ Not recording: no space left"));
+    tab(&mut window, "Log");
+    assert!(window.shows("the flight is not recorded: no space left"));
+    open_chip(&mut window);
+    window.harness.query_all_by_label_contains("● uav1").next().unwrap().click();
+    window.steps(3);
+    tab(&mut window, "Services");
+    assert!(!window.shows("my-camera") && !window.shows("plan revision") && !window.shows("uav2-1"));
+}
+
+#[test]
 fn both_sessions_stay_open_and_the_operator_chooses_which_is_shown() {
     let mut window = two();
     let opened: Vec<LinkId> = orders(&mut window)
@@ -198,4 +238,9 @@ fn lost_events_are_counted_and_shown() {
     // another vehicle lost nothing
     window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
     assert_eq!(window.app().vehicles().get(&"uav2".into()).unwrap().losses.events, 0);
+}
+
+fn tab(window: &mut Window, name: &str) {
+    window.harness.get_all_by_label(name).next().unwrap().click();
+    window.steps(3);
 }
