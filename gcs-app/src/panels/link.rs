@@ -7,7 +7,8 @@ use crate::link::LinkState;
 use crate::state::{LINK_CAUTION_S, Vehicle, VehicleName};
 use crate::theme::{self, Palette};
 use crate::units;
-use egui::{Color32, RichText, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Color32, PopupCloseBehavior, RichText, Ui};
 
 /// Draws the chip.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -15,12 +16,14 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let (symbol, state, colour) = look(scene.vehicle, scene.now_s, p);
     let name = scene.vehicles.shown_name().map_or_else(String::new, |name| format!("{name} · "));
     let text = RichText::new(format!("{symbol} {name}{state}")).color(colour);
-    let menu = ui.menu_button(text, |ui| {
+    // who clicks into a field wants to type
+    let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let (button, _) = MenuButton::new(text).config(stays).ui(ui, |ui| {
         ui.set_width(280.0);
         chooser(ui, scene, queue);
         form(ui, scene, queue);
     });
-    menu.response.on_hover_text(details(scene.vehicle));
+    button.on_hover_text(details(scene.vehicle));
     lost(ui, scene.vehicle);
 }
 

@@ -153,10 +153,15 @@ pub fn group_title(ui: &mut Ui, text: &str) {
 
 /// A value with its name and its age; one that has expired looks expired, and says so.
 pub fn value_with_age(ui: &mut Ui, name: &str, text: &str, age: Option<(f64, bool)>) {
+    aged_row(ui, (name, 70.0), text, age);
+}
+
+/// The same with a width of one's own for the name, screen points.
+pub fn aged_row(ui: &mut Ui, (name, width): (&str, f32), text: &str, age: Option<(f64, bool)>) {
     let p = theme::of(ui);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        field::name(ui, name, 70.0);
+        field::name(ui, name, width);
         let (shown, age_text) = match age {
             Some((age_s, false)) => (RichText::new(text).color(p.text), units::age(age_s)),
             Some((age_s, true)) => {

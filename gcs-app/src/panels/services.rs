@@ -1,6 +1,6 @@
 //! The services aboard: which are there, how the flight recorder does, and whatever else they say.
 
-use super::{Panel, PanelId, Place, Scene, age_of, value_with_age};
+use super::{Panel, PanelId, Place, Scene, age_of, aged_row};
 use crate::command::Queue;
 use crate::theme;
 use egui::{RichText, ScrollArea, Ui};
@@ -8,6 +8,9 @@ use usal::Spec;
 use usal::contract::Recording;
 use usal::spec::SERVICES;
 use usal::topics::STORAGE;
+
+/// Width of the names, screen points.
+const NAMES: f32 = 170.0;
 
 /// The panel.
 #[derive(Debug)]
@@ -33,6 +36,9 @@ impl Panel for Services {
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         ScrollArea::vertical().id_salt("services").auto_shrink(false).show(ui, |ui| {
+            // nothing here is clicked: rows hardly higher than their text
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.spacing_mut().interact_size.y = 17.0;
             SERVICES.iter().for_each(|spec| service(ui, scene, spec));
             others(ui, scene);
         });
@@ -48,7 +54,7 @@ fn service(ui: &mut Ui, scene: &Scene<'_>, spec: &Spec) {
     for ((_, variable), aged) in plain {
         let age = Some((aged.age_s(scene.now_s), aged.is_expired(scene.now_s)));
         for (name, text) in &aged.value {
-            value_with_age(ui, &format!("{variable} {name}"), text, age);
+            aged_row(ui, (&format!("{variable} · {name}"), NAMES), text, age);
         }
     }
     ui.add_space(4.0);
@@ -80,8 +86,8 @@ fn recording(ui: &mut Ui, scene: &Scene<'_>) {
         || "none".to_owned(),
         |name| format!("{name} · {:.1} MiB", file_bytes as f64 / f64::from(1 << 20)),
     );
-    value_with_age(ui, "file", &file, age);
-    value_with_age(ui, "messages", &format!("{messages} recorded, {missed} missed"), age);
+    aged_row(ui, ("file", NAMES), &file, age);
+    aged_row(ui, ("messages", NAMES), &format!("{messages} recorded, {missed} missed"), age);
 }
 
 /// Services of third parties.
