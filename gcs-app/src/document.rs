@@ -14,6 +14,8 @@ pub struct Document {
     reading_problems: Vec<Problem>,
     kinds: BTreeMap<Id, &'static str>,
     version: u64,
+    /// The first version.
+    id: u64,
 }
 
 impl Default for Document {
@@ -37,8 +39,10 @@ impl Document {
             reading_problems,
             kinds: BTreeMap::new(),
             version: 0,
+            id: 0,
         };
         document.changed();
+        document.id = document.version;
         document
     }
 
@@ -51,6 +55,10 @@ impl Document {
     /// The plan.
     pub fn plan(&self) -> &Arc<FlightPlan> {
         self.history.plan()
+    }
+    /// The same for all versions of a document, and for no other document; never 0.
+    pub fn id(&self) -> u64 {
+        self.id
     }
     /// Differs whenever the plan differs.
     pub fn version(&self) -> u64 {

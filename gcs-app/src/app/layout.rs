@@ -4,6 +4,7 @@
 use super::{App, Now};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::dock::Content;
+use crate::map::furniture::NARROW;
 use crate::panels::bar::PanelEntry;
 use crate::panels::{self, Scene, bar, decision, flight, push};
 use crate::theme;
@@ -53,9 +54,6 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 /// Smallest map that the commands fit on, screen points.
 const LEAST_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
 
-/// On a map that is narrower the commands take several lines, screen points.
-const ONE_LINE: f32 = 600.0;
-
 /// Where the decision and the commands float: over the map, or over everything where there is no room on it.
 fn floor(map: Option<Rect>, whole: Rect) -> Rect {
     map.filter(|m| m.width() >= LEAST_MAP.x && m.height() >= LEAST_MAP.y).unwrap_or(whole)
@@ -71,14 +69,14 @@ fn over_map(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     }
     if scene.vehicle.status.is_some() && flight::has_commands(scene) {
         // clear of legend, scale and sources
-        let aside = if map.width() < ONE_LINE { 0.0 } else { 96.0 };
+        let aside = if map.width() < NARROW { 0.0 } else { 96.0 };
         let clear = Rect::from_min_max(map.min + egui::vec2(aside, 0.0), map.max - egui::vec2(0.0, 8.0));
         floating(ui, "commands", clear, Align2::CENTER_BOTTOM, |ui| {
             flight::last_command(ui, scene);
             // a button held for one vehicle is not held for another
             ui.push_id(scene.vehicles.shown_name(), |ui| {
                 let mut row = |ui: &mut Ui| flight::commands(ui, scene, queue);
-                if map.width() < ONE_LINE {
+                if map.width() < NARROW {
                     ui.horizontal_wrapped(&mut row)
                 } else {
                     ui.horizontal(&mut row)

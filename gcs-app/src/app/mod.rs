@@ -178,7 +178,11 @@ impl App {
         if let Some(analysis) = self.worker.answer() {
             self.analysis = analysis;
         }
-        self.worker.ask(Question { version: self.document.version(), plan: self.document.plan().clone() });
+        let (document, version) = (self.document.id(), self.document.version());
+        if self.analysis.document != document {
+            self.analysis = Analysis::default();
+        }
+        self.worker.ask(Question { document, version, plan: self.document.plan().clone() });
         while let Some(news) = self.files.news() {
             self.file_news(news);
         }

@@ -16,6 +16,8 @@ use terrain::Terrain;
 /// A plan to be looked into.
 #[derive(Debug, Clone)]
 pub struct Question {
+    /// Which document it is of.
+    pub document: u64,
     /// The document's version.
     pub version: u64,
     /// The plan.
@@ -25,6 +27,8 @@ pub struct Question {
 /// What was found out about a version of the plan.
 #[derive(Debug, Clone, Default)]
 pub struct Analysis {
+    /// Which document it is of; 0: of none.
+    pub document: u64,
     /// The document's version it belongs to.
     pub version: u64,
     /// The plan's hash; empty until it is known.
@@ -33,7 +37,7 @@ pub struct Analysis {
     pub problems: Vec<Problem>,
     /// The path was reviewed, or there is none.
     pub reviewed: bool,
-    /// What will be flown; that of the last plan that could be flown, if this one can't.
+    /// What will be flown; that of the document's last version that could be flown, if this one can't.
     pub forecast: Shared,
     /// Differs whenever the forecast does.
     pub forecast_version: u64,
@@ -124,11 +128,6 @@ impl Worker {
         }
         news.then(|| self.known.clone())
     }
-
-    /// Something is still being worked out, given the version last answered.
-    pub fn is_busy(&self, answered: u64) -> bool {
-        self.asked != answered
-    }
 }
 
 /// Where answers go.
@@ -153,7 +152,9 @@ struct Bench {
     aircraft: Option<String>,
     memory: IncrementalCache,
     forecaster: Forecaster,
+    /// The last forecast, and of which document.
     last: Shared,
+    document: u64,
 }
 
 impl Bench {
@@ -165,6 +166,7 @@ impl Bench {
             terrain,
             aircraft: None,
             last: Shared::default(),
+            document: 0,
         }
     }
 
@@ -201,6 +203,10 @@ impl Bench {
     /// Everything but the hash and the review of the path, and the program if the plan can be flown.
     fn analyse(&mut self, question: &Question) -> (Analysis, Option<Arc<Program>>) {
         let plan = &question.plan;
+        if self.document != question.document {
+            // what another document would do is nothing to be seen under this one
+            (self.document, self.last) = (question.document, Shared::default());
+        }
         if self.aircraft.as_ref() != Some(&plan.aircraft) {
             let profile = profile_of(plan);
             self.memory = IncrementalCache::new(profile.clone(), self.terrain.clone());
@@ -219,6 +225,7 @@ impl Bench {
         let no_forecast = flown.map(|forecast| self.last = forecast).err();
         let version = question.version;
         let analysis = Analysis {
+            document: question.document,
             version,
             hash: String::new(),
             problems,

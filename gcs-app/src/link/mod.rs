@@ -176,6 +176,13 @@ impl LinkState {
     pub fn is_wanted(&self) -> bool {
         matches!(self, Self::Connecting(_) | Self::Connected(_))
     }
+    /// Where the vehicle's gateway listens; unknown of a link that is closed or has failed.
+    pub fn endpoint(&self) -> Option<&str> {
+        match self {
+            Self::Connecting(endpoint) | Self::Connected(endpoint) => Some(endpoint),
+            Self::Off | Self::Failed(_) => None,
+        }
+    }
     /// For the log.
     pub fn level(&self) -> Level {
         if matches!(self, Self::Failed(_)) { Level::Caution } else { Level::Info }

@@ -11,10 +11,15 @@ use crate::units::Units;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use walkers::MapMemory;
 
+/// On a map that is narrower there is no legend: the commands take several lines there, screen points.
+pub const NARROW: f32 = 600.0;
+
 /// Draws scale bar, legend and sources.
 pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     scale(painter, view, scene.units(), p);
-    legend(painter, view.rect, p);
+    if view.rect.width() >= NARROW {
+        legend(painter, view.rect, p);
+    }
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
     text::haloed(painter, corner, Align2::RIGHT_BOTTOM, assets::ATTRIBUTION, 10.0, p.weak, p);
 }

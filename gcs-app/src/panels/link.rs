@@ -85,15 +85,19 @@ struct Form {
     vehicle: String,
 }
 
-impl Default for Form {
-    fn default() -> Self {
-        Self { endpoint: "tcp/127.0.0.1:7447".into(), vehicle: "uav1".into() }
+impl Form {
+    /// As the vehicle is connected that is shown; else as an agent on this machine is.
+    fn of(scene: &Scene<'_>) -> Self {
+        let endpoint = scene.vehicle.link.endpoint().unwrap_or("tcp/127.0.0.1:7447");
+        let vehicle = scene.vehicles.shown_name().map_or("uav1", VehicleName::as_str);
+        Self { endpoint: endpoint.into(), vehicle: vehicle.into() }
     }
 }
 
 fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let id = egui::Id::unique("connection form");
-    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    // what was typed for one vehicle is not for another
+    let id = egui::Id::unique("connection form").with(scene.vehicles.shown_name());
+    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_else(|| Form::of(scene));
     ui.label(scene.vehicle.link.text());
     super::field::row(ui, "Gateway at", |ui| ui.text_edit_singleline(&mut form.endpoint));
     super::field::row(ui, "Vehicle", |ui| ui.text_edit_singleline(&mut form.vehicle));

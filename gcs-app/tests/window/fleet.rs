@@ -108,8 +108,13 @@ fn plan_aboard_one_vehicle_does_not_stay_under_another() {
     connected(&mut window, "uav1", ONE, 500.0);
     tells_its_plan(&mut window, "uav1", ONE, "Plan of one");
     assert_eq!(window.app().document().plan().name, "Plan of one");
+    window.until_analysed();
+    assert!(!window.app().analysis().forecast.points.is_empty());
     connect_by_form(&mut window, "uav2");
     assert!(window.app().document().plan().stages.is_empty(), "{}", window.app().document().plan().name);
+    assert!(window.app().analysis().forecast.points.is_empty(), "its path is still drawn");
+    window.until_analysed();
+    assert!(window.app().analysis().forecast.points.is_empty(), "its path is drawn again");
     connected(&mut window, "uav2", TWO, 900.0);
     tells_its_plan(&mut window, "uav2", TWO, "Plan of two");
     assert_eq!(window.app().document().plan().name, "Plan of two");
