@@ -84,7 +84,7 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
 /// The vehicle tells which plan is aboard, is asked for it, and gives it.
 fn tells_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) {
     let plan = flight_plan::read(SQUARE.replace("Square circuit", name).as_bytes()).plan;
-    let hash = Arc::<str>::from(format!("hash of {name}"));
+    let hash = Arc::<str>::from(flight_plan::hash(&plan));
     let value = flight_exec::Status { plan: Some(hash.clone()), ..status(Phase::Flying) };
     let stamped = Stamped { time_s: 2.0, validity_s: 2.0, value };
     window.tell_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
