@@ -21,7 +21,7 @@ const DEFAULT_VEHICLE: &str = "uav1";
 const DEFAULT_AUTOPILOT: &str = "udp:127.0.0.1:14550";
 const DEFAULT_AIRCRAFT: &str = "trainer";
 
-/// Legwork's onboard agent: FCS Gateway and FP Manager.
+/// Legwork's onboard agent: FCS Gateway, FP Manager and storage, the flight recorder.
 #[derive(Debug, Parser)]
 #[command(name = "onboard-agent", version, about)]
 pub struct Cli {
@@ -92,7 +92,7 @@ pub struct Options {
     /// Where the gateway listens for the other services and for ground stations [default: tcp/127.0.0.1:7447].
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Option<String>,
-    /// Where the FP Manager finds the gateway [default: as --listen].
+    /// Where the FP Manager and storage find the gateway [default: as --listen].
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
     /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT or tcp:HOST:PORT [default: udp:127.0.0.1:14550].

@@ -38,6 +38,9 @@ async fn waypoints_flown_are_counted_and_the_question_is_answered() {
     }
     within(async { while how_many().await < 5 {} }).await;
     assert_eq!(how_many().await, 5);
+    // who says no name may read
+    let nameless = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+    assert_eq!(within(nameless.call(HOW_MANY, &Empty {}, DEADLINE)).await, Ok(5));
     // named to the hub, and it keeps the books
     assert!(hub.is_announced("waypoint-counter").await.unwrap());
     let mut trail = client.listen(audit("waypoint-counter"), Start::Remembered).unwrap();

@@ -85,7 +85,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
 ];
 
 /// What a payload service in Rust compiles, and what must not be behind it, however far down.
-const PAYLOAD_SERVICE: [&str; 2] = ["contract", "usal"];
+const PAYLOAD_SERVICE: [&str; 3] = ["contract", "usal", "service"];
 const NOT_FOR_PAYLOADS: [&str; 10] = [
     "flight-plan",
     "flight-exec",

@@ -51,7 +51,7 @@ impl Executor {
         self.advance_clock(now);
         match input {
             Input::Tick => {}
-            Input::Aircraft(state) if state.is_sound() => self.life.aircraft = Some(state),
+            Input::Aircraft(state) if state.is_sound() => self.life.put_aircraft(Some(state)),
             // numbers that are none: the last sound report counts on
             Input::Aircraft(_) => {}
             Input::Propose { request, program, based_on, objections } => {
@@ -157,7 +157,7 @@ impl Executor {
 
     /// A plan is being flown, and where the aircraft is is known: what is ahead of it can be reviewed.
     pub fn is_under_way(&self) -> bool {
-        self.is_flying() && self.life.aircraft.is_some()
+        self.is_flying() && self.life.aircraft().is_some()
     }
 
     /// Between start and finish, holding or not.

@@ -6,7 +6,9 @@ use std::future::{Future, pending, ready};
 /// The part of a service that touches the world: a link, a camera, a journal.
 pub trait Adapter<S: Service>: Send + 'static {
     /// The next thing that the world does; never, if there is nothing. May be cancelled without loss.
-    fn next(&mut self) -> impl Future<Output = S::Input> + Send;
+    fn next(&mut self) -> impl Future<Output = S::Input> + Send {
+        pending()
+    }
 
     /// Does what one step of the service wants. Nothing else of that step (events, calls, answers) leaves before this is
     /// done; `leaves` tells whether there is any.
@@ -29,10 +31,6 @@ pub trait Adapter<S: Service>: Send + 'static {
 pub struct NoAdapter;
 
 impl<S: Service<Output = Never>> Adapter<S> for NoAdapter {
-    fn next(&mut self) -> impl Future<Output = S::Input> + Send {
-        pending()
-    }
-
     fn perform(
         &mut self,
         _: Time,

@@ -1,6 +1,7 @@
 //! What a service did, for its log.
 
 use std::time::{Duration, Instant};
+use usal::HealthCount;
 
 /// Told so often.
 const PERIOD: Duration = Duration::from_secs(60);
@@ -29,15 +30,18 @@ impl Statistics {
     }
 
     /// Once a minute.
-    pub(crate) fn tell_sometimes(&mut self, service: &str) {
+    pub(crate) fn tell_sometimes(&mut self, service: &str, health: impl FnOnce() -> HealthCount) {
         if self.told.elapsed() >= PERIOD {
-            self.tell(service);
+            self.tell(service, health());
         }
     }
 
-    pub(crate) fn tell(&mut self, service: &str) {
+    /// With what went wrong on the network; each of that is a warning of its own, but they are limited.
+    pub(crate) fn tell(&mut self, service: &str, health: HealthCount) {
         self.told = Instant::now();
         let Self { steps, events, answers, longest, .. } = self;
-        tracing::debug!(steps, events, answers, longest_ms = longest.as_millis(), "{service}");
+        let HealthCount { undecodable, overflowed, unsent } = health;
+        let longest_ms = longest.as_millis();
+        tracing::debug!(steps, events, answers, longest_ms, undecodable, overflowed, unsent, "{service}");
     }
 }

@@ -14,7 +14,7 @@ pub(crate) type AuditHook = Box<dyn Fn(Audited) + Send + Sync>;
 pub struct Audited {
     /// Name of the invocation.
     pub invocation: String,
-    /// Who asked, if it said so.
+    /// Who asked, if it said so. Of a refused request: the name it gave, which may be none that we allow.
     pub caller: Option<String>,
     /// The request's own name.
     pub id: Option<String>,

@@ -14,7 +14,7 @@
 use crate::SessionError;
 use crate::audit::{AuditHook, Audited, Document};
 use crate::codec::{self, Format};
-use crate::contract::{Description, Empty, Kind, Refusal, check_caller, check_version};
+use crate::contract::{ANONYMOUS, Description, Empty, Kind, Refusal, check_caller, check_version};
 use crate::health::Health;
 use crate::session::Session;
 use crate::topics::{self, Invocation};
@@ -38,6 +38,8 @@ const REMEMBERED: usize = 256;
 const REMEMBERED_BYTES: usize = 64 << 10;
 /// Repetitions of one request that may wait for its answer.
 const WAITING: usize = 8;
+/// So much of a bad name is told to who keeps the books, characters.
+const CLAIM_MAX: usize = 64;
 /// Longest request id, bytes.
 const ID_MAX: usize = 128;
 /// Deadline of a request that names none, and the longest that it may name.
@@ -199,7 +201,8 @@ fn admit(serving: &Serving, query: Query) -> Option<Replier> {
     let from = match caller(&query, serving.reads_only) {
         Ok(from) => from,
         Err(refusal) => {
-            Replier::new(serving, query, None, None).answer::<()>(&Err(refusal));
+            let claimed = claimed(&query);
+            Replier::new(serving, query, None, claimed).answer::<()>(&Err(refusal));
             return None;
         }
     };
@@ -228,6 +231,12 @@ fn caller(query: &Query, reads_only: bool) -> Result<Option<String>, Refusal> {
     let parameters = query.parameters();
     check_version(parameters.get("version"))?;
     Ok(check_caller(parameters.get("from"), reads_only)?.map(str::to_owned))
+}
+
+/// The name that a refused request gave, for the books, however bad it is.
+fn claimed(query: &Query) -> Option<String> {
+    let name = query.parameters().get("from").filter(|name| *name != ANONYMOUS)?;
+    Some(name.chars().take(CLAIM_MAX).collect())
 }
 
 /// By which a request is known when it is repeated: two clients may well use the same ids.

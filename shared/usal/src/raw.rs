@@ -6,7 +6,6 @@ use crate::health::Health;
 use crate::session::Session;
 use crate::{Format, SessionError};
 use std::sync::Arc;
-use std::time::SystemTime;
 use zenoh::Wait;
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
@@ -23,10 +22,6 @@ pub enum Raw {
         format: Format,
         /// The payload, which nobody has looked into.
         payload: Vec<u8>,
-        /// An event's number; its publisher counts up by one.
-        sequence: Option<u32>,
-        /// When it came in.
-        at: SystemTime,
     },
     /// Events of some stream were lost for good.
     Gap {
@@ -108,12 +103,7 @@ impl<F: Fn(Raw)> Inlet<F> {
             Ok(key) => (self.take)(Raw::Sample {
                 format: Format::of(sample.encoding()),
                 payload: sample.payload().to_bytes().into_owned(),
-                sequence: sample
-                    .source_info()
-                    .filter(|_| key.kind == Kind::Event)
-                    .map(|info| info.source_sn()),
                 key,
-                at: SystemTime::now(),
             }),
         }
     }

@@ -378,6 +378,40 @@ async fn more_requests_than_fit_are_refused_as_busy() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn refused_request_is_in_the_books_under_the_name_it_gave() {
+    let net = Net::open().await;
+    let (sender, mut books) = tokio::sync::mpsc::unbounded_channel();
+    net.hub.audit(move |audited| drop(sender.send(audited)));
+    let mut server = net.hub.serve(gateway::REQUEST).unwrap();
+    let outside = outside_client(&net.endpoint).await;
+    let (endless, cut) = ("ü".repeat(1000), "ü".repeat(64));
+    // (parameters, who asked by the books, why it was refused)
+    let cases = [
+        ("", None, "anonymous"),
+        ("from=anonymous", None, "anonymous"),
+        ("from=", Some(""), "bad-name"),
+        ("from=../operator", Some("../operator"), "bad-name"),
+        (&format!("from={endless}"), Some(&*cut), "bad-name"),
+        ("from=camera;version=2", Some("camera"), "version"),
+        ("from=a b;version=2", Some("a b"), "version"),
+    ];
+    for (parameters, caller, code) in cases {
+        let hold = br#"{"request":"hold"}"#;
+        let json = Encoding::APPLICATION_JSON;
+        ask_with(&outside, "gateway", "request", parameters, hold, json).await.unwrap_err();
+        let audited = within(books.recv()).await.unwrap();
+        assert_eq!(audited.caller.as_deref(), caller, "{parameters}");
+        assert_eq!((audited.invocation.as_str(), audited.accepted), ("request", false), "{parameters}");
+        assert_eq!(audited.answer.to_json()["code"], code, "{parameters}");
+        assert_eq!(audited.request.to_json()["request"], "hold", "{parameters}");
+    }
+    assert!(
+        books.try_recv().is_err() && server.try_recv().is_none(),
+        "each is told once, and executed never"
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn garbage_request_is_refused_with_what_is_wrong() {
     let net = Net::open().await;
     let _server = net.hub.serve(fp_manager::COMMAND).unwrap();
@@ -409,11 +443,8 @@ async fn garbage_payload_is_counted_and_ignored() {
     put(&outside, "gateway/variable/air", &good, Encoding::APPLICATION_JSON).await;
     assert_eq!(within(subscriber.changed()).await.unwrap().stamped.value, air(9.0));
     until(async || net.hub.health().undecodable == 3).await;
-    assert_eq!(
-        events.try_recv(),
-        Some(Occurrence::Gap { missed: 1 }),
-        "an event that nobody can read is lost"
-    );
+    let lost = within(events.recv()).await;
+    assert_eq!(lost, Some(Occurrence::Gap { missed: 1 }), "an event that nobody can read is lost");
     assert!(events.try_recv().is_none());
 }
 

@@ -65,7 +65,7 @@ pub fn everything(beginning: &Beginning, inlet: Inlet, monitor: &Monitor) -> any
 fn take(raw: Raw, inlet: &Inlet, monitor: &Monitor) {
     let (key, format, payload) = match raw {
         Raw::Gap { missed } => return inlet.missed(missed),
-        Raw::Sample { key, format, payload, .. } => (key, format, payload),
+        Raw::Sample { key, format, payload } => (key, format, payload),
     };
     if key.kind == Kind::Variable && key.service == GATEWAY && key.name == "clock" {
         tick(&payload, format, inlet);

@@ -206,10 +206,6 @@ struct Recorder {
 }
 
 impl Adapter<Storage> for Recorder {
-    fn next(&mut self) -> impl Future<Output = Input> + Send {
-        std::future::pending()
-    }
-
     async fn perform(&mut self, _: Time, _: Vec<service::Never>, _: bool, _: &mut Tasks<Input>) {}
 
     async fn finish(&mut self) {

@@ -76,7 +76,7 @@ impl Executor {
 
     /// The plan stays at its place, whoever flies meanwhile.
     fn stay_here(&mut self, out: &mut Vec<Output>) {
-        let at = self.life.aircraft.as_ref().map(|a| a.position);
+        let at = self.life.aircraft().map(|a| a.position);
         self.life.mode.hold(at, out);
     }
 
@@ -185,7 +185,7 @@ impl Executor {
     /// On the ground there is nothing to be flown but the take-off.
     pub(super) fn check_taken_off(&self) -> Result<(), Refusal> {
         let takes_off = |h: &IssuedWaypoint| matches!(h.waypoint.action, Action::TakeOff { .. });
-        let on_ground = self.life.aircraft.as_ref().is_none_or(|a| a.on_ground);
+        let on_ground = self.life.aircraft().is_none_or(|a| a.on_ground);
         if on_ground && self.flight.horizon.front().is_some_and(takes_off) {
             let reason = "the aircraft has not taken off yet: wait until it is in the air";
             return Err(refusal("on-ground", reason));
@@ -197,7 +197,7 @@ impl Executor {
     pub(super) fn check_not_a_take_off(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
         let stage = program.stage(target).filter(|_| target.indices.is_empty());
         let takes_off = stage.is_some_and(|s| s.kind == StageKind::TakeOff);
-        if takes_off && self.life.aircraft.as_ref().is_some_and(|a| !a.on_ground) {
+        if takes_off && self.life.aircraft().is_some_and(|a| !a.on_ground) {
             return Err(refusal("in-the-air", "the aircraft is in the air already: name another leg"));
         }
         Ok(())

@@ -199,7 +199,7 @@ impl Executor {
             cursor.refresh_leg(&self.world()).ok();
         }
         // what was flown of the way to the first of them counts on
-        let on_the_way = index == 0 && self.life.aircraft.is_some();
+        let on_the_way = index == 0 && self.life.aircraft().is_some();
         let cursor = if on_the_way { cursor.going_on_from(self.here()) } else { cursor };
         self.flight.horizon.cut(index, cursor);
         self.hold(out);

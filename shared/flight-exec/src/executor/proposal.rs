@@ -85,7 +85,7 @@ impl Executor {
     }
 
     fn ground_speed_mps(&self) -> f64 {
-        let aircraft = self.life.aircraft.as_ref();
+        let aircraft = self.life.aircraft();
         aircraft.map_or(0.0, |a| a.ground_speed_mps).max(self.setup.profile.min_airspeed_mps)
     }
 

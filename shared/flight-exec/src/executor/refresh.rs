@@ -55,7 +55,7 @@ impl Executor {
         let mut here = self.here();
         here.last = PathEnd { position: here.last.position, ..cursor.path.last };
         brought.move_path_to(here);
-        (on_the_way && self.life.aircraft.is_some()).then_some(brought)
+        (on_the_way && self.life.aircraft().is_some()).then_some(brought)
     }
 
     /// The variables have changed: lays out the leg being flown anew, and everything beyond it.

@@ -49,7 +49,7 @@ impl Setup {
             config: &self.config,
             profile: &self.profile,
             horizon,
-            aircraft: life.aircraft.as_ref(),
+            aircraft: life.aircraft(),
             held_at: life.mode.held_at().filter(|_| life.mode.is_holding()),
         }
     }
@@ -57,7 +57,7 @@ impl Setup {
     /// The flight, as conditions see it.
     pub fn flight_state(&self, life: &Life) -> FlightState {
         let time_s = life.clock.flight_s();
-        let Some(a) = &life.aircraft else {
+        let Some(a) = life.aircraft() else {
             return FlightState { time_s, ..FlightState::on_ground(self.home()) };
         };
         FlightState {

@@ -49,12 +49,12 @@ impl Executor {
 
     /// The last report of the aircraft.
     pub(crate) fn aircraft(&self) -> Option<AircraftState> {
-        self.life.aircraft
+        self.life.aircraft().copied()
     }
 
     /// The aircraft is somewhere else.
     pub(crate) fn put_aircraft(&mut self, aircraft: Option<AircraftState>) {
-        self.life.aircraft = aircraft;
+        self.life.put_aircraft(aircraft);
     }
 
     /// The emergency that is being flown is none: another one may follow, whatever its cause.

@@ -43,8 +43,7 @@ pub(crate) struct Life {
     pub numbers: Numbers,
     pub revision: Revision,
     pub values: Values,
-    /// The last sound report.
-    pub aircraft: Option<AircraftState>,
+    aircraft: Option<AircraftState>,
 }
 
 /// One flight of a plan. Before the start nothing is in it, and each start begins with an empty one.
@@ -59,6 +58,16 @@ pub(crate) struct Flight {
 }
 
 impl Life {
+    /// The aircraft's last sound report.
+    pub fn aircraft(&self) -> Option<&AircraftState> {
+        self.aircraft.as_ref()
+    }
+
+    /// The aircraft is there from now on; in a trial it may be nowhere.
+    pub fn put_aircraft(&mut self, aircraft: Option<AircraftState>) {
+        self.aircraft = aircraft;
+    }
+
     pub fn is_equivalent(&self, other: &Self, offset: &Offset) -> bool {
         // the last report repeats the motion, which is compared where the aircraft is; the energy in it makes no difference
         let Self { mode, clock, numbers, revision, values, aircraft: _ } = self;

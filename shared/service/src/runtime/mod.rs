@@ -134,7 +134,7 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
         }
         self.publish();
         self.look_after_folder().await;
-        self.statistics.tell_sometimes(S::SPEC.name);
+        self.statistics.tell_sometimes(S::SPEC.name, || self.session.health());
         self.clock.acknowledge();
         Ok(())
     }
@@ -158,7 +158,7 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
         }
         self.adapter.finish().await;
         self.folder.finish().await;
-        self.statistics.tell(S::SPEC.name);
+        self.statistics.tell(S::SPEC.name, self.session.health());
     }
 }
 
