@@ -10,9 +10,9 @@ use usal::{
     Config, EventSubscriber, Occurrence, Participant, Presence, Session, Start, VariableSubscriber,
     contract::{
         Attitude, ClockTick, Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation,
-        PlanEvent, PlanStatus, Position, ProposalReport, Propose, TimedGatewayEvent,
+        PlanEvent, PlanStatus, Position, ProposalReport, Propose, Recording, TimedGatewayEvent,
     },
-    topics::{self, fp_manager, gateway},
+    topics::{self, fp_manager, gateway, storage},
 };
 
 /// Where the simulator stands.
@@ -74,6 +74,8 @@ pub struct Rig {
     pub gateway: Program,
     /// The FP Manager's process.
     pub fp_manager: Program,
+    /// The flight recorder's process, once it is started.
+    pub storage: Option<Program>,
     /// What happened.
     pub seen: Seen,
     /// Where it flies.
@@ -105,6 +107,7 @@ struct Ground {
     position: VariableSubscriber<Position>,
     navigation: VariableSubscriber<Navigation>,
     attitude: VariableSubscriber<Attitude>,
+    recording: VariableSubscriber<Recording>,
     presence: Presence,
 }
 
@@ -119,6 +122,7 @@ impl Ground {
             position: session.follow(gateway::POSITION)?,
             navigation: session.follow(gateway::NAVIGATION)?,
             attitude: session.follow(gateway::ATTITUDE)?,
+            recording: session.follow(storage::RECORDING)?,
             presence: session.presence()?,
             clock: match pace {
                 Pace::Lockstep => Some(Participant::join(&session, "test")?),
@@ -183,8 +187,19 @@ impl Rig {
         let gateway = Program::start("onboard-agent", &arguments, &logs, "gateway")?;
         let fp_manager = start_fp_manager(&endpoint, state.path(), pace, &logs)?;
         let ground = Some(Ground::open(&endpoint, pace).await.with_context(|| logs.ends())?);
-        let seen = Seen::default();
-        Ok(Self { simulator, gateway, fp_manager, seen, field: FIELD, endpoint, state, pace, ground, logs })
+        Ok(Self {
+            simulator,
+            gateway,
+            fp_manager,
+            storage: None,
+            seen: Seen::default(),
+            field: FIELD,
+            endpoint,
+            state,
+            pace,
+            ground,
+            logs,
+        })
     }
 
     /// Puts a plan forward and makes it the active one.
@@ -285,6 +300,35 @@ impl Rig {
         Ok(())
     }
 
+    /// Starts the flight recorder, which takes no part in the time.
+    pub fn start_storage(&mut self, state: &Path) -> anyhow::Result<()> {
+        let folder = state.display().to_string();
+        let arguments = service_arguments("storage", &self.endpoint, &folder, self.pace);
+        self.storage = Some(Program::start("onboard-agent", &arguments, &self.logs, "storage")?);
+        Ok(())
+    }
+
+    /// Waits, without letting time go on, until the flight recorder says so of itself.
+    pub async fn recorder_says(
+        &mut self,
+        what: &str,
+        holds: impl Fn(&Recording) -> bool,
+    ) -> anyhow::Result<Recording> {
+        let recording = &mut self.ground.as_mut().context("no ground station")?.recording;
+        let mut last = None;
+        let says = async {
+            loop {
+                let received = recording.changed().await.context("the session is closed")?;
+                let said = last.insert(received.stamped.value.clone());
+                if holds(said) {
+                    return Ok(said.clone());
+                }
+            }
+        };
+        let said = tokio::time::timeout(PATIENCE, says).await;
+        said.with_context(|| format!("the recorder doesn't say: {what}; but {last:?}"))?
+    }
+
     /// Waits, without letting time go on, until the network knows whether the FP Manager is there.
     pub async fn fp_manager_is_there(&mut self, there: bool) -> anyhow::Result<()> {
         let presence = &mut self.ground.as_mut().context("no ground station")?.presence;
@@ -359,10 +403,19 @@ fn free_port() -> anyhow::Result<u16> {
 
 fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace, logs: &Logs) -> anyhow::Result<Program> {
     let folder = state.join("fp-manager").display().to_string();
-    let mut arguments =
-        vec!["fp-manager", "--vehicle", VEHICLE, "--connect", endpoint, "--state-dir", &folder];
+    Program::start(
+        "onboard-agent",
+        &service_arguments("fp-manager", endpoint, &folder, pace),
+        logs,
+        "fp-manager",
+    )
+}
+
+/// The command line of a service that connects to the gateway.
+fn service_arguments<'a>(service: &'a str, endpoint: &'a str, folder: &'a str, pace: Pace) -> Vec<&'a str> {
+    let mut arguments = vec![service, "--vehicle", VEHICLE, "--connect", endpoint, "--state-dir", folder];
     arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
-    Program::start("onboard-agent", &arguments, logs, "fp-manager")
+    arguments
 }
 
 /// A value of the plan's `number` type.
