@@ -10,6 +10,7 @@ pub mod model;
 pub mod problem;
 pub mod procedure;
 pub mod program;
+pub mod template;
 pub mod uses;
 pub mod variables;
 pub mod walk;

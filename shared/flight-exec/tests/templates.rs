@@ -1,0 +1,70 @@
+//! A plan made from a template can be flown as it is: no errors in the document, none on its path.
+#![cfg(test)]
+
+use aircraft::Profile;
+use flight_exec::{Conditions, compile_and_review};
+use flight_plan::Runway;
+use flight_plan::template::{Outline, Template};
+use geometry::LatLon;
+use proptest::prelude::*;
+use std::sync::Arc;
+use terrain::{Flat, Terrain, Tile, Tiles};
+
+/// An engine failure far out of low flight has no runway: the review says so, and the planner decides.
+const ALLOWED: [&str; 1] = ["glide-out-of-reach"];
+
+fn outline(template: Template, threshold: LatLon, elevation_amsl_m: f64, heading_deg: f64) -> Outline {
+    let runway = Runway {
+        id: "RWY".into(),
+        threshold,
+        elevation_amsl_m,
+        heading_deg,
+        length_m: 600.0,
+        priority: 1,
+        approach_entry: None,
+    };
+    let centre = threshold.destination(heading_deg + 90.0, 3500.0);
+    Outline { template, aircraft: "trainer".into(), runway, centre, radius_m: 800.0, height_m: 150.0 }
+}
+
+fn problems(outline: &Outline, terrain: Arc<dyn Terrain>) -> Vec<String> {
+    let profile = Profile::default();
+    let document = flight_plan::write(&outline.plan(&profile, terrain.as_ref()));
+    let reviewed = compile_and_review(document.as_bytes(), &profile, &terrain, Conditions::default());
+    let found = reviewed.map_or_else(|problems| problems, |program| program.warnings.clone());
+    found.into_iter().filter(|p| !ALLOWED.contains(&p.code)).map(|p| p.to_string()).collect()
+}
+
+#[test]
+fn every_template_can_be_flown_among_hills() {
+    let tile = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/terrain/N36W085.hgt");
+    let mut tiles = Tiles::new();
+    tiles.add(Tile::from_hgt("N36W085.hgt", &std::fs::read(tile).unwrap()).unwrap());
+    let ground: Arc<dyn Terrain> = Arc::new(tiles);
+    for template in Template::ALL {
+        let outline = outline(template, LatLon::new(36.319, -84.173), 349.0, 52.0);
+        assert_eq!(problems(&outline, ground.clone()), Vec::<String>::new(), "{template:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn every_template_can_be_flown_anywhere(
+        which in 0..Template::ALL.len(),
+        (lat_deg, lon_deg) in (5.0..65.0, -170.0..170.0),
+        elevation_amsl_m in 0.0..1500.0,
+        (heading_deg, bearing_deg) in (0.0..360.0, 0.0..360.0),
+        (away_m, radius_m, height_m) in (0.0..6000.0, 300.0..2500.0, 60.0..900.0),
+    ) {
+        let threshold = LatLon { lat_deg, lon_deg };
+        let centre = threshold.destination(bearing_deg, away_m);
+        let outline = Outline {
+            centre,
+            radius_m,
+            height_m,
+            ..outline(Template::ALL[which], threshold, elevation_amsl_m, heading_deg)
+        };
+        prop_assert_eq!(problems(&outline, Arc::new(Flat(elevation_amsl_m))), Vec::<String>::new());
+    }
+}
