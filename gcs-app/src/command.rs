@@ -5,6 +5,7 @@ use crate::panels::PanelId;
 use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
+use flight_plan::template::Outline;
 use flight_plan::{Edit, Id};
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
@@ -25,12 +26,12 @@ pub enum Command {
 /// Commands to the document.
 #[derive(Debug, Clone)]
 pub enum DocumentCommand {
-    /// An empty plan.
-    New,
-    /// Ask for a file and open it.
-    AskOpen,
-    /// Open this file.
-    Open(PathBuf),
+    /// Put something else in the document's place; asks first if that has unsaved changes.
+    Replace(Replacement),
+    /// The same without asking: the changes are lost.
+    Discard(Replacement),
+    /// A new plan made from a template, in the place of an empty one.
+    Create(Box<Outline>),
     /// Save where it came from, asking if it came from nowhere.
     Save,
     /// Ask where to save.
@@ -47,6 +48,19 @@ pub enum DocumentCommand {
     Undo,
     /// Redo it.
     Redo,
+}
+
+/// What takes a document's place.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Replacement {
+    /// An empty plan.
+    New,
+    /// A file that is asked for.
+    AskOpen,
+    /// This file.
+    Open(PathBuf),
+    /// Nothing: the window is closed.
+    Quit,
 }
 
 /// Commands to the view.
@@ -72,8 +86,12 @@ pub enum ViewCommand {
     Scrub(Option<f64>),
     /// Run the preview's cursor, or stop it.
     Play(bool),
+    /// Show a message.
+    Notice(String),
     /// Take a message away.
     DismissNotice,
+    /// The unsaved plan stays.
+    KeepUnsaved,
 }
 
 /// Commands to the links.

@@ -1,6 +1,6 @@
 //! Keys that work wherever the pointer is, as long as nothing is being typed.
 
-use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::command::{DocumentCommand, Queue, Replacement, Selection, ViewCommand};
 use crate::panels::Scene;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use flight_plan::{Edit, edit::Spot};
@@ -14,8 +14,8 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
     let document = [
         (ctrl_shift(Key::S), DocumentCommand::AskSaveAs),
         (ctrl(Key::S), DocumentCommand::Save),
-        (ctrl(Key::O), DocumentCommand::AskOpen),
-        (ctrl(Key::N), DocumentCommand::New),
+        (ctrl(Key::O), DocumentCommand::Replace(Replacement::AskOpen)),
+        (ctrl(Key::N), DocumentCommand::Replace(Replacement::New)),
     ];
     for (shortcut, command) in document {
         if pressed(&shortcut) {

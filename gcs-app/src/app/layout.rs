@@ -2,11 +2,11 @@
 //! floats over it.
 
 use super::{App, Now};
-use crate::command::{DocumentCommand, Queue, ViewCommand};
+use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
 use crate::map::furniture::NARROW;
 use crate::panels::bar::PanelEntry;
-use crate::panels::{self, Scene, bar, decision, flight, push};
+use crate::panels::{self, Scene, bar, decision, flight, push, start, unsaved};
 use crate::theme;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 
@@ -15,6 +15,7 @@ impl App {
         // fields apart, so that the panels borrow the rest
         let Self { document, vehicles, view, analysis, map, panels, dock, .. } = self;
         let vehicle = vehicles.shown();
+        let new_runway = map.new_runway();
         let scene = Scene { document, analysis, vehicle, vehicles, view, now_s: now.window_s, utc: now.utc };
         let entry = |panel: &dyn panels::Panel| PanelEntry {
             id: panel.id(),
@@ -31,9 +32,20 @@ impl App {
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
-            over_map(ui, floor(map, whole), &scene, queue);
+            let floor = floor(map, whole);
+            if start::is_wanted(&scene) {
+                // beside the tools where there is room
+                let tools = if floor.width() < NARROW { 0.0 } else { 44.0 };
+                let clear = Rect::from_min_max(floor.min + egui::vec2(tools, 0.0), floor.max);
+                floating(ui, "new mission", clear, Align2::LEFT_TOP, |ui| {
+                    ui.set_width(start::WIDTH);
+                    start::show(ui, new_runway, &scene, queue);
+                });
+            }
+            over_map(ui, floor, &scene, queue);
         });
         push::show(ui, &scene, queue);
+        unsaved::show(ui, &scene, queue);
         dropped_files(ui, queue);
     }
 }
@@ -98,7 +110,7 @@ fn floating(ui: &Ui, id: &str, map: Rect, side: Align2, show: impl FnOnce(&mut U
 fn dropped_files(ui: &Ui, queue: &mut Queue) {
     let dropped = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
     if let Some(path) = dropped {
-        queue.document(DocumentCommand::Open(path));
+        queue.document(DocumentCommand::Replace(Replacement::Open(path)));
     }
 }
 

@@ -10,7 +10,7 @@ mod window;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
-use crate::command::Queue;
+use crate::command::{Queue, Replacement};
 use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::{FileNews, Files};
@@ -27,7 +27,6 @@ use std::time::Duration;
 use terrain::Terrain;
 
 /// The ground station.
-#[derive(Debug)]
 pub struct App {
     document: Document,
     vehicles: Vehicles,
@@ -39,10 +38,19 @@ pub struct App {
     queue: Queue,
     links: Links,
     worker: Worker,
+    terrain: Arc<dyn Terrain>,
     files: Files,
     /// The vehicle whose plan aboard the document is, and the document's version.
     mirrored: Option<(VehicleName, u64)>,
+    /// The window closes, whatever was not saved.
+    leaving: bool,
     screenshot: Option<Screenshot>,
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App").finish_non_exhaustive()
+    }
 }
 
 /// What is remembered from one run to the next.
@@ -100,9 +108,11 @@ impl App {
             panels,
             queue: Queue::default(),
             links,
-            worker: Worker::spawn(terrain, wake.clone())?,
+            worker: Worker::spawn(terrain.clone(), wake.clone())?,
+            terrain,
             files: Files::new(wake),
             mirrored: None,
+            leaving: false,
             screenshot: None,
         };
         app.map.fit();
@@ -255,6 +265,16 @@ impl App {
         }
     }
 
+    /// A window with unsaved changes stays open until the operator has decided.
+    fn ask_before_closing(&mut self, ctx: &egui::Context) {
+        if self.leaving {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if ctx.input(|i| i.viewport().close_requested()) && self.document.is_dirty() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.view.unsaved = Some(Replacement::Quit);
+        }
+    }
+
     /// The cursor runs thirty times as fast as the flight.
     fn play(&mut self, ctx: &egui::Context) {
         const SPEED: f64 = 30.0;
@@ -273,6 +293,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.drain(ctx);
+        self.ask_before_closing(ctx);
         if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
         }

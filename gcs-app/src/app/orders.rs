@@ -1,12 +1,14 @@
 //! Carrying out commands, one function per owner.
 
 use super::App;
-use crate::command::{Command, DocumentCommand, FlyCommand, LinkCommand, ViewCommand};
+use crate::command::{Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, ViewCommand};
 use crate::document::Document;
 use crate::link::Call;
 use crate::panels::bar::PUSH;
 use crate::state::{Proposal, VehicleName};
+use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
+use flight_plan::template::Outline;
 use usal::contract::{GatewayRequest, Propose};
 
 impl App {
@@ -40,12 +42,9 @@ impl App {
 
     fn handle_file(&mut self, command: DocumentCommand) {
         match command {
-            DocumentCommand::New => {
-                self.document = Document::default();
-                self.view.selection = None;
-            }
-            DocumentCommand::AskOpen => self.files.ask_open(),
-            DocumentCommand::Open(path) => self.files.open(path),
+            DocumentCommand::Replace(with) if self.document.is_dirty() => self.view.unsaved = Some(with),
+            DocumentCommand::Replace(with) | DocumentCommand::Discard(with) => self.replace(with),
+            DocumentCommand::Create(outline) => self.create(*outline),
             DocumentCommand::Save => match self.document.path() {
                 Some(path) => self.save_to(path.to_owned()),
                 None => self.ask_save(),
@@ -57,6 +56,32 @@ impl App {
             DocumentCommand::Redo => self.document.redo(),
             DocumentCommand::Edit(_) | DocumentCommand::DragEdit(_) => {}
         }
+    }
+
+    fn replace(&mut self, with: Replacement) {
+        self.view.unsaved = None;
+        match with {
+            Replacement::New => {
+                self.document = Document::default();
+                self.view.selection = None;
+            }
+            Replacement::AskOpen => self.files.ask_open(),
+            Replacement::Open(path) => self.files.open(path),
+            Replacement::Quit => self.leaving = true,
+        }
+    }
+
+    /// A step that can be undone, like any other.
+    fn create(&mut self, mut outline: Outline) {
+        let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
+        let ground = self.terrain.elevation_m(outline.runway.threshold);
+        if ground.is_none() {
+            let why = "The ground is not known here: the runway is taken to be at sea level. Add elevation tiles, or correct it.";
+            self.view.notice = Some(why.into());
+        }
+        outline.runway.elevation_amsl_m = ground.unwrap_or(0.0).round();
+        self.document.replace(outline.plan(&profile, self.terrain.as_ref()));
+        self.map.fit();
     }
 
     fn save_to(&mut self, path: std::path::PathBuf) {
@@ -103,7 +128,9 @@ impl App {
                     self.view.cursor_s = Some(0.0);
                 }
             }
+            ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::DismissNotice => self.view.notice = None,
+            ViewCommand::KeepUnsaved => self.view.unsaved = None,
         }
     }
 

@@ -15,7 +15,7 @@ pub mod view;
 pub mod zones;
 
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::panels::Scene;
+use crate::panels::{Scene, start};
 use crate::theme;
 use egui::{Role, Ui};
 use flight_plan::Variables;
@@ -26,6 +26,12 @@ use usal::contract::PlanVariables;
 use view::View;
 use walkers::{Map, MapMemory, lat_lon};
 use wire::Convert;
+
+/// What is shown where nothing else asks for a place: where the shipped elevations are.
+const HOME: LatLon = LatLon::new(36.319, -84.173);
+
+/// Zoom level of a map without a plan, as long as it is not fitted to one.
+const EMPTY_ZOOM: f64 = 12.0;
 
 /// What the map remembers from frame to frame.
 #[derive(Debug, Default)]
@@ -41,6 +47,8 @@ pub struct MapState {
     tools: Toolbox,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
+    /// Where a new runway would be, when it was drawn last.
+    runway: Option<LatLon>,
 }
 
 impl MapState {
@@ -56,6 +64,11 @@ impl MapState {
             // 13 is within the map's range
             let _ = self.memory.set_zoom(13.0);
         }
+    }
+
+    /// Where a new runway would be: in the middle of what is free.
+    pub fn new_runway(&self) -> LatLon {
+        self.runway.unwrap_or(HOME)
     }
 
     /// Keeps the aircraft in the middle from now on.
@@ -102,16 +115,16 @@ impl MapState {
             self.fit_now(ui.available_size());
         }
         let here = scene.vehicle.position.as_ref().map(|p| p.value.position);
-        let here = here
-            .or_else(|| scene.document.plan().home().map(|r| r.threshold))
-            .unwrap_or(LatLon::new(36.3, -84.3));
+        let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(HOME);
         let mut memory = std::mem::take(&mut self.memory);
         let followed = memory.detached().is_none();
         Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
             .zoom_with_ctrl(false)
             .double_click_to_zoom(false)
             .show(ui, |ui, response, projector, _| {
-                self.draw(ui, response, &View::of(projector), scene, queue)
+                let view = View::of(projector);
+                self.runway = Some(view.geo(start::runway_on_screen(view.rect)));
+                self.draw(ui, response, &view, scene, queue)
             });
         if followed && scene.view.follow && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
@@ -145,6 +158,7 @@ impl MapState {
         let canvas = Canvas { view, sketch: &self.sketch, scene };
         self.tools.run(ui, response, &canvas, queue, p);
         path::draw_cursor(&painter, view, scene, p);
+        start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);
         furniture::draw(&painter, view, scene, p);
     }
@@ -167,8 +181,12 @@ impl MapState {
     }
 
     fn fit_now(&mut self, size: egui::Vec2) {
-        let Some((centre, zoom)) = View::fit(&self.sketch.places(), size) else { return };
         self.fit = false;
+        let Some((centre, zoom)) = View::fit(&self.sketch.places(), size) else {
+            // nothing to be shown: some kilometres, so that a runway can be placed
+            let _ = self.memory.set_zoom(EMPTY_ZOOM);
+            return;
+        };
         self.memory.center_at(centre);
         // fit keeps within the map's range of zooms
         let _ = self.memory.set_zoom(zoom);

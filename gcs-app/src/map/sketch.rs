@@ -28,7 +28,7 @@ pub enum Handled {
     Centre(Id),
     /// The rim of a scan or orbit; the middle is at [`Circle::centre`].
     Radius(Id),
-    /// A corner of a scan's polygon.
+    /// A corner of a scan's polygon, or a point of a route.
     Corner {
         /// The scan.
         leg: Id,
@@ -121,7 +121,20 @@ impl Sketch {
                 | Pattern::Sector { centre, radius_m, .. }
                 | Pattern::FigureEight { centre, radius_m, .. },
             ) => self.add_circle(leg, centre, radius_m, false, reader),
+            LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => {
+                self.add_route(leg, route, reader)
+            }
             _ => leg.place().into_iter().for_each(|place| self.add_waypoint(leg, place, reader)),
+        }
+    }
+
+    /// Its first point moves all of it, each other point itself.
+    fn add_route(&mut self, leg: &Leg, route: &[Place], reader: &Reader<'_>) {
+        route.first().into_iter().for_each(|place| self.add_waypoint(leg, place, reader));
+        for (corner, place) in route.iter().enumerate().skip(1) {
+            let Place::Position(Value::Constant(at)) = place else { continue };
+            let what = Handled::Corner { leg: leg.id.clone(), hole: None, corner };
+            self.handles.extend(at.is_valid().then_some(Handle { what, at: *at }));
         }
     }
 

@@ -1,7 +1,7 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
 
 use super::{PanelId, Scene};
-use crate::command::{DocumentCommand, FlyCommand, Queue, ViewCommand};
+use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement, ViewCommand};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
 use crate::theme::{self, Palette};
@@ -62,8 +62,8 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
 fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queue) {
     ui.menu_button(RichText::new("Legwork").strong(), |ui| {
         let file: [(&str, &str, DocumentCommand); 5] = [
-            ("New", "Ctrl+N", DocumentCommand::New),
-            ("Open…", "Ctrl+O", DocumentCommand::AskOpen),
+            ("New", "Ctrl+N", DocumentCommand::Replace(Replacement::New)),
+            ("Open…", "Ctrl+O", DocumentCommand::Replace(Replacement::AskOpen)),
             ("Save", "Ctrl+S", DocumentCommand::Save),
             ("Save as…", "", DocumentCommand::AskSaveAs),
             ("Take the plan aboard", "", DocumentCommand::EndGesture),

@@ -15,11 +15,13 @@ pub mod problems;
 pub mod profile;
 pub mod push;
 pub mod services;
+pub mod start;
 pub mod table;
 pub mod timeline;
 pub mod tree;
+pub mod unsaved;
 
-use crate::command::{Queue, Selection};
+use crate::command::{Queue, Replacement, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
 use crate::state::{Aged, Vehicle, Vehicles};
@@ -103,6 +105,8 @@ pub struct ViewState {
     pub cursor_s: Option<f64>,
     /// The cursor runs by itself.
     pub playing: bool,
+    /// What would replace a plan with unsaved changes, until the operator has decided.
+    pub unsaved: Option<Replacement>,
     /// Something the operator should read: a file that can't be opened, and the like.
     pub notice: Option<String>,
 }

@@ -2,6 +2,7 @@
 //! the link that the test plays.
 #![cfg(test)]
 
+mod creating;
 mod dock;
 mod fleet;
 mod flying;

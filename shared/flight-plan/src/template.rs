@@ -18,6 +18,8 @@ use terrain::Terrain;
 const CLIMB_OUT_M: f64 = 80.0;
 /// Above the highest ground on the way, metres.
 const CLEARANCE_M: f64 = 150.0;
+/// Of the final above the ground under it, metres.
+const LOWEST_M: f64 = 60.0;
 /// Descent on the final, metres down per metre forward.
 const GLIDE_SLOPE: f64 = 0.075;
 /// Length of the straight legs of holds, metres.
@@ -196,6 +198,8 @@ struct Frame<'a> {
     gate_m: f64,
     /// Of the mission, metres above the runway.
     height_m: f64,
+    /// Of the highest ground under the final, metres above the runway.
+    hill_m: f64,
 }
 
 impl<'a> Frame<'a> {
@@ -208,7 +212,9 @@ impl<'a> Frame<'a> {
             final_m: (20.0 * turn_radius_m).max(2600.0),
             gate_m: (9.0 * turn_radius_m).max(1200.0),
             height_m: outline.height_m,
+            hill_m: 0.0,
         };
+        frame.hill_m = frame.hill_on_final(terrain);
         let hilltop_m = frame.highest_ground(outline, terrain) - outline.runway.elevation_amsl_m;
         frame.height_m = (outline.height_m.max(hilltop_m + CLEARANCE_M) / 10.0).ceil() * 10.0;
         frame
@@ -229,6 +235,13 @@ impl<'a> Frame<'a> {
         .fold(self.runway.elevation_amsl_m, f64::max)
     }
 
+    /// The highest known ground between the final's beginning and its gate, metres above the runway.
+    fn hill_on_final(&self, terrain: &dyn Terrain) -> f64 {
+        let share = |i: u32| self.gate_m + (self.final_m - self.gate_m) * f64::from(i) / f64::from(GRID);
+        let ground = (0..=GRID).filter_map(|i| terrain.elevation_m(self.at(-share(i), 0.0)));
+        ground.fold(0.0, |hill_m: f64, at_m| hill_m.max(at_m - self.runway.elevation_amsl_m))
+    }
+
     /// So many metres in the runway's direction from its threshold, and to its right.
     fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
         let heading_deg = self.runway.heading_deg;
@@ -241,11 +254,11 @@ impl<'a> Frame<'a> {
     }
 
     fn gate_height_m(&self) -> f64 {
-        (self.gate_m * GLIDE_SLOPE).round()
+        (self.gate_m * GLIDE_SLOPE).max(self.hill_m + LOWEST_M).round()
     }
 
     fn final_height_m(&self) -> f64 {
-        (self.final_m * GLIDE_SLOPE).round()
+        (self.final_m * GLIDE_SLOPE).max(self.hill_m + 2.0 * LOWEST_M).round()
     }
 
     fn fixes(&self) -> Vec<Fix> {
