@@ -34,6 +34,7 @@ impl App {
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
             let floor = floor(map, whole);
             if start::is_wanted(&scene) {
+                let floor = if floor.height() < start::HEIGHT { whole } else { floor };
                 // beside the tools where there is room
                 let tools = if floor.width() < NARROW { 0.0 } else { 44.0 };
                 let clear = Rect::from_min_max(floor.min + egui::vec2(tools, 0.0), floor.max);

@@ -14,8 +14,10 @@ use flight_plan::template::{Outline, Template};
 use geometry::LatLon;
 use std::ops::RangeInclusive;
 
-/// Width of the card, screen points.
+/// Width of the card, and the height that it needs, screen points.
 pub const WIDTH: f32 = 280.0;
+/// See [`WIDTH`].
+pub const HEIGHT: f32 = 470.0;
 
 /// The mission lies so far beside the runway, metres from its nearer edge.
 const ASIDE_M: f64 = 2000.0;

@@ -64,6 +64,13 @@ fn card_fits_the_smallest_window() {
         let rect = window.harness.get_all_by_label(label).next().unwrap().rect();
         assert!(rect.min.y > 42.0 && rect.max.y < 600.0 && rect.max.x < 960.0, "{label}: {rect:?}");
     }
+    // by the pointer: what is covered can't be clicked
+    let at = window.centre("Create");
+    window.harness.hover_at(at);
+    window.harness.drag_at(at);
+    window.harness.drop_at(at);
+    window.steps(3);
+    assert!(stages(&window) > 0);
 }
 
 #[test]
