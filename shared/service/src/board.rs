@@ -157,3 +157,132 @@ impl Slot {
         self.publisher.set_any(now.as_secs_f64(), self.validity_s, value);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::sync::mpsc;
+    use usal::{Document, Raw, Said, Start};
+
+    const MEASURED: Variable<f64> = Variable::new("shower", "measured");
+    const CURRENT: Variable<u64> = Variable::new("shower", "current");
+    const CHANGING: Variable<u64> = Variable::new("shower", "changing");
+    const SPEC: Spec = Spec {
+        name: "shower",
+        about: "shows",
+        says: &[
+            Said::variable(MEASURED, Rate::Measured, 1.0),
+            Said::variable(CURRENT, Rate::Every { ms: 1000 }, 2.0),
+            Said::variable(CHANGING, Rate::Changed { repeated_ms: 1000 }, 2.0),
+            Said::file("drawing"),
+        ],
+    };
+
+    async fn board(simulated: bool) -> (Session, Board) {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
+        drop(listener);
+        let session = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let board = Board::open(&SPEC, simulated, &session).unwrap();
+        (session, board)
+    }
+
+    /// The instants, out of all that are looked at, at which `show` says that it was wanted. Milliseconds.
+    fn shown(board: &mut Board, looks: &[u64], mut show: impl FnMut(&mut Board, u64) -> bool) -> Vec<u64> {
+        let mut look = |ms: u64| {
+            board.begin(Duration::from_millis(ms));
+            let wanted = show(board, ms);
+            board.end();
+            wanted
+        };
+        looks.iter().copied().filter(|ms| look(*ms)).collect()
+    }
+
+    fn current(board: &mut Board) -> bool {
+        let mut wanted = false;
+        board.current(CURRENT, || {
+            wanted = true;
+            7
+        });
+        wanted
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn value_of_now_is_asked_for_when_it_is_due_and_when_something_happened() {
+        let (_session, mut board) = board(false).await;
+        let looks = [0, 1, 999, 1000, 1001, 1999, 2000, 5000, 5999];
+        assert_eq!(shown(&mut board, &looks, |board, _| current(board)), [0, 1000, 2000, 5000]);
+        board.hurry();
+        // the period begins anew with what was shown in a hurry
+        assert_eq!(shown(&mut board, &[5999, 6000, 6998, 6999], |board, _| current(board)), [5999, 6999]);
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn value_that_changes_is_shown_at_each_change_and_repeated() {
+        let (_session, mut board) = board(false).await;
+        let keys = [(0, 'a'), (10, 'a'), (20, 'b'), (30, 'a'), (1029, 'a'), (1030, 'a'), (1040, 'a')];
+        let times = keys.map(|(ms, _)| ms);
+        let wanted = shown(&mut board, &times, |board, ms| {
+            let key = keys.iter().find(|(at, _)| *at == ms).map(|(_, key)| *key);
+            let mut wanted = false;
+            board.changing(CHANGING, key, |_| {
+                wanted = true;
+                ms
+            });
+            wanted
+        });
+        assert_eq!(wanted, [0, 20, 30, 1030]);
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn measured_value_is_published_if_it_is_newer_and_not_too_close() {
+        let (session, mut board) = board(true).await;
+        let (sender, mut published) = mpsc::unbounded_channel();
+        let take = move |raw| {
+            if let Raw::Sample { key, format, payload } = raw
+                && key.name == "measured"
+            {
+                let said = Document { format, size_bytes: payload.len(), bytes: Some(payload) }.to_json();
+                let _ = sender.send((said["time_s"].as_f64(), said["value"].as_f64()));
+            }
+        };
+        let _everything = session.follow_everything(Start::Now, take).unwrap();
+        let mut measure = |ms: u64, value: f64| {
+            board.measured(MEASURED, Some((Duration::from_millis(ms), value)));
+        };
+        // again, too close, older; then the next one
+        for (ms, value) in [(1000, 1.0), (1000, 2.0), (1199, 3.0), (500, 4.0), (1200, 5.0), (1400, 6.0)] {
+            measure(ms, value);
+        }
+        board.measured(MEASURED, None);
+        for expected in [(1.0, 1.0), (1.2, 5.0), (1.4, 6.0)] {
+            let said = tokio::time::timeout(Duration::from_secs(30), published.recv()).await.unwrap();
+            assert_eq!(said, Some((Some(expected.0), Some(expected.1))));
+        }
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn file_is_made_once_for_each_version_and_what_is_undeclared_never() {
+        let (_session, mut board) = board(false).await;
+        let mut made = Vec::new();
+        for version in ["1", "1", "2", "1"] {
+            board.file("drawing", version, || {
+                made.push(version);
+                version.into()
+            });
+        }
+        assert_eq!(made, ["1", "2", "1"]);
+        board.file("secret", "1", || panic!("nobody can fetch it"));
+        board.current(Variable::<u64>::new("shower", "secret"), || panic!("nobody can follow it"));
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn it_is_its_turn_at_its_pace_and_when_something_happened() {
+        let (_session, mut board) = board(false).await;
+        let pace = Duration::from_millis(300);
+        let looks = [0, 299, 300, 301, 900, 1199];
+        assert_eq!(shown(&mut board, &looks, |board, _| board.is_turn(pace)), [0, 300, 900]);
+        board.hurry();
+        assert_eq!(shown(&mut board, &[1199, 1200, 1499], |board, _| board.is_turn(pace)), [1199, 1499]);
+    }
+}

@@ -153,3 +153,40 @@ impl Clock {
         Some(&mut led.conductor)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use usal::Session;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn simulator_that_tells_nonsense_or_begins_anew_never_turns_time_back() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
+        drop(listener);
+        let session = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let mut conductor = Conductor::new(&session).unwrap();
+        let mut clock = Clock::follows(Participant::join(&session, "follower").unwrap());
+        let reader = clock.reader();
+        let told = [(2.0, 2.0), (f64::NAN, 2.0), (-1.0, 2.0), (f64::INFINITY, 2.0), (1.0, 2.0), (2.5, 2.5)];
+        for (told_s, expected_s) in told {
+            conductor.start(told_s);
+            let beat = tokio::time::timeout(Duration::from_secs(30), clock.beat()).await.unwrap();
+            assert_eq!(beat, Some(Duration::from_secs_f64(expected_s)), "{told_s}");
+            assert_eq!(reader.now(), clock.now());
+            clock.acknowledge();
+        }
+        assert!(clock.lead(Duration::from_secs(9)).is_none(), "who follows doesn't lead");
+        assert_eq!(clock.now(), Duration::from_secs_f64(2.5));
+        session.close().await;
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn machines_clock_beats_at_its_pace_and_at_once_first() {
+        let mut clock = Clock::machine();
+        let begun = Instant::now();
+        let first = clock.beat().await.unwrap();
+        let second = clock.beat().await.unwrap();
+        assert!(second >= first + PACE && begun.elapsed() >= PACE, "{first:?} {second:?}");
+    }
+}

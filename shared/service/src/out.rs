@@ -180,3 +180,57 @@ impl<I: Send + 'static, O> Out<I, O> {
         !(self.events.is_empty() && self.questions.is_empty() && self.unasked.is_empty())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Request;
+    use usal::contract::Empty;
+
+    const TOLD: Events<Stamped<u32>> = Events::new("a", "told");
+    const ASK: Invocation<Empty, Empty> = Invocation::new("b", "ask");
+    const NOW: Time = Time::from_millis(2500);
+
+    fn leaves(step: impl FnOnce(&mut Out<(), ()>)) -> bool {
+        let mut out = Out::new(NOW);
+        step(&mut out);
+        out.leaves()
+    }
+
+    #[test]
+    fn adapter_is_told_whether_something_waits_for_it_to_be_done() {
+        assert!(leaves(|out| out.emit(TOLD, 1.0, 7)));
+        assert!(leaves(|out| out.call(ASK, Empty {}, Duration::from_secs(1), drop)));
+        assert!(leaves(|out| out.tell("b".into(), "ask".into(), Empty {}, Duration::from_secs(1))));
+        assert!(!leaves(|out| out.push(())));
+        assert!(!leaves(|out| out.keep("file", vec![])));
+        assert!(!leaves(|out| out.work(|| (), drop)));
+    }
+
+    #[test]
+    fn events_carry_the_time_of_the_step_and_come_in_order() {
+        let mut out = Out::<(), ()>::new(NOW);
+        out.emit(TOLD, 1.0, 7);
+        out.emit(Events::<Stamped<u32>>::new("a", "other"), 1.0, 8);
+        out.emit(TOLD, 1.0, 9);
+        assert_eq!(out.emitted(TOLD), [7, 9]);
+        let first = out.events[0].event.downcast_ref::<Stamped<u32>>();
+        assert_eq!(first, Some(&Stamped { time_s: 2.5, validity_s: 1.0, value: 7 }));
+    }
+
+    #[test]
+    fn first_failure_counts_and_only_some_answers_wait_for_the_disk() {
+        let mut out = Out::<(), ()>::new(NOW);
+        let ((first, _), (second, mut answered)) = (Request::new((), "me"), Request::new((), "me"));
+        out.answer(first.reply, Ok(()));
+        assert!(!out.wait_for_disk);
+        out.answer_when_kept(second.reply, Ok(5));
+        assert!(out.wait_for_disk);
+        assert!(answered.try_recv().is_err(), "nothing is done before the step is over");
+        out.answers.drain(..).for_each(|answer| answer());
+        assert_eq!(answered.try_recv(), Ok(Ok(5)));
+        out.fail(anyhow::anyhow!("first"));
+        out.fail(anyhow::anyhow!("second"));
+        assert_eq!(out.failed.map(|error| error.to_string()).as_deref(), Some("first"));
+    }
+}

@@ -59,3 +59,40 @@ pub(crate) async fn on_thread<T: Send + 'static>(
 ) -> Result<T, String> {
     tokio::task::spawn_blocking(work).await.map_err(|error| error.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn work_that_breaks_off_costs_nobody_elses_result() {
+        let mut tasks = Tasks::default();
+        tasks.wait(async { panic!("for the test") });
+        tasks.wait(async {
+            tokio::task::yield_now().await;
+            5
+        });
+        assert_eq!(tasks.next().await, 5);
+        let failed = on_thread(|| -> u32 { panic!("for the test") }).await;
+        assert!(failed.is_err_and(|why| why.contains("panicked")));
+        assert_eq!(on_thread(|| 6).await, Ok(6));
+    }
+
+    #[tokio::test]
+    async fn time_is_held_while_work_is_under_way_and_since_its_first() {
+        let mut tasks = Tasks::default();
+        assert_eq!(tasks.holds_time_until(), None);
+        tasks.wait(async { 1 });
+        let held = tasks.holds_time_until();
+        assert!(held.is_some_and(|until| until <= Instant::now() + LOCKSTEP_PATIENCE));
+        tasks.wait(async { 2 });
+        assert_eq!(tasks.holds_time_until(), held, "more work doesn't hold it longer");
+        let mut done = [tasks.next().await, tasks.next().await];
+        done.sort_unstable();
+        assert_eq!(done, [1, 2]);
+        // what came of it may lead to more
+        assert_eq!(tasks.holds_time_until(), held);
+        tasks.look();
+        assert_eq!(tasks.holds_time_until(), None);
+    }
+}

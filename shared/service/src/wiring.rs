@@ -197,3 +197,33 @@ impl<I> Ports<I> {
         self.sampled.iter_mut().filter_map(|port| port()).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn port(inputs: impl IntoIterator<Item = char>) -> Port<char> {
+        let mut inputs = inputs.into_iter().collect::<Vec<_>>().into_iter();
+        Box::new(move || inputs.next())
+    }
+
+    #[test]
+    fn flood_at_one_port_keeps_no_other_from_being_heard() {
+        let prompt = vec![port("aaaaaa".chars()), port([]), port("bb".chars()), port("c".chars())];
+        let mut ports = Ports { prompt, sampled: vec![], first: 0 };
+        let heard: String = std::iter::from_fn(|| ports.prompt()).collect();
+        assert_eq!(heard, "abcabaaaa");
+        assert_eq!(ports.prompt(), None);
+    }
+
+    #[test]
+    fn each_variable_is_looked_at_once_a_beat() {
+        let mut ports = Ports {
+            prompt: vec![port("x".chars())],
+            sampled: vec![port("ab".chars()), port([]), port("c".chars())],
+            first: 0,
+        };
+        assert_eq!([ports.sampled(), ports.sampled(), ports.sampled()], [vec!['a', 'c'], vec!['b'], vec![]]);
+        assert_eq!(ports.prompt(), Some('x'), "requests and events are another matter");
+    }
+}

@@ -15,8 +15,10 @@ use std::fmt::Debug;
 use std::sync::Arc;
 use wire::Convert;
 
-/// Rounds with other numbers and texts in every field.
-const ROUNDS: u64 = 100;
+/// Rounds with other numbers and texts in every field; more of them as of other crates' random tests.
+fn rounds() -> u64 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(100)
+}
 
 /// Values that differ from field to field and from round to round (the constants are SplitMix64's).
 struct Source(u64);
@@ -261,7 +263,7 @@ where
     D: Convert<W> + Serialize + Clone + PartialEq + Debug,
     W: Convert<D> + Serialize + Clone + PartialEq + Debug,
 {
-    for round in 0..ROUNDS {
+    for round in 0..rounds() {
         for domain in values(&mut Source(round)) {
             let wire: W = domain.clone().convert();
             assert_eq!(

@@ -97,3 +97,35 @@ fn check<I>(spec: &Spec, wiring: &Wiring<I>) -> anyhow::Result<()> {
     );
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Request;
+    use usal::Said;
+    use usal::contract::Empty;
+    use usal::topics::Invocation;
+
+    const ADD: Invocation<u32, u32> = Invocation::new("adder", "add");
+    const CLEAR: Invocation<Empty, Empty> = Invocation::new("adder", "clear");
+    const SPEC: Spec =
+        Spec { name: "adder", about: "adds", says: &[Said::invocation(ADD), Said::invocation(CLEAR)] };
+
+    enum Input {
+        Add(#[expect(dead_code, reason = "nobody asks here")] Request<u32, u32>),
+        Clear(#[expect(dead_code, reason = "nobody asks here")] Request<Empty, Empty>),
+    }
+
+    #[test]
+    fn what_is_served_is_what_is_declared_in_any_order() {
+        let mut wiring = Wiring::default();
+        wiring.serve(CLEAR, Input::Clear);
+        let error = check(&SPEC, &wiring).unwrap_err().to_string();
+        assert!(error.contains(r#"["add", "clear"]"#) && error.contains(r#"["clear"]"#), "{error}");
+        wiring.serve(ADD, Input::Add);
+        check(&SPEC, &wiring).unwrap();
+        // twice the same: one of them would hear nothing
+        wiring.serve(ADD, Input::Add);
+        assert!(check(&SPEC, &wiring).is_err());
+    }
+}

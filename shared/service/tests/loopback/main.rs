@@ -1,6 +1,8 @@
 //! A small service over loopback, on the machine's clock and on one that the test drives.
 #![cfg(test)]
 
+mod leader;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use service::*;
@@ -248,6 +250,40 @@ async fn everything_is_followed_and_every_answer_told_with_its_caller() {
     assert!(!second.accepted && second.answer.get("code") == Some(&"negative".into()));
     assert_eq!((third.caller, third.accepted, &third.answer["code"]), (None, false, &"anonymous".into()));
     assert_eq!(third.request, serde_json::json!({"addend": 1.0}));
+    net.end().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn who_is_followed_is_asked_for_its_version_once_each_time_it_appears() {
+    let net = Net::open(|config| config).await;
+    let mut versions = net.hub.serve_description("gateway").unwrap();
+    let mut presence = net.client.presence().unwrap();
+    let of_another = || usal::contract::check_version(Some("2")).map(|()| unreachable!("it is another one"));
+    let there = net.hub.announce("gateway").unwrap();
+    let asked = within(versions.recv()).await.unwrap();
+    assert_eq!(asked.from(), Some("adder"));
+    asked.answer(of_another());
+    // a refusal is told, and the service goes on
+    assert!((net.add(2.0).await.unwrap().sum - 2.0).abs() < 1e-9);
+    assert!(versions.try_recv().is_none(), "once is enough");
+    drop(there);
+    // gone and back, as often as it takes to be noticed
+    let again = async {
+        loop {
+            while presence.is_alive("gateway") {
+                presence.changed().await.unwrap();
+            }
+            let there = net.hub.announce("gateway").unwrap();
+            if let Ok(asked) = tokio::time::timeout(Duration::from_millis(500), versions.recv()).await {
+                return (asked.unwrap(), there);
+            }
+            while !presence.is_alive("gateway") {
+                presence.changed().await.unwrap();
+            }
+        }
+    };
+    let (asked, _there) = within(again).await;
+    asked.answer(of_another());
     net.end().await;
 }
 
