@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// What came of it.
 #[derive(Debug)]
-pub enum FileNews {
+pub enum FileEvent {
     /// A file was read.
     Opened {
         /// Which.
@@ -34,8 +34,8 @@ const UNSEEN: Duration = Duration::from_millis(150);
 
 /// Where files come from and go to.
 pub struct Files {
-    outbox: Sender<FileNews>,
-    inbox: Receiver<FileNews>,
+    outbox: Sender<FileEvent>,
+    inbox: Receiver<FileEvent>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
 
@@ -46,14 +46,14 @@ impl std::fmt::Debug for Files {
 }
 
 impl Files {
-    /// `wake` is called when there is news.
+    /// `wake` is called when an event is ready.
     pub fn new(wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (outbox, inbox) = channel();
         Self { outbox, inbox, wake }
     }
 
-    /// The next news, if there are any.
-    pub fn news(&self) -> Option<FileNews> {
+    /// The next event, if there is one.
+    pub fn next_event(&self) -> Option<FileEvent> {
         self.inbox.try_recv().ok()
     }
 
@@ -83,12 +83,12 @@ impl Files {
         self.work(move || Ok(Some(save(path, &text, version))));
     }
 
-    fn work(&self, job: impl FnOnce() -> Result<Option<FileNews>, String> + Send + 'static) {
+    fn work(&self, job: impl FnOnce() -> Result<Option<FileEvent>, String> + Send + 'static) {
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
-            if let Some(news) = job().unwrap_or_else(|why| Some(FileNews::Failed(why))) {
+            if let Some(event) = job().unwrap_or_else(|why| Some(FileEvent::Failed(why))) {
                 // the window may be gone: nobody to tell
-                let _ = outbox.send(news);
+                let _ = outbox.send(event);
                 wake();
             }
         };
@@ -108,7 +108,7 @@ fn seen(dialog: impl FnOnce() -> Option<PathBuf>) -> Result<Option<PathBuf>, Str
     Ok(answer)
 }
 
-fn open(path: &Path) -> FileNews {
+fn open(path: &Path) -> FileEvent {
     let read = std::fs::metadata(path).and_then(|meta| {
         if meta.len() > LARGEST {
             Err(std::io::Error::other("it is larger than 80 MiB"))
@@ -117,16 +117,16 @@ fn open(path: &Path) -> FileNews {
         }
     });
     match read {
-        Ok(bytes) => FileNews::Opened { path: path.to_owned(), bytes },
-        Err(error) => FileNews::Failed(format!("{} can't be opened: {error}", path.display())),
+        Ok(bytes) => FileEvent::Opened { path: path.to_owned(), bytes },
+        Err(error) => FileEvent::Failed(format!("{} can't be opened: {error}", path.display())),
     }
 }
 
-fn save(path: PathBuf, text: &str, version: u64) -> FileNews {
+fn save(path: PathBuf, text: &str, version: u64) -> FileEvent {
     match write_whole(&path, text.as_bytes()) {
-        Ok(()) => FileNews::Saved { path, version },
+        Ok(()) => FileEvent::Saved { path, version },
         Err(error) => {
-            FileNews::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
+            FileEvent::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
         }
     }
 }
@@ -163,12 +163,12 @@ mod tests {
     fn saving_is_all_or_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        assert!(matches!(save(path.clone(), "one", 1), FileNews::Saved { version: 1, .. }));
-        assert!(matches!(save(path.clone(), "two", 2), FileNews::Saved { .. }));
+        assert!(matches!(save(path.clone(), "one", 1), FileEvent::Saved { version: 1, .. }));
+        assert!(matches!(save(path.clone(), "two", 2), FileEvent::Saved { .. }));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
         let nowhere = folder.path().join("missing").join("plan.xml");
-        assert!(matches!(save(nowhere, "x", 3), FileNews::Failed(_)));
-        assert!(matches!(open(&folder.path().join("none.xml")), FileNews::Failed(_)));
+        assert!(matches!(save(nowhere, "x", 3), FileEvent::Failed(_)));
+        assert!(matches!(open(&folder.path().join("none.xml")), FileEvent::Failed(_)));
     }
 }

@@ -78,7 +78,7 @@ async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> any
         tracing::error!(
             "{} died ({}); restarting it in {} ms",
             process.name,
-            told(status),
+            describe(status),
             pause.as_millis()
         );
         tokio::select! {
@@ -123,7 +123,7 @@ async fn ask_to_end(child: &Child) {
 #[cfg(not(unix))]
 async fn ask_to_end(_: &Child) {}
 
-fn told(status: ExitStatus) -> String {
+fn describe(status: ExitStatus) -> String {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
         return format!("signal {signal}");

@@ -82,11 +82,11 @@ impl Program {
     }
 
     /// Writes a line to its standard input.
-    pub fn tell(&mut self, line: &str) -> anyhow::Result<()> {
+    pub fn send_line(&mut self, line: &str) -> anyhow::Result<()> {
         use std::io::Write;
         let input = self.child.stdin.as_mut().context("standard input")?;
-        writeln!(input, "{line}").context("telling")?;
-        input.flush().context("telling")
+        writeln!(input, "{line}").context("writing to standard input")?;
+        input.flush().context("writing to standard input")
     }
 }
 

@@ -185,7 +185,7 @@ async fn plan_update_in_flight_keeps_the_place() {
 async fn engine_out_flies_the_alternate_by_itself() {
     let mut rig = airborne(&[]).await;
     on_leg(&mut rig, "downwind").await;
-    rig.simulator.as_mut().unwrap().tell("fault engine-out").unwrap();
+    rig.simulator.as_mut().unwrap().send_line("fault engine-out").unwrap();
     rig.until("an emergency plan", 60.0, |_, seen| {
         seen.plan.iter().any(|e| matches!(e, PlanEvent::EmergencyStarted { cause: Cause::Engine, .. }))
     })

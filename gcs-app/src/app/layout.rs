@@ -65,11 +65,11 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 /// Smallest map that the commands fit on, screen points.
-const LEAST_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
+const MIN_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
 
 /// Where the decision and the commands float: over the map, or over everything where there is no room on it.
 fn floor(map: Option<Rect>, whole: Rect) -> Rect {
-    map.filter(|m| m.width() >= LEAST_MAP.x && m.height() >= LEAST_MAP.y).unwrap_or(whole)
+    map.filter(|m| m.width() >= MIN_MAP.x && m.height() >= MIN_MAP.y).unwrap_or(whole)
 }
 
 /// The decision above and the commands below; nothing hides them.

@@ -13,7 +13,7 @@ pub use window::{Options, WindowError, has_display, run};
 use crate::command::{Queue, Replacement};
 use crate::dock::Dock;
 use crate::document::Document;
-use crate::files::{FileNews, Files};
+use crate::files::{FileEvent, Files};
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
@@ -179,7 +179,7 @@ impl App {
         // no more than that in a frame: who talks without a break must not stop the drawing
         for _ in 0..=BACKLOG {
             let Some(message) = self.links.message() else { break };
-            self.vehicles.hear(message, now_s);
+            self.vehicles.receive(message, now_s);
         }
         self.adopt_plan_aboard();
         for vehicle in self.vehicles.due_for_plan(now_s) {
@@ -193,8 +193,8 @@ impl App {
             self.analysis = Analysis::default();
         }
         self.worker.ask(Question { document, version, plan: self.document.plan().clone() });
-        while let Some(news) = self.files.news() {
-            self.file_news(news);
+        while let Some(event) = self.files.next_event() {
+            self.file_event(event);
         }
     }
 
@@ -231,23 +231,23 @@ impl App {
         }
     }
 
-    fn file_news(&mut self, news: FileNews) {
-        match news {
-            FileNews::Opened { path, bytes } => {
+    fn file_event(&mut self, event: FileEvent) {
+        match event {
+            FileEvent::Opened { path, bytes } => {
                 self.document = Document::read(&bytes, Some(path));
                 self.view.selection = None;
                 self.view.cursor_s = None;
                 self.view.notice = None;
                 self.map.fit();
             }
-            FileNews::Saved { path, version } if version == self.document.version() => {
+            FileEvent::Saved { path, version } if version == self.document.version() => {
                 self.document.saved_as(path)
             }
-            FileNews::Saved { path, .. } => {
+            FileEvent::Saved { path, .. } => {
                 self.view.notice =
                     Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
             }
-            FileNews::Failed(why) => self.view.notice = Some(why),
+            FileEvent::Failed(why) => self.view.notice = Some(why),
         }
     }
 

@@ -24,7 +24,7 @@ pub trait Surface {
 }
 
 /// How a kind of zone looks, from the bottom up.
-pub struct Look<Pen, Ink> {
+pub struct ZoneStyle<Pen, Ink> {
     /// Inside.
     pub fill: Option<Ink>,
     /// Diagonal lines inside.
@@ -34,14 +34,14 @@ pub struct Look<Pen, Ink> {
 }
 
 /// Draws a zone of these corners; hatching only within so much of the picture.
-pub fn paint<S: Surface>(surface: &mut S, ring: &[Point], look: &Look<S::Pen, S::Ink>, within: Room) {
-    if let Some(ink) = &look.fill {
+pub fn paint<S: Surface>(surface: &mut S, ring: &[Point], style: &ZoneStyle<S::Pen, S::Ink>, within: Room) {
+    if let Some(ink) = &style.fill {
         surface.fill(ring, ink);
     }
-    if let Some(pen) = &look.hatching {
+    if let Some(pen) = &style.hatching {
         hatch(ring, within).into_iter().for_each(|[from, to]| surface.line(from, to, pen));
     }
-    look.outlines.iter().for_each(|pen| surface.outline(ring, pen));
+    style.outlines.iter().for_each(|pen| surface.outline(ring, pen));
 }
 
 /// The corners of a zone; of a circle, points on it. Those of a draft may be no places: they are left out.

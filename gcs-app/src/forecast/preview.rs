@@ -9,7 +9,7 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most points of a forecast: a longer flight is told in coarser steps.
-const MOST_POINTS: f64 = 60_000.0;
+const MAX_POINTS: f64 = 60_000.0;
 
 /// Flies plan after plan ahead of time, in calm air.
 pub struct Forecaster {
@@ -23,7 +23,7 @@ impl Forecaster {
     /// For an aircraft, over a ground.
     pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
         let options = Options::default();
-        let track_every_s = (options.most_s / MOST_POINTS).max(options.track_every_s);
+        let track_every_s = (options.most_s / MAX_POINTS).max(options.track_every_s);
         let options = Options { track_every_s, ..options };
         let rehearsal = Rehearsal::new(profile, terrain.clone(), Wind::default(), options);
         Self { rehearsal, terrain, last: Shared::default() }

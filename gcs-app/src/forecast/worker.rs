@@ -112,9 +112,9 @@ impl Worker {
 
     /// What is known now, if that is more than before.
     pub fn answer(&mut self) -> Option<Analysis> {
-        let mut news = false;
+        let mut changed = false;
         while let Ok(found) = self.answers.try_recv() {
-            news = true;
+            changed = true;
             match found {
                 Found::Analysis(analysis) => self.known = analysis,
                 Found::Hash(version, hash) if version == self.known.version => self.known.hash = hash,
@@ -126,7 +126,7 @@ impl Worker {
                 Found::Hash(..) | Found::Problems(..) => {}
             }
         }
-        news.then(|| self.known.clone())
+        changed.then(|| self.known.clone())
     }
 }
 
@@ -138,7 +138,7 @@ struct Outbox {
 
 impl Outbox {
     /// False: nobody listens any more.
-    fn tell(&self, found: Found) -> bool {
+    fn send(&self, found: Found) -> bool {
         let told = self.found.send(found).is_ok();
         (self.wake)();
         told
@@ -177,7 +177,7 @@ impl Bench {
         while let Some(question) = next.take() {
             let question = inbox.try_iter().last().unwrap_or(question);
             let (analysis, program) = self.analyse(&question);
-            if !outbox.tell(Found::Analysis(analysis)) {
+            if !outbox.send(Found::Analysis(analysis)) {
                 return;
             }
             next = inbox.try_recv().ok();
@@ -185,7 +185,7 @@ impl Bench {
                 let hash = program
                     .as_ref()
                     .map_or_else(|| flight_plan::hash(&question.plan), |p| p.hash().to_string());
-                outbox.tell(Found::Hash(question.version, hash));
+                outbox.send(Found::Hash(question.version, hash));
                 next = match inbox.recv_timeout(REST) {
                     Ok(newer) => Some(newer),
                     Err(RecvTimeoutError::Disconnected) => return,
@@ -249,14 +249,14 @@ fn review_paths(paths: &Receiver<Path>, outbox: &Outbox, terrain: &Arc<dyn Terra
         let Path { version, program } = paths.try_iter().last().unwrap_or(path);
         let (profile, conditions) = (profile_of(&program.plan), Conditions::default());
         let found = review(&program, &profile, terrain, conditions);
-        if !outbox.tell(Found::Problems(version, found.clone())) {
+        if !outbox.send(Found::Problems(version, found.clone())) {
             return;
         }
         let more = review_extremes(&program, &profile, terrain, conditions, &found, &mut |_, _| {
             next = paths.try_recv().ok();
             next.is_none()
         });
-        if !more.is_empty() && !outbox.tell(Found::Problems(version, more)) {
+        if !more.is_empty() && !outbox.send(Found::Problems(version, more)) {
             return;
         }
         next = next.or_else(|| paths.recv().ok());

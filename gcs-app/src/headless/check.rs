@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// Most edits that are described: for each the plan is edited and compared with the old one.
-const MOST_FIXES: usize = 100;
+const MAX_FIXES: usize = 100;
 /// How the progress is shown.
 const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values of variables";
 
@@ -110,7 +110,7 @@ fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]
         .iter()
         .map(|p| {
             remedies += usize::from(p.fix.is_some());
-            let told = p.fix.as_ref().filter(|_| remedies <= MOST_FIXES);
+            let told = p.fix.as_ref().filter(|_| remedies <= MAX_FIXES);
             serde_json::json!({
                 "code": p.code,
                 "severity": p.severity,
@@ -127,7 +127,7 @@ fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]
         "file": file.display().to_string(),
         "good": good,
         "problems": rows,
-        "fixes_left_out": remedies.saturating_sub(MOST_FIXES),
+        "fixes_left_out": remedies.saturating_sub(MAX_FIXES),
         "notes": notes,
     })
 }

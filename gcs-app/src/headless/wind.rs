@@ -4,7 +4,7 @@ use aircraft::Wind;
 use flight_exec::Conditions;
 
 /// Strongest wind that is accepted, m/s.
-const MOST_MPS: f64 = 50.0;
+const MAX_MPS: f64 = 50.0;
 
 /// The wind and the time of a command that flies a plan ahead of time.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
@@ -35,7 +35,7 @@ pub fn parse(text: &str) -> Result<Wind, String> {
     });
     match numbers {
         Some((from_deg, speed_mps))
-            if (0.0..=360.0).contains(&from_deg) && (0.0..=MOST_MPS).contains(&speed_mps) =>
+            if (0.0..=360.0).contains(&from_deg) && (0.0..=MAX_MPS).contains(&speed_mps) =>
         {
             Ok(Wind::from_direction(from_deg, speed_mps))
         }

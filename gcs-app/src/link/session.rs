@@ -51,7 +51,7 @@ pub(super) struct Outlet {
 
 impl Outlet {
     /// Waits for room: answers and events are never lost here.
-    async fn tell(&self, event: LinkEvent) {
+    async fn send(&self, event: LinkEvent) {
         // the window may be gone: nobody to tell
         let _ = self.messages.send(self.message(event)).await;
         (self.wake)();
@@ -62,11 +62,11 @@ impl Outlet {
     }
 
     /// A value; where there is no room for it, it is counted, and the next one is newer anyway.
-    fn value(&self, heard: Telemetry) {
+    fn value(&self, telemetry: Telemetry) {
         if self.is_foreign() {
             return;
         }
-        if self.report_left_out().is_err() || self.try_tell(LinkEvent::Telemetry(heard)).is_err() {
+        if self.report_left_out().is_err() || self.try_send(LinkEvent::Telemetry(telemetry)).is_err() {
             self.left_out.fetch_add(1, Ordering::Relaxed);
         }
         (self.wake)();
@@ -77,12 +77,12 @@ impl Outlet {
         if count == 0 {
             return Ok(());
         }
-        self.try_tell(LinkEvent::Lost(Loss::Values(count))).inspect_err(|()| {
+        self.try_send(LinkEvent::Lost(Loss::Values(count))).inspect_err(|()| {
             self.left_out.fetch_add(count, Ordering::Relaxed);
         })
     }
 
-    fn try_tell(&self, event: LinkEvent) -> Result<(), ()> {
+    fn try_send(&self, event: LinkEvent) -> Result<(), ()> {
         self.messages.try_send(self.message(event)).map_err(drop)
     }
 
@@ -125,7 +125,7 @@ async fn orders(mut endpoint: Endpoint, wake: Wake) {
 
 /// A link from its beginning to its end.
 async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, Call)>, outlet: Outlet) {
-    outlet.tell(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
+    outlet.send(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
     match connect(&endpoint, &outlet).await {
         Ok(mut open) => {
             while let Some((ticket, call)) = questions.recv().await {
@@ -135,14 +135,14 @@ async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, C
             open.tasks.shutdown().await;
         }
         Err(error) => {
-            outlet.tell(LinkEvent::Link(LinkState::Failed(error.to_string()))).await;
+            outlet.send(LinkEvent::Link(LinkState::Failed(error.to_string()))).await;
             while let Some((ticket, _)) = questions.recv().await {
                 let result = Err("there is no link: connect first".to_owned());
-                outlet.tell(LinkEvent::Answer { ticket, result }).await;
+                outlet.send(LinkEvent::Answer { ticket, result }).await;
             }
         }
     }
-    outlet.tell(LinkEvent::Link(LinkState::Off)).await;
+    outlet.send(LinkEvent::Link(LinkState::Off)).await;
 }
 
 async fn connect(endpoint: &str, outlet: &Outlet) -> Result<Open, usal::SessionError> {
@@ -169,7 +169,7 @@ impl Open {
     pub(super) fn follow<T>(
         &mut self,
         variable: Variable<T>,
-        heard: impl Fn(Stamped<T>) -> Telemetry + Send + 'static,
+        telemetry: impl Fn(Stamped<T>) -> Telemetry + Send + 'static,
         outlet: &Outlet,
     ) -> Result<(), usal::SessionError>
     where
@@ -179,7 +179,7 @@ impl Open {
         let outlet = outlet.clone();
         self.tasks.spawn(async move {
             while let Some(received) = subscriber.changed().await {
-                outlet.value(heard(received.stamped.clone()));
+                outlet.value(telemetry(received.stamped.clone()));
             }
         });
         Ok(())
@@ -189,7 +189,7 @@ impl Open {
     pub(super) fn listen<T>(
         &mut self,
         events: Events<Stamped<T>>,
-        heard: impl Fn(Numbered<T>) -> Telemetry + Send + 'static,
+        telemetry: impl Fn(Numbered<T>) -> Telemetry + Send + 'static,
         outlet: &Outlet,
     ) -> Result<(), usal::SessionError>
     where
@@ -203,9 +203,9 @@ impl Open {
                     continue;
                 }
                 outlet
-                    .tell(match occurrence {
+                    .send(match occurrence {
                         Occurrence::Event { sequence, event } => {
-                            LinkEvent::Telemetry(heard(Numbered { sequence, event }))
+                            LinkEvent::Telemetry(telemetry(Numbered { sequence, event }))
                         }
                         Occurrence::Gap { missed } => LinkEvent::Lost(Loss::Events(missed)),
                     })
@@ -224,8 +224,8 @@ impl Open {
             while let Some(alive) = services {
                 let state = link_state(&session, &alive, &endpoint).await;
                 outlet.is_foreign.store(matches!(state, LinkState::Failed(_)), Ordering::Relaxed);
-                outlet.tell(LinkEvent::Services(alive)).await;
-                outlet.tell(LinkEvent::Link(state)).await;
+                outlet.send(LinkEvent::Services(alive)).await;
+                outlet.send(LinkEvent::Link(state)).await;
                 services = presence.changed().await;
             }
         });
@@ -269,7 +269,7 @@ async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) 
         CallError::Refused(refusal) => refusal.reason,
         other => other.to_string(),
     });
-    outlet.tell(LinkEvent::Answer { ticket, result }).await;
+    outlet.send(LinkEvent::Answer { ticket, result }).await;
 }
 
 /// What may have to be looked at first is not answered at once.

@@ -19,7 +19,7 @@ pub struct Layer {
 /// Screen points per metre from which single waypoints are drawn.
 const WAYPOINTS_FROM: f64 = 0.015;
 /// Most waypoints drawn at once.
-const MOST_WAYPOINTS: usize = 3000;
+const MAX_WAYPOINTS: usize = 3000;
 
 impl Layer {
     /// Draws the forecast; where there is none, the plan's places as a draft.
@@ -71,7 +71,7 @@ fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
         .map(|w| (w, view.place(w.position)))
         .filter(|(_, at)| view.is_near(*at));
     let mut last: Option<Pos2> = None;
-    for (waypoint, at) in near.take(MOST_WAYPOINTS) {
+    for (waypoint, at) in near.take(MAX_WAYPOINTS) {
         if last.is_some_and(|l| l.distance(at) < 7.0) {
             continue;
         }

@@ -4,7 +4,7 @@ use super::polyline::{self, Style};
 use super::text;
 use super::view::View;
 use crate::chart::Point;
-use crate::chart::zones::{self as chart, Look, Surface};
+use crate::chart::zones::{self as chart, ZoneStyle, Surface};
 use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
@@ -31,7 +31,7 @@ fn draw_zone(painter: &Painter, view: &View, zone: &Zone, selected: bool, units:
     chart::paint(
         &mut Screen { painter, view },
         &ring,
-        &look(zone.kind, selected, p),
+        &style(zone.kind, selected, p),
         bounds.intersect(view.rect).into(),
     );
     let at = pos2(bounds.center().x, bounds.top() + 4.0);
@@ -43,7 +43,7 @@ fn draw_zone(painter: &Painter, view: &View, zone: &Zone, selected: bool, units:
 /// A line on the map and the colour of its halo.
 type Pen = (Stroke, Color32);
 
-fn look(kind: ZoneKind, selected: bool, p: &Palette) -> Look<Pen, Infallible> {
+fn style(kind: ZoneKind, selected: bool, p: &Palette) -> ZoneStyle<Pen, Infallible> {
     let width = if selected { 2.4 } else { 1.6 };
     let (hatching, outlines) = match kind {
         ZoneKind::KeepOut => {
@@ -55,7 +55,7 @@ fn look(kind: ZoneKind, selected: bool, p: &Palette) -> Look<Pen, Infallible> {
             (None, vec![outer, (Stroke::new(width + 0.6, p.halo), p.contingency)])
         }
     };
-    Look { fill: None, hatching, outlines }
+    ZoneStyle { fill: None, hatching, outlines }
 }
 
 /// The map as what zones are drawn on. Nothing is filled: the ground is to be seen.

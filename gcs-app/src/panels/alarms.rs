@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
 
 fn one(ui: &mut Ui, alarm: &Alarm) {
     let p = theme::of(ui);
-    let (symbol, colour) = look(alarm.severity, p);
+    let (symbol, colour) = style(alarm.severity, p);
     egui::Frame::new()
         .fill(colour.gamma_multiply(0.14))
         .stroke(Stroke::new(1.0, colour.gamma_multiply(0.7)))
@@ -39,7 +39,7 @@ fn one(ui: &mut Ui, alarm: &Alarm) {
 }
 
 /// Symbol and colour of a severity.
-pub fn look(severity: Severity, p: &Palette) -> (&'static str, Color32) {
+pub fn style(severity: Severity, p: &Palette) -> (&'static str, Color32) {
     match severity {
         Severity::Warning => ("⛔", p.warning),
         Severity::Caution => ("⚠", p.caution),

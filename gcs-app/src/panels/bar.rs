@@ -196,14 +196,14 @@ fn badge(ui: &mut Ui, scene: &Scene<'_>) {
     let p = theme::of(ui);
     let (text, standing) = plan_state(scene);
     let hash = scene.analysis.hash_of(scene.document.version()).map(short_hash).unwrap_or_default();
-    let (symbol, colour) = standing_look(standing, p);
+    let (symbol, colour) = standing_style(standing, p);
     let label = RichText::new(format!("{symbol} {text} {hash}")).color(colour);
     let aboard = scene.vehicle.active_hash().map_or_else(|| "no plan".to_owned(), |h| short_hash(&h));
     let revision = scene.vehicle.status.as_ref().map_or(0, |s| s.value.revision);
     ui.label(label).on_hover_text(format!("This document: {hash}\nAboard: {aboard}, revision {revision}"));
 }
 
-fn standing_look(standing: Standing, p: &Palette) -> (&'static str, Color32) {
+fn standing_style(standing: Standing, p: &Palette) -> (&'static str, Color32) {
     match standing {
         Standing::Draft => ("◇", p.text),
         Standing::Proposed => ("◈", p.accent),

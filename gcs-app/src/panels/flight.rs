@@ -26,7 +26,7 @@ impl Panel for Flight {
     }
     /// Once a vehicle was heard.
     fn is_relevant(&self, scene: &Scene<'_>) -> bool {
-        scene.vehicle.heard_s.is_some()
+        scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         pfd::show(ui, scene);

@@ -13,7 +13,7 @@ use egui::{Color32, PopupCloseBehavior, RichText, Ui};
 /// Draws the chip.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
-    let (symbol, state, colour) = look(scene.vehicle, scene.now_s, p);
+    let (symbol, state, colour) = style(scene.vehicle, scene.now_s, p);
     let name = scene.vehicles.shown_name().map_or_else(String::new, |name| format!("{name} · "));
     let text = RichText::new(format!("{symbol} {name}{state}")).color(colour);
     // who clicks into a field wants to type
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 /// Symbol, words and colour of a vehicle's link.
-fn look(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, Color32) {
+fn style(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, Color32) {
     match (&vehicle.link, vehicle.silence_s(now_s)) {
         (LinkState::Off, _) => ("○", "Connect".into(), p.text),
         (LinkState::Failed(_), _) => ("✖", "No link".into(), p.caution),
@@ -65,7 +65,7 @@ fn chooser(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     egui::ScrollArea::vertical().max_height(200.0).id_salt("vehicles").show(ui, |ui| {
         for (name, vehicle) in scene.vehicles.choices() {
-            let (symbol, state, colour) = look(vehicle, scene.now_s, p);
+            let (symbol, state, colour) = style(vehicle, scene.now_s, p);
             let state = if vehicle.link == LinkState::Off { "not connected".into() } else { state };
             let shown = scene.vehicles.shown_name() == Some(name);
             let text = RichText::new(format!("{symbol} {name} · {state}")).color(colour);

@@ -32,7 +32,7 @@ impl Panel for Services {
     }
     /// Once a vehicle was heard.
     fn is_relevant(&self, scene: &Scene<'_>) -> bool {
-        scene.vehicle.heard_s.is_some()
+        scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         ScrollArea::vertical().id_salt("services").auto_shrink(false).show(ui, |ui| {

@@ -5,7 +5,7 @@ use super::labels::Labels;
 use super::style::*;
 use super::view::View;
 use crate::chart::Point;
-use crate::chart::zones::{self as chart, Look, Surface};
+use crate::chart::zones::{self as chart, ZoneStyle, Surface};
 use flight_plan::{Zone, ZoneKind};
 use geometry::LatLon;
 
@@ -34,8 +34,8 @@ pub fn draw(canvas: &mut Canvas, view: &View, labels: &mut Labels, zones: &[Zone
     for zone in zones {
         let points = view.pixels(&chart::outline(zone));
         let fill = (zone.kind == ZoneKind::KeepOut).then_some(KEEP_OUT.faded(34));
-        let look = Look { fill, hatching: None, outlines: vec![pen(zone.kind)] };
-        chart::paint(canvas, &points, &look, within);
+        let style = ZoneStyle { fill, hatching: None, outlines: vec![pen(zone.kind)] };
+        chart::paint(canvas, &points, &style, within);
         labels.at_ring(canvas, &points, chart::name(zone), Type::bold(15.0, ink(zone.kind)).on(paper));
     }
 }

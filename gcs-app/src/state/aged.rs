@@ -12,17 +12,22 @@ pub struct Aged<T> {
     /// Seconds it may be believed.
     pub validity_s: f64,
     /// When it was heard, seconds of the window's clock.
-    pub heard_s: f64,
+    pub received_s: f64,
 }
 
 impl<T> Aged<T> {
     /// Telemetry now.
     pub fn new(stamped: Stamped<T>, now_s: f64) -> Self {
-        Self { value: stamped.value, time_s: stamped.time_s, validity_s: stamped.validity_s, heard_s: now_s }
+        Self {
+            value: stamped.value,
+            time_s: stamped.time_s,
+            validity_s: stamped.validity_s,
+            received_s: now_s,
+        }
     }
     /// Seconds since it was heard.
     pub fn age_s(&self, now_s: f64) -> f64 {
-        (now_s - self.heard_s).max(0.0)
+        (now_s - self.received_s).max(0.0)
     }
     /// No longer to be believed. What says it is valid for no sensible time is never believed.
     pub fn is_expired(&self, now_s: f64) -> bool {

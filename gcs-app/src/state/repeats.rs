@@ -16,7 +16,7 @@ type Key = (u32, u64, u64);
 /// What was heard of one stream of events.
 #[derive(Debug, Default)]
 pub struct Repeats {
-    heard: BTreeSet<Key>,
+    seen: BTreeSet<Key>,
     order: VecDeque<Key>,
     /// Heard over links that are closed: only these can come again.
     earlier: BTreeSet<Key>,
@@ -26,7 +26,7 @@ pub struct Repeats {
 impl Repeats {
     /// What comes from now on may repeat what was heard until now.
     pub fn begin_link(&mut self) {
-        self.earlier.clone_from(&self.heard);
+        self.earlier.clone_from(&self.seen);
     }
 
     /// Notes an event; false if an earlier link brought it already.
@@ -45,14 +45,14 @@ impl Repeats {
     }
 
     fn remember(&mut self, key: Key) {
-        if !self.heard.insert(key) {
+        if !self.seen.insert(key) {
             return;
         }
         self.order.push_back(key);
         if self.order.len() > CAPACITY
             && let Some(oldest) = self.order.pop_front()
         {
-            self.heard.remove(&oldest);
+            self.seen.remove(&oldest);
         }
     }
 }
@@ -71,18 +71,18 @@ mod tests {
     fn what_a_new_link_repeats_is_not_new() {
         let mut repeats = Repeats::default();
         let flight = [(0, 1.0, "take-off"), (1, 9.0, "leg a"), (2, 30.0, "leg b")];
-        let mut hear = |events: &[(u32, f64, &str)], again: bool| -> Vec<bool> {
+        let mut receive = |events: &[(u32, f64, &str)], again: bool| -> Vec<bool> {
             if again {
                 repeats.begin_link();
             }
             events.iter().map(|(n, t, text)| repeats.is_new(*n, *t, text)).collect()
         };
-        assert_eq!(hear(&flight, false), [true; 3]);
-        assert_eq!(hear(&flight, true), [false; 3]);
-        assert_eq!(hear(&[(3, 40.0, "leg c")], false), [true]);
-        assert_eq!(hear(&flight, true), [false; 3], "a third time");
+        assert_eq!(receive(&flight, false), [true; 3]);
+        assert_eq!(receive(&flight, true), [false; 3]);
+        assert_eq!(receive(&[(3, 40.0, "leg c")], false), [true]);
+        assert_eq!(receive(&flight, true), [false; 3], "a third time");
         // another flight of the same vehicle counts from the beginning
-        assert_eq!(hear(&[(0, 1.5, "take-off"), (1, 9.5, "leg a")], true), [true; 2]);
+        assert_eq!(receive(&[(0, 1.5, "take-off"), (1, 9.5, "leg a")], true), [true; 2]);
     }
 
     #[test]
@@ -99,7 +99,7 @@ mod tests {
         }
         repeats.begin_link();
         assert_eq!(
-            (repeats.order.len(), repeats.heard.len(), repeats.earlier.len()),
+            (repeats.order.len(), repeats.seen.len(), repeats.earlier.len()),
             (CAPACITY, CAPACITY, CAPACITY)
         );
     }

@@ -42,7 +42,7 @@ pub struct Vehicle {
     /// Which link that is; older ones are closed, and what still comes from them is not listened to.
     link_id: Option<LinkId>,
     /// When anything was heard of it last, seconds of the window's clock.
-    pub heard_s: Option<f64>,
+    pub received_s: Option<f64>,
     /// Where it is.
     pub position: Option<Aged<Position>>,
     /// Which way up it is.
@@ -114,7 +114,7 @@ macro_rules! remember {
 
 impl Vehicle {
     /// Takes in what a link has to tell of this vehicle.
-    pub(super) fn hear(&mut self, link: LinkId, event: LinkEvent, now_s: f64) {
+    pub(super) fn receive(&mut self, link: LinkId, event: LinkEvent, now_s: f64) {
         if self.link_id.is_some_and(|current| link < current) {
             return;
         }
@@ -124,9 +124,9 @@ impl Vehicle {
         match event {
             LinkEvent::Link(state) => self.link_changed(state, now_s),
             LinkEvent::Services(there) => self.services = there,
-            LinkEvent::Telemetry(heard) => {
-                self.heard_s = Some(now_s);
-                self.take(heard, now_s);
+            LinkEvent::Telemetry(telemetry) => {
+                self.received_s = Some(now_s);
+                self.take(telemetry, now_s);
             }
             LinkEvent::Lost(loss) => self.lost(loss, now_s),
             LinkEvent::Answer { ticket, result } => self.answered(ticket, result, now_s),
@@ -162,8 +162,8 @@ impl Vehicle {
         self.link_id.filter(|_| self.link != LinkState::Off)
     }
 
-    fn take(&mut self, heard: Telemetry, now_s: f64) {
-        match heard {
+    fn take(&mut self, telemetry: Telemetry, now_s: f64) {
+        match telemetry {
             Telemetry::Position(p) => {
                 self.trail.add(p.value.position, p.time_s);
                 remember!(self.position, p, now_s);
@@ -280,7 +280,7 @@ impl Vehicle {
 
     /// Seconds since anything was heard, if ever.
     pub fn silence_s(&self, now_s: f64) -> Option<f64> {
-        self.heard_s.map(|heard| (now_s - heard).max(0.0))
+        self.received_s.map(|received_s| (now_s - received_s).max(0.0))
     }
 
     /// Alarms, the most severe first: the gateway's, and those of the link itself.

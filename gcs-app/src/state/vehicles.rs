@@ -18,10 +18,10 @@ pub struct Vehicles {
 
 impl Vehicles {
     /// Takes a message in; it concerns the vehicle that it names and no other.
-    pub fn hear(&mut self, message: LinkMessage, now_s: f64) {
+    pub fn receive(&mut self, message: LinkMessage, now_s: f64) {
         let LinkMessage { link, vehicle, event } = message;
         self.shown.get_or_insert_with(|| vehicle.clone());
-        self.entry(&vehicle).hear(link, event, now_s);
+        self.entry(&vehicle).receive(link, event, now_s);
     }
 
     /// A link is being opened to a vehicle, which is shown from now on. What is known of it stays.
@@ -40,7 +40,7 @@ impl Vehicles {
     }
 
     fn forget_one(&mut self) {
-        let heard = |v: &Vehicle| v.heard_s.unwrap_or(f64::NEG_INFINITY);
+        let heard = |v: &Vehicle| v.received_s.unwrap_or(f64::NEG_INFINITY);
         let idle = self.by_name.iter().filter(|(name, _)| self.shown.as_ref() != Some(*name));
         let oldest = idle.min_by(|(_, a), (_, b)| {
             a.link.is_wanted().cmp(&b.link.is_wanted()).then(heard(a).total_cmp(&heard(b)))
@@ -80,7 +80,7 @@ impl Vehicles {
     /// Those the operator may choose among, by name: a name that was only mistyped is none of them.
     pub fn choices(&self) -> impl Iterator<Item = (&VehicleName, &Vehicle)> {
         let is_choice = |name: &VehicleName, v: &Vehicle| {
-            v.heard_s.is_some() || v.link.is_wanted() || self.shown.as_ref() == Some(name)
+            v.received_s.is_some() || v.link.is_wanted() || self.shown.as_ref() == Some(name)
         };
         self.by_name.iter().filter(move |(name, vehicle)| is_choice(name, vehicle))
     }

@@ -56,8 +56,8 @@ fn fly(window: &mut Window) {
     value.plan = Some(window.app().analysis().hash.clone().into());
     value.place = Some(place("circuit", "side2"));
     value.emergency_in_force = Some("return".into());
-    window.hear_position(false);
-    window.hear_status(value);
+    window.receive_position(false);
+    window.receive_status(value);
     window.steps(3);
 }
 

@@ -14,13 +14,13 @@ const ONE: LinkId = LinkId(1);
 const TWO: LinkId = LinkId(2);
 
 fn connected(window: &mut Window, vehicle: &str, link: LinkId, altitude_m: f64) {
-    window.tell_of(vehicle, link, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    window.send_of(vehicle, link, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
     for i in 0..20 {
-        window.tell_of(vehicle, link, LinkEvent::Telemetry(position(f64::from(i), altitude_m, false)));
+        window.send_of(vehicle, link, LinkEvent::Telemetry(position(f64::from(i), altitude_m, false)));
     }
     let value = flight_exec::Status { plan: Some("0badc0de".into()), ..status(Phase::Flying) };
     let stamped = Stamped { time_s: 1.0, validity_s: 2.0, value };
-    window.tell_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
+    window.send_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
 }
 
 /// Two vehicles in flight; the second one was connected by hand and is shown.
@@ -30,7 +30,7 @@ fn two() -> Window {
     window.click("○ Connect");
     window.click("Connect");
     connected(&mut window, "uav1", ONE, 500.0);
-    window.tell_of("uav1", ONE, LinkEvent::Telemetry(plan_event(7, 7.0)));
+    window.send_of("uav1", ONE, LinkEvent::Telemetry(plan_event(7, 7.0)));
     connect_by_form(&mut window, "uav2");
     window
 }
@@ -69,12 +69,12 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
     let mut window = two();
     assert!(window.shows("uav2 · Looking for it"));
     let vehicle = window.app().vehicle();
-    assert!(vehicle.trail.points().is_empty() && vehicle.status.is_none() && vehicle.heard_s.is_none());
+    assert!(vehicle.trail.points().is_empty() && vehicle.status.is_none() && vehicle.received_s.is_none());
     for of_the_first in ["⏸ Hold", "Airspeed", "keeps its old pattern"] {
         assert!(!window.shows(of_the_first), "{of_the_first}");
     }
     // the first is still heard, and still not shown
-    window.tell_of("uav1", ONE, LinkEvent::Telemetry(position(30.0, 500.0, false)));
+    window.send_of("uav1", ONE, LinkEvent::Telemetry(position(30.0, 500.0, false)));
     assert!(window.app().vehicle().position.is_none());
     connected(&mut window, "uav2", TWO, 900.0);
     assert_eq!(window.app().vehicle().position.as_ref().unwrap().value.altitude_amsl_m, 900.0);
@@ -82,12 +82,12 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
 }
 
 /// The vehicle tells which plan is aboard, is asked for it, and gives it.
-fn tells_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) {
+fn reports_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) {
     let plan = flight_plan::read(SQUARE.replace("Square circuit", name).as_bytes()).plan;
     let hash = Arc::<str>::from(flight_plan::hash(&plan));
     let value = flight_exec::Status { plan: Some(hash.clone()), ..status(Phase::Flying) };
     let stamped = Stamped { time_s: 2.0, validity_s: 2.0, value };
-    window.tell_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
+    window.send_of(vehicle, link, LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped))));
     window.steps(2);
     let asked = |order: Order| match order {
         Order::Call { link: to, ticket, call: Call::PlanAboard } if to == link => Some(ticket),
@@ -95,7 +95,7 @@ fn tells_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) 
     };
     let ticket = orders(window).into_iter().find_map(asked).unwrap();
     let aboard = ActivePlan { hash, plan: Arc::new(plan) };
-    window.tell_of(vehicle, link, LinkEvent::Answer { ticket, result: Ok(Reply::Plan(Some(aboard))) });
+    window.send_of(vehicle, link, LinkEvent::Answer { ticket, result: Ok(Reply::Plan(Some(aboard))) });
     window.steps(2);
 }
 
@@ -106,7 +106,7 @@ fn plan_aboard_one_vehicle_does_not_stay_under_another() {
     window.click("○ Connect");
     window.click("Connect");
     connected(&mut window, "uav1", ONE, 500.0);
-    tells_its_plan(&mut window, "uav1", ONE, "Plan of one");
+    reports_its_plan(&mut window, "uav1", ONE, "Plan of one");
     assert_eq!(window.app().document().plan().name, "Plan of one");
     window.until_analysed();
     assert!(!window.app().analysis().forecast.points.is_empty());
@@ -116,7 +116,7 @@ fn plan_aboard_one_vehicle_does_not_stay_under_another() {
     window.until_analysed();
     assert!(window.app().analysis().forecast.points.is_empty(), "its path is drawn again");
     connected(&mut window, "uav2", TWO, 900.0);
-    tells_its_plan(&mut window, "uav2", TWO, "Plan of two");
+    reports_its_plan(&mut window, "uav2", TWO, "Plan of two");
     assert_eq!(window.app().document().plan().name, "Plan of two");
 }
 
@@ -127,7 +127,7 @@ fn services_are_shown_with_what_they_say_and_only_under_their_vehicle() {
     tab(&mut window, "Services");
     assert!(window.shows("○ storage · not there"));
     let there = ["gateway", "storage", "my-camera"].map(str::to_owned);
-    window.tell_of("uav2", TWO, LinkEvent::Services(Arc::new(there.into())));
+    window.send_of("uav2", TWO, LinkEvent::Services(Arc::new(there.into())));
     let recording = |failure: Option<&str>| {
         let failure = failure.map(str::to_owned);
         let file = failure.is_none().then(|| "uav2-1.mcap".to_owned());
@@ -135,10 +135,10 @@ fn services_are_shown_with_what_they_say_and_only_under_their_vehicle() {
             Recording { file, file_bytes: 5 << 20, messages: 70, missed: 3, failure, longest_sync_ms: 1 };
         LinkEvent::Telemetry(Telemetry::Recording(Stamped { time_s: 1.0, validity_s: 3.0, value }))
     };
-    window.tell_of("uav2", TWO, recording(None));
+    window.send_of("uav2", TWO, recording(None));
     let rows = Stamped { time_s: 1.0, validity_s: 3.0, value: vec![("revision".into(), "7".into())] };
     let plan = PlainValue { service: "fp-manager", name: "plan", rows };
-    window.tell_of("uav2", TWO, LinkEvent::Telemetry(Telemetry::Plain(plan)));
+    window.send_of("uav2", TWO, LinkEvent::Telemetry(Telemetry::Plain(plan)));
     let shown = [
         "● storage · running",
         "● my-camera",
@@ -149,7 +149,7 @@ fn services_are_shown_with_what_they_say_and_only_under_their_vehicle() {
     for text in shown {
         assert!(window.shows(text), "{text}");
     }
-    window.tell_of("uav2", TWO, recording(Some("no space left")));
+    window.send_of("uav2", TWO, recording(Some("no space left")));
     assert!(window.shows("⚠ Services") && window.shows("⚠ Not recording: no space left"));
     tab(&mut window, "Log");
     assert!(window.shows("the flight is not recorded: no space left"));
@@ -203,9 +203,9 @@ fn an_answer_reaches_the_vehicle_that_was_asked() {
     window.click("⏸ Hold");
     let Some(Order::Call { ticket, .. }) = orders(&mut window).pop() else { panic!("nothing was asked") };
     // an answer of the other vehicle with the same number
-    window.tell_of("uav1", ONE, LinkEvent::Answer { ticket, result: Ok(gcs_app::link::Reply::Done) });
+    window.send_of("uav1", ONE, LinkEvent::Answer { ticket, result: Ok(gcs_app::link::Reply::Done) });
     assert_eq!(window.app().vehicle().requests.last().unwrap().outcome, Outcome::Pending);
-    window.tell_of("uav2", TWO, LinkEvent::Answer { ticket, result: Err("not now".into()) });
+    window.send_of("uav2", TWO, LinkEvent::Answer { ticket, result: Err("not now".into()) });
     assert!(window.shows("Hold: refused, not now"));
 }
 
@@ -217,15 +217,15 @@ fn disconnecting_keeps_what_is_known_and_says_that_it_is_off() {
     open_chip(&mut window);
     window.click("Disconnect");
     assert_eq!(orders(&mut window), [Order::Disconnect { link: TWO }]);
-    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
+    window.send_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
     assert!(window.shows("○ uav2 · Connect"));
     assert_eq!(window.app().vehicle().trail.points().len(), 20);
     // and again to the same vehicle
     connect_by_form(&mut window, "uav2");
     assert_eq!(window.app().vehicle().trail.points().len(), 20);
     let three = LinkId(3);
-    window.tell_of("uav2", three, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
-    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
+    window.send_of("uav2", three, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    window.send_of("uav2", TWO, LinkEvent::Link(LinkState::Off));
     assert!(window.shows("● uav2 · Link"), "what the closed link still says is not listened to");
 }
 
@@ -235,17 +235,17 @@ fn lost_events_are_counted_and_shown() {
     window.until_analysed();
     window.connect();
     assert!(!window.shows("lost"));
-    window.tell(LinkEvent::Lost(Loss::Events(11)));
-    window.tell(LinkEvent::Lost(Loss::Events(1)));
+    window.send(LinkEvent::Lost(Loss::Events(11)));
+    window.send(LinkEvent::Lost(Loss::Events(1)));
     assert!(window.shows("⚠ 12 lost"));
     let log = &window.app().vehicle().log;
     assert_eq!(log.from_newest(0).unwrap().text, "1 event was lost");
     assert_eq!(log.from_newest(1).unwrap().text, "11 events were lost");
-    window.tell(LinkEvent::Lost(Loss::Values(300)));
+    window.send(LinkEvent::Lost(Loss::Values(300)));
     assert!(window.shows("⚠ 12 lost"), "values that were left out are no events");
     assert_eq!(window.app().vehicle().losses.values, 300);
     // another vehicle lost nothing
-    window.tell_of("uav2", TWO, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+    window.send_of("uav2", TWO, LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
     assert_eq!(window.app().vehicles().get(&"uav2".into()).unwrap().losses.events, 0);
 }
 

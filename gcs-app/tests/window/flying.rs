@@ -43,8 +43,8 @@ fn flying() -> (Window, flight_exec::Status) {
     let mut value = status(Phase::Flying);
     value.plan = Some(hash.into());
     value.place = Some(place("circuit", "side2"));
-    window.hear_position(false);
-    window.hear_status(value.clone());
+    window.receive_position(false);
+    window.receive_status(value.clone());
     // the window reads the plan aboard; this vehicle does not tell it
     while window.asked().is_some() {}
     (window, value)
@@ -60,7 +60,7 @@ fn connecting_asks_the_link_and_shows_what_came_of_it() {
     let order = window.far.orders.try_recv().unwrap();
     let (link, endpoint) = (LinkId(1), "tcp/127.0.0.1:7447".into());
     assert_eq!(order, Order::Connect { link, endpoint, vehicle: "uav1".into() });
-    window.tell(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
+    window.send(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
     assert!(window.shows("No link"));
     window.connect();
     assert!(window.shows("Link 0."));
@@ -87,7 +87,7 @@ fn push_shows_the_difference_and_commits_by_hash() {
     assert!(window.shows("Commit plan: accepted"));
     let mut value = status(Phase::Idle);
     value.plan = Some(hash.into());
-    window.hear_status(value);
+    window.receive_status(value);
     assert!(window.shows("aboard"));
     assert!(!window.is_enabled("Push"), "there is nothing to push");
 }
@@ -145,7 +145,7 @@ fn taking_off_needs_a_held_button() {
     let (mut window, hash) = connected();
     let mut value = status(Phase::Idle);
     value.plan = Some(hash.into());
-    window.hear_status(value);
+    window.receive_status(value);
     while window.asked().is_some() {}
     window.click("Start and take off (hold)");
     window.hold("Start and take off (hold)", 30);
@@ -159,7 +159,7 @@ fn taking_off_needs_a_held_button() {
 fn an_emergency_needs_a_held_button_and_is_named_by_its_effect() {
     let (mut window, mut value) = flying();
     value.emergency_in_force = Some("return".into());
-    window.hear_status(value);
+    window.receive_status(value);
     while window.asked().is_some() {}
     window.hold("Emergency: fly return (hold)", 20);
     assert!(window.asked().is_none());
@@ -175,7 +175,7 @@ fn an_emergency_needs_a_held_button_and_is_named_by_its_effect() {
 fn decisions_by_button_and_by_key() {
     let (mut window, mut value) = flying();
     value.decision = Some(decision(Some("again")));
-    window.hear_status(value);
+    window.receive_status(value);
     assert!(window.shows("Decide at ask") && window.shows("36 s"));
     window.click("2  Close look");
     let decide =
@@ -193,14 +193,14 @@ fn decisions_by_button_and_by_key() {
 fn without_a_default_the_card_says_that_the_aircraft_will_hold() {
     let (mut window, mut value) = flying();
     value.decision = Some(decision(None));
-    window.hear_status(value);
+    window.receive_status(value);
     assert!(window.shows("holds there and asks again"));
 }
 
 #[test]
 fn values_that_expire_look_expired() {
     let (mut window, _) = flying();
-    window.hear_attitude();
+    window.receive_attitude();
     assert!(window.shows("Airspeed") && !window.shows(" old"));
     window.steps(60 * 3);
     assert!(window.shows(" old"));
@@ -216,7 +216,7 @@ fn a_lost_link_is_a_caution_and_then_a_warning() {
     assert!(window.shows("⚠ LINK SILENT") && window.shows("Silent for"));
     window.steps(60 * 7);
     assert!(window.shows("⛔ LINK SILENT"));
-    window.hear_position(false);
+    window.receive_position(false);
     assert!(!window.shows("LINK SILENT"), "it clears itself");
 }
 
@@ -230,11 +230,12 @@ fn alarms_are_listed_the_worst_first_and_go_away() {
         advice: format!("do something about {id}"),
         cause: None,
     };
-    window.hear_gateway(vec![alarm("energy-low", Severity::Caution), alarm("gps-lost", Severity::Warning)]);
+    window
+        .receive_gateway(vec![alarm("energy-low", Severity::Caution), alarm("gps-lost", Severity::Warning)]);
     let (warning, caution) = (window.centre("⛔ GPS LOST"), window.centre("⚠ ENERGY LOW"));
     assert!(warning.y < caution.y);
     assert!(window.shows("do something about gps-lost"));
-    window.hear_gateway(Vec::new());
+    window.receive_gateway(Vec::new());
     assert!(!window.shows("GPS LOST") && window.shows("No alarms"));
 }
 
@@ -244,7 +245,7 @@ fn iteration_and_active_leg_are_shown() {
     let mut at = place("circuit", "side2");
     at.iterations = vec![IterationPlace { leg: "patrol".into(), iteration: 3, of: Some(20), reverse: true }];
     value.place = Some(at);
-    window.hear_status(value);
+    window.receive_status(value);
     assert!(window.shows("patrol 3/20"));
     assert!(window.shows("circuit ▸ side2"));
     window.click("TF side3");

@@ -11,9 +11,9 @@ use usal::contract::Stamped;
 #[derive(Debug, Clone, Copy)]
 enum Step {
     Connect,
-    Hear(Heard),
+    Receive(Sent),
     /// Over a link that was replaced.
-    HearLate(Heard),
+    ReceiveLate(Sent),
     Close,
     Ask,
     Answer(u64, bool),
@@ -21,7 +21,7 @@ enum Step {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Heard {
+enum Sent {
     Position(u16),
     Status(u8),
     Event(u8),
@@ -29,21 +29,21 @@ enum Heard {
     Connected,
 }
 
-fn heard() -> impl Strategy<Value = Heard> {
+fn sent() -> impl Strategy<Value = Sent> {
     prop_oneof![
-        any::<u16>().prop_map(Heard::Position),
-        any::<u8>().prop_map(Heard::Status),
-        any::<u8>().prop_map(Heard::Event),
-        any::<u8>().prop_map(Heard::Lost),
-        Just(Heard::Connected),
+        any::<u16>().prop_map(Sent::Position),
+        any::<u8>().prop_map(Sent::Status),
+        any::<u8>().prop_map(Sent::Event),
+        any::<u8>().prop_map(Sent::Lost),
+        Just(Sent::Connected),
     ]
 }
 
 fn step() -> impl Strategy<Value = Step> {
     prop_oneof![
         2 => Just(Step::Connect),
-        8 => heard().prop_map(Step::Hear),
-        2 => heard().prop_map(Step::HearLate),
+        8 => sent().prop_map(Step::Receive),
+        2 => sent().prop_map(Step::ReceiveLate),
         1 => Just(Step::Close),
         2 => Just(Step::Ask),
         2 => (1..6u64, any::<bool>()).prop_map(|(ticket, good)| Step::Answer(ticket, good)),
@@ -51,18 +51,18 @@ fn step() -> impl Strategy<Value = Step> {
     ]
 }
 
-fn event(heard: Heard) -> LinkEvent {
+fn event(sent: Sent) -> LinkEvent {
     let number = |n: u8| f64::from(n);
-    match heard {
-        Heard::Position(n) => LinkEvent::Telemetry(position(f64::from(n), f64::from(n), n % 2 == 0)),
-        Heard::Status(n) => {
+    match sent {
+        Sent::Position(n) => LinkEvent::Telemetry(position(f64::from(n), f64::from(n), n % 2 == 0)),
+        Sent::Status(n) => {
             let value = flight_exec::Status { revision: n.into(), ..status(Phase::Flying) };
             let stamped = Stamped { time_s: number(n), validity_s: 2.0, value };
             LinkEvent::Telemetry(Telemetry::Status(Box::new(stamped)))
         }
-        Heard::Event(n) => LinkEvent::Telemetry(plan_event(n.into(), number(n))),
-        Heard::Lost(n) => LinkEvent::Lost(Loss::Events(n.into())),
-        Heard::Connected => LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())),
+        Sent::Event(n) => LinkEvent::Telemetry(plan_event(n.into(), number(n))),
+        Sent::Lost(n) => LinkEvent::Lost(Loss::Events(n.into())),
+        Sent::Connected => LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())),
     }
 }
 
@@ -80,8 +80,8 @@ struct Store {
 }
 
 impl Store {
-    fn tell(&mut self, vehicle: &VehicleName, link: LinkId, event: LinkEvent, now_s: f64) {
-        self.vehicles.hear(LinkMessage { link, vehicle: vehicle.clone(), event }, now_s);
+    fn send(&mut self, vehicle: &VehicleName, link: LinkId, event: LinkEvent, now_s: f64) {
+        self.vehicles.receive(LinkMessage { link, vehicle: vehicle.clone(), event }, now_s);
     }
 
     /// `number` is that of the step: links are numbered by it, so that a vehicle alone has the same ones.
@@ -94,13 +94,13 @@ impl Store {
                 links.push(LinkId(number));
                 self.vehicles.open(name, LinkId(number), "tcp/127.0.0.1:7447", now_s);
             }
-            (Step::Hear(what), Some(link)) => self.tell(name, link, event(what), now_s),
-            (Step::HearLate(what), _) => {
+            (Step::Receive(what), Some(link)) => self.send(name, link, event(what), now_s),
+            (Step::ReceiveLate(what), _) => {
                 if let Some(link) = before {
-                    self.tell(name, link, event(what), now_s);
+                    self.send(name, link, event(what), now_s);
                 }
             }
-            (Step::Close, Some(link)) => self.tell(name, link, LinkEvent::Link(LinkState::Off), now_s),
+            (Step::Close, Some(link)) => self.send(name, link, LinkEvent::Link(LinkState::Off), now_s),
             (Step::Ask, _) => {
                 if let Some(vehicle) = self.vehicles.get_mut(name) {
                     vehicle.requests.open("Hold", now_s);
@@ -108,7 +108,7 @@ impl Store {
             }
             (Step::Answer(ticket, good), Some(link)) => {
                 let result = if good { Ok(Reply::Done) } else { Err("no".to_owned()) };
-                self.tell(name, link, LinkEvent::Answer { ticket: Ticket(ticket), result }, now_s);
+                self.send(name, link, LinkEvent::Answer { ticket: Ticket(ticket), result }, now_s);
             }
             (Step::Show, _) => self.vehicles.show(name),
             _ => {}
@@ -148,15 +148,15 @@ fn a_new_link_to_the_same_vehicle_keeps_its_history_and_repeats_no_event() {
     let history: Vec<u8> = (1..=5).collect();
     store.take(&name, Step::Connect, 1);
     for n in &history {
-        store.take(&name, Step::Hear(Heard::Event(*n)), 2);
-        store.take(&name, Step::Hear(Heard::Position((*n).into())), 2);
+        store.take(&name, Step::Receive(Sent::Event(*n)), 2);
+        store.take(&name, Step::Receive(Sent::Position((*n).into())), 2);
     }
     let before = log(&store.vehicles);
     assert_eq!(before.iter().filter(|l| l.contains("keeps its old pattern")).count(), 5);
     store.take(&name, Step::Connect, 3);
     // the vehicle tells what it remembers, and one event more
     for n in history.iter().chain(&[6]) {
-        store.take(&name, Step::Hear(Heard::Event(*n)), 4);
+        store.take(&name, Step::Receive(Sent::Event(*n)), 4);
     }
     let after = log(&store.vehicles);
     assert_eq!(after.len(), before.len() + 1, "{after:?}");
@@ -181,10 +181,10 @@ fn a_stranger_s_flood_of_names_is_bounded_and_keeps_the_vehicle_that_is_shown() 
     let mut store = Store::default();
     let shown = VehicleName::from("uav1");
     store.take(&shown, Step::Connect, 1);
-    store.take(&shown, Step::Hear(Heard::Position(1)), 2);
+    store.take(&shown, Step::Receive(Sent::Position(1)), 2);
     for i in 0..1000 {
         let name = format!("stranger {i}");
-        store.tell(&name.as_str().into(), LinkId(9), event(Heard::Position(1)), 3.0);
+        store.send(&name.as_str().into(), LinkId(9), event(Sent::Position(1)), 3.0);
     }
     assert!(store.vehicles.len() <= 256, "{}", store.vehicles.len());
     assert_eq!(store.vehicles.shown_name(), Some(&shown));

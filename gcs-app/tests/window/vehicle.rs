@@ -67,35 +67,35 @@ pub fn position(time_s: f64, altitude_amsl_m: f64, on_ground: bool) -> Telemetry
 
 impl Window {
     /// Of the vehicle that most tests have alone, over its first link.
-    pub fn tell(&mut self, event: LinkEvent) {
-        self.tell_of("uav1", LinkId(1), event);
+    pub fn send(&mut self, event: LinkEvent) {
+        self.send_of("uav1", LinkId(1), event);
     }
 
-    pub fn tell_of(&mut self, vehicle: &str, link: LinkId, event: LinkEvent) {
+    pub fn send_of(&mut self, vehicle: &str, link: LinkId, event: LinkEvent) {
         self.far.messages.try_send(LinkMessage { link, vehicle: vehicle.into(), event }).unwrap();
         self.steps(2);
     }
 
-    pub fn hear(&mut self, heard: Telemetry) {
-        self.tell(LinkEvent::Telemetry(heard));
+    pub fn receive(&mut self, telemetry: Telemetry) {
+        self.send(LinkEvent::Telemetry(telemetry));
     }
 
-    pub fn hear_status(&mut self, value: Status) {
-        self.hear(Telemetry::Status(Box::new(Stamped { time_s: 1.0, validity_s: 2.0, value })));
+    pub fn receive_status(&mut self, value: Status) {
+        self.receive(Telemetry::Status(Box::new(Stamped { time_s: 1.0, validity_s: 2.0, value })));
     }
 
     /// Connected to a vehicle that stands on the runway.
     pub fn connect(&mut self) {
-        self.tell(LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
-        self.hear_position(true);
-        self.hear_status(status(Phase::Idle));
+        self.send(LinkEvent::Link(LinkState::Connected("tcp/127.0.0.1:7447".into())));
+        self.receive_position(true);
+        self.receive_status(status(Phase::Idle));
     }
 
-    pub fn hear_position(&mut self, on_ground: bool) {
-        self.hear(position(1.0, 500.0, on_ground));
+    pub fn receive_position(&mut self, on_ground: bool) {
+        self.receive(position(1.0, 500.0, on_ground));
     }
 
-    pub fn hear_attitude(&mut self) {
+    pub fn receive_attitude(&mut self) {
         let value = Attitude {
             roll_deg: 20.0,
             pitch_deg: 4.0,
@@ -104,10 +104,10 @@ impl Window {
             pitch_rate_dps: 0.0,
             yaw_rate_dps: 0.0,
         };
-        self.hear(Telemetry::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.receive(Telemetry::Attitude(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
-    pub fn hear_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
+    pub fn receive_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
         let value = GatewayStatus {
             state: GatewayState::Nav,
             cause: "waypoints".into(),
@@ -118,7 +118,7 @@ impl Window {
             safe_return_in_s: None,
             alarms,
         };
-        self.hear(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
     /// The next question that was asked, if there is one.
@@ -131,6 +131,6 @@ impl Window {
     }
 
     pub fn answer(&mut self, ticket: Ticket, result: Result<Reply, String>) {
-        self.tell(LinkEvent::Answer { ticket, result });
+        self.send(LinkEvent::Answer { ticket, result });
     }
 }

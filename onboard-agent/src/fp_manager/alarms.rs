@@ -54,7 +54,7 @@ impl Alarms {
     }
 
     /// The next list of the gateway's alarms has to be looked at.
-    pub fn look_again(&mut self) {
+    pub fn read_again(&mut self) {
         self.unread = true;
     }
 
@@ -110,7 +110,7 @@ mod tests {
 
     /// CommandReview at a list and answers what it asks for.
     fn answered(alarms: &mut Alarms, list: &[Alarm]) -> Vec<Cause> {
-        alarms.look_again();
+        alarms.read_again();
         let calls = alarms.listed(list);
         calls.iter().for_each(|call| alarms.answer(call.clone()));
         calls.into_iter().map(|call| call.cause).collect()
@@ -130,7 +130,7 @@ mod tests {
         let list = [warning("energy-low", Cause::Energy)];
         let mut alarms = Alarms::default();
         for _ in 0..2 {
-            alarms.look_again();
+            alarms.read_again();
             assert_eq!(alarms.listed(&list).len(), 1);
         }
         assert_eq!(answered(&mut alarms, &list), [Cause::Energy]);

@@ -7,7 +7,7 @@ use flight_exec::Event;
 use flight_plan::Problem;
 
 /// Most problems that are told of one command.
-const MOST_TOLD: usize = 20;
+const MAX_REPORTED: usize = 20;
 
 /// Finds out what is wrong with a way.
 type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
@@ -15,7 +15,7 @@ type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
 /// What is looked at afterwards: one way at a time, then the latest.
 #[derive(Default)]
 pub struct BackgroundReview {
-    looking: bool,
+    is_reviewing: bool,
     /// Taken since; the way being looked at is not flown any more.
     next: Option<Review>,
 }
@@ -23,7 +23,7 @@ pub struct BackgroundReview {
 impl BackgroundReview {
     /// Has a way looked at.
     pub fn review(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static, out: &mut Out) {
-        if std::mem::replace(&mut self.looking, true) {
+        if std::mem::replace(&mut self.is_reviewing, true) {
             self.next = Some(Box::new(review));
         } else {
             out.work(review, Input::WayReviewed);
@@ -36,13 +36,13 @@ impl BackgroundReview {
             out.work(review, Input::WayReviewed);
             return Vec::new();
         }
-        self.looking = false;
+        self.is_reviewing = false;
         let problems = problems.unwrap_or_else(|error| vec![broken(&error)]);
-        problems.into_iter().take(MOST_TOLD).map(told).collect()
+        problems.into_iter().take(MAX_REPORTED).map(to_event).collect()
     }
 }
 
-fn told(problem: Problem) -> Event {
+fn to_event(problem: Problem) -> Event {
     Event::ProblemAhead { leg: problem.subject, code: problem.code.into(), reason: problem.message }
 }
 
@@ -61,20 +61,23 @@ mod tests {
         for count in 1..=3 {
             review.review(move || problems(count), &mut out);
         }
-        let told = review.reviewed(Ok(problems(1)), &mut out);
-        assert!(told.is_empty(), "of the first, which is not flown any more");
-        let told = review.reviewed(Ok(problems(3)), &mut out);
-        assert!(told.len() == 3 && told.iter().all(|told| format!("{told:?}").contains("of 3")), "{told:?}");
-        assert!(!review.looking);
+        let events = review.reviewed(Ok(problems(1)), &mut out);
+        assert!(events.is_empty(), "of the first, which is not flown any more");
+        let events = review.reviewed(Ok(problems(3)), &mut out);
+        assert!(
+            events.len() == 3 && events.iter().all(|event| format!("{event:?}").contains("of 3")),
+            "{events:?}"
+        );
+        assert!(!review.is_reviewing);
     }
 
     #[test]
     fn very_many_problems_and_a_review_that_fails() {
         let (mut review, mut out) = (BackgroundReview::default(), Out::new(Duration::ZERO));
         review.review(|| problems(1000), &mut out);
-        assert_eq!(review.reviewed(Ok(problems(1000)), &mut out).len(), MOST_TOLD);
+        assert_eq!(review.reviewed(Ok(problems(1000)), &mut out).len(), MAX_REPORTED);
         review.review(Vec::new, &mut out);
-        let told = review.reviewed(Err("panicked, for the test".into()), &mut out);
-        assert!(told.len() == 1 && format!("{told:?}").contains("not-reviewed"), "{told:?}");
+        let events = review.reviewed(Err("panicked, for the test".into()), &mut out);
+        assert!(events.len() == 1 && format!("{events:?}").contains("not-reviewed"), "{events:?}");
     }
 }

@@ -13,9 +13,9 @@ use usal::contract::{self, Empty};
 use wire::Convert;
 
 /// Most commands that wait.
-const MOST_WAITING: usize = 16;
+const MAX_WAITING: usize = 16;
 /// Looks at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
-const MOST_LOOKS: u32 = 3;
+const MAX_REVIEWS: u32 = 3;
 
 /// A command that wants its answer.
 pub struct Asked {
@@ -49,7 +49,7 @@ pub struct CommandReview {
 
 struct Waiting {
     asked: Asked,
-    looks: u32,
+    reviews: u32,
 }
 
 impl CommandReview {
@@ -62,11 +62,11 @@ impl CommandReview {
 
     /// Takes a command in; where too many wait, it is refused.
     pub fn take(&mut self, asked: Asked, out: &mut Out) {
-        if self.waiting.len() >= MOST_WAITING {
+        if self.waiting.len() >= MAX_WAITING {
             let reason = "too many changes of the flight are being looked at: ask again in a moment";
             return asked.answer(Err(busy(reason)), out);
         }
-        self.waiting.push_back(Waiting { asked, looks: 0 });
+        self.waiting.push_back(Waiting { asked, reviews: 0 });
     }
 
     /// Begins to look at the first that waits, unless one is being looked at; gives that which needs no look (any more).
@@ -76,7 +76,7 @@ impl CommandReview {
         if !manager.executor().changes_what_is_flown(&command) {
             return self.waiting.pop_front().map(|waiting| waiting.asked);
         }
-        first.looks += 1;
+        first.reviews += 1;
         let (flight, conditions) = (manager.executor().clone(), manager.conditions(now));
         let review = move || review_command(&flight, &by, &command, conditions);
         out.work(review, Input::CommandReviewed);
@@ -96,7 +96,7 @@ impl CommandReview {
         if reviewed_at == manager.turns() {
             return Some(Verdict::Give(first.asked));
         }
-        if first.looks >= MOST_LOOKS {
+        if first.reviews >= MAX_REVIEWS {
             let reason = "the flight changes faster than it can be looked at: ask again in a moment";
             return Some(Verdict::Refuse(first.asked, busy(reason)));
         }

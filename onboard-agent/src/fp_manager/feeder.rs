@@ -25,7 +25,7 @@ pub struct Feeder {
 
 /// What became of a transaction.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Fate {
+pub enum BatchResult {
     /// Taken by the gateway.
     Taken,
     /// Refused whole: its first token, and why.
@@ -56,13 +56,13 @@ impl Feeder {
     }
 
     /// The answer to what was sent; `None`: there was none.
-    pub fn answered(&mut self, now: Time, answer: Option<FeedAnswer>) -> Fate {
-        let Some(sent) = self.sent.take() else { return Fate::Taken };
+    pub fn answered(&mut self, now: Time, answer: Option<FeedAnswer>) -> BatchResult {
+        let Some(sent) = self.sent.take() else { return BatchResult::Taken };
         if std::mem::take(&mut self.abandoned) {
-            return Fate::Taken;
+            return BatchResult::Taken;
         }
         match answer {
-            Some(FeedAnswer::Accepted) => Fate::Taken,
+            Some(FeedAnswer::Accepted) => BatchResult::Taken,
             Some(FeedAnswer::Refused { faults }) => {
                 let first = sent.waypoints.first().map_or(Token(0), |w| w.token);
                 let newer = self.waiting.take().filter(|w| w.cancel_after.is_some_and(|last| last < first));
@@ -71,9 +71,9 @@ impl Feeder {
                     Some(Feed { cancel_after, waypoints }) => {
                         let cancel_after = cancel_after.min(sent.cancel_after.or(cancel_after));
                         self.waiting = Some(Feed { cancel_after, waypoints });
-                        Fate::Later(sentence(&faults))
+                        BatchResult::Later(sentence(&faults))
                     }
-                    None => Fate::Refused(first, sentence(&faults)),
+                    None => BatchResult::Refused(first, sentence(&faults)),
                 }
             }
             Some(FeedAnswer::Full) => self.later(now, sent, "the gateway's buffer is full"),
@@ -81,15 +81,15 @@ impl Feeder {
             None => {
                 self.sent = Some(sent);
                 self.uncertain = true;
-                Fate::Unknown
+                BatchResult::Unknown
             }
         }
     }
 
-    fn later(&mut self, now: Time, sent: Feed, why: &str) -> Fate {
+    fn later(&mut self, now: Time, sent: Feed, why: &str) -> BatchResult {
         self.unsend(sent);
         self.not_before = Some(now + RETRY);
-        Fate::Later(why.to_owned())
+        BatchResult::Later(why.to_owned())
     }
 
     /// The gateway has told the highest token it ever took: what it took is done, the rest is sent again.
@@ -162,9 +162,9 @@ fn merged(first: Feed, then: Feed) -> Feed {
 
 /// The first faults, for people.
 fn sentence(faults: &[(Token, String, String)]) -> String {
-    let told =
+    let reasons =
         faults.iter().take(3).map(|(token, code, reason)| format!("waypoint {}: {reason} ({code})", token.0));
-    let mut text = told.collect::<Vec<_>>().join("; ");
+    let mut text = reasons.collect::<Vec<_>>().join("; ");
     if faults.len() > 3 {
         text.push_str(&format!("; and {} more", faults.len() - 3));
     }
@@ -232,7 +232,7 @@ mod tests {
         assert_eq!(feeder.send(NOW).unwrap(), feed(None, 1..=2));
         feeder.push(feed(None, 3..=3));
         assert_eq!(feeder.send(NOW), None);
-        assert_eq!(feeder.answered(NOW, Some(FeedAnswer::Accepted)), Fate::Taken);
+        assert_eq!(feeder.answered(NOW, Some(FeedAnswer::Accepted)), BatchResult::Taken);
         assert_eq!(feeder.send(NOW).unwrap(), feed(None, 3..=3));
         assert!(!feeder.is_idle());
         feeder.answered(NOW, Some(FeedAnswer::Accepted));
@@ -245,7 +245,7 @@ mod tests {
         feeder.push(feed(None, 1..=2));
         feeder.send(NOW);
         feeder.push(feed(None, 3..=3));
-        assert!(matches!(feeder.answered(NOW, Some(FeedAnswer::Full)), Fate::Later(_)));
+        assert!(matches!(feeder.answered(NOW, Some(FeedAnswer::Full)), BatchResult::Later(_)));
         assert_eq!(feeder.send(NOW + RETRY / 2), None);
         assert_eq!(feeder.send(NOW + RETRY).unwrap(), feed(None, 1..=3));
         feeder.answered(NOW, Some(FeedAnswer::NotNow("Safe".into())));
@@ -260,8 +260,8 @@ mod tests {
         feeder.send(NOW);
         feeder.push(feed(None, 6..=6));
         let faults = vec![(Token(5), "range".into(), "too far".into())];
-        let fate = feeder.answered(NOW, Some(FeedAnswer::Refused { faults }));
-        assert_eq!(fate, Fate::Refused(Token(4), "waypoint 5: too far (range)".into()));
+        let result = feeder.answered(NOW, Some(FeedAnswer::Refused { faults }));
+        assert_eq!(result, BatchResult::Refused(Token(4), "waypoint 5: too far (range)".into()));
         assert!(feeder.is_idle());
     }
 
@@ -273,7 +273,10 @@ mod tests {
             feeder.send(NOW);
             feeder.push(feed(Some(cancels), 6..=7));
             let faults = vec![(Token(5), "range".into(), "too far".into())];
-            assert!(matches!(feeder.answered(NOW, Some(FeedAnswer::Refused { faults })), Fate::Later(_)));
+            assert!(matches!(
+                feeder.answered(NOW, Some(FeedAnswer::Refused { faults })),
+                BatchResult::Later(_)
+            ));
             assert_eq!(feeder.send(NOW).unwrap(), feed(Some(0), 6..=7));
         }
     }
@@ -284,7 +287,7 @@ mod tests {
             let mut feeder = Feeder::default();
             feeder.push(feed(None, 1..=2));
             feeder.send(NOW);
-            assert_eq!(feeder.answered(NOW, None), Fate::Unknown);
+            assert_eq!(feeder.answered(NOW, None), BatchResult::Unknown);
             assert_eq!(feeder.send(NOW + RETRY * 9), None, "not before it is settled");
             feeder.settle(Token(highest));
             assert_eq!(feeder.send(NOW), again);
@@ -300,7 +303,7 @@ mod tests {
             feeder.send(NOW);
             feeder.clear();
             feeder.push(feed(Some(0), 3..=4));
-            assert_eq!(feeder.answered(NOW, answer), Fate::Taken);
+            assert_eq!(feeder.answered(NOW, answer), BatchResult::Taken);
             assert_eq!(feeder.send(NOW).unwrap(), feed(Some(0), 3..=4));
         }
     }

@@ -73,7 +73,7 @@ impl Manager {
     /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do.
     fn emergency(&mut self, now: Time, call: alarms::Call, out: &mut Vec<Effect>) {
         if !self.gateway_session.is_airborne() {
-            return self.alarms.look_again();
+            return self.alarms.read_again();
         }
         let cause = call.cause;
         tracing::warn!(?cause, "alarm of the gateway: emergency");

@@ -32,7 +32,7 @@ impl Manager {
             }
         };
         self.want_runways();
-        self.alarms.look_again();
+        self.alarms.read_again();
         self.feeder.settle(answer.highest);
         let highest: Token = answer.highest.convert();
         let lost = std::mem::take(&mut self.returning) && highest > self.executor.last_token();

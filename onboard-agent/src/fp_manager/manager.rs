@@ -4,7 +4,7 @@
 
 use super::aircraft::Aircraft;
 use super::alarms::Alarms;
-use super::feeder::{Fate, Feeder};
+use super::feeder::{BatchResult, Feeder};
 use super::gateway_session::GatewaySession;
 use super::journal::{Entry, ManagerState, Record, Reply};
 use super::plan_history::PlanHistory;
@@ -197,7 +197,7 @@ impl Manager {
             self.alarms.new_flight();
             self.plan_history.new_flight();
         } else if in_emergency && !self.is_in_emergency() {
-            self.alarms.look_again();
+            self.alarms.read_again();
         }
         self.send(now, out);
         Ok(())
@@ -239,10 +239,10 @@ impl Manager {
     /// The answer to [`Effect::Feed`]; `None`: none came.
     pub fn fed(&mut self, now: Time, answer: Option<FeedAnswer>, out: &mut Vec<Effect>) {
         match self.feeder.answered(now, answer) {
-            Fate::Taken => {}
-            Fate::Later(why) => tracing::debug!(why, "the gateway takes waypoints later"),
-            Fate::Unknown => self.gateway_session.lost(),
-            Fate::Refused(first, reason) => {
+            BatchResult::Taken => {}
+            BatchResult::Later(why) => tracing::debug!(why, "the gateway takes waypoints later"),
+            BatchResult::Unknown => self.gateway_session.lost(),
+            BatchResult::Refused(first, reason) => {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
                 self.step(now, Input::Rejected { first: first.convert(), reason }, out);
                 if self.is_in_emergency() {

@@ -25,7 +25,7 @@ mod timeline;
 
 pub use self::service::{FpManager, Input, Output};
 pub use aircraft::Aircraft;
-pub use feeder::{Fate, Feeder};
+pub use feeder::{BatchResult, Feeder};
 pub use manager::{Effect, Manager};
 pub use restart::{Restart, restart};
 pub use shell::run;
@@ -83,10 +83,10 @@ fn compile(xml: &[u8], config: &Config) -> Result<Program, Vec<Problem>> {
 
 fn listed(problems: &[Problem]) -> String {
     let errors = problems.iter().filter(|p| p.is_error());
-    let mut told: Vec<String> = errors.clone().take(PROBLEMS_MAX).map(ToString::to_string).collect();
+    let mut listed: Vec<String> = errors.clone().take(PROBLEMS_MAX).map(ToString::to_string).collect();
     let more = errors.count().saturating_sub(PROBLEMS_MAX);
     if more > 0 {
-        told.push(format!("and {more} more"));
+        listed.push(format!("and {more} more"));
     }
-    told.join("; ")
+    listed.join("; ")
 }

@@ -72,9 +72,9 @@ fn resumed<S: Storage>(
     );
     let dropped = chapter.dropped.as_ref().filter(|_| chapter.incomplete);
     for reason in dropped.into_iter().chain(&stopped) {
-        let told = format!("the journal did not lead up to the end of the last process: {reason}");
-        tracing::error!("{told}");
-        troubles.push(told);
+        let trouble = format!("the journal did not lead up to the end of the last process: {reason}");
+        tracing::error!("{trouble}");
+        troubles.push(trouble);
     }
     Ok(manager)
 }
@@ -123,12 +123,12 @@ fn restored<S: Storage>(
     manager.replies = saved.replies.clone();
     manager.returning = true;
     manager.noted = saved.notes.clone();
-    remind(&mut manager);
+    restore_parts(&mut manager);
     Ok(manager)
 }
 
 /// Has the parts know again what the notes say.
-fn remind(manager: &mut Manager) {
+fn restore_parts(manager: &mut Manager) {
     manager.gateway_session =
         GatewaySession::restored(manager.noted.wanted.clone(), manager.noted.controlled);
     manager.alarms = Alarms::restored(manager.noted.answered_alarms.clone());
@@ -137,7 +137,7 @@ fn remind(manager: &mut Manager) {
 
 /// One turn again; what it puts out was done, or will be put right by the join.
 fn replay<S: Storage>(manager: &mut Manager, turn: &[Entry], plans: &mut Plans<'_, S>) -> Result<(), String> {
-    let mut unheard = Vec::new();
+    let mut ignored = Vec::new();
     for entry in turn {
         let input = match &entry.what {
             Record::Propose { request, plan, based_on, forbidden } => Input::Propose {
@@ -156,7 +156,7 @@ fn replay<S: Storage>(manager: &mut Manager, turn: &[Entry], plans: &mut Plans<'
             }
             Record::Notes(notes) => {
                 manager.noted = notes.clone();
-                remind(manager);
+                restore_parts(manager);
                 continue;
             }
             Record::Answered(reply) => {
@@ -165,8 +165,8 @@ fn replay<S: Storage>(manager: &mut Manager, turn: &[Entry], plans: &mut Plans<'
             }
         };
         manager.count(&input);
-        manager.executor.step(entry.at, input, &mut unheard);
-        unheard.clear();
+        manager.executor.step(entry.at, input, &mut ignored);
+        ignored.clear();
     }
     Ok(())
 }

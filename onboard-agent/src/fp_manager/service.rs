@@ -94,7 +94,7 @@ pub enum Output {
     /// The state as it is.
     State(Box<Saved>, Vec<Arc<Program>>),
     /// Say what there is to be said.
-    Look,
+    PollJournal,
 }
 
 pub(super) type Out = service::Out<Input, Output>;
@@ -141,8 +141,8 @@ impl Service for FpManager {
             Input::Propose(asked) => self.proposed(now, asked, out),
             Input::Command(request) => self.asked(now, Asked::from(request), out),
             Input::Plan(request) => out.answer(request.reply, Ok(self.document())),
-            Input::ProposalReviewed(looked) => {
-                if let Some(conclusion) = self.proposal_review.reviewed(looked, out) {
+            Input::ProposalReviewed(reviewed) => {
+                if let Some(conclusion) = self.proposal_review.reviewed(reviewed, out) {
                     self.concluded(now, conclusion, out);
                 }
             }
@@ -154,10 +154,10 @@ impl Service for FpManager {
             Input::CommandReviewed(problems) => self.command_reviewed(now, problems, out),
             Input::WayReviewed(problems) => {
                 let events = self.background_review.reviewed(problems, out);
-                tell(events, out);
+                report(events, out);
             }
-            Input::Journal(event) => tell([event], out),
-            other => self.heard(now, other, out),
+            Input::Journal(event) => report([event], out),
+            other => self.handle(now, other, out),
         }
     }
 
@@ -183,7 +183,7 @@ impl FpManager {
     /// The plan it was started with becomes the active one, unless one was restored.
     fn started(&mut self, now: Time, out: &mut Out) {
         let troubles = std::mem::take(&mut self.troubles).into_iter();
-        tell(troubles.map(|reason| Event::NotJournalled { reason }), out);
+        report(troubles.map(|reason| Event::NotJournalled { reason }), out);
         let plan = self.config.plan.take().filter(|_| self.manager.executor().program().is_none());
         let loaded = plan.map(|xml| {
             let program = reviewed(&xml, &self.config, &self.situation(now))?;
@@ -196,12 +196,12 @@ impl FpManager {
     }
 
     /// What the manager hears of the gateway and of the clock.
-    fn heard(&mut self, now: Time, input: Input, out: &mut Out) {
+    fn handle(&mut self, now: Time, input: Input, out: &mut Out) {
         let (manager, mut effects) = (&mut self.manager, Vec::new());
         match input {
             Input::Tick => {
                 manager.tick(now, &mut effects);
-                out.push(Output::Look);
+                out.push(Output::PollJournal);
             }
             Input::Position(position) => manager.aircraft().position(position),
             Input::Air(air) => manager.aircraft().air(air),
@@ -216,8 +216,8 @@ impl FpManager {
                 manager.gateway_event(now, event.value, &mut effects);
             }
             Input::Gateway(Occurrence::Gap { missed }) => manager.events_lost(now, missed, &mut effects),
-            Input::Fed(answer) => manager.fed(now, told(answer, "feed"), &mut effects),
-            Input::Joined(answer) => manager.joined(now, told(answer, "join"), &mut effects),
+            Input::Fed(answer) => manager.fed(now, logged(answer, "feed"), &mut effects),
+            Input::Joined(answer) => manager.joined(now, logged(answer, "join"), &mut effects),
             Input::Requested(request, answer) => {
                 let answer = answer.map(drop).map_err(|error| error.to_string());
                 manager.requested(now, &request, answer, &mut effects);
@@ -330,7 +330,7 @@ impl FpManager {
     }
 }
 
-fn tell(events: impl IntoIterator<Item = Event>, out: &mut Out) {
+fn report(events: impl IntoIterator<Item = Event>, out: &mut Out) {
     perform(events.into_iter().map(Effect::Event).collect(), out);
 }
 
@@ -363,6 +363,6 @@ fn perform(effects: Vec<Effect>, out: &mut Out) {
 }
 
 /// An answer, or nothing and a line in the log.
-fn told<A>(answer: Result<A, CallError>, what: &str) -> Option<A> {
+fn logged<A>(answer: Result<A, CallError>, what: &str) -> Option<A> {
     answer.inspect_err(|error| tracing::warn!("{what}: {error}")).ok()
 }

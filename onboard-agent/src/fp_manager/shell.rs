@@ -66,7 +66,7 @@ impl Adapter<FpManager> for Journal {
             match output {
                 Output::Plan(program) => journal.give(Job::Plan(program)),
                 Output::State(saved, plans) => journal.give(Job::State(saved, plans)),
-                Output::Look => look(journal, tasks),
+                Output::PollJournal => poll_journal(journal, tasks),
                 Output::Document { hash, xml } => {
                     let kept = journal.keep(hash, xml);
                     tasks.wait(async move {
@@ -106,9 +106,9 @@ fn without(outputs: Vec<Output>, tasks: &mut Tasks<Input>) {
 }
 
 /// Asks for a state when one is wanted, and tells people what they have to know of the disk.
-fn look(journal: &mut JournalHandle, tasks: &mut Tasks<Input>) {
+fn poll_journal(journal: &mut JournalHandle, tasks: &mut Tasks<Input>) {
     let wants_state = journal.wants_state();
-    if let Some(event) = journal.news() {
+    if let Some(event) = journal.state_event() {
         tasks.wait(ready(Input::Journal(event)));
     }
     if wants_state {

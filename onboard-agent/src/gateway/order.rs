@@ -118,7 +118,7 @@ pub enum Report {
     /// Of the waypoints to be adopted, so many are really aboard. `None`: it flies none of ours.
     Adopted(OrderId, Option<usize>),
     /// Sign of life.
-    Heard {
+    Heartbeat {
         /// Who steers.
         mode: Mode,
         /// What the autopilot calls that.

@@ -502,17 +502,17 @@ async fn state_directory_that_cannot_be_written_is_told_and_flown_without_until_
     let mut events = flight.client.listen(topic::EVENTS, Start::Remembered).unwrap();
     flight.load(SQUARE).await;
     flight.start().await;
-    let mut heard = Vec::new();
+    let mut received = Vec::new();
     let mut tell = |flight: &Flight| {
         let _ = flight;
         while let Some(Occurrence::Event { event, .. }) = events.try_recv() {
             match event.value {
-                PlanEvent::NotJournalled { .. } => heard.push("not journalled"),
-                PlanEvent::Journalled => heard.push("journalled"),
+                PlanEvent::NotJournalled { .. } => received.push("not journalled"),
+                PlanEvent::Journalled => received.push("journalled"),
                 _ => {}
             }
         }
-        heard.clone()
+        received.clone()
     };
     flight.step_until(|g| g.flown.len() >= 2).await;
     until(async || tell(&flight) == ["not journalled"]).await;

@@ -4,7 +4,7 @@ use geometry::Vec2;
 use serde::{Deserialize, Serialize};
 
 /// Least speed over the ground with which a place is still reached, m/s.
-const LEAST_GROUND_MPS: f64 = 1.0;
+const MIN_GROUND_MPS: f64 = 1.0;
 
 /// A constant wind: where it blows **to**, m/s over the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ impl Wind {
         let along = Vec2::from_bearing_rad(track_deg.to_radians());
         let (with_mps, across_mps) = (self.vector().dot(along), self.vector().cross(along));
         let through_mps = (airspeed_mps * airspeed_mps - across_mps * across_mps).max(0.0).sqrt();
-        Some(through_mps + with_mps).filter(|v| *v > LEAST_GROUND_MPS && across_mps.abs() < airspeed_mps)
+        Some(through_mps + with_mps).filter(|v| *v > MIN_GROUND_MPS && across_mps.abs() < airspeed_mps)
     }
 }
 

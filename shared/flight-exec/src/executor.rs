@@ -67,7 +67,7 @@ impl Executor {
             Input::Rejected { first, reason } => self.rejected(first, reason, out),
             Input::GatewayControls(controls) => self.gateway_controls(controls, out),
         }
-        self.look_after(out);
+        self.do_what_is_due(out);
     }
 
     /// When to call [`Executor::step`] with a tick, if nothing else happens before.
@@ -135,7 +135,7 @@ impl Executor {
     }
 
     /// What is due after every input.
-    fn look_after(&mut self, out: &mut Vec<Output>) {
+    fn do_what_is_due(&mut self, out: &mut Vec<Output>) {
         if !self.is_flying() {
             return;
         }
@@ -207,7 +207,7 @@ impl Executor {
         let (path, world) = (setup.path_ahead(life, horizon), setup.world(life, overrides));
         questions.attend(&path, &world, out);
         if looks_ahead {
-            questions.look_ahead(&path, &world, out);
+            questions.ask_ahead(&path, &world, out);
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::{Edit, EditError, FlightPlan};
 use std::sync::Arc;
 
 /// States that are kept; older ones are forgotten.
-const MOST_STATES: usize = 500;
+const MAX_STATES: usize = 500;
 
 /// A plan and how it came about.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl History {
         self.present = self.states.len() - 1;
         self.saved = self.saved.filter(|saved| *saved < self.present);
         self.gesture = gesture;
-        if self.states.len() > MOST_STATES {
+        if self.states.len() > MAX_STATES {
             self.states.remove(0);
             self.present -= 1;
             self.saved = self.saved.and_then(|saved| saved.checked_sub(1));
@@ -166,7 +166,7 @@ mod tests {
         let mut history = start();
         (1..=2000).for_each(|i| history.apply(&moved(f64::from(i)), None).unwrap());
         let steps = std::iter::from_fn(|| history.undo().then_some(())).count();
-        assert_eq!(steps, MOST_STATES - 1);
+        assert_eq!(steps, MAX_STATES - 1);
     }
 
     proptest! {

@@ -17,7 +17,7 @@ pub mod walk;
 pub mod xml;
 
 pub use checks::{IncrementalCache, check, check_again};
-pub use diff::{Change, Difference, Fate};
+pub use diff::{Change, ChangeKind, Difference};
 pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};
 pub use history::History;

@@ -208,15 +208,15 @@ impl Terrain for Counting {
 fn an_edit_of_one_leg_costs_what_a_few_legs_cost() {
     let ground = Arc::new(Counting(AtomicUsize::new(0)));
     let mut memory = IncrementalCache::new(Profile::default(), ground.clone());
-    let mut looks = |plan: &FlightPlan| {
+    let mut samples = |plan: &FlightPlan| {
         ground.0.store(0, Ordering::Relaxed);
         check_again(plan, &mut memory);
         ground.0.load(Ordering::Relaxed)
     };
-    let few = looks(&tracks(6));
+    let few = samples(&tracks(6));
     let plan = tracks(600);
-    assert!(looks(&plan) > 50 * few);
-    assert_eq!(looks(&plan), 0, "nothing has changed");
+    assert!(samples(&plan) > 50 * few);
+    assert_eq!(samples(&plan), 0, "nothing has changed");
     let edits = [
         Edit::MoveWaypoint { leg: "leg-300".into(), to: LatLon::new(36.451, -84.199) },
         Edit::DeleteLeg { leg: "leg-300".into() },
@@ -229,12 +229,12 @@ fn an_edit_of_one_leg_costs_what_a_few_legs_cost() {
     ];
     for edit in edits {
         let edited = edit.apply(&plan).unwrap();
-        let looked = looks(&edited);
+        let taken = samples(&edited);
         assert!(
-            0 < looked && looked < 2 * few,
-            "{edit:?}: {looked} looks at the ground, a plan of six legs takes {few}"
+            0 < taken && taken < 2 * few,
+            "{edit:?}: {taken} samples of the ground, a plan of six legs takes {few}"
         );
-        looks(&plan);
+        samples(&plan);
     }
 }
 

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// Standard gravity, m/s².
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 /// Below this track change a corner is just crossed, degrees.
-pub const LEAST_FLY_BY_DEG: f64 = 3.0;
+pub const MIN_FLY_BY_DEG: f64 = 3.0;
 /// Above this track change no fly-by is flown, degrees.
 pub const GREATEST_FLY_BY_DEG: f64 = 175.0;
 /// Angle at which a new track is intercepted after crossing its fix, degrees.
@@ -89,7 +89,7 @@ pub fn fly_by(before: LatLon, at: LatLon, after: LatLon, radius_m: f64) -> Optio
     let change_deg = course_change_deg(inbound.bearing_end_deg, outbound.bearing_start_deg);
     let ahead_m = anticipation_m(radius_m, change_deg);
     let flyable = radius_m > 0.0
-        && change_deg.abs() > LEAST_FLY_BY_DEG
+        && change_deg.abs() > MIN_FLY_BY_DEG
         && change_deg.abs() <= GREATEST_FLY_BY_DEG
         && ahead_m <= inbound.distance_m
         && ahead_m <= outbound.distance_m;
@@ -115,8 +115,8 @@ pub fn direct_to(
     radius_m: f64,
     turn: Option<Turn>,
 ) -> Option<Vec<PathElement>> {
-    let sight = from.inverse(to);
-    let target = Vec2::from_bearing_rad(sight.bearing_start_deg.to_radians()) * sight.distance_m;
+    let line = from.inverse(to);
+    let target = Vec2::from_bearing_rad(line.bearing_start_deg.to_radians()) * line.distance_m;
     let pose = Pose::new(Vec2::default(), course_deg.to_radians());
     let sides: &[f64] = match turn {
         Some(Turn::Left) => &[-1.0],
@@ -217,7 +217,7 @@ fn fly_corner(path: &mut Vec<PathElement>, at: LatLon, corner: &Corner, next: La
 fn turn_beyond(fix: LatLon, course_deg: f64, next: LatLon, radius_m: f64) -> Vec<PathElement> {
     let outbound = fix.inverse(next);
     let change_deg = course_change_deg(course_deg, outbound.bearing_start_deg);
-    let turns = radius_m > 0.0 && change_deg.abs() > LEAST_FLY_BY_DEG;
+    let turns = radius_m > 0.0 && change_deg.abs() > MIN_FLY_BY_DEG;
     if !turns || outbound.distance_m < SHORTEST_LINE_M {
         return Vec::new();
     }

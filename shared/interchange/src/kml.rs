@@ -11,7 +11,7 @@ use geometry::LatLon;
 use std::fmt::Write;
 
 /// How things look, which a plan doesn't say.
-const LOOKS: &[&str] = &[
+const STYLES: &[&str] = &[
     "Style",
     "StyleMap",
     "styleUrl",
@@ -162,7 +162,7 @@ impl Reader {
 
     fn lost(&mut self, element: &Element) {
         let name = element.name.as_str();
-        if LOOKS.contains(&name) {
+        if STYLES.contains(&name) {
             self.drawing.notes.again(
                 "looks-not-carried",
                 element.place(),

@@ -15,10 +15,10 @@ pub struct Names {
 }
 
 impl Names {
-    /// An identifier that resembles `wish` and was not given before; `other` where nothing of it can be used.
-    pub fn take(&mut self, wish: &str, other: &str) -> Id {
+    /// An identifier that resembles `preferred` and was not given before; `other` where nothing of it can be used.
+    pub fn take(&mut self, preferred: &str, other: &str) -> Id {
         let usable = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' };
-        let clean: String = wish.trim().chars().take(LONGEST).map(usable).collect();
+        let clean: String = preferred.trim().chars().take(LONGEST).map(usable).collect();
         let clean = clean.trim_matches('-');
         let base = if clean.chars().any(char::is_alphanumeric) { clean } else { other };
         if self.taken.insert(base.to_owned()) {
@@ -51,8 +51,8 @@ mod tests {
             ("山", "fix"),
             ("", "fix-2"),
         ];
-        for (wish, expected) in cases {
-            assert_eq!(names.take(wish, "fix").as_str(), expected, "{wish}");
+        for (preferred, expected) in cases {
+            assert_eq!(names.take(preferred, "fix").as_str(), expected, "{preferred}");
         }
         assert!(names.take(&"x".repeat(1000), "fix").as_str().len() <= 64);
     }

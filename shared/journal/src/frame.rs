@@ -14,7 +14,7 @@ pub const FRAME_BYTES: usize = 16;
 /// Longest payload, bytes.
 pub const PAYLOAD_MAX: usize = 64 << 20;
 /// Behind a damaged frame, so many places that look like a sound one are looked into.
-const LOOKS_MAX: usize = 64;
+const PLACES_MAX: usize = 64;
 
 /// A payload longer than [`PAYLOAD_MAX`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -141,7 +141,7 @@ fn has_sound_frame(rest: &[u8], number: u64) -> bool {
         prefix.is_some_and(|(length, complement)| length == !complement)
     };
     let places = (0..rest.len()).filter_map(|at| rest.get(at..));
-    places.filter(looks_like_one).take(LOOKS_MAX).any(|bytes| sound(bytes, number).is_some())
+    places.filter(looks_like_one).take(PLACES_MAX).any(|bytes| sound(bytes, number).is_some())
 }
 
 fn take_u32(bytes: &[u8]) -> Option<(u32, &[u8])> {

@@ -1,7 +1,7 @@
 //! The simulator's own sockets, before a link is made of them.
 
 use crate::config::Link as Address;
-use crate::core::MOST_PEERS;
+use crate::core::MAX_PEERS;
 use anyhow::Context;
 use autopilot_link::{Link, Partners};
 use std::net::SocketAddr;
@@ -57,7 +57,7 @@ impl Bound {
         Ok(match self {
             Bound::Tcp(socket) => Link::listen(TcpListener::from_std(socket)?),
             Bound::Udp(socket, target) => {
-                let everybody = Partners::Recognised { most: MOST_PEERS, silent: FORGET_AFTER };
+                let everybody = Partners::Recognised { most: MAX_PEERS, silent: FORGET_AFTER };
                 Link::udp(UdpSocket::from_std(socket)?, target.map_or(everybody, Partners::Only))
             }
         })

@@ -21,7 +21,7 @@ use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 /// Points of the track log kept when nobody fetches them.
-const MOST_TRACK_POINTS: usize = 100_000;
+const MAX_TRACK_POINTS: usize = 100_000;
 /// A lockstep question not answered for this long is asked again.
 const ASK_AGAIN: Duration = Duration::from_secs(1);
 /// And after this long it is given up: longer than the partner itself waits for those behind it (5 s), so that
@@ -285,7 +285,7 @@ impl Runner {
             return;
         }
         self.next_track_s = truth.time_s + self.config.track_interval_s.max(0.0);
-        if shared.track.len() >= MOST_TRACK_POINTS {
+        if shared.track.len() >= MAX_TRACK_POINTS {
             shared.track.pop_front();
         }
         shared.track.push_back(TrackPoint {
@@ -379,16 +379,16 @@ impl Runner {
             }
             Event::Stream(peer) => {
                 self.decoder.push(&self.received);
-                self.hear(peer);
+                self.receive(peer);
             }
             Event::Datagram(peer) => {
                 self.decoder.push_datagram(&self.received);
-                self.hear(peer);
+                self.receive(peer);
             }
         }
     }
 
-    fn hear(&mut self, peer: Peer) {
+    fn receive(&mut self, peer: Peer) {
         self.simulator.connect(peer);
         for frame in frame::take_frames(&mut self.decoder) {
             self.simulator.receive(peer, frame);

@@ -38,40 +38,40 @@ impl Client {
     }
 
     /// What has come by now; waits a little if nothing has.
-    fn hear(&mut self) -> Vec<MavMessage> {
-        let (mut buffer, mut heard) = ([0_u8; 8192], Vec::new());
+    fn receive(&mut self) -> Vec<MavMessage> {
+        let (mut buffer, mut received) = ([0_u8; 8192], Vec::new());
         match self.stream.read(&mut buffer) {
             Ok(0) => panic!("the simulator hung up"),
             Ok(n) => {
                 self.decoder.push(&buffer[..n]);
                 for frame in take_frames(&mut self.decoder) {
                     if let Body::Known(m) = frame.body {
-                        heard.push(*m);
+                        received.push(*m);
                     }
                 }
             }
             Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(e) => panic!("{e}"),
         }
-        heard
+        received
     }
 
     /// Hears until something passes the test.
-    fn hear_until(&mut self, what: &str, mut test: impl FnMut(&MavMessage) -> bool) {
+    fn receive_until(&mut self, what: &str, mut test: impl FnMut(&MavMessage) -> bool) {
         let deadline = Instant::now() + DEADLINE;
         while Instant::now() < deadline {
-            if self.hear().iter().any(&mut test) {
+            if self.receive().iter().any(&mut test) {
                 return;
             }
         }
-        panic!("never heard {what}");
+        panic!("never received {what}");
     }
 
     /// Answers every lockstep question until the simulated time; gives the number of questions.
     fn drive_until(&mut self, time_s: f64) -> u32 {
         let (deadline, mut questions) = (Instant::now() + DEADLINE, 0);
         while Instant::now() < deadline {
-            for message in self.hear() {
+            for message in self.receive() {
                 let MavMessage::TIMESYNC(t) = message else { continue };
                 if t.tc1 == 0 {
                     questions += 1;
@@ -129,7 +129,7 @@ fn in_lockstep_the_partner_drives_time_and_nobody_else() {
     assert!(stopped.lockstep && stopped.time_s < 120.15, "{stopped:?}");
     client.say(&timesync(1, 5));
     client.say(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, 148.0, 0.0));
-    client.hear_until("the version", |m| matches!(m, MavMessage::AUTOPILOT_VERSION(_)));
+    client.receive_until("the version", |m| matches!(m, MavMessage::AUTOPILOT_VERSION(_)));
     assert_eq!(handle.truth().time_s, stopped.time_s, "an old answer moved time");
 }
 
@@ -162,13 +162,13 @@ fn garbage_on_tcp_is_counted_and_a_second_client_is_turned_away() {
     let mut client = Client::connect(handle.address());
     client.stream.write_all(&[0xAA; 5000]).unwrap();
     client.say(&command(MavCmd::MAV_CMD_REQUEST_MESSAGE, 242.0, 0.0));
-    client.hear_until("home", |m| matches!(m, MavMessage::HOME_POSITION(_)));
+    client.receive_until("home", |m| matches!(m, MavMessage::HOME_POSITION(_)));
     wait_for("the count", || handle.truth().ignored_bytes == 5000);
     let mut second = TcpStream::connect(handle.address()).unwrap();
     second.set_read_timeout(Some(DEADLINE)).unwrap();
     // closed, or reset: nothing but an end comes
     assert!(matches!(second.read(&mut [0; 16]), Ok(0) | Err(_)));
-    client.hear_until("a heartbeat", |m| matches!(m, MavMessage::HEARTBEAT(_)));
+    client.receive_until("a heartbeat", |m| matches!(m, MavMessage::HEARTBEAT(_)));
 }
 
 #[test]
@@ -184,8 +184,8 @@ fn a_client_that_never_reads_does_not_stop_time() {
     let asked = handle.truth().time_s;
     wait_for("time to go on", || handle.truth().time_s > asked + 5.0);
     // and what it reads in the end is still made of whole frames
-    client.hear_until("a late heartbeat", |m| matches!(m, MavMessage::HEARTBEAT(_)));
-    client.hear_until(
+    client.receive_until("a late heartbeat", |m| matches!(m, MavMessage::HEARTBEAT(_)));
+    client.receive_until(
         "time",
         |m| matches!(m, MavMessage::SYSTEM_TIME(t) if f64::from(t.time_boot_ms) / 1e3 > asked + 5.0),
     );
@@ -196,7 +196,7 @@ fn a_client_that_never_reads_does_not_stop_time() {
 fn several_udp_partners_are_served_and_strangers_bytes_are_not_answered() {
     let config = Config { link: Link::Udp(loopback()), speed: 10.0, ..Config::default() };
     let handle = sim::spawn(config).unwrap();
-    let hears = |socket: &UdpSocket| {
+    let receives = |socket: &UdpSocket| {
         let mut buffer = [0; 512];
         socket.recv_from(&mut buffer).is_ok_and(|(n, _)| n > 10)
     };
@@ -212,8 +212,8 @@ fn several_udp_partners_are_served_and_strangers_bytes_are_not_answered() {
         let heartbeat = encode_from(GROUND, 0, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT));
         socket.send_to(&heartbeat, handle.address()).unwrap();
     }
-    assert!(partners.iter().all(hears));
-    assert!(!hears(&stranger));
+    assert!(partners.iter().all(receives));
+    assert!(!receives(&stranger));
     assert_eq!(handle.truth().ignored_bytes, 30);
 }
 
@@ -266,17 +266,17 @@ fn the_binary_prints_its_address_and_obeys_lines() {
     let listening = lines.next().unwrap();
     let address = listening.strip_prefix("listening on tcp ").unwrap().parse().unwrap();
     let mut client = Client::connect(address);
-    client.hear_until(
+    client.receive_until(
         "the lost fix",
         |m| matches!(m, MavMessage::GPS_RAW_INT(g) if g.fix_type == GpsFixType::GPS_FIX_TYPE_NO_FIX),
     );
     let mut stdin = child.stdin.take().unwrap();
     writeln!(stdin, "clear gps-loss\ndance\nwind 90,3").unwrap();
-    client.hear_until(
+    client.receive_until(
         "the fix",
         |m| matches!(m, MavMessage::GPS_RAW_INT(g) if g.fix_type == GpsFixType::GPS_FIX_TYPE_3D_FIX),
     );
-    client.hear_until("the new wind", |m| matches!(m, MavMessage::WIND(w) if w.speed == 3.0));
+    client.receive_until("the new wind", |m| matches!(m, MavMessage::WIND(w) if w.speed == 3.0));
     assert_eq!(lines.next().unwrap(), "ok clear gps-loss");
     assert!(lines.next().unwrap().starts_with("error \"dance\""));
     writeln!(stdin, "stop").unwrap();

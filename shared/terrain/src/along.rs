@@ -4,7 +4,7 @@ use crate::Terrain;
 use geometry::LatLon;
 
 /// Most samples on one path, so that a bad path cannot take for ever.
-const MOST_SAMPLES: f64 = 100_000.0;
+const MAX_SAMPLES: f64 = 100_000.0;
 
 /// What lies under a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub fn ground_along(terrain: &dyn Terrain, from: LatLon, to: LatLon, spacing_m: 
     let steps = (way.distance_m / spacing_m).ceil();
     // a spacing of 0 gives infinity or NaN steps
     let steps =
-        if steps.is_finite() && steps >= 1.0 { steps.min(MOST_SAMPLES) } else { fallback(way.distance_m) };
+        if steps.is_finite() && steps >= 1.0 { steps.min(MAX_SAMPLES) } else { fallback(way.distance_m) };
     let mut ground = Ground { highest_m: None, at: from, unknown: 0.0 };
     let mut unknown = 0.0;
     for i in 0..=steps as u32 {
@@ -46,7 +46,7 @@ pub fn ground_along(terrain: &dyn Terrain, from: LatLon, to: LatLon, spacing_m: 
 
 /// Steps where the spacing asked for makes no sense: none on a path without length.
 fn fallback(distance_m: f64) -> f64 {
-    if distance_m > 0.0 { MOST_SAMPLES } else { 1.0 }
+    if distance_m > 0.0 { MAX_SAMPLES } else { 1.0 }
 }
 
 #[cfg(test)]

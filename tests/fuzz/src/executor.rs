@@ -1,6 +1,6 @@
 //! The executor: a flight told by bytes, with everything that people, services, autopilots and broken sensors may do.
 
-mod happening;
+mod occurrence;
 
 use crate::plans::{Known, known, pick, resting, revived};
 use arbitrary::{Arbitrary, Unstructured};
@@ -9,16 +9,16 @@ use flight_exec::{
 };
 use flight_plan::{Id, Program};
 use geometry::LatLon;
-use happening::{Happening, Order, Report};
+use occurrence::{Occurrence, Order, Report};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Most things that happen on a flight.
-const MOST_HAPPENINGS: usize = 200;
+const MAX_HAPPENINGS: usize = 200;
 /// Most waypoints that are handed out and not flown: the horizon, and what an update keeps besides.
-const MOST_AHEAD: usize = 64;
+const MAX_AHEAD: usize = 64;
 /// Most outputs of a step.
-const MOST_OUTPUTS: usize = 1000;
+const MAX_OUTPUTS: usize = 1000;
 
 /// Any bytes as a flight.
 ///
@@ -28,12 +28,12 @@ const MOST_OUTPUTS: usize = 1000;
 pub fn executor(bytes: &[u8]) {
     let mut story = Unstructured::new(bytes);
     let mut flight = Flight::new();
-    for _ in 0..MOST_HAPPENINGS {
+    for _ in 0..MAX_HAPPENINGS {
         if story.is_empty() {
             break;
         }
-        let Ok(happening) = Happening::arbitrary(&mut story) else { break };
-        flight.happen(happening);
+        let Ok(occurrence) = Occurrence::arbitrary(&mut story) else { break };
+        flight.happen(occurrence);
     }
     flight.restart();
 }
@@ -52,42 +52,42 @@ impl Flight {
         Self { executor: resting(), now: Time::ZERO, buffer: VecDeque::new(), highest: Token(0), requests: 0 }
     }
 
-    fn happen(&mut self, happening: Happening) {
-        match happening {
-            Happening::Wait { tenths_s } => {
+    fn happen(&mut self, occurrence: Occurrence) {
+        match occurrence {
+            Occurrence::Wait { tenths_s } => {
                 self.pass(Time::from_millis(100 * u64::from(tenths_s)));
                 self.step(Input::Tick);
             }
-            Happening::Leap { nanoseconds } => {
+            Occurrence::Leap { nanoseconds } => {
                 self.pass(Time::from_nanos(nanoseconds));
                 self.step(Input::Tick);
             }
-            Happening::UntilDue => {
+            Occurrence::UntilDue => {
                 self.now = self.executor.deadline().map_or(self.now, |due| due.max(self.now));
                 self.step(Input::Tick);
             }
-            Happening::Propose { plan, seen, forbidden } => self.propose(plan, seen, forbidden),
-            Happening::Update { plan } => {
+            Occurrence::Propose { plan, seen, forbidden } => self.propose(plan, seen, forbidden),
+            Occurrence::Update { plan } => {
                 self.propose(plan, None, false);
                 self.command(Command::Commit {
                     hash: pick(&known().plans, plan).hash().clone(),
                     entry: None,
                 });
             }
-            Happening::Order(order) => self.command(ordered(order)),
-            Happening::Fly { waypoints } => (0..waypoints % 32).for_each(|_| self.fly_one()),
-            Happening::Report(report) => self.step(Input::Aircraft(reported(report))),
-            Happening::Steered { token } => {
+            Occurrence::Order(order) => self.command(ordered(order)),
+            Occurrence::Fly { waypoints } => (0..waypoints % 32).for_each(|_| self.fly_one()),
+            Occurrence::Report(report) => self.step(Input::Aircraft(reported(report))),
+            Occurrence::Steered { token } => {
                 self.step(Input::Progress { current: token.map(|t| Token(t.into())) });
             }
-            Happening::Rejected { token } => {
+            Occurrence::Rejected { token } => {
                 self.step(Input::Rejected { first: Token(token.into()), reason: "fuzz".into() });
             }
-            Happening::GatewayControls(controls) => {
+            Occurrence::GatewayControls(controls) => {
                 self.buffer.clear();
                 self.step(Input::GatewayControls(controls));
             }
-            Happening::Restart => self.restart(),
+            Occurrence::Restart => self.restart(),
         }
     }
 
@@ -144,7 +144,7 @@ impl Flight {
         let told = format!("{input:?}");
         let mut outputs = Vec::new();
         self.executor.step(self.now, input, &mut outputs);
-        assert!(outputs.len() <= MOST_OUTPUTS, "{} outputs of {told}", outputs.len());
+        assert!(outputs.len() <= MAX_OUTPUTS, "{} outputs of {told}", outputs.len());
         let mut answered = None;
         for output in outputs {
             match output {
@@ -177,7 +177,7 @@ impl Flight {
     fn forget_flown(&mut self) {
         let mut ahead = self.executor.ahead().map(|w| w.token).peekable();
         let first = ahead.peek().copied();
-        assert!(ahead.count() <= MOST_AHEAD, "too many waypoints ahead");
+        assert!(ahead.count() <= MAX_AHEAD, "too many waypoints ahead");
         self.buffer.retain(|w| first.is_some_and(|first| w.token >= first));
     }
 
@@ -223,7 +223,7 @@ fn ordered(order: Order) -> Command {
         Order::SetCount(leg, count) => Command::SetCount { leg: pick(legs, leg), count },
         Order::Decide(leg, branch) => {
             let leg = pick(legs, leg);
-            let branch = plans.iter().find_map(|p| p.leg(&leg).and_then(|l| happening::branch(l, branch)));
+            let branch = plans.iter().find_map(|p| p.leg(&leg).and_then(|l| occurrence::branch(l, branch)));
             Command::Decide { leg, branch: branch.unwrap_or_else(|| Id::new("nowhere")) }
         }
         Order::Set(variable, value) => {
@@ -232,7 +232,7 @@ fn ordered(order: Order) -> Command {
         Order::Emergency(cause, plan) => {
             let ids: Vec<Id> =
                 plans.iter().flat_map(|p| p.plan.emergency_plans.iter().map(|e| e.id.clone())).collect();
-            Command::Emergency { cause: happening::cause(cause), plan: plan.map(|p| pick(&ids, p)) }
+            Command::Emergency { cause: occurrence::cause(cause), plan: plan.map(|p| pick(&ids, p)) }
         }
         Order::ReturnToMain(leg) => Command::ReturnToMain { leg: pick(legs, leg) },
         Order::Commit(plan, entry) => Command::Commit {

@@ -6,10 +6,10 @@ use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Step, read, write};
 
 /// Notes are listed up to here, and then counted in one more.
-const MOST_NOTES: usize = 2001;
+const MAX_NOTES: usize = 2001;
 /// A plan is longer than what it was read from, but by no more: bytes for each byte, and besides.
-const MOST_GROWTH: usize = 400;
-const MOST_MADE_UP: usize = 10_000;
+const MAX_GROWTH: usize = 400;
+const MAX_MADE_UP: usize = 10_000;
 /// So near to a place the aircraft is there, metres.
 const HERE_M: f64 = 1.0;
 
@@ -66,9 +66,9 @@ pub fn gpx(bytes: &[u8]) {
 fn imported(format: Format, bytes: &[u8]) {
     Format::by_content(bytes);
     let Ok(import) = read(format, bytes, &Assumptions::default()) else { return };
-    assert!(import.notes.len() <= MOST_NOTES);
+    assert!(import.notes.len() <= MAX_NOTES);
     let document = flight_plan::write(&import.plan);
-    assert!(document.len() <= MOST_MADE_UP + MOST_GROWTH * bytes.len(), "{} bytes", document.len());
+    assert!(document.len() <= MAX_MADE_UP + MAX_GROWTH * bytes.len(), "{} bytes", document.len());
     assert_eq!(flight_plan::read(&document).plan, import.plan);
     let steps = steps(&import.plan);
     let export = Export { plan: &import.plan, steps: &steps };

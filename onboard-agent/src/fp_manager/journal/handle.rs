@@ -1,5 +1,5 @@
 //! Shell: the thread that owns the disk, and the handle to it. The flight waits for the disk where it must, and
-//! never long: a slow disk is a trouble that is told, not one that is flown into.
+//! never long: a slow disk is a trouble that is reported, not one that is flown into.
 
 use super::storage::Storage;
 use super::writer::{Job, Report, Writer};
@@ -27,7 +27,7 @@ pub struct JournalHandle {
     /// The disk was too slow, and has not caught up.
     behind: bool,
     /// What people were told last.
-    told: bool,
+    reported: bool,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -69,7 +69,7 @@ impl JournalHandle {
             .name("fp-manager-disk".into())
             .spawn(move || work(writer, &theirs, &sender))
             .context("the thread that writes the journal")?;
-        Ok(Self { queue, progress, given: 0, state: 0, behind: false, told: false })
+        Ok(Self { queue, progress, given: 0, state: 0, behind: false, reported: false })
     }
 
     /// Has a job done, after those given before.
@@ -136,19 +136,19 @@ impl JournalHandle {
         progress.report.wants_state && progress.done >= self.state
     }
 
-    /// What people have to be told: that recording stopped, or that it is back.
-    pub fn news(&mut self) -> Option<Event> {
+    /// What people have to be reported: that recording stopped, or that it is back.
+    pub fn state_event(&mut self) -> Option<Event> {
         let progress = self.progress.borrow();
         let slow =
             || self.behind.then(|| "the disk is slow: check the disk of the state directory".to_owned());
         let trouble = progress.report.trouble.clone().or_else(slow);
         drop(progress);
-        match (trouble, std::mem::take(&mut self.told)) {
-            (Some(reason), told) => {
-                self.told = true;
-                (!told).then_some(Event::NotJournalled { reason })
+        match (trouble, std::mem::take(&mut self.reported)) {
+            (Some(reason), reported) => {
+                self.reported = true;
+                (!reported).then_some(Event::NotJournalled { reason })
             }
-            (None, told) => told.then_some(Event::Journalled),
+            (None, reported) => reported.then_some(Event::Journalled),
         }
     }
 }

@@ -82,7 +82,7 @@ fn what_leads_to_nothing_is_synced_within_a_second() {
     assert_eq!(found(&disk).0, [1, 2]);
 }
 
-/// A fault comes and goes: it is told, the flight goes on, and a new state brings the journal back.
+/// A fault comes and goes: it is reported, the flight goes on, and a new state brings the journal back.
 fn fault_comes_and_goes(strike: impl Fn(&Faulty), advice: &str) {
     let disk = Faulty::default();
     let mut writer = writer_with(&disk, 2);
@@ -217,7 +217,7 @@ fn old_segments_go_when_the_state_is_on_the_disk_and_not_before() {
 #[test]
 fn plan_missing_or_exchanged_is_told_and_flown_without() {
     let xml = include_str!("../../../../assets/plans/square.xml");
-    for (change, told) in [(&b"garbage"[..], "plan"), (&b"<flightPlan/>"[..], "plan")] {
+    for (change, reported) in [(&b"garbage"[..], "plan"), (&b"<flightPlan/>"[..], "plan")] {
         let (disk, config) = (Faulty::default(), config());
         let program = Arc::new(compile(xml.as_bytes(), &config).unwrap());
         let mut state = saved();
@@ -226,7 +226,7 @@ fn plan_missing_or_exchanged_is_told_and_flown_without() {
         disk.damage(&format!("plan-{}.xml", program.hash()), |bytes| *bytes = change.to_vec());
         let (mut log, found) = Log::open(disk.clone(), LIMITS);
         let past = restart(&mut log, &found.unwrap(), &config, Time::ZERO);
-        assert!(past.troubles[0].contains(told), "{:?}", past.troubles);
+        assert!(past.troubles[0].contains(reported), "{:?}", past.troubles);
         assert!(past.manager.executor().proposed().is_none());
     }
 }
@@ -285,22 +285,22 @@ async fn disk_is_stuck_the_flight_waits_once_and_not_long_and_says_so() {
     let lock = Arc::new(std::sync::Mutex::new(()));
     let mut writer =
         JournalHandle::start(Writer::new(Log::open(Stuck(lock.clone()), LIMITS).0, None)).unwrap();
-    assert_eq!(writer.news(), None);
+    assert_eq!(writer.state_event(), None);
     let held = lock.lock();
     writer.give(state());
     writer.done().await;
     assert!(
-        matches!(writer.news(), Some(flight_exec::Event::NotJournalled { reason }) if reason.contains("slow"))
+        matches!(writer.state_event(), Some(flight_exec::Event::NotJournalled { reason }) if reason.contains("slow"))
     );
     for n in 0..50 {
         // each would take the whole patience, if it waited
         writer.give(job(n, true));
         writer.done().await;
-        assert_eq!(writer.news(), None, "told once");
+        assert_eq!(writer.state_event(), None, "told once");
     }
     drop(held);
     let caught_up = async {
-        while writer.news() != Some(flight_exec::Event::Journalled) {
+        while writer.state_event() != Some(flight_exec::Event::Journalled) {
             tokio::task::yield_now().await;
             writer.done().await;
         }

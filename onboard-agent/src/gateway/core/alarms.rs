@@ -144,10 +144,10 @@ impl Alarms {
     }
 
     /// Looks at everything once; events go to `out`.
-    pub fn update(&mut self, now: Time, t: &Telemetry, conduct: AlarmInputs, out: &mut Vec<GatewayEvent>) {
+    pub fn update(&mut self, now: Time, t: &Telemetry, inputs: AlarmInputs, out: &mut Vec<GatewayEvent>) {
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
-            let wrong = is_wrong(watch, now, t, conduct, raised);
+            let wrong = is_wrong(watch, now, t, inputs, raised);
             self.follow(now, watch, wrong, raised, out);
         }
     }
@@ -178,23 +178,23 @@ impl Alarms {
     }
 }
 
-fn is_wrong(watch: Watch, now: Time, t: &Telemetry, conduct: AlarmInputs, raised: bool) -> bool {
+fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
     let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
     match watch {
         Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
         Watch::EngineOut => {
-            let needed = raised || conduct.sinks_below_target;
+            let needed = raised || inputs.sinks_below_target;
             t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
         }
         Watch::EnergyLow => {
             let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
             t.power.is_some_and(|(_, p)| p.battery < limit)
         }
-        Watch::AutopilotSilent => age(t.heard).is_some_and(|a| a > SILENT),
+        Watch::AutopilotSilent => age(t.last_received).is_some_and(|a| a > SILENT),
         Watch::PositionStale => t.is_airborne() && is_stale(now, t),
-        Watch::Disobeys => age(conduct.disobeys_since).is_some_and(|a| a > DISOBEYS),
-        Watch::NoSafeRunway => conduct.no_safe_runway,
-        Watch::NotStored => conduct.not_stored,
+        Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
+        Watch::NoSafeRunway => inputs.no_safe_runway,
+        Watch::NotStored => inputs.not_stored,
     }
 }
 
@@ -248,7 +248,7 @@ mod tests {
     fn good(tenth: i64) -> Vec<Report> {
         let lat = 36.0 + tenth as f64 * 2e-5;
         vec![
-            Report::Heard { mode: Mode::Waypoints, name: "AUTO".into(), armed: true },
+            Report::Heartbeat { mode: Mode::Waypoints, name: "AUTO".into(), armed: true },
             Report::OnGround(false),
             Report::Fix(Fix {
                 position: LatLon::new(lat, -84.0),

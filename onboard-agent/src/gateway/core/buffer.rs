@@ -139,7 +139,7 @@ impl Buffer {
     }
 
     /// Takes in what the driver says of the waypoints.
-    pub fn heard(&mut self, course: Course) {
+    pub fn set_course(&mut self, course: Course) {
         self.course = course;
         match course.target {
             Target::None => self.stray = None,
@@ -220,7 +220,7 @@ mod tests {
     fn flying() -> Buffer {
         let mut buffer = Buffer::default();
         buffer.feed(None, waypoints(&[11, 12, 13, 14]));
-        buffer.heard(steering_to(Target::Waypoint(Serial(2))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(2))));
         buffer
     }
 
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(fed(buffer.feed(Some(Token(0)), waypoints(&[21, 22]))), (0, vec![5, 6]));
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(12), vec![21, 22]));
         assert_eq!(buffer.next().unwrap().token, Token(21));
-        buffer.heard(steering_to(Target::Waypoint(Serial(5))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(5))));
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(21), vec![21, 22]));
         assert_eq!(buffer.passed(), Some(waypoint(12).position));
         assert_eq!(buffer.next().unwrap().token, Token(22));
@@ -262,17 +262,17 @@ mod tests {
     #[test]
     fn nothing_is_claimed_while_the_target_is_not_certain_and_everything_is_flown_at_the_end() {
         let mut buffer = flying();
-        buffer.heard(steering_to(Target::Unknown { next: Serial(3) }));
+        buffer.set_course(steering_to(Target::Unknown { next: Serial(3) }));
         assert_eq!((current(&buffer), tokens(&buffer)), (None, vec![13, 14]));
         let place = LatLon::new(36.5, -84.5);
-        buffer.heard(steering_to(Target::Elsewhere {
+        buffer.set_course(steering_to(Target::Elsewhere {
             next: Serial(4),
             position: place,
             altitude_amsl_m: 400.0,
         }));
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(0), vec![14]));
         assert!(!buffer.at_end());
-        buffer.heard(steering_to(Target::End));
+        buffer.set_course(steering_to(Target::End));
         assert!(buffer.at_end() && buffer.is_empty() && current(&buffer).is_none());
         buffer.feed(None, waypoints(&[15]));
         assert!(!buffer.at_end(), "there is something to fly again");
@@ -283,7 +283,7 @@ mod tests {
         let mut buffer = flying();
         assert_eq!(buffer.leave(), Some(Order::Leave(Serial(2))));
         assert_eq!((buffer.leave(), current(&buffer), tokens(&buffer)), (None, Some(12), vec![13, 14]));
-        buffer.heard(steering_to(Target::Waypoint(Serial(4))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(4))));
         assert_eq!((buffer.leave(), current(&buffer)), (None, Some(14)));
     }
 

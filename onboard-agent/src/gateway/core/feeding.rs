@@ -142,7 +142,7 @@ impl Gateway {
         self.feed_driver(feed.cancel_after, feed.waypoints, out);
         self.ended = false;
         self.finished = false;
-        self.low_told = false;
+        self.low_reported = false;
         let awaited = self.fp_manager.awaited_since.is_some() || self.state == GatewayState::SafeHold;
         if last.is_some() && awaited {
             self.fp_manager.awaited_since = None;

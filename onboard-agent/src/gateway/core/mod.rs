@@ -56,8 +56,8 @@ pub struct Gateway {
     /// The last flight ended with a landing of the FP Manager's.
     finished: bool,
     /// What was last told as progress.
-    told: Option<Option<Token>>,
-    low_told: bool,
+    reported: Option<Option<Token>>,
+    low_reported: bool,
     /// What must survive a restart can't be written.
     not_stored: bool,
     /// The flight was ended by force, perhaps before a restart; until it is on the ground.
@@ -84,8 +84,8 @@ impl Gateway {
             highest: Token(0),
             ended: false,
             finished: false,
-            told: None,
-            low_told: false,
+            reported: None,
+            low_reported: false,
             not_stored: false,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
@@ -98,7 +98,7 @@ impl Gateway {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
             Input::Stored(stored) => self.not_stored = !stored,
-            Input::Heartbeat { count, plan } => self.fp_manager.heard(now, count, plan),
+            Input::Heartbeat { count, plan } => self.fp_manager.heartbeat(now, count, plan),
             Input::Join(request, join) => {
                 let answer = self.join(now, join, out);
                 out.push(Output::Answer(request, Answer::Join(answer)));
@@ -121,7 +121,7 @@ impl Gateway {
         self.observe(now, out);
         self.supervise(now, out);
         self.steer(now, out);
-        self.tell(out);
+        self.report_progress(out);
     }
 
     /// When `step` has to be called again even if nothing happens.
@@ -131,7 +131,7 @@ impl Gateway {
             self.control.safe_since.map(|s| s + seconds(self.safe.t2_s)),
             self.waypoints_due(),
             self.control.retry_at,
-            self.telemetry.heard.map(|h| h + OFF_AFTER),
+            self.telemetry.last_received.map(|h| h + OFF_AFTER),
         ];
         waits.into_iter().flatten().min()
     }
@@ -152,7 +152,7 @@ impl Gateway {
     fn report(&mut self, now: Time, report: Report, out: &mut Vec<Output>) {
         self.telemetry.take(now, &report);
         match report {
-            Report::Course(course) => self.heard(course),
+            Report::Course(course) => self.set_course(course),
             Report::Done(id) => self.control.done(id),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
@@ -161,9 +161,9 @@ impl Gateway {
         }
     }
 
-    fn heard(&mut self, course: Course) {
+    fn set_course(&mut self, course: Course) {
         let ends = self.buffer.last().is_some_and(|w| w.end_of_plan);
-        self.buffer.heard(course);
+        self.buffer.set_course(course);
         self.ended |= ends && self.buffer.at_end();
     }
 
@@ -193,14 +193,14 @@ impl Gateway {
     }
 
     fn watch(&mut self, now: Time, out: &mut Vec<Output>) {
-        let conduct = AlarmInputs {
+        let inputs = AlarmInputs {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
             not_stored: self.not_stored,
         };
         let mut events = vec![];
-        self.alarms.update(now, &self.telemetry, conduct, &mut events);
+        self.alarms.update(now, &self.telemetry, inputs, &mut events);
         out.extend(events.into_iter().map(Output::Event));
     }
 
@@ -219,11 +219,11 @@ impl Gateway {
     /// What the autopilot is seen to do.
     fn observe(&mut self, now: Time, out: &mut Vec<Output>) {
         let t = &self.telemetry;
-        let Some(heard) = t.heard else { return };
-        if now.saturating_sub(heard) > OFF_AFTER {
+        let Some(last_received) = t.last_received else { return };
+        if now.saturating_sub(last_received) > OFF_AFTER {
             return self.change(Trigger::Lost, "the autopilot is silent", out);
         }
-        self.change(Trigger::Heard, "the autopilot is heard", out);
+        self.change(Trigger::Heartbeat, "the autopilot is heard", out);
         if is_flying(self.state) && self.telemetry.is_landed() {
             return self.land(out);
         }
@@ -272,15 +272,15 @@ impl Gateway {
     fn land(&mut self, out: &mut Vec<Output>) {
         // the way home of Safe mode has tokens 0: with it nothing of the plan was flown
         let theirs = |w: &Waypoint| matches!(w.action, Action::Land { .. }) && w.token > Token(0);
-        self.finished = self.buffer.current().is_some_and(theirs) && self.told.is_some();
+        self.finished = self.buffer.current().is_some_and(theirs) && self.reported.is_some();
         if self.finished {
-            self.told = Some(None);
+            self.reported = Some(None);
             out.push(Output::Event(GatewayEvent::Progress { current: None, taken: self.highest }));
         }
         self.change(Trigger::Landed, "landed and disarmed", out);
         self.forget_waypoints(out);
         self.control.reset();
-        self.told = None;
+        self.reported = None;
         self.ended = false;
         out.push(Output::Save);
     }
@@ -303,7 +303,7 @@ impl Gateway {
     }
 
     /// Progress, and the level of the buffer.
-    fn tell(&mut self, out: &mut Vec<Output>) {
+    fn report_progress(&mut self, out: &mut Vec<Output>) {
         if !is_flying(self.state) || !self.buffer.course().aboard {
             return;
         }
@@ -314,22 +314,22 @@ impl Gateway {
             None if self.buffer.at_end() && !is_safe(self.state) => None,
             None => return,
         };
-        if self.told == Some(current) || (self.told.is_none() && current.is_none()) {
+        if self.reported == Some(current) || (self.reported.is_none() && current.is_none()) {
             return;
         }
-        self.told = Some(current);
+        self.reported = Some(current);
         out.push(Output::Event(GatewayEvent::Progress { current, taken: self.highest }));
         out.push(Output::Save);
-        self.tell_level(out);
+        self.report_level(out);
     }
 
-    fn tell_level(&mut self, out: &mut Vec<Output>) {
+    fn report_level(&mut self, out: &mut Vec<Output>) {
         let (waypoints, seconds) = self.level();
         let low = !self.is_complete() && (waypoints < views::LOW_WAYPOINTS || seconds < views::LOW_S);
-        if low && !self.low_told {
+        if low && !self.low_reported {
             out.push(Output::Event(GatewayEvent::BufferLow { waypoints, seconds }));
         }
-        self.low_told = low;
+        self.low_reported = low;
     }
 
     /// Cancels and appends, as one transaction.

@@ -10,7 +10,7 @@ use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 /// A direct command goes to a place so far ahead, metres.
 const DIRECT_M: f64 = 20_000.0;
 /// Most runways that are stored.
-const MOST_RUNWAYS: usize = 32;
+const MAX_RUNWAYS: usize = 32;
 
 impl Gateway {
     /// Does what is asked, or says why not.
@@ -148,8 +148,8 @@ impl Gateway {
     }
 
     fn set_runways(&mut self, runways: Vec<SafeRunway>, out: &mut Vec<Output>) -> Result<(), String> {
-        if runways.len() > MOST_RUNWAYS {
-            return Err(format!("At most {MOST_RUNWAYS} runways are stored."));
+        if runways.len() > MAX_RUNWAYS {
+            return Err(format!("At most {MAX_RUNWAYS} runways are stored."));
         }
         if let Some(bad) = runways.iter().find(|r| !is_usable(r, &self.settings.profile)) {
             let least = self.settings.profile.min_runway_m;

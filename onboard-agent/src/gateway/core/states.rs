@@ -6,7 +6,7 @@ use usal::contract::GatewayState;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trigger {
     /// The autopilot is heard.
-    Heard,
+    Heartbeat,
     /// The autopilot was silent for long, standing on the ground.
     Lost,
     /// It flies the list, and steers to a take-off.
@@ -40,7 +40,7 @@ pub enum Trigger {
 /// All triggers, for exhaustive tests.
 #[cfg(test)]
 pub const TRIGGERS: [Trigger; 15] = [
-    Trigger::Heard,
+    Trigger::Heartbeat,
     Trigger::Lost,
     Trigger::Departing,
     Trigger::Cruising,
@@ -85,7 +85,7 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (Terminate, _) => return None,
         (_, Terminated) => Terminate,
 
-        (Off, Heard) => Stop,
+        (Off, Heartbeat) => Stop,
         (Stop, Lost) => Off,
 
         // the ground, and how the flight begins (an armed autopilot may be met in flight)
@@ -178,7 +178,7 @@ mod tests {
     /// A trigger in words.
     fn explained(trigger: Trigger) -> &'static str {
         match trigger {
-            Trigger::Heard => "the autopilot is heard",
+            Trigger::Heartbeat => "the autopilot is heard",
             Trigger::Lost => "the autopilot is silent for 10 s",
             Trigger::Departing => "it steers to a take-off",
             Trigger::Cruising => "it steers to a waypoint",

@@ -14,7 +14,7 @@ const CLEAR_M: f64 = 40.0;
 #[derive(Debug, Clone, Default)]
 pub struct FpManager {
     /// Last sign of life.
-    last_heard: Option<Time>,
+    last_received: Option<Time>,
     /// When the gateway began to listen, in flight.
     expected_since: Option<Time>,
     /// Hash of the plan it flies, as the one that joined says.
@@ -30,8 +30,8 @@ pub struct FpManager {
 impl FpManager {
     /// A heartbeat, numbered from the start of its process. One that comes after a silence does not end Safe mode: that
     /// takes a join. And what a process says that did not join is not what is being flown.
-    pub fn heard(&mut self, now: Time, beats: u64, plan: Option<String>) {
-        self.last_heard = Some(now);
+    pub fn heartbeat(&mut self, now: Time, beats: u64, plan: Option<String>) {
+        self.last_received = Some(now);
         self.joined &= beats >= self.beats;
         self.beats = beats;
         if self.joined && plan.is_some() {
@@ -41,7 +41,7 @@ impl FpManager {
 
     /// It presented itself and was accepted.
     pub fn joined(&mut self, now: Time, plan: Option<String>) {
-        self.last_heard = Some(now);
+        self.last_received = Some(now);
         self.joined = true;
         // its heartbeats may be older than this, and are numbered from one if it is new
         self.beats = 0;
@@ -52,12 +52,12 @@ impl FpManager {
 
     /// Age of the last sign of life, seconds.
     pub fn age_s(&self, now: Time) -> Option<f64> {
-        self.last_heard.map(|t| now.saturating_sub(t).as_secs_f64())
+        self.last_received.map(|t| now.saturating_sub(t).as_secs_f64())
     }
 
     /// When it will have been silent for T1.
     pub fn silent_at(&self, safe: &SafeParameters) -> Option<Time> {
-        self.last_heard.max(self.expected_since).map(|t| t + seconds(safe.t1_s))
+        self.last_received.max(self.expected_since).map(|t| t + seconds(safe.t1_s))
     }
 
     /// Silent for T1, or never heard.

@@ -15,7 +15,7 @@ const STANDING_MPS: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub struct Telemetry {
     /// Last sign of life.
-    pub heard: Option<Time>,
+    pub last_received: Option<Time>,
     /// Mode, once heard.
     pub mode: Option<Mode>,
     /// What the autopilot calls it.
@@ -59,7 +59,7 @@ fn is_voice(report: &Report) -> bool {
 impl Default for Telemetry {
     fn default() -> Self {
         Self {
-            heard: None,
+            last_received: None,
             mode: None,
             mode_name: Cow::Borrowed("unknown"),
             armed: false,
@@ -80,10 +80,10 @@ impl Telemetry {
     /// Takes in a report.
     pub fn take(&mut self, now: Time, report: &Report) {
         if is_voice(report) {
-            self.heard = Some(now);
+            self.last_received = Some(now);
         }
         match report {
-            Report::Heard { mode, name, armed } => {
+            Report::Heartbeat { mode, name, armed } => {
                 self.mode = Some(*mode);
                 self.mode_name.clone_from(name);
                 self.armed = *armed;
@@ -114,7 +114,7 @@ impl Telemetry {
 
     /// Surely on the ground with the engine off.
     pub fn is_landed(&self) -> bool {
-        self.heard.is_some() && !self.armed && self.on_ground != Some(false)
+        self.last_received.is_some() && !self.armed && self.on_ground != Some(false)
     }
 
     /// Wind speed, m/s; 0 while unknown.

@@ -40,7 +40,7 @@ impl Gateway {
             cause: self.cause.clone(),
             armed: self.telemetry.armed,
             autopilot_mode: self.telemetry.mode_name.clone().into_owned(),
-            autopilot_age_s: age(self.telemetry.heard).unwrap_or(f64::MAX),
+            autopilot_age_s: age(self.telemetry.last_received).unwrap_or(f64::MAX),
             fp_manager_age_s: self.fp_manager.age_s(now),
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
             alarms: self.alarms.raised(),

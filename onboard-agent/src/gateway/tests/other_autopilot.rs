@@ -26,7 +26,7 @@ pub struct Glider {
 }
 
 impl Glider {
-    fn hear(&mut self, line: &str) {
+    fn receive_line(&mut self, line: &str) {
         let mut words = line.split_whitespace();
         match words.next() {
             Some("ROUTE") => {
@@ -95,7 +95,7 @@ impl GliderDriver {
         }
     }
 
-    fn hear(&mut self, line: &str) {
+    fn receive_line(&mut self, line: &str) {
         let mut words = line.split_whitespace();
         let report = match words.next() {
             Some("GLIDER") => Report::Capability(Ok("Glider")),
@@ -107,7 +107,7 @@ impl GliderDriver {
                     "circle" => Mode::Hold,
                     _ => Mode::Other(0),
                 };
-                Report::Heard { mode, name: name.to_owned().into(), armed: number(&mut words) }
+                Report::Heartbeat { mode, name: name.to_owned().into(), armed: number(&mut words) }
             }
             Some("DONE") => Report::Done(OrderId(number(&mut words))),
             Some("HAVE") => return self.has = Serial(number(&mut words)),
@@ -161,12 +161,12 @@ impl Driver for GliderDriver {
     fn process(&mut self, _now: Time) -> bool {
         let Some(end) = self.received.iter().position(|b| *b == b'\n') else { return false };
         let line: Vec<u8> = self.received.drain(..=end).collect();
-        self.hear(&String::from_utf8_lossy(&line));
+        self.receive_line(&String::from_utf8_lossy(&line));
         true
     }
 
     fn order(&mut self, _now: Time, id: OrderId, order: Order) {
-        let wish = match order {
+        let request = match order {
             Order::Feed { after, waypoints } => return self.feed(after, &waypoints),
             Order::Adopt(_) => return self.reports.push_back(Report::Adopted(id, None)),
             Order::Leave(_) | Order::Forget | Order::HandsOff(_) => return,
@@ -179,7 +179,7 @@ impl Driver for GliderDriver {
                 return self.reports.push_back(Report::Failed(id, why));
             }
         };
-        self.out.push(format!("{} {wish}", id.0));
+        self.out.push(format!("{} {request}", id.0));
     }
 
     fn tick(&mut self, _now: Time) {}
@@ -224,7 +224,7 @@ impl Rig {
         self.outbox.clear();
         self.station.send(&mut self.outbox);
         for frame in self.outbox.frames() {
-            std::str::from_utf8(frame).unwrap().lines().for_each(|line| self.glider.hear(line));
+            std::str::from_utf8(frame).unwrap().lines().for_each(|line| self.glider.receive_line(line));
         }
         self.events.extend(self.station.take_events());
     }

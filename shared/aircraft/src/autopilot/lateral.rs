@@ -9,13 +9,13 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 const PERIOD_S: f64 = 9.0;
 const DAMPING: f64 = 0.8;
 /// Below this ground speed the laws keep their gains, m/s.
-const LEAST_SPEED_MPS: f64 = 5.0;
+const MIN_SPEED_MPS: f64 = 5.0;
 /// Course response of the circle law, 1/s.
 const COURSE_GAIN_PER_S: f64 = 0.9;
 
 /// Length of the look-ahead, metres: L1 = ζ · T · V / π.
 pub(super) fn look_ahead_m(ground_speed_mps: f64) -> f64 {
-    DAMPING * PERIOD_S * ground_speed_mps.max(LEAST_SPEED_MPS) / PI
+    DAMPING * PERIOD_S * ground_speed_mps.max(MIN_SPEED_MPS) / PI
 }
 
 /// To the right of a unit vector.
@@ -29,7 +29,7 @@ pub(super) fn right_of(along: Vec2) -> Vec2 {
 /// damping form of ArduPlane's `AP_L1_Control`: a = 4ζ² · V²/L1 · sin(ν), intercepting at 45° at most. It works on the
 /// velocity over the ground, so a steady wind leaves no steady error.
 pub(super) fn line_mps2(cross_track_m: f64, along: Vec2, ground_velocity: Vec2) -> f64 {
-    let speed = ground_velocity.length().max(LEAST_SPEED_MPS);
+    let speed = ground_velocity.length().max(MIN_SPEED_MPS);
     let l1 = look_ahead_m(speed);
     let to_line = (cross_track_m / l1).clamp(-FRAC_1_SQRT_2, FRAC_1_SQRT_2).asin();
     let to_course = ground_velocity.dot(right_of(along)).atan2(ground_velocity.dot(along));
@@ -44,7 +44,7 @@ pub(super) fn line_mps2(cross_track_m: f64, along: Vec2, ground_velocity: Vec2) 
 /// `from_centre` is the aircraft's place; `radius_m` is positive for clockwise.
 pub(super) fn circle_mps2(from_centre: Vec2, radius_m: f64, ground_velocity: Vec2) -> f64 {
     let side = radius_m.signum();
-    let speed = ground_velocity.length().max(LEAST_SPEED_MPS);
+    let speed = ground_velocity.length().max(MIN_SPEED_MPS);
     let distance_m = from_centre.length();
     let bearing = from_centre.bearing_rad();
     let inward = ((distance_m - radius_m.abs()) / (1.5 * look_ahead_m(speed))).atan();

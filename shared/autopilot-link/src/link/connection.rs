@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use tokio::net::TcpStream;
 
 /// Unsent bytes that are kept before whole frames are dropped.
-const MOST_PENDING: usize = 256 * 1024;
+const MAX_PENDING: usize = 256 * 1024;
 const READ_AT_ONCE: usize = 16 * 1024;
 
 /// The connection.
@@ -49,7 +49,7 @@ impl Connection {
 
     /// Puts a frame into the queue. False: the queue is full.
     pub fn queue(&mut self, frame: &[u8]) -> bool {
-        let room = self.pending.len() < MOST_PENDING;
+        let room = self.pending.len() < MAX_PENDING;
         if room {
             self.pending.extend_from_slice(frame);
         }

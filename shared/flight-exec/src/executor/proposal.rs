@@ -4,7 +4,7 @@ use super::Executor;
 use crate::api::{Answer, Command, EntryReport, ProposalReport, Refusal};
 use crate::flight::refusal;
 use flight_plan::diff::changes;
-use flight_plan::{Change, Fate, Id, Problem, Program};
+use flight_plan::{Change, ChangeKind, Id, Problem, Program};
 use std::sync::Arc;
 
 /// Problems that a report lists.
@@ -12,7 +12,7 @@ const PROBLEMS_MAX: usize = 50;
 /// Who asks when it is only tried what a proposal would do.
 const NOBODY: &str = "trial";
 /// So many legs are tried that might be entered.
-const MOST_ENTRIES: usize = 24;
+const MAX_ENTRIES: usize = 24;
 
 impl Executor {
     /// Keeps a proposal that may be committed, and reports what it would do. One that may not takes the place of an earlier
@@ -74,7 +74,7 @@ impl Executor {
     fn entries(&self, program: &Arc<Program>) -> Vec<EntryReport> {
         let plan = self.flight.emergencies.plan();
         let section = plan.and_then(|id| program.plan.emergency_plans.iter().position(|p| p.id == *id));
-        let legs = program.stages(section).iter().flat_map(|stage| &stage.legs).take(MOST_ENTRIES);
+        let legs = program.stages(section).iter().flat_map(|stage| &stage.legs).take(MAX_ENTRIES);
         let tried = legs.filter_map(|leg| {
             let after = self.outcome(program, Some(&leg.id)).ok()?;
             let position = after.flight.horizon.front()?.waypoint.position;
@@ -113,12 +113,12 @@ impl Executor {
 /// As people read them, with code and place; not all of very many.
 fn listed<'a>(problems: impl Iterator<Item = &'a Problem>) -> Vec<String> {
     let mut problems = problems.map(ToString::to_string);
-    let mut told: Vec<String> = problems.by_ref().take(PROBLEMS_MAX).collect();
+    let mut listed: Vec<String> = problems.by_ref().take(PROBLEMS_MAX).collect();
     let more = problems.count();
     if more > 0 {
-        told.push(format!("and {more} more"));
+        listed.push(format!("and {more} more"));
     }
-    told
+    listed
 }
 
 /// A report that knows only which legs and stages differ, calls being the legs they stand for: those only in the new plan, only
@@ -127,9 +127,9 @@ fn differences(old: &Program, new: &Program) -> ProposalReport {
     let (mut added, mut removed, mut changed) = (Vec::new(), Vec::new(), Vec::new());
     for Change { part, id, fate, .. } in changes(old.flown(), new.flown()) {
         let list = match (part, fate) {
-            ("leg", Fate::Added) => &mut added,
-            ("leg", Fate::Removed) => &mut removed,
-            ("leg" | "stage", Fate::Changed | Fate::Moved) => &mut changed,
+            ("leg", ChangeKind::Added) => &mut added,
+            ("leg", ChangeKind::Removed) => &mut removed,
+            ("leg" | "stage", ChangeKind::Changed | ChangeKind::Moved) => &mut changed,
             _ => continue,
         };
         // not the legs of procedures: what is flown are their calls
@@ -177,7 +177,10 @@ mod tests {
         let few = [problem(7)];
         assert_eq!(listed(few.iter()), ["7:5: warning [no-emergency] side2: name an emergency plan here"]);
         let many: Vec<Problem> = (1..=200).map(problem).collect();
-        let told = listed(many.iter());
-        assert_eq!((told.len(), told.last().map(String::as_str)), (PROBLEMS_MAX + 1, Some("and 150 more")));
+        let listed = listed(many.iter());
+        assert_eq!(
+            (listed.len(), listed.last().map(String::as_str)),
+            (PROBLEMS_MAX + 1, Some("and 150 more"))
+        );
     }
 }

@@ -7,7 +7,7 @@ use flight_plan::Id;
 use serde::{Deserialize, Serialize};
 
 /// Most loops whose counts are set by command at a time.
-const MOST_COUNTS: usize = 64;
+const MAX_COUNTS: usize = 64;
 
 /// Each of them ends with the passage or the activation that it belongs to.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -51,7 +51,7 @@ impl Overrides {
     /// Sets the count of an activation of a loop; what was set for the loop before is forgotten.
     pub fn set_count(&mut self, leg: Id, activation: u64, count: u64) {
         self.counts.retain(|c| c.leg != leg);
-        self.counts.truncate(MOST_COUNTS - 1);
+        self.counts.truncate(MAX_COUNTS - 1);
         self.counts.push(LoopCount { leg, activation: Some(activation), count });
     }
 

@@ -10,7 +10,7 @@ use flight_plan::DecideBefore;
 use geometry::LatLon;
 
 /// Over the ground a way is never made slower, m/s: against a wind that nobody can fly in.
-pub(super) const LEAST_GROUND_MPS: f64 = 1.0;
+pub(super) const MIN_GROUND_MPS: f64 = 1.0;
 
 /// What is issued, and where the aircraft is.
 #[derive(Clone, Copy)]
@@ -132,7 +132,7 @@ impl PathAhead<'_> {
         let wind = self
             .aircraft
             .map_or(Wind::CALM, |a| Wind { east_mps: a.wind_east_mps, north_mps: a.wind_north_mps });
-        let mps = wind.ground_speed_mps(airspeed_mps, course_deg).unwrap_or(LEAST_GROUND_MPS);
-        Way { metres: way.metres + metres, seconds: way.seconds + metres / mps.max(LEAST_GROUND_MPS) }
+        let mps = wind.ground_speed_mps(airspeed_mps, course_deg).unwrap_or(MIN_GROUND_MPS);
+        Way { metres: way.metres + metres, seconds: way.seconds + metres / mps.max(MIN_GROUND_MPS) }
     }
 }

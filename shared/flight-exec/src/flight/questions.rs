@@ -1,6 +1,6 @@
 //! Intersections: who is asked, until when, and what was decided.
 
-mod lookout;
+mod upcoming;
 
 use super::path_ahead::{PathAhead, Way};
 use super::refusal;
@@ -10,12 +10,12 @@ use crate::layout::world::World;
 use crate::value::{By, Choice, Decision};
 use flight_plan::{Branch, DecideBefore, Fork, Id, Leg, LegPath, Program};
 use geometry::LatLon;
-use lookout::DistantQuestion;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use upcoming::DistantQuestion;
 
 /// Most decisions kept for intersections ahead.
-const MOST_DECISIONS: usize = 64;
+const MAX_DECISIONS: usize = 64;
 /// A branch is shown so far, metres, and so many positions of it.
 const PREVIEW_M: f64 = 2000.0;
 const PREVIEW_POSITIONS: usize = 20;
@@ -185,7 +185,7 @@ impl Questions {
     pub fn record(&mut self, decision: Decision, out: &mut Vec<Output>) {
         let Decision { leg, branch, by, crossing } = decision.clone();
         self.decisions.retain(|d| d.leg != leg || d.crossing != crossing);
-        let surplus = (self.decisions.len() + 1).saturating_sub(MOST_DECISIONS);
+        let surplus = (self.decisions.len() + 1).saturating_sub(MAX_DECISIONS);
         self.decisions.drain(..surplus);
         self.decisions.push(decision);
         let by = by.name().to_owned();

@@ -5,7 +5,7 @@ use crate::layout::cursor::LayoutError;
 use serde::{Deserialize, Serialize};
 
 /// Most errors remembered so that they are reported once.
-const MOST_REMEMBERED: usize = 16;
+const MAX_REMEMBERED: usize = 16;
 
 /// What could not be laid out lately, the latest first.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ impl Reported {
         if self.0.contains(&error) {
             return;
         }
-        self.0.truncate(MOST_REMEMBERED - 1);
+        self.0.truncate(MAX_REMEMBERED - 1);
         self.0.insert(0, error.clone());
         out.push(Output::Event(match error {
             LayoutError::Leg { leg, reason } | LayoutError::Ground { leg, reason } => {

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// So many steps without a single waypoint: a loop that flies nothing.
-const MOST_SILENT_STEPS: usize = 2000;
+const MAX_SILENT_STEPS: usize = 2000;
 
 /// A place in the program and the end of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -187,7 +187,7 @@ impl Cursor {
     /// The next waypoint.
     pub fn next(&mut self, world: &World) -> Step {
         let mut notes = CursorLog::default();
-        for _ in 0..MOST_SILENT_STEPS {
+        for _ in 0..MAX_SILENT_STEPS {
             if let Some((point, amsl_m)) = self.point_over_known_ground(world, &mut notes) {
                 let sealed = (!notes.is_empty()).then(|| Box::new(self.clone()));
                 let mut emission = Box::new(self.emit(point, amsl_m, world));

@@ -97,7 +97,7 @@ pub fn lay_out(
         stretch.take(step, before, marked, &world);
     }
     if stretch.continuation == Continuation::Open && stretch.tail.at_the_end_of_its_leg() {
-        stretch.look_for_the_end(&world);
+        stretch.find_end(&world);
     }
     stretch
 }
@@ -153,7 +153,7 @@ impl Stretch {
     }
 
     /// The horizon may end just where the plan does; then the mark must not come too late.
-    fn look_for_the_end(&mut self, world: &World) {
+    fn find_end(&mut self, world: &World) {
         let mut ahead = self.tail.clone();
         if let (Step::Ended { notes }, Some(last)) = (ahead.next(world), self.issued.last_mut()) {
             last.waypoint.end_of_plan = true;

@@ -22,7 +22,7 @@ pub(crate) fn translated(
     world: &World,
 ) -> Cursor {
     let known = cursor.loop_ids(world);
-    let placed_at = |target: &LegPath, stand: Stand| {
+    let placed_at = |target: &LegPath, stand: Relation| {
         let entering = Cursor { passage: entered, ..cursor.clone() };
         let mut placed = Cursor { passage: cursor.passage, ..entering.placed_at(target, &known, new) };
         restore_trails(&mut placed, (cursor, &known, world), new, target, stand);
@@ -35,7 +35,7 @@ pub(crate) fn translated(
     // on the way back, what it is to fly is no longer known
     if let Some((issued, target)) = brought_back.filter(|_| !cursor.is_reverse()) {
         let passage = issued.passage.saturating_sub(1);
-        return Cursor { passage, ..placed_at(&target, Stand::Before) };
+        return Cursor { passage, ..placed_at(&target, Relation::Before) };
     }
     let kept_leg = kept.map(|issued| &issued.place.leg);
     let Some(target) = same_place(cursor, &known, new, world).filter(same_plan) else {
@@ -44,11 +44,11 @@ pub(crate) fn translated(
         let other_form = other_form.filter(|leg| new.leg(&leg.id).is_some_and(|leg| !is_control(leg)));
         if let Some(target) = other_form.and_then(|leg| new.path(&leg.id)).filter(same_plan) {
             let passage = cursor.passage.saturating_sub(1);
-            return Cursor { passage, ..placed_at(&target, Stand::Before) };
+            return Cursor { passage, ..placed_at(&target, Relation::Before) };
         }
-        let Some(kept_leg) = kept_leg else { return placed_at(current, Stand::Before) };
+        let Some(kept_leg) = kept_leg else { return placed_at(current, Relation::Before) };
         let fallback = new.path(kept_leg).filter(same_plan);
-        let mut behind = placed_at(fallback.as_ref().unwrap_or(current), Stand::Behind);
+        let mut behind = placed_at(fallback.as_ref().unwrap_or(current), Relation::Behind);
         behind.leave_behind(&World { program: new, ..*world });
         return behind;
     };
@@ -57,13 +57,13 @@ pub(crate) fn translated(
         given: cursor.given,
         expansion: cursor.expansion.clone(),
         leg_start: cursor.leg_start,
-        ..placed_at(&target, Stand::AsBefore)
+        ..placed_at(&target, Relation::AsBefore)
     }
 }
 
 /// Where a cursor stands to its leg in the new plan.
 #[derive(Clone, Copy, PartialEq)]
-enum Stand {
+enum Relation {
     /// As in the old plan.
     AsBefore,
     /// At its beginning.
@@ -90,7 +90,7 @@ fn restore_trails(
     (old, known, world): (&Cursor, &[Id], &World),
     new: &Program,
     target: &LegPath,
-    stand: Stand,
+    stand: Relation,
 ) {
     let old_chain = old.chain(world);
     let new_chain = new.chain(target);
@@ -107,8 +107,8 @@ fn restore_trails(
         let still = remap(before.trail.iter().take(before.back), old_leg, leg);
         let at_target = still.iter().position(|visit| visit.index == moved.index);
         let back = match stand {
-            Stand::Behind if depth == innermost => at_target.unwrap_or(still.len()),
-            Stand::Before if depth == innermost && before.reverse => match at_target {
+            Relation::Behind if depth == innermost => at_target.unwrap_or(still.len()),
+            Relation::Before if depth == innermost && before.reverse => match at_target {
                 Some(visit) => visit + 1,
                 // it was not passed on the way out
                 None => break,

@@ -61,7 +61,7 @@ impl<'a> Flight<'a> {
         let mut flight = Self::resumed(given, Situation::under_way(executor, triggers)?);
         flight.note_current();
         flight.report();
-        flight.tell(Input::GatewayControls(false));
+        flight.input(Input::GatewayControls(false));
         if flight.at.executor.status_phase() == Phase::Holding {
             flight.command(Command::Resume);
         }
@@ -191,7 +191,7 @@ impl<'a> Flight<'a> {
         if let Some(waypoint) = &next {
             self.at.guidance.proceed(self.at.aircraft.state(), Target::from(waypoint));
         }
-        self.tell(Input::Progress { current: next.as_ref().map(|w| w.token) });
+        self.input(Input::Progress { current: next.as_ref().map(|w| w.token) });
         self.note_current();
         self.record();
         self.fire();
@@ -236,10 +236,10 @@ impl<'a> Flight<'a> {
         let since_us = self.at.now_us - self.at.stepped_us;
         self.at.waiting_us = if waits { self.at.waiting_us + since_us } else { 0 };
         self.at.due.report_us = self.at.now_us + REPORT_EVERY_US;
-        self.tell(Input::Aircraft(state));
+        self.input(Input::Aircraft(state));
     }
 
-    fn tell(&mut self, input: Input) {
+    fn input(&mut self, input: Input) {
         self.at.stepped_us = self.at.now_us;
         let now = Time::from_micros(self.at.now_us);
         let mut out = std::mem::take(&mut self.out);
@@ -290,7 +290,7 @@ impl<'a> Flight<'a> {
         if let Some(waypoint) = self.at.buffer.front() {
             let first = Target::from(waypoint);
             self.at.guidance.direct(self.at.aircraft.state(), first);
-            self.tell(Input::Progress { current: now });
+            self.input(Input::Progress { current: now });
             self.note_current();
         }
     }
@@ -377,7 +377,7 @@ impl<'a> Flight<'a> {
     fn propose(&mut self, program: &Arc<Program>) {
         self.at.requests += 1;
         let request = RequestId(self.at.requests);
-        self.tell(Input::Propose {
+        self.input(Input::Propose {
             request,
             program: program.clone(),
             based_on: None,
@@ -388,7 +388,7 @@ impl<'a> Flight<'a> {
     fn command(&mut self, command: Command) {
         self.at.requests += 1;
         let request = RequestId(self.at.requests);
-        self.tell(Input::Command { request, by: "operator".into(), command });
+        self.input(Input::Command { request, by: "operator".into(), command });
     }
 
     fn check_limits(&mut self) -> Result<(), PreviewError> {

@@ -26,7 +26,7 @@ use terrain::Terrain;
 /// Waypoints on a stretch, at least, as long as there are few stretches.
 const WAYPOINTS: usize = 8;
 /// Most stretches remembered, some tens of kilobytes each: beyond, they become longer.
-const MOST_STRETCHES: usize = 1536;
+const MAX_STRETCHES: usize = 1536;
 
 /// A preview for plan after plan, of one aircraft in one wind.
 pub struct Rehearsal {
@@ -177,7 +177,7 @@ impl Flown {
     }
 
     fn thin_out(&mut self) {
-        while self.stretches.len() > MOST_STRETCHES {
+        while self.stretches.len() > MAX_STRETCHES {
             self.every *= 2;
             for index in (1..self.stretches.len()).rev().step_by(2) {
                 self.merge(index);

@@ -84,14 +84,14 @@ impl Situation {
     /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.
     /// `None`: nothing is being flown, or nothing is known of the aircraft.
     pub fn under_way(mut executor: Executor, triggers: usize) -> Option<Self> {
-        let told = executor.aircraft().filter(|_| executor.is_flying())?;
+        let known = executor.aircraft().filter(|_| executor.is_flying())?;
         // a preview counts time from its own beginning; the executor's clock goes on
         executor.set_last_step(Some(Time::ZERO));
         let place = |new: fn(Profile, geometry::LatLon, f64, f64) -> Aircraft| {
-            new(executor.profile().clone(), told.position, told.altitude_amsl_m, told.track_deg)
+            new(executor.profile().clone(), known.position, known.altitude_amsl_m, known.track_deg)
         };
-        let mut aircraft = place(if told.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
-        aircraft.set_battery_share(told.battery);
+        let mut aircraft = place(if known.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
+        aircraft.set_battery_share(known.battery);
         let mut at = Self::at_first(executor, aircraft, triggers);
         at.moment.place = at.executor.place();
         let begun = |place| LegPassage {

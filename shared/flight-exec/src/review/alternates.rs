@@ -8,7 +8,7 @@ use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
 /// Most places of a way out that a glide is led through.
-const MOST_PLACES: usize = 200;
+const MAX_PLACES: usize = 200;
 
 /// An emergency plan.
 pub(super) struct Alternate<'a> {
@@ -74,7 +74,7 @@ fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
     let env = Env { variables: &view.variables, flight: FlightState::on_ground(runway.threshold) };
     let legs = plan.stages.iter().flat_map(|s| &s.legs);
     let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
-    let mut route: Vec<LatLon> = places.take(MOST_PLACES).chain([runway.threshold]).collect();
+    let mut route: Vec<LatLon> = places.take(MAX_PLACES).chain([runway.threshold]).collect();
     route.dedup_by(|a, b| crate::layout::path::distance_m(*a, *b) < 1.0);
     route
 }

@@ -13,8 +13,8 @@ use std::collections::HashSet;
 const EVERY_S: f64 = 20.0;
 /// Distance between samples of the ground, metres.
 const SPACING_M: f64 = 150.0;
-/// Most looks on one way.
-const MOST_LOOKS: f64 = 500.0;
+/// Most samples on one path.
+const MAX_SAMPLES: f64 = 500.0;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins: Vec<Origin> = view.origins(EVERY_S).filter(|from| view.is_steered(&from.leg)).collect();
@@ -71,14 +71,14 @@ fn into_terrain(view: &View, alternate: &Alternate, from: &Origin) -> Option<Pro
     let time_s = flying_s(view.profile, from.position, alternate.entry, view.conditions.wind)?;
     let way = PathElement::Line { from: from.position, to: alternate.entry };
     let length_m = crate::layout::path::distance_m(from.position, alternate.entry);
-    let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
+    let samples = (length_m / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
     // where the flight itself is in the ground, another rule says so
     let ground_m = view.terrain.elevation_m(from.position)?;
     if from.altitude_amsl_m < ground_m + view.conditions.margins.terrain_m {
         return None;
     }
-    let hit = (1..=looks as u32).find_map(|i| {
-        let share = f64::from(i) / looks;
+    let hit = (1..=samples as u32).find_map(|i| {
+        let share = f64::from(i) / samples;
         let position = way.point_at(length_m * share);
         let ground_m = view.terrain.elevation_m(position)?;
         (altitude_m(view, alternate, from, share, time_s) < ground_m).then_some(position)

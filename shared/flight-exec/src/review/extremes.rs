@@ -1,7 +1,7 @@
 //! What there is to complain about a plan when its variables are at the extremes of their bounds.
 //!
 //! Each number that the geometry of a leg reads is tried at its least and at its greatest value, with the others as they are at the
-//! start, then two of them at a time; [`MOST_TRIALS`] plans in all. A trial is the plan with other values at the start: checked,
+//! start, then two of them at a time; [`MAX_TRIALS`] plans in all. A trial is the plan with other values at the start: checked,
 //! compiled and reviewed like any other.
 
 use super::ahead::read_by_geometry;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most plans that are tried.
-pub const MOST_TRIALS: usize = 24;
+pub const MAX_TRIALS: usize = 24;
 
 /// Every problem that the plan gets when its variables change, as a warning that says at which values; for a leg none that it has
 /// already (`found`: what the review said), and with two values none that it has with one of them.
@@ -31,9 +31,9 @@ pub fn review_extremes(
     let trials = trials(&variables);
     let nothing = Trial(Vec::new());
     // at which values each problem of a leg was reported
-    let mut told: HashMap<(&str, Option<Id>), Vec<&Trial>> = HashMap::new();
+    let mut reported: HashMap<(&str, Option<Id>), Vec<&Trial>> = HashMap::new();
     for known in program.warnings.iter().chain(found) {
-        told.insert((known.code, known.subject.clone()), vec![&nothing]);
+        reported.insert((known.code, known.subject.clone()), vec![&nothing]);
     }
     let mut new = Vec::new();
     for (done, trial) in trials.iter().enumerate() {
@@ -41,14 +41,14 @@ pub fn review_extremes(
             break;
         }
         for problem in trial.problems(program, profile, terrain, conditions) {
-            let at = told.entry((problem.code, problem.subject.clone())).or_default();
+            let at = reported.entry((problem.code, problem.subject.clone())).or_default();
             if !at.iter().any(|part| part.is_part_of(trial)) {
                 at.push(trial);
                 new.push(problem);
             }
         }
     }
-    new.extend(variables.iter().skip(MOST_TRIALS / 2).map(|v| not_tried(v)));
+    new.extend(variables.iter().skip(MAX_TRIALS / 2).map(|v| not_tried(v)));
     new
 }
 
@@ -75,7 +75,7 @@ fn trials<'a>(variables: &[&'a Variable]) -> Vec<Trial<'a>> {
         [(a, _), (b, _)] => a.name != b.name,
         _ => true,
     };
-    alone.chain(pairs.filter(different)).take(MOST_TRIALS).map(Trial).collect()
+    alone.chain(pairs.filter(different)).take(MAX_TRIALS).map(Trial).collect()
 }
 
 impl Trial<'_> {
@@ -122,7 +122,7 @@ impl Trial<'_> {
 }
 
 fn not_tried(variable: &Variable) -> Problem {
-    let most = MOST_TRIALS / 2;
+    let most = MAX_TRIALS / 2;
     let message = format!(
         "look yourself at what the plan does at this variable's bounds: only the first {most} variables are tried"
     );
@@ -158,6 +158,6 @@ mod tests {
         assert_eq!(shown(trials(&[&a, &free, &b])), ["a1", "a9", "b3", "a1 b3", "a9 b3"]);
         let many: Vec<Variable> =
             (0..30).map(|i| variable(&format!("v{i}"), (0.0, Some(-1.0), Some(1.0)))).collect();
-        assert_eq!(trials(&many.iter().collect::<Vec<_>>()).len(), MOST_TRIALS);
+        assert_eq!(trials(&many.iter().collect::<Vec<_>>()).len(), MAX_TRIALS);
     }
 }

@@ -1,7 +1,7 @@
 //! Which flights are reviewed.
 //!
 //! The main plan once for each branch of the intersection that has most, then once for each branch that was not taken so far, at
-//! most [`MOST_FLIGHTS`] times; each of the first [`MOST_EMERGENCY_PLANS`] emergency plans
+//! most [`MAX_FLIGHTS`] times; each of the first [`MAX_EMERGENCY_PLANS`] emergency plans
 //! once, from the point of those flights that is farthest from where it leads. Of a flight under way, what is ahead of it: it begins
 //! behind the waypoints that can't be altered any more, with the energy that is left. By the preview, with real counts, conditions and energy:
 //! the plan as it stands, the plan with the branches of each of those flights, and each of those emergency plans from that point.
@@ -9,7 +9,7 @@
 use super::alternates::Origin;
 use super::emergency_coverage::EmergencyCoverage;
 use super::flown::{Flown, Point, fly, tireless};
-use super::layout::{LaidOut, Outset, Way, counts, decisions, lay_out};
+use super::layout::{LaidOut, StartPoint, Way, counts, decisions, lay_out};
 use crate::api::{AircraftState, Command, Event, Output};
 use crate::executor::Executor;
 use crate::layout::cursor::Cursor;
@@ -27,9 +27,9 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most flights of the main plan.
-pub(super) const MOST_FLIGHTS: usize = 8;
+pub(super) const MAX_FLIGHTS: usize = 8;
 /// Most emergency plans that are flown.
-pub(super) const MOST_EMERGENCY_PLANS: usize = 16;
+pub(super) const MAX_EMERGENCY_PLANS: usize = 16;
 
 /// The flights of a plan.
 pub(super) struct Flights {
@@ -109,9 +109,9 @@ impl Circumstances<'_> {
     }
 
     /// Where the main plan is begun, or gone on with.
-    fn outset(&self, from: Beginning) -> Outset {
+    fn start_point(&self, from: Beginning) -> StartPoint {
         if !self.under_way {
-            return from.outset(None, &self.tireless);
+            return from.start_point(None, &self.tireless);
         }
         let near = self.executor.alterable_from();
         let laid_out = |h: &IssuedWaypoint| LaidOut {
@@ -120,7 +120,7 @@ impl Circumstances<'_> {
             passage: h.passage,
         };
         let kept = self.executor.horizon().iter().take(near).map(laid_out).collect();
-        Outset { kept, cursor: self.executor.bookmark(near) }
+        StartPoint { kept, cursor: self.executor.bookmark(near) }
     }
 }
 
@@ -147,16 +147,16 @@ impl Flights {
     pub fn ahead(flight: &Executor, wind: Wind) -> Option<Self> {
         let aircraft = flight.aircraft().filter(|_| flight.is_flying())?;
         let mut executor = flight.clone();
-        let mut told = Vec::new();
+        let mut outputs = Vec::new();
         // the legs under way as they will be in a moment
         if executor.has_refresh_due() {
-            executor.refresh(&mut told);
+            executor.refresh(&mut outputs);
         }
         let (program, profile, terrain) = (flight.active(), flight.profile(), flight.terrain());
         let (tireless, under_way) = (tireless(profile), true);
         let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
         let mut flights = Self::flown(&given, Beginning::of(&aircraft, profile));
-        flights.refused.extend(told.into_iter().filter_map(|output| match output {
+        flights.refused.extend(outputs.into_iter().filter_map(|output| match output {
             Output::Event(Event::PatternRefused { leg, reason }) => Some((leg, reason)),
             _ => None,
         }));
@@ -194,15 +194,15 @@ impl Flights {
 
     fn fly_main(&mut self, given: &Circumstances, beginning: Beginning) {
         let program = given.program;
-        let from = given.outset(beginning).cursor;
+        let from = given.start_point(beginning).cursor;
         let counts = counts(&given.executor, &from);
         // under way, many an intersection is behind: each further way is one that the flights so far come to
-        let variants = if given.under_way { 1 } else { variants(program).min(MOST_FLIGHTS as u64) };
+        let variants = if given.under_way { 1 } else { variants(program).min(MAX_FLIGHTS as u64) };
         let mut ways: Vec<Way> = (0..variants).map(Way::all).collect();
         let mut flown: Vec<(Way, HashSet<Id>)> = Vec::new();
         while let Some(way) = ways.pop().or_else(|| self.unseen(program, &flown)) {
             let decisions = decisions(program, &way, &from);
-            let layout = lay_out(&given.executor, given.outset(beginning), &counts, &decisions);
+            let layout = lay_out(&given.executor, given.start_point(beginning), &counts, &decisions);
             self.complete &= layout.complete;
             self.fly_chosen(given, beginning, choices(&decisions, &from, &layout.taken));
             flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
@@ -227,7 +227,7 @@ impl Flights {
 
     /// A way to a branch that was not taken yet: one that came to its intersection, but there another branch.
     fn unseen(&self, program: &Program, flown: &[(Way, HashSet<Id>)]) -> Option<Way> {
-        if flown.len() >= MOST_FLIGHTS {
+        if flown.len() >= MAX_FLIGHTS {
             return None;
         }
         let legs = program.flown().all_legs();
@@ -250,7 +250,7 @@ impl Flights {
     fn fly_emergencies(&mut self, given: &Circumstances, used_j: f64) {
         let program = given.program;
         let emergency_coverage = EmergencyCoverage::of(program);
-        for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MOST_EMERGENCY_PLANS) {
+        for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MAX_EMERGENCY_PLANS) {
             let Some(worst) = self.worst_for(program, plan, index, &emergency_coverage) else { continue };
             let beginning = Beginning {
                 position: worst.position,
@@ -259,12 +259,12 @@ impl Flights {
                 on_ground: false,
                 used_j,
             };
-            let outset = beginning.outset(Some(index), &given.tireless);
+            let start_point = beginning.start_point(Some(index), &given.tireless);
             let (counts, decisions) = (
-                counts(&given.executor, &outset.cursor),
-                decisions(program, &Way::default(), &outset.cursor),
+                counts(&given.executor, &start_point.cursor),
+                decisions(program, &Way::default(), &start_point.cursor),
             );
-            let layout = lay_out(&given.executor, outset, &counts, &decisions);
+            let layout = lay_out(&given.executor, start_point, &counts, &decisions);
             self.refused.extend(layout.refused.iter().cloned());
             self.without_ground.extend(layout.without_ground.iter().cloned());
             let aircraft = beginning.aircraft(&given.tireless);
@@ -418,8 +418,8 @@ impl Beginning {
     }
 
     /// At the beginning of the main plan (`None`) or an emergency plan.
-    fn outset(&self, section: Option<usize>, profile: &Profile) -> Outset {
-        Outset { kept: Vec::new(), cursor: Cursor::start(section, self.path(profile), 0) }
+    fn start_point(&self, section: Option<usize>, profile: &Profile) -> StartPoint {
+        StartPoint { kept: Vec::new(), cursor: Cursor::start(section, self.path(profile), 0) }
     }
 
     fn path(&self, profile: &Profile) -> PathState {

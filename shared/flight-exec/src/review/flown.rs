@@ -13,7 +13,7 @@ const STEP_S: f64 = 0.2;
 /// Steps between two points of the track: 25 m at 25 m/s.
 const STEPS_A_POINT: u64 = 5;
 /// Longest flight, seconds.
-const MOST_S: f64 = 8.0 * 3600.0;
+const MAX_S: f64 = 8.0 * 3600.0;
 /// Energy that no flight uses up: how much it takes is another question than where it leads.
 const PLENTY: f64 = 1e3;
 
@@ -108,7 +108,7 @@ impl Flight {
         let mut current = 0;
         let Some(first) = self.target(current) else { return self.flown };
         self.guidance.direct(self.aircraft.state(), first);
-        while current < self.flown.waypoints.len() && self.time_s() < MOST_S {
+        while current < self.flown.waypoints.len() && self.time_s() < MAX_S {
             if self.steps.is_multiple_of(STEPS_A_POINT) {
                 let point = self.point(current);
                 self.flown.points.push(point);

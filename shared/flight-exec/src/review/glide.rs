@@ -18,8 +18,8 @@ use geometry::{LatLon, PathElement};
 
 /// Distance between samples of the ground, metres.
 const SPACING_M: f64 = 150.0;
-/// Most looks on one way.
-const MOST_LOOKS: f64 = 500.0;
+/// Most samples on one path.
+const MAX_SAMPLES: f64 = 500.0;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins: Vec<Origin> = view.origins(GLIDES_EVERY_S).filter(|from| counts(view, from)).collect();
@@ -48,16 +48,16 @@ fn glides(
     let missing = from.iter().map(|from| (missing_m(view, alternate, way, from), *from));
     let short: Vec<(f64, &Origin)> = missing.filter(|(missing_m, _)| *missing_m > 0.0).collect();
     let Some(worst) = short.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
-        let looks = from.iter().filter(|_| named).step_by(LOOKS_EVERY);
-        return looks.into_iter().find_map(|from| hill(view, alternate, from));
+        let samples = from.iter().filter(|_| named).step_by(SAMPLE_EVERY);
+        return samples.into_iter().find_map(|from| hill(view, alternate, from));
     };
     let share = short.len() as f64 / from.len() as f64;
     Some(out_of_reach(view, alternate, *worst, (!named).then_some(share)))
 }
 
-/// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one looks.
+/// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one samples.
 const GLIDES_EVERY_S: f64 = 5.0;
-const LOOKS_EVERY: usize = 6;
+const SAMPLE_EVERY: usize = 6;
 
 fn counts(view: &View, from: &Origin) -> bool {
     let left_out = [StageKind::TakeOff, StageKind::Approach, StageKind::Land];
@@ -136,8 +136,8 @@ fn hill(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
     let (length_m, course_deg) = crate::layout::path::distance_and_course(from.position, alternate.entry);
     let slope = glide_sink_mps(view.profile, speed_mps, 1.0)
         / view.conditions.wind.ground_speed_mps(speed_mps, course_deg)?;
-    let looks = (length_m / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
-    let along = (0..looks as u32).map(|i| length_m * f64::from(i) / looks);
+    let samples = (length_m / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
+    let along = (0..samples as u32).map(|i| length_m * f64::from(i) / samples);
     let under = |along_m: f64| -> Option<LatLon> {
         let position = way.point_at(along_m);
         let ground_m = view.terrain.elevation_m(position)?;

@@ -13,8 +13,8 @@ const PASSES: u64 = 2;
 /// Passings of each intersection for which a branch is chosen beforehand.
 const CROSSINGS: u64 = 8;
 /// Longest path, waypoints and seconds without wind.
-const MOST_WAYPOINTS: usize = 50_000;
-const MOST_S: f64 = 6.0 * 3600.0;
+const MAX_WAYPOINTS: usize = 50_000;
+const MAX_S: f64 = 6.0 * 3600.0;
 
 /// A waypoint with what it was made for.
 pub(super) struct LaidOut {
@@ -47,7 +47,7 @@ fn legs(program: &Program) -> impl Iterator<Item = &flight_plan::Leg> {
 }
 
 /// Where a way begins: behind waypoints that are flown anyway.
-pub(super) struct Outset {
+pub(super) struct StartPoint {
     pub kept: Vec<LaidOut>,
     pub cursor: Cursor,
 }
@@ -128,10 +128,10 @@ pub(super) fn decisions(program: &Program, way: &Way, from: &Cursor) -> Vec<Deci
     decisions
 }
 
-/// The waypoints from an outset to the end of its plan.
+/// The waypoints from an start_point to the end of its plan.
 pub(super) fn lay_out(
     executor: &Executor,
-    Outset { kept, mut cursor }: Outset,
+    StartPoint { kept, mut cursor }: StartPoint,
     counts: &[LoopCount],
     decisions: &[Decision],
 ) -> Layout {
@@ -139,7 +139,7 @@ pub(super) fn lay_out(
     let mut world = World { counts, decisions, ..executor.world() };
     let from_s = cursor.path.time_s;
     let endless = shortened(world.program);
-    while layout.waypoints.len() < MOST_WAYPOINTS && cursor.path.time_s - from_s < MOST_S {
+    while layout.waypoints.len() < MAX_WAYPOINTS && cursor.path.time_s - from_s < MAX_S {
         let released = release(&mut world, &cursor);
         let loops = cursor.place(&world).iterations;
         if released || loops.iter().any(|iteration| endless.contains(&iteration.leg)) {

@@ -12,7 +12,7 @@
 //!
 //! [`compile_and_review`] is check and review together. The FP Manager runs it for each proposal on a thread of its own, with the
 //! wind and the time of day of now; `legwork check` and the window run it for each edit. The last two then try the extremes of the
-//! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MOST_TRIALS`] times). On board a proposal
+//! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MAX_TRIALS`] times). On board a proposal
 //! is answered without the extremes. A plan that was accepted is not reviewed again after a restart. For a flight under way see
 //! the module `ahead`.
 
@@ -47,7 +47,7 @@ pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_t
 use aircraft::{Profile, Wind};
 use alternates::Origin;
 use emergency_coverage::EmergencyCoverage;
-pub use extremes::{MOST_TRIALS, review_extremes};
+pub use extremes::{MAX_TRIALS, review_extremes};
 use flight_plan::{
     Altitude, AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value,
     Variables,

@@ -10,7 +10,7 @@ const FINEST_M: f64 = 2.0;
 const FINEST_SHARE_OF_MARGIN: f64 = 0.25;
 const FINEST_CLIMB_M: f64 = 1.0;
 /// More halvings than any flight needs.
-const MOST_HALVINGS: u32 = 24;
+const MAX_HALVINGS: u32 = 24;
 /// Between zones that share an edge, less than this is no gap, metres: each edge is exact to that in the frame of its zone.
 const SEAM_M: f64 = 1.0;
 /// It is looked for the outside in so many directions, and at so many shares of the margin.
@@ -37,7 +37,7 @@ impl StayIn<'_> {
                 let breach = zone.excursion(&Piece::new(from, to, self.terrain))?;
                 Some((zone, breach, *perhaps))
             }
-            _ => self.left_at_most_halved(zones, (from, to), MOST_HALVINGS),
+            _ => self.left_at_most_halved(zones, (from, to), MAX_HALVINGS),
         }
     }
 

@@ -6,8 +6,8 @@ use flight_plan::{Id, Problem};
 use std::collections::HashSet;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
-    let mut told: HashSet<&Id> = HashSet::new();
-    let legs = view.flights.without_ground.iter().filter(|(leg, _)| told.insert(leg));
+    let mut reported: HashSet<&Id> = HashSet::new();
+    let legs = view.flights.without_ground.iter().filter(|(leg, _)| reported.insert(leg));
     problems.extend(legs.map(|(leg, what)| Problem::error("unknown-terrain", what.clone()).of(leg)));
     problems.extend(unseen_ground(view));
 }

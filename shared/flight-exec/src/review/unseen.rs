@@ -1,7 +1,7 @@
 //! `not-reviewed`: what the bounded review did not come to.
 
 use super::View;
-use super::flights::{MOST_EMERGENCY_PLANS, MOST_FLIGHTS};
+use super::flights::{MAX_EMERGENCY_PLANS, MAX_FLIGHTS};
 use flight_plan::{LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
@@ -19,14 +19,14 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         let main = context.section == flight_plan::Section::Main;
         if let Some(branch) = unseen.filter(|_| main).map(|b| &b.id).next() {
             let message = format!(
-                "look at the branch `{branch}` yourself: the first {MOST_FLIGHTS} flights through the plan did not come to it"
+                "look at the branch `{branch}` yourself: the first {MAX_FLIGHTS} flights through the plan did not come to it"
             );
             problems.push(Problem::warning("not-reviewed", message).of(leg));
         }
     }
-    for plan in flown.emergency_plans.iter().skip(MOST_EMERGENCY_PLANS) {
+    for plan in flown.emergency_plans.iter().skip(MAX_EMERGENCY_PLANS) {
         let message = format!(
-            "look at the path of this emergency plan yourself: only the first {MOST_EMERGENCY_PLANS} are flown ahead"
+            "look at the path of this emergency plan yourself: only the first {MAX_EMERGENCY_PLANS} are flown ahead"
         );
         problems.push(Problem::warning("not-reviewed", message).of(&plan.id));
     }

@@ -57,7 +57,7 @@ const ACTIONS: &str = r#"<TF id="a" fix="B1"/><TF id="p" fix="C1"><action on="st
     <action on="abeam" lat="36.53" lon="-84.165"><photoStop/></action><action on="end"><videoStop/></action></TF><TF id="z" fix="D1"/>"#;
 
 #[derive(Debug, Clone)]
-enum Happening {
+enum Occurrence {
     Report(f64),
     Hold,
     Update,
@@ -65,13 +65,13 @@ enum Happening {
     Variable(f64),
 }
 
-fn happening() -> impl Strategy<Value = Happening> {
+fn happening() -> impl Strategy<Value = Occurrence> {
     prop_oneof![
-        6 => (0.0..500.0f64).prop_map(Happening::Report),
-        1 => Just(Happening::Hold),
-        1 => Just(Happening::Update),
-        1 => Just(Happening::Restart),
-        1 => (0.0..9.0f64).prop_map(Happening::Variable),
+        6 => (0.0..500.0f64).prop_map(Occurrence::Report),
+        1 => Just(Occurrence::Hold),
+        1 => Just(Occurrence::Update),
+        1 => Just(Occurrence::Restart),
+        1 => (0.0..9.0f64).prop_map(Occurrence::Variable),
     ]
 }
 
@@ -91,8 +91,8 @@ proptest! {
         let (mut metres, mut active) = (0.0_f64, 0);
         for happening in happenings {
             match happening {
-                Happening::Report(more) => metres = (metres + more).min(1990.0),
-                Happening::Hold => {
+                Occurrence::Report(more) => metres = (metres + more).min(1990.0),
+                Occurrence::Hold => {
                     rig.command(Command::Hold).unwrap();
                     rig.now += Time::from_secs(30);
                     rig.report();
@@ -103,12 +103,12 @@ proptest! {
                         rig.fly_one();
                     }
                 }
-                Happening::Update => {
+                Occurrence::Update => {
                     active = 1 - active;
                     rig.update(&plans[active]).unwrap();
                 }
-                Happening::Restart => restart(&mut rig),
-                Happening::Variable(v) => rig.set("v", v).unwrap(),
+                Occurrence::Restart => restart(&mut rig),
+                Occurrence::Variable(v) => rig.set("v", v).unwrap(),
             }
             rig.position = on_the_way(metres);
             rig.now += Time::from_secs(2);

@@ -11,7 +11,7 @@ pub const POLICIES: &[Policy] = &[
     policy(
         "acts-are-told",
         "What somebody else is to do is told as done with leg and passage, and nothing else is.",
-        acts_are_told,
+        acts_are_reported,
     ),
     policy("acts-are-the-legs", "Only what a leg of the plan says is done.", acts_are_the_legs),
     policy(
@@ -60,7 +60,7 @@ fn is_wait(act: &ResolvedAct) -> bool {
     matches!(act, ResolvedAct::Wait { .. })
 }
 
-fn acts_are_told(trace: &Trace, found: &mut Findings) {
+fn acts_are_reported(trace: &Trace, found: &mut Findings) {
     for step in trace.steps() {
         let asked = step.moment.outputs.iter().filter_map(|o| match o {
             Output::Act { leg, passage, act } => Some((leg, *passage, act)),
@@ -136,7 +136,7 @@ fn done_once(trace: &Trace, found: &mut Findings) {
 }
 
 /// What somebody was told of a leg's actions: done, or why not.
-fn told_of(step: Step, leg: &Id, wanted: &Act) -> usize {
+fn reports_of(step: Step, leg: &Id, wanted: &Act) -> usize {
     let refused = |e: &&Event| matches!(e, Event::ActionRefused { leg: of, .. } if of == leg);
     let alike = done(step).filter(|(of, _, act)| *of == leg && is_like(wanted, act)).count();
     alike + step.events().filter(refused).count()
@@ -157,7 +157,7 @@ fn begun_with_its_leg(trace: &Trace, found: &mut Findings) {
             continue;
         }
         for act in actions_at(leg, &Trigger::Start) {
-            found.expect(step, told_of(step, &leg.id, act) > 0, || {
+            found.expect(step, reports_of(step, &leg.id, act) > 0, || {
                 format!("{} entered without {act:?}", leg.id)
             });
         }
@@ -205,7 +205,7 @@ fn done_by_its_end(trace: &Trace, found: &mut Findings) {
         }
         let changed = was_another_kind(last, leg);
         for act in actions_at(leg, &Trigger::End).filter(|act| !changed || !matches!(act, Act::Wait { .. })) {
-            let told: usize = steps.clone().map(|at| told_of(trace.step(at), &leg.id, act)).sum();
+            let told: usize = steps.clone().map(|at| reports_of(trace.step(at), &leg.id, act)).sum();
             found.expect(last, told > 0, || format!("{} was left without {act:?}", leg.id));
         }
     }
@@ -230,7 +230,7 @@ fn every_so_often(trace: &Trace, found: &mut Findings) {
         let Some(action) = repeated.filter(|_| flies(leg)) else { continue };
         let made = |at: &usize| trace.step(*at).before.place().filter(|p| same_passage(p, place));
         let way_m = steps.clone().filter_map(|at| made(&at).map(|p| p.distance_m)).fold(0.0, f64::max);
-        let told: usize = steps.clone().map(|at| told_of(trace.step(at), &leg.id, &action.act)).sum();
+        let told: usize = steps.clone().map(|at| reports_of(trace.step(at), &leg.id, &action.act)).sum();
         // what lies before the last waypoint has been passed; the aircraft may have been nearer than was told
         let least = (way_m / 400.0).floor() as usize;
         if least == 0 {

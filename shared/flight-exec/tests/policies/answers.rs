@@ -19,7 +19,7 @@ pub const POLICIES: &[Policy] = &[
         "A refused command feeds nothing, holds nothing and tells of nothing but an unanswered alarm.",
         refusal_is_quiet,
     ),
-    policy("phases-are-told", "Every change of phase is told, and none that isn't.", phases_are_told),
+    policy("phases-are-told", "Every change of phase is told, and none that isn't.", phases_are_reported),
     policy(
         "start-on-the-ground",
         "A start is accepted with a plan and without a flight, or again before its take-off, and never else.",
@@ -39,7 +39,7 @@ pub const POLICIES: &[Policy] = &[
     policy(
         "writes-are-told",
         "An accepted write is told once with its value, and the variable has it.",
-        writes_are_told,
+        writes_are_reported,
     ),
     policy(
         "bad-values-are-refused",
@@ -118,7 +118,7 @@ fn refusal_is_quiet(trace: &Trace, found: &mut Findings) {
     }
 }
 
-fn phases_are_told(trace: &Trace, found: &mut Findings) {
+fn phases_are_reported(trace: &Trace, found: &mut Findings) {
     for step in trace.steps() {
         let told = step.events().filter_map(|e| match e {
             Event::PhaseChanged { phase } => Some(*phase),
@@ -177,7 +177,7 @@ fn resume(trace: &Trace, found: &mut Findings) {
     }
 }
 
-fn writes_are_told(trace: &Trace, found: &mut Findings) {
+fn writes_are_reported(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::SetVariable { name, value } = command else { continue };
         let by_operator = |e: &&Event| matches!(e, Event::VariableChanged { by, .. } if **by == *"operator");
@@ -188,7 +188,7 @@ fn writes_are_told(trace: &Trace, found: &mut Findings) {
             by: "operator".into(),
         }]);
         // the plan may write the same variable in the same instant
-        let has = step.after.variables.get(name) == Some(value) || told_last(step, name) != Some(value);
+        let has = step.after.variables.get(name) == Some(value) || last_report(step, name) != Some(value);
         found.expect(step, right && has, || format!("{name}: {:?}", step.moment.outputs));
     }
 }
@@ -218,14 +218,14 @@ fn variables_change(trace: &Trace, found: &mut Findings) {
             continue;
         }
         let (before, after) = (&step.before.variables, &step.after.variables);
-        let told = |name: &Id| told_last(step, name).or(before.get(name));
+        let told = |name: &Id| last_report(step, name).or(before.get(name));
         let same = before.iter().chain(after.iter()).all(|(name, _)| told(name) == after.get(name));
-        found.expect(step, same, || format!("{:?}", step.moment.deed));
+        found.expect(step, same, || format!("{:?}", step.moment.stimulus));
     }
 }
 
 /// The value of a variable that a step tells last.
-pub fn told_last<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
+pub fn last_report<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
     let values = step.events().filter_map(|e| match e {
         Event::VariableChanged { name, value, .. } => Some((name, value)),
         _ => None,

@@ -131,8 +131,8 @@ fn cancels_everything(trace: &Trace, found: &mut Findings) {
 
 /// The gateway refuses this very batch: its buffer is as it was.
 fn is_refused_next(step: Step) -> bool {
-    let next = step.trace.moments.get(step.at + 1).map(|m| &m.deed);
-    matches!(next, Some(crate::trace::Deed::Input(flight_exec::Input::Rejected { .. })))
+    let next = step.trace.moments.get(step.at + 1).map(|m| &m.stimulus);
+    matches!(next, Some(crate::trace::Stimulus::Input(flight_exec::Input::Rejected { .. })))
 }
 
 fn only_worse(trace: &Trace, found: &mut Findings) {
@@ -221,7 +221,7 @@ fn back_by_command(trace: &Trace, found: &mut Findings) {
             step.accepted(),
             Some(Command::ReturnToMain { .. } | Command::Start | Command::Commit { .. })
         );
-        found.expect(step, by_command, || format!("{plan} was left by {:?}", step.moment.deed));
+        found.expect(step, by_command, || format!("{plan} was left by {:?}", step.moment.stimulus));
     }
 }
 

@@ -125,8 +125,8 @@ fn cancelled_stays(trace: &Trace, found: &mut Findings) {
 /// Where a batch was just refused the two differ, until the executor has heard of it and holds.
 fn ahead_is_the_buffer(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.after.is_fed()) {
-        let heard = trace.moments.get(step.at + 1).map(|m| &m.deed);
-        let rejected = matches!(heard, Some(crate::trace::Deed::Input(Input::Rejected { .. })));
+        let heard = trace.moments.get(step.at + 1).map(|m| &m.stimulus);
+        let rejected = matches!(heard, Some(crate::trace::Stimulus::Input(Input::Rejected { .. })));
         if !rejected {
             let buffer: Vec<_> = step.after.buffer.iter().map(|w| w.token).collect();
             let ahead = step.after.tokens();

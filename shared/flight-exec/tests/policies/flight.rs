@@ -6,7 +6,7 @@
 use crate::grid::{GROUND_M, HOME};
 use crate::plans::Draft;
 use crate::random::Random;
-use crate::trace::{Deed, Moment, Seen, Trace};
+use crate::trace::{Moment, Seen, Stimulus, Trace};
 use aircraft::Profile;
 use flight_exec::{
     Action, AircraftState, Command, Config, Executor, Input, Output, Phase, RequestId, Snapshot, Time, Token,
@@ -21,7 +21,7 @@ use terrain::Flat;
 /// Over the ground: no wind.
 pub const SPEED_MPS: f64 = 25.0;
 /// Waypoints after which a flight left alone must have ended: four nested passes of the largest plan are half of it.
-const MOST_WAYPOINTS: usize = 60_000;
+const MAX_WAYPOINTS: usize = 60_000;
 /// Inputs for which an executor that was not killed is asked as well.
 const TWIN_INPUTS: usize = 12;
 
@@ -291,10 +291,11 @@ impl Flight {
         let foreign_refused = foreign.is_none_or(|f| with(Some(f.clone()), read.clone()).is_err());
         let mut restored = with(plan, read).unwrap();
         restored.go_on(self.executor.proposed().cloned(), self.executor.last_step());
-        let deed = Deed::Restarted { same_snapshot: restored.snapshot() == snapshot, foreign_refused };
+        let stimulus =
+            Stimulus::Restarted { same_snapshot: restored.snapshot() == snapshot, foreign_refused };
         let killed = std::mem::replace(&mut self.executor, restored);
         self.twin = Some((killed, TWIN_INPUTS));
-        self.note(deed, Vec::new(), None);
+        self.note(stimulus, Vec::new(), None);
     }
 
     /// The gateway refuses the next batch whole.
@@ -391,7 +392,7 @@ impl Flight {
         self.refuses_next = false;
         self.give_control_back();
         self.trace.left_alone = self.trace.moments.len();
-        for _ in 0..MOST_WAYPOINTS {
+        for _ in 0..MAX_WAYPOINTS {
             let status = self.executor.status();
             match (status.phase, status.decision) {
                 (Phase::Idle | Phase::Finished, _) => return,
@@ -446,7 +447,7 @@ impl Flight {
             return true;
         }
         self.buffer.pop_front();
-        self.tell_progress();
+        self.send_progress();
         !self.buffer.is_empty()
     }
 
@@ -455,7 +456,7 @@ impl Flight {
             self.pass_time(60.0);
             self.position = front.destination(180.0, 300.0);
         }
-        self.tell_progress();
+        self.send_progress();
     }
 
     fn pass_time(&mut self, seconds: f64) {
@@ -513,7 +514,7 @@ impl Flight {
         let twin = self.ask_twin(input.clone());
         let rejection = self.obey(&outputs);
         let brings_home = outputs.contains(&Output::Safe) && !self.buffer.is_empty();
-        self.note(Deed::Input(input), outputs, twin);
+        self.note(Stimulus::Input(input), outputs, twin);
         if brings_home {
             self.lose_control();
         }
@@ -522,11 +523,11 @@ impl Flight {
         }
         let steers_to = self.buffer.front().map(|w| w.token);
         if steers_to.is_some() && steers_to != self.told {
-            self.tell_progress();
+            self.send_progress();
         }
     }
 
-    fn tell_progress(&mut self) {
+    fn send_progress(&mut self) {
         self.told = self.buffer.front().map(|w| w.token);
         self.input(Input::Progress { current: self.told });
     }
@@ -558,9 +559,9 @@ impl Flight {
         rejection
     }
 
-    fn note(&mut self, deed: Deed, outputs: Vec<Output>, twin: Option<Vec<Output>>) {
+    fn note(&mut self, stimulus: Stimulus, outputs: Vec<Output>, twin: Option<Vec<Output>>) {
         let after = seen(&self.executor, &self.buffer, self.reported, self.gateway_controls);
-        self.trace.moments.push(Moment { now: self.now, deed, outputs, twin, after });
+        self.trace.moments.push(Moment { now: self.now, stimulus, outputs, twin, after });
     }
 }
 

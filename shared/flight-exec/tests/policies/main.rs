@@ -24,10 +24,10 @@ mod place;
 mod plans;
 mod policy;
 mod random;
+mod reporting;
 mod restart;
 mod tampering;
 mod tape;
-mod telling;
 mod trace;
 mod updates;
 mod writing;
@@ -41,10 +41,10 @@ use trace::Trace;
 /// Sequences in a plain `cargo test`.
 const SEQUENCES: u64 = 400;
 /// Moments told before the one that is wrong.
-const TOLD: usize = 500;
+const REPORTED: usize = 500;
 const EVERY_HAPPENING: usize = usize::MAX;
 /// Seeds told of those that break a policy.
-const SEEDS_TOLD: usize = 12;
+const SEEDS_REPORTED: usize = 12;
 
 fn number(variable: &str, default: u64) -> u64 {
     std::env::var(variable).map_or(default, |text| {
@@ -70,7 +70,7 @@ fn complain(policy: &Policy, seeds: &BTreeSet<u64>) -> String {
     let happenings = (0..60).find(breaks).unwrap_or(EVERY_HAPPENING);
     let trace = flight::fly(seed, happenings);
     let Some((at, what)) = first_break(policy, &trace) else { return String::new() };
-    let others: Vec<_> = seeds.iter().take(SEEDS_TOLD).collect();
+    let others: Vec<_> = seeds.iter().take(SEEDS_REPORTED).collect();
     let mut text = format!(
         "{}: {}\n  {} sequences ({others:?}); LEGWORK_SEED={seed} is the first, {happenings} happenings are enough\n  moment {at}: {what}\n",
         policy.name,
@@ -78,7 +78,7 @@ fn complain(policy: &Policy, seeds: &BTreeSet<u64>) -> String {
         seeds.len()
     );
     if std::env::var_os("LEGWORK_SEED").is_some() {
-        text.extend(trace.moments[at.saturating_sub(TOLD)..=at].iter().map(telling::moment));
+        text.extend(trace.moments[at.saturating_sub(REPORTED)..=at].iter().map(reporting::moment));
     }
     text
 }

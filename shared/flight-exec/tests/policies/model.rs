@@ -5,7 +5,7 @@
 //! on (decisions, counts, conditions) it takes from the commands of the trace. A jump ends one recitation and begins another.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::tape::{Jump, Sight, record};
+use crate::tape::{Jump, Observed, record};
 use crate::trace::{Step, Trace};
 use flight_exec::{IterationPlace, PlacePointer};
 use flight_plan::{Id, IterativeForm, Leg, LegKind, LegPath, Program, Stage, StageKind, Value};
@@ -53,7 +53,7 @@ struct Entry<'p> {
 }
 
 struct Model<'a, 'f> {
-    tape: Vec<(Step<'a>, Sight<'a>)>,
+    tape: Vec<(Step<'a>, Observed<'a>)>,
     at: usize,
     found: &'f mut Findings,
     program: Option<&'a Program>,
@@ -107,12 +107,12 @@ impl<'a> Model<'a, '_> {
 
     fn next_jump(&mut self) -> Option<Jump<'a>> {
         loop {
-            let sight = self.tape.get(self.at)?.1.clone();
+            let observed = self.tape.get(self.at)?.1.clone();
             self.at += 1;
-            match sight {
-                Sight::Jump(jump) => return Some(jump),
-                Sight::Entered(place) => self.listen(place),
-                Sight::Arrived { leg, finished, of, stop, .. } => {
+            match observed {
+                Observed::Jump(jump) => return Some(jump),
+                Observed::Entered(place) => self.listen(place),
+                Observed::Arrived { leg, finished, of, stop, .. } => {
                     self.listen_to_the_pass(leg, finished, of, &stop)
                 }
                 other => self.note(&other),
@@ -149,15 +149,15 @@ impl<'a> Model<'a, '_> {
     }
 
     /// Things that are not part of the way.
-    fn note(&mut self, sight: &Sight<'a>) {
-        match *sight {
-            Sight::Taken(leg, branch) => match self.may_miss + self.missed {
+    fn note(&mut self, observed: &Observed<'a>) {
+        match *observed {
+            Observed::Taken(leg, branch) => match self.may_miss + self.missed {
                 0 => drop(self.taken.insert(leg.clone(), branch.clone())),
                 skipped => self.taken_since.push((skipped, leg.clone(), branch.clone())),
             },
-            Sight::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
-            Sight::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
-            Sight::Skipped { leg, announced } => {
+            Observed::Counted(leg, n) => drop(self.counts.insert(leg.clone(), n)),
+            Observed::CannotBeFlown(leg) => drop(self.cannot_be_flown.insert(leg.clone())),
+            Observed::Skipped { leg, announced } => {
                 self.may_miss += usize::from(!announced);
                 self.skipped.extend(leg.cloned());
             }
@@ -166,12 +166,12 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The next part of the way.
-    fn peek(&mut self) -> Flown<Sight<'a>> {
+    fn peek(&mut self) -> Flown<Observed<'a>> {
         loop {
-            let Some((_, sight)) = self.tape.get(self.at).cloned() else { return Err(Stop::Over) };
-            match sight {
-                Sight::Jump(_) => return Err(Stop::Jump),
-                Sight::Entered(_) | Sight::Arrived { .. } | Sight::Finished => return Ok(sight),
+            let Some((_, observed)) = self.tape.get(self.at).cloned() else { return Err(Stop::Over) };
+            match observed {
+                Observed::Jump(_) => return Err(Stop::Jump),
+                Observed::Entered(_) | Observed::Arrived { .. } | Observed::Finished => return Ok(observed),
                 other => self.note(&other),
             }
             self.at += 1;
@@ -303,7 +303,7 @@ impl<'a> Model<'a, '_> {
             self.fly_stage(stage, entry.take())?;
         }
         match self.peek()? {
-            Sight::Finished => {
+            Observed::Finished => {
                 self.agree();
                 Ok(())
             }
@@ -410,7 +410,7 @@ impl<'a> Model<'a, '_> {
     /// The end of a pass: counted, and once more or not.
     fn arrive(&mut self, leg: &Leg) -> Flown<bool> {
         let iteration = self.stack.last().map_or(0, |f| f.iteration);
-        let Sight::Arrived { leg: id, finished, of, stop, n } = self.peek()? else {
+        let Observed::Arrived { leg: id, finished, of, stop, n } = self.peek()? else {
             return Err(Stop::Wrong(format!(
                 "{} ends pass {iteration}, but {:?}",
                 leg.id, self.tape[self.at].1
@@ -443,7 +443,7 @@ impl<'a> Model<'a, '_> {
                 let within = |p: &PlacePointer| {
                     p.iterations.iter().any(|i| i.leg == *leg && i.iteration > iteration) || p.leg == *leg
                 };
-                matches!(next, Ok(Sight::Entered(place)) if within(place))
+                matches!(next, Ok(Observed::Entered(place)) if within(place))
             }
             Some(_) => iteration <= 1,
         }
@@ -455,12 +455,12 @@ impl<'a> Model<'a, '_> {
         if branches.len() < 2 {
             return Ok(branches.first().and_then(|b| b.next.clone()));
         }
-        let sight = self.peek()?;
-        if matches!(sight, Sight::Entered(place) if self.is_here(&leg.id, place)) {
+        let observed = self.peek()?;
+        if matches!(observed, Observed::Entered(place) if self.is_here(&leg.id, place)) {
             self.enter(&leg.id)?;
         }
         let entered = match self.peek()? {
-            Sight::Entered(place) => Some(&place.leg),
+            Observed::Entered(place) => Some(&place.leg),
             _ => None,
         };
         let leads_to = |branch: &Id| branches.iter().find(|b| b.id == *branch)?.next.as_ref();
@@ -507,7 +507,7 @@ impl<'a> Model<'a, '_> {
         let next = self.peek()?;
         let optional = start || self.cannot_be_flown.contains(id);
         match next {
-            Sight::Entered(place) if self.is_here(id, place) => {
+            Observed::Entered(place) if self.is_here(id, place) => {
                 self.here = Some(id.clone());
                 self.agree();
                 Ok(())

@@ -121,7 +121,7 @@ fn entered_is_steered_to(trace: &Trace, found: &mut Findings) {
 fn entered_by_progress(trace: &Trace, found: &mut Findings) {
     for (step, place) in trace.entered() {
         let told = matches!(step.input(), Some(Input::Progress { .. }));
-        found.expect(step, told, || format!("{place:?} by {:?}", step.moment.deed));
+        found.expect(step, told, || format!("{place:?} by {:?}", step.moment.stimulus));
     }
 }
 

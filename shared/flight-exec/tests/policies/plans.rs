@@ -7,7 +7,7 @@ use flight_plan::Program;
 use std::sync::Arc;
 
 /// Nearly every draft can be flown.
-const MOST_DRAWS: usize = 50;
+const MAX_DRAWS: usize = 50;
 
 /// `r` shapes the patterns, `stop` ends loops and holdings, `n` counts passes, `tally` counts what the plan itself writes.
 const VARIABLES: &str = r#"<variable name="r" type="number" initial="500" min="10" max="1500"/>
@@ -175,14 +175,14 @@ impl Draft {
     /// A draft that can be flown: random legs may be too steep or too short for the aircraft.
     pub fn flyable(random: &mut Random, draw: impl Fn(&mut Random) -> Self) -> (Self, Arc<Program>) {
         let mut problems = String::new();
-        for _ in 0..MOST_DRAWS {
+        for _ in 0..MAX_DRAWS {
             let draft = draw(random);
             match compiled(&draft.document()) {
                 Ok(program) => return (draft, program),
                 Err(why) => problems = why,
             }
         }
-        panic!("no draft of {MOST_DRAWS} can be flown, the last one for:\n{problems}")
+        panic!("no draft of {MAX_DRAWS} can be flown, the last one for:\n{problems}")
     }
 
     /// Another draft that is mostly this one: what an operator would propose.

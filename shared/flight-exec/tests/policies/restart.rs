@@ -1,7 +1,7 @@
 //! Killed at any instant, it comes back to the same place.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Deed, Seen, Step, Trace};
+use crate::trace::{Seen, Step, Stimulus, Trace};
 use flight_exec::Token;
 
 pub const POLICIES: &[Policy] = &[
@@ -27,7 +27,7 @@ pub const POLICIES: &[Policy] = &[
 ];
 
 fn restarts(trace: &Trace) -> impl Iterator<Item = Step<'_>> {
-    trace.steps().filter(|s| matches!(s.moment.deed, Deed::Restarted { .. }))
+    trace.steps().filter(|s| matches!(s.moment.stimulus, Stimulus::Restarted { .. }))
 }
 
 fn same_outputs(trace: &Trace, found: &mut Findings) {
@@ -54,7 +54,7 @@ fn ahead_survives(trace: &Trace, found: &mut Findings) {
 
 fn same_snapshot(trace: &Trace, found: &mut Findings) {
     for step in restarts(trace) {
-        let Deed::Restarted { same_snapshot, .. } = step.moment.deed else { continue };
+        let Stimulus::Restarted { same_snapshot, .. } = step.moment.stimulus else { continue };
         found.expect(step, same_snapshot, || "another snapshot".into());
     }
 }
@@ -72,7 +72,7 @@ fn numbering_goes_on(trace: &Trace, found: &mut Findings) {
     let highest = |seen: &Seen| seen.tokens().into_iter().max().unwrap_or_default();
     let (mut last, mut restarted) = (Token(0), false);
     for step in trace.steps() {
-        restarted |= matches!(step.moment.deed, Deed::Restarted { .. });
+        restarted |= matches!(step.moment.stimulus, Stimulus::Restarted { .. });
         for (_, waypoints) in step.feeds() {
             if let Some(first) = waypoints.first().filter(|_| std::mem::take(&mut restarted)) {
                 found.expect(step, first.token > last, || format!("{:?} after {last:?}", first.token));
@@ -85,7 +85,7 @@ fn numbering_goes_on(trace: &Trace, found: &mut Findings) {
 
 fn foreign_refused(trace: &Trace, found: &mut Findings) {
     for step in restarts(trace) {
-        let Deed::Restarted { foreign_refused, .. } = step.moment.deed else { continue };
+        let Stimulus::Restarted { foreign_refused, .. } = step.moment.stimulus else { continue };
         found.expect(step, foreign_refused, || "restored with another plan".into());
     }
 }

@@ -2,7 +2,7 @@
 #![expect(clippy::unit_arg, reason = "`Some(change)`: changed, one line each")]
 
 use crate::policy::{self, Findings, Policy};
-use crate::trace::{Deed, Moment, Seen, Trace};
+use crate::trace::{Moment, Seen, Stimulus, Trace};
 use flight_exec::{
     Action, Answer, Branching, Command, Event, Input, IterationPlace, Output, Phase, PlacePointer, Refusal,
     RequestId, ResolvedAct, Time, Token, Waypoint,
@@ -64,7 +64,7 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     ("held-means-held", enter_a_leg),
     ("place-is-the-waypoint", |t, at| front(t, at).map(|w| w.leg = nowhere())),
     ("entered-is-steered-to", elsewhere),
-    ("entered-by-progress", |t, at| Some(t.moments[at].deed = Deed::Input(Input::Tick))),
+    ("entered-by-progress", |t, at| Some(t.moments[at].stimulus = Stimulus::Input(Input::Tick))),
     ("entered-once", |t, at| repeat(t, at, |e| matches!(e, Event::LegEntered { .. }))),
     ("steered-to-is-announced", elsewhere),
     ("never-back", |t, at| (at > 9).then(|| after(t, at).status.current = Some(Token(0)))),
@@ -131,7 +131,7 @@ const TAMPERINGS: &[(&str, Tamper)] = &[
     }),
     ("in-force-is-told", |t, at| Some(after(t, at).status.emergency_in_force = Some(nowhere()))),
     ("alarm-ends-a-hold", |t, at| Some(after(t, at).status.phase = Phase::Holding)),
-    ("back-by-command-only", |t, at| Some(t.moments[at].deed = Deed::Input(Input::Tick))),
+    ("back-by-command-only", |t, at| Some(t.moments[at].stimulus = Stimulus::Input(Input::Tick))),
     ("back-to-the-named-leg", in_another_plan),
     ("no-return-without-emergency", accept),
     // updates
@@ -328,9 +328,9 @@ fn taken(t: &mut Trace, at: usize) -> Option<(&Id, &mut Id, &mut String)> {
 }
 
 fn restarted(t: &mut Trace, at: usize) -> Option<(&mut bool, &mut bool)> {
-    match &mut t.moments[at].deed {
-        Deed::Restarted { same_snapshot, foreign_refused } => Some((same_snapshot, foreign_refused)),
-        Deed::Input(_) => None,
+    match &mut t.moments[at].stimulus {
+        Stimulus::Restarted { same_snapshot, foreign_refused } => Some((same_snapshot, foreign_refused)),
+        Stimulus::Input(_) => None,
     }
 }
 
@@ -471,7 +471,8 @@ fn nothing_but_the_fix(t: &mut Trace, at: usize, from: usize) -> Option<()> {
     let on_it = |m: &Moment| m.after.place().is_some_and(|p| p.leg == leg);
     let mut told = 0;
     for moment in t.moments[from..].iter_mut().take_while(|m| from == 0 || on_it(m)) {
-        told += usize::from(matches!(moment.deed, Deed::Input(Input::Progress { .. })) && on_it(moment));
+        told +=
+            usize::from(matches!(moment.stimulus, Stimulus::Input(Input::Progress { .. })) && on_it(moment));
         moment.after.ahead.iter_mut().filter(|w| w.leg == leg).for_each(|w| w.position = *fix);
     }
     (told > 7).then_some(())
@@ -486,8 +487,8 @@ fn without_a_reason(t: &mut Trace, _: usize) -> Option<()> {
     for moment in &mut t.moments {
         moment.after.variables = Variables::default();
         moment.after.ahead.iter_mut().for_each(|w| w.position = LatLon::new(0.0, 0.0));
-        if matches!(&moment.deed, Deed::Input(Input::Command { command: Command::SkipLeg, .. })) {
-            moment.deed = Deed::Input(Input::Tick);
+        if matches!(&moment.stimulus, Stimulus::Input(Input::Command { command: Command::SkipLeg, .. })) {
+            moment.stimulus = Stimulus::Input(Input::Tick);
         }
     }
     Some(())

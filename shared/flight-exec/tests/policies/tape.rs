@@ -5,7 +5,7 @@ use flight_exec::{Branching, Command, Event, Phase, PlacePointer};
 use flight_plan::{Id, Program, VariableValue};
 
 #[derive(Debug, Clone)]
-pub enum Sight<'a> {
+pub enum Observed<'a> {
     Entered(&'a PlacePointer),
     /// With every value that `stop` and `n` had on the last two legs: choices are made ahead, and read again until the
     /// stopping distance.
@@ -46,7 +46,7 @@ pub enum Jump<'a> {
 }
 
 /// Everything there is to read in a trace.
-pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
+pub fn record(trace: &Trace) -> Vec<(Step<'_>, Observed<'_>)> {
     let mut tape = Vec::new();
     let mut entries: Vec<usize> = Vec::new();
     let mut last_entered = None;
@@ -54,7 +54,7 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
     for step in trace.steps() {
         for event in step.events() {
             let window = entries.len().checked_sub(2).map_or(0, |i| entries[i]);
-            tape.extend(sight(event, step, window).map(|s| (step, s)));
+            tape.extend(observe(event, step, window).map(|s| (step, s)));
             if let Event::LegEntered { place } = event {
                 entries.push(step.at);
                 last_entered = Some(place);
@@ -63,7 +63,7 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
         let order = order(step, last_entered, alternate);
         alternate = flown_alternate(step, alternate);
         // the same passage may be gone to once more: then it is to be entered again
-        let goes_on = matches!(order, Some(Sight::Jump(Jump::GoOn { .. }))) && step.keeps_its_leg();
+        let goes_on = matches!(order, Some(Observed::Jump(Jump::GoOn { .. }))) && step.keeps_its_leg();
         if step.is_jump() && !goes_on {
             last_entered = None;
         }
@@ -72,16 +72,16 @@ pub fn record(trace: &Trace) -> Vec<(Step<'_>, Sight<'_>)> {
     tape
 }
 
-fn sight<'a>(event: &'a Event, step: Step<'a>, window: usize) -> Option<Sight<'a>> {
+fn observe<'a>(event: &'a Event, step: Step<'a>, window: usize) -> Option<Observed<'a>> {
     Some(match event {
-        Event::LegEntered { place } => Sight::Entered(place),
+        Event::LegEntered { place } => Observed::Entered(place),
         Event::IterationFinished { leg, finished, of } => {
             let (stop, n) = values(step, window);
-            Sight::Arrived { leg, finished: *finished, of: *of, stop, n }
+            Observed::Arrived { leg, finished: *finished, of: *of, stop, n }
         }
-        Event::DecisionTaken { leg, branch, .. } => Sight::Taken(leg, branch),
-        Event::PatternRefused { leg, .. } => Sight::CannotBeFlown(leg),
-        Event::PhaseChanged { phase: Phase::Finished } => Sight::Finished,
+        Event::DecisionTaken { leg, branch, .. } => Observed::Taken(leg, branch),
+        Event::PatternRefused { leg, .. } => Observed::CannotBeFlown(leg),
+        Event::PhaseChanged { phase: Phase::Finished } => Observed::Finished,
         _ => return None,
     })
 }
@@ -120,27 +120,27 @@ fn order<'a>(
     step: Step<'a>,
     last_entered: Option<&PlacePointer>,
     alternate: Option<&Id>,
-) -> Option<Sight<'a>> {
+) -> Option<Observed<'a>> {
     let program = step.after.program.as_deref()?;
     let announced = || {
         let place = step.before.place();
         place.zip(last_entered).is_some_and(|(a, b)| crate::trace::same_passage(a, b))
     };
     Some(match step.accepted()? {
-        Command::Start => Sight::Jump(Jump::Start(program)),
-        Command::GoTo { leg } => Sight::Jump(Jump::GoTo(leg)),
-        Command::ReturnToMain { leg } => Sight::Jump(Jump::Return(leg)),
+        Command::Start => Observed::Jump(Jump::Start(program)),
+        Command::GoTo { leg } => Observed::Jump(Jump::GoTo(leg)),
+        Command::ReturnToMain { leg } => Observed::Jump(Jump::Return(leg)),
         Command::SkipLeg => {
-            Sight::Skipped { leg: step.before.place().map(|p| &p.leg), announced: announced() }
+            Observed::Skipped { leg: step.before.place().map(|p| &p.leg), announced: announced() }
         }
-        Command::SetCount { leg, count } => Sight::Counted(leg, *count),
+        Command::SetCount { leg, count } => Observed::Counted(leg, *count),
         Command::Emergency { .. } => {
             let plan = flown_alternate(step, None)?;
-            return (alternate != Some(plan)).then_some(Sight::Jump(Jump::Emergency(plan)));
+            return (alternate != Some(plan)).then_some(Observed::Jump(Jump::Emergency(plan)));
         }
         Command::Commit { entry, .. } if step.before.is_flying() => {
             let current = step.before.place().map(|p| &p.leg);
-            Sight::Jump(match (entry, current) {
+            Observed::Jump(match (entry, current) {
                 (Some(entry), current) if Some(entry) != current => Jump::Enter(program, entry),
                 (_, leg) => {
                     let entered = announced();

@@ -11,7 +11,7 @@ use std::sync::{Arc, LazyLock};
 
 /// What was done to the executor.
 #[derive(Debug, Clone)]
-pub enum Deed {
+pub enum Stimulus {
     Input(Input),
     /// It was killed and came back from its snapshot, which was the same again when taken anew.
     Restarted {
@@ -45,7 +45,7 @@ pub struct Seen {
 #[derive(Debug, Clone)]
 pub struct Moment {
     pub now: Time,
-    pub deed: Deed,
+    pub stimulus: Stimulus,
     pub outputs: Vec<Output>,
     /// What the executor that was not killed says to the same.
     pub twin: Option<Vec<Output>>,
@@ -101,9 +101,9 @@ impl Trace {
 
 impl<'a> Step<'a> {
     pub fn input(&self) -> Option<&'a Input> {
-        match &self.moment.deed {
-            Deed::Input(input) => Some(input),
-            Deed::Restarted { .. } => None,
+        match &self.moment.stimulus {
+            Stimulus::Input(input) => Some(input),
+            Stimulus::Restarted { .. } => None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Plans that change in flight: nothing half applied, the place kept.
 
-use crate::answers::told_last;
+use crate::answers::last_report;
 use crate::holdings::says_stop;
 use crate::horizon::waits;
 use crate::place::iterations;
@@ -19,7 +19,7 @@ pub const POLICIES: &[Policy] = &[
     policy(
         "proposed-is-told",
         "After a proposal its hash is the one that may be committed.",
-        proposed_is_told,
+        proposed_is_reported,
     ),
     policy(
         "the-report-is-true",
@@ -97,7 +97,7 @@ fn does_nothing(trace: &Trace, found: &mut Findings) {
     }
 }
 
-fn proposed_is_told(trace: &Trace, found: &mut Findings) {
+fn proposed_is_reported(trace: &Trace, found: &mut Findings) {
     for (step, program, report) in proposals(trace) {
         let told =
             step.after.status.proposed.as_ref() == Some(program.hash()) && report.hash == *program.hash();
@@ -310,7 +310,7 @@ fn variables_carry_over(trace: &Trace, found: &mut Findings) {
         let kept = |v: &Variable| {
             let old = step.before.variables.get(&v.name).filter(|old| v.accepts(old).is_ok());
             // an action may write it at once
-            let written = told_last(step, &v.name);
+            let written = last_report(step, &v.name);
             step.after.variables.get(&v.name) == Some(written.or(old).unwrap_or(&v.initial))
         };
         found.expect(step, new.plan.variables.iter().all(kept), || format!("{:?}", step.after.variables));

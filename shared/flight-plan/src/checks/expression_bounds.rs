@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Most values that are tried: one takes less than a microsecond.
-const MOST_TRIES: usize = 100_000;
+const MAX_TRIES: usize = 100_000;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let mut trial = Trial {
@@ -15,7 +15,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         variables: Variables::initial(view.plan),
         by_name: view.plan.variables.iter().map(|v| (&v.name, v)).collect(),
         seen: HashSet::new(),
-        left: MOST_TRIES,
+        left: MAX_TRIES,
         problems,
     };
     for (_, stage) in view.plan.all_stages() {

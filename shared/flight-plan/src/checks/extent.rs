@@ -8,7 +8,7 @@ use crate::{Altitude, AltitudeReference, Area, LegKind, Pattern, Place, Scan, Tu
 use geometry::pattern::{ExpandingSquare, Route, SquareParameters, TrackLine, TrackLineParameters, Vertex};
 use geometry::{LatLon, LocalFrame, Turn, Vec2};
 
-/// What distances that are added up in the plane may be off on the earth, as far as [`Region::MOST_M`], metres.
+/// What distances that are added up in the plane may be off on the earth, as far as [`Region::MAX_M`], metres.
 const ROOM_M: f64 = 5.0;
 
 /// The circle in which a point of the path lies, if its exact place is not known.
@@ -21,13 +21,13 @@ pub(super) struct Region {
 
 impl Region {
     /// Farther away and larger nothing is said of it, metres.
-    const MOST_M: f64 = 50_000.0;
+    const MAX_M: f64 = 50_000.0;
 
     /// The least and the greatest distance that the point can have from a place, metres.
     pub fn distances_m(&self, place: LatLon) -> Option<(f64, f64)> {
         let metres = self.centre.distance_m(place);
         let reach_m = self.reach_m();
-        (metres + reach_m <= Self::MOST_M).then_some(((metres - reach_m).max(0.0), metres + reach_m))
+        (metres + reach_m <= Self::MAX_M).then_some(((metres - reach_m).max(0.0), metres + reach_m))
     }
 
     /// All of it is near enough to a place for something to be said of the two.

@@ -8,9 +8,9 @@ use std::collections::HashSet;
 /// Longest identifier, bytes.
 const LONGEST: usize = 64;
 /// Most numbers that are tried for a free identifier.
-const MOST_NUMBERS: usize = 1000;
+const MAX_NUMBERS: usize = 1000;
 /// Most identifiers for which another one is looked for.
-const MOST_RENAMED: usize = 64;
+const MAX_RENAMED: usize = 64;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let variables = view.plan.variables.iter().map(|v| &v.name);
@@ -57,7 +57,7 @@ fn unique<'a>(ids: impl Iterator<Item = &'a Id>, problems: &mut Vec<Problem>) {
 fn twice(again: &[Id], taken: impl Fn(&Id) -> bool, problems: &mut Vec<Problem>) {
     for (index, id) in again.iter().enumerate() {
         let message = format!("rename one of those that are called `{id}`");
-        let free = (index < MOST_RENAMED).then(|| free(id, &taken)).flatten();
+        let free = (index < MAX_RENAMED).then(|| free(id, &taken)).flatten();
         let fix = free.map(|to| Edit::Distinguish { id: id.clone(), to });
         problems.push(Problem::error("duplicate-id", message).of(id).perhaps_fixed_by(fix));
     }
@@ -66,7 +66,7 @@ fn twice(again: &[Id], taken: impl Fn(&Id) -> bool, problems: &mut Vec<Problem>)
 /// A new identifier, derived from an existing one. Variables may not have a `-`.
 fn free(id: &Id, taken: impl Fn(&Id) -> bool) -> Option<Id> {
     let numbered = |n: usize| Id::new(&format!("{id}_{n}"));
-    (2..MOST_NUMBERS).map(numbered).find(|id| !taken(id)).filter(|id| is_identifier(id.as_str()))
+    (2..MAX_NUMBERS).map(numbered).find(|id| !taken(id)).filter(|id| is_identifier(id.as_str()))
 }
 
 fn is_identifier(id: &str) -> bool {

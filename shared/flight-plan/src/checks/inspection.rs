@@ -16,7 +16,7 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most different expressions of a plan: compiling one takes some 50 µs.
-const MOST_EXPRESSIONS: usize = 10_000;
+const MAX_EXPRESSIONS: usize = 10_000;
 
 /// Expressions by their source, and what became of them.
 pub(crate) type Expressions = HashMap<Arc<str>, Result<Expression, ExpressionError>>;
@@ -90,7 +90,7 @@ impl<'a> Inspection<'a> {
 
     /// There were more expressions than are compiled.
     pub fn is_full(&self) -> bool {
-        self.expressions.len() >= MOST_EXPRESSIONS
+        self.expressions.len() >= MAX_EXPRESSIONS
     }
 
     /// Every leg in document order. A rule about one leg reads its step, the two before it and the one after it.

@@ -7,7 +7,7 @@ use super::step::Step;
 use crate::{AltitudeReference, Edit, Leg, LegKind, Pattern, Problem, Value};
 
 /// Most altitudes of one contour.
-const MOST_LEVELS: f64 = 1_000.0;
+const MAX_LEVELS: f64 = 1_000.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
@@ -44,9 +44,9 @@ fn wrong(
         let message = "make `levelStep` more than 0 m to climb from level to level, less to descend; without it all is flown at one altitude";
         return Some((message.to_owned(), level(leg)));
     }
-    if let Some(n) = levels.filter(|n| n.fract() != 0.0 || !(1.0..=MOST_LEVELS).contains(n)) {
-        let message = format!("make the number of levels a whole one from 1 to {MOST_LEVELS}, not {n}");
-        return Some((message, with_levels(leg, n.round().clamp(1.0, MOST_LEVELS))));
+    if let Some(n) = levels.filter(|n| n.fract() != 0.0 || !(1.0..=MAX_LEVELS).contains(n)) {
+        let message = format!("make the number of levels a whole one from 1 to {MAX_LEVELS}, not {n}");
+        return Some((message, with_levels(leg, n.round().clamp(1.0, MAX_LEVELS))));
     }
     let altitude = step.altitude()?;
     let (first_m, steps) = (view.number(&altitude.metres)?, count? - 1.0);

@@ -9,10 +9,10 @@ use crate::{Edit, Leg, LegKind, Pattern, Place, Problem, Value};
 /// Radii and widths beyond this are mistakes, metres.
 pub(super) const LARGEST_M: f64 = 200_000.0;
 /// Most points of a route, passes, loops or turns.
-const MOST_POINTS: usize = 10_000;
-const MOST_PASSES: f64 = 12.0;
-const MOST_LOOPS: f64 = 10_000.0;
-const MOST_TURNS: f64 = 1e6;
+const MAX_POINTS: usize = 10_000;
+const MAX_PASSES: f64 = 12.0;
+const MAX_LOOPS: f64 = 10_000.0;
+const MAX_TURNS: f64 = 1e6;
 /// Two points of a route that are nearer than this are one, metres.
 const SAME_PLACE_M: f64 = 1.0;
 
@@ -49,7 +49,7 @@ impl<'a> Faults<'a> {
             Pattern::Sector { radius_m, sectors, passes, .. } => {
                 self.size("radius", radius_m);
                 self.sectors(sectors);
-                self.whole("passes", passes, MOST_PASSES);
+                self.whole("passes", passes, MAX_PASSES);
             }
             Pattern::TrackLine { route, .. } => {
                 self.route(route);
@@ -60,13 +60,13 @@ impl<'a> Faults<'a> {
                 self.size("width", width_m);
             }
             Pattern::Contour { loops, inward, .. } => match loops {
-                Some(loops) => self.whole("loops", loops, MOST_LOOPS),
+                Some(loops) => self.whole("loops", loops, MAX_LOOPS),
                 None if !inward => self.report("say how many `loops` there are outside the area".into()),
                 None => {}
             },
             Pattern::FigureEight { radius_m, turns, .. } => {
                 self.size("radius", radius_m);
-                self.whole("turns", turns, MOST_TURNS);
+                self.whole("turns", turns, MAX_TURNS);
             }
         }
     }
@@ -118,9 +118,9 @@ impl<'a> Faults<'a> {
     }
 
     fn route(&mut self, route: &[Place]) {
-        if route.len() < 2 || route.len() > MOST_POINTS {
+        if route.len() < 2 || route.len() > MAX_POINTS {
             let n = route.len();
-            return self.report(format!("give the route 2 to {MOST_POINTS} points: it has {n}"));
+            return self.report(format!("give the route 2 to {MAX_POINTS} points: it has {n}"));
         }
         let places: Vec<_> = route.iter().map(|p| self.view.place(p)).collect();
         let same = places.windows(2).position(|pair| match pair {

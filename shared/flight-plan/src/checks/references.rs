@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
-    let mut found = Found { view, left: MOST_SUGGESTIONS, problems };
+    let mut found = Found { view, left: MAX_SUGGESTIONS, problems };
     found.emergencies(&plan.emergency, None);
     for emergency in &plan.emergency_plans {
         found.runway(&emergency.runway, &emergency.id);
@@ -36,7 +36,7 @@ pub(super) fn has_strangers(view: &Inspection, leg: &Leg) -> bool {
 }
 
 /// Most misspelt names for which another one is looked for.
-const MOST_SUGGESTIONS: usize = 64;
+const MAX_SUGGESTIONS: usize = 64;
 
 struct Found<'a, 'p> {
     view: &'a Inspection<'a>,

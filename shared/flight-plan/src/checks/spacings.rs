@@ -7,7 +7,7 @@ use crate::{AltitudeReference, Area, LegKind, Pattern, Problem, Spacing, Value};
 use geometry::LocalFrame;
 
 /// Most tracks beside each other: at 25 m/s and 1 km each that is a month.
-const MOST_TRACKS: f64 = 100_000.0;
+const MAX_TRACKS: f64 = 100_000.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
@@ -17,10 +17,10 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         return;
     }
     let Some(spacing_m) = metres(view, step, spacing) else { return };
-    if let Some(width_m) = width_m(view, step).filter(|w| w / spacing_m > MOST_TRACKS) {
-        let least_m = width_m / MOST_TRACKS;
+    if let Some(width_m) = width_m(view, step).filter(|w| w / spacing_m > MAX_TRACKS) {
+        let least_m = width_m / MAX_TRACKS;
         let message =
-            format!("make the spacing at least {least_m:.2} m: {MOST_TRACKS} tracks are too many already");
+            format!("make the spacing at least {least_m:.2} m: {MAX_TRACKS} tracks are too many already");
         problems.push(Problem::error("too-many-tracks", message).of(&leg.id));
     }
 }

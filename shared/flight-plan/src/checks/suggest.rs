@@ -3,20 +3,20 @@
 use crate::Id;
 
 /// Most identifiers that are compared with a misspelt one.
-const MOST_CANDIDATES: usize = 10_000;
+const MAX_CANDIDATES: usize = 10_000;
 /// Longest identifier that is compared, bytes.
 const LONGEST: usize = 64;
-/// One slip for so many letters, up to [`MOST_SLIPS`].
+/// One slip for so many letters, up to [`MAX_SLIPS`].
 const LETTERS_A_SLIP: usize = 3;
-const MOST_SLIPS: usize = 2;
+const MAX_SLIPS: usize = 2;
 
 /// The one identifier that is spelt nearly like `wanted`: a slip for three letters, two at most; `None` if there is no such
 /// one, or if several are equally near.
 pub(super) fn meant<'a>(wanted: &Id, known: impl Iterator<Item = &'a Id>) -> Option<&'a Id> {
-    let allowed = (wanted.as_str().len() / LETTERS_A_SLIP).min(MOST_SLIPS);
+    let allowed = (wanted.as_str().len() / LETTERS_A_SLIP).min(MAX_SLIPS);
     let mut best: Option<(usize, &Id)> = None;
     let mut alone = true;
-    for id in known.take(MOST_CANDIDATES) {
+    for id in known.take(MAX_CANDIDATES) {
         let Some(slips) = slips(wanted.as_str(), id.as_str()).filter(|n| *n <= allowed) else { continue };
         match best {
             Some((least, other)) if slips > least || id == other => {}
@@ -30,7 +30,7 @@ pub(super) fn meant<'a>(wanted: &Id, known: impl Iterator<Item = &'a Id>) -> Opt
 /// Letters to insert, remove or change (Levenshtein 1966); `None` if that is surely too many.
 fn slips(a: &str, b: &str) -> Option<usize> {
     let (a, b) = (a.as_bytes(), b.as_bytes());
-    if a.len().abs_diff(b.len()) > MOST_SLIPS || a.len().max(b.len()) > LONGEST {
+    if a.len().abs_diff(b.len()) > MAX_SLIPS || a.len().max(b.len()) > LONGEST {
         return None;
     }
     let mut row: Vec<usize> = (0..=b.len()).collect();

@@ -9,8 +9,8 @@ use crate::{Edit, LegKind, Problem, StageKind};
 const MARGIN_M: f64 = 50.0;
 /// Distance between samples of the ground, metres: half of what 3″ data resolves.
 const SPACING_M: f64 = 45.0;
-/// Most looks on a leg.
-const MOST_LOOKS: f64 = 2_000.0;
+/// Most samples on a leg.
+const MAX_SAMPLES: f64 = 2_000.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     if is_high(view, step) == Some(true) {
@@ -62,14 +62,14 @@ fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
     let at_end = clearance_m(view, end, end.altitude_amsl_m?);
     let along = step.start.zip(step.path).and_then(|(start, path)| {
         let from_m = start.altitude_amsl_m?;
-        let looks = (path.length_m() / SPACING_M).ceil().clamp(1.0, MOST_LOOKS);
+        let samples = (path.length_m() / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
         let to_m = end.altitude_amsl_m?;
-        let look = |(share, position)| {
+        let clearance_at = |(share, position)| {
             let altitude_m = from_m + (to_m - from_m) * share;
             clearance_m(view, Point { position, altitude_amsl_m: None }, altitude_m)
         };
-        let looks = path.along(start.position, end.position, looks as u32);
-        looks.filter_map(look).min_by(|a, b| a.0.total_cmp(&b.0))
+        let samples = path.along(start.position, end.position, samples as u32);
+        samples.filter_map(clearance_at).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     at_end.into_iter().chain(along).min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -8,8 +8,8 @@ use crate::{Altitude, AltitudeReference, Edit, Problem, Thing, Value, Zone, Zone
 /// Greatest radius of a zone, metres.
 const LARGEST_M: f64 = 200_000.0;
 /// Most zones, and most corners of all of them.
-const MOST_ZONES: usize = 1000;
-const MOST_CORNERS: usize = 10_000;
+const MAX_ZONES: usize = 1000;
+const MAX_CORNERS: usize = 10_000;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let zones = &view.plan.zones;
@@ -17,9 +17,9 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         ZoneShape::Polygon(corners) => corners.len(),
         ZoneShape::Circle { .. } => 1,
     });
-    if zones.len() > MOST_ZONES || corners.sum::<usize>() > MOST_CORNERS {
+    if zones.len() > MAX_ZONES || corners.sum::<usize>() > MAX_CORNERS {
         let message = format!(
-            "keep to {MOST_ZONES} zones with {MOST_CORNERS} corners in all: leave out those far from the flight, simplify outlines"
+            "keep to {MAX_ZONES} zones with {MAX_CORNERS} corners in all: leave out those far from the flight, simplify outlines"
         );
         problems.push(Problem::error("too-many-zones", message));
     }

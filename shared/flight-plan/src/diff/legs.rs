@@ -1,7 +1,7 @@
 //! What became of legs.
 
 use super::words::{self, change_of};
-use super::{Change, Fate, out_of_order};
+use super::{Change, ChangeKind, out_of_order};
 use crate::xml::Piece;
 use crate::{Altitude, FlightPlan, Id, Leg, LegContext, Place, Stage, Value};
 use geometry::LatLon;
@@ -59,7 +59,7 @@ pub(super) fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
         let id = &now.leg.id;
         let change = |fate, words| Change { part: "leg", id: Some(id.clone()), fate, words };
         let Some(was) = before.get(id) else {
-            changes.push(change(Fate::Added, Vec::new()));
+            changes.push(change(ChangeKind::Added, Vec::new()));
             continue;
         };
         let mut words = Vec::new();
@@ -68,7 +68,7 @@ pub(super) fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
         } else if reordered {
             words.push(format!("in another order in {}", now.inside));
         }
-        let fate = if words.is_empty() { Fate::Changed } else { Fate::Moved };
+        let fate = if words.is_empty() { ChangeKind::Changed } else { ChangeKind::Moved };
         words.extend(properties((&before, was), (&after, now)));
         if !words.is_empty() {
             changes.push(change(fate, words));
@@ -78,7 +78,7 @@ pub(super) fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
     changes.extend(removed.map(|at| Change {
         part: "leg",
         id: Some(at.leg.id.clone()),
-        fate: Fate::Removed,
+        fate: ChangeKind::Removed,
         words: Vec::new(),
     }));
     changes

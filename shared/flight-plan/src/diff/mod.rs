@@ -12,7 +12,7 @@ use std::collections::HashMap;
 /// What became of a part of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Fate {
+pub enum ChangeKind {
     /// Only in the new plan.
     Added,
     /// Only in the old plan.
@@ -31,7 +31,7 @@ pub struct Change {
     /// Which; `None`: the plan itself.
     pub id: Option<Id>,
     /// What became of it.
-    pub fate: Fate,
+    pub fate: ChangeKind,
     /// What changed, a phrase each.
     pub words: Vec<String>,
 }
@@ -44,10 +44,10 @@ impl std::fmt::Display for Change {
             write!(f, " {id}")?;
         }
         f.write_str(match self.fate {
-            Fate::Added => " added",
-            Fate::Removed => " removed",
-            Fate::Changed => " changed",
-            Fate::Moved => " moved",
+            ChangeKind::Added => " added",
+            ChangeKind::Removed => " removed",
+            ChangeKind::Changed => " changed",
+            ChangeKind::Moved => " moved",
         })?;
         if self.words.is_empty() { Ok(()) } else { write!(f, ": {}", self.words.join(", ")) }
     }
@@ -71,9 +71,9 @@ impl Difference {
         let mut difference = Difference::default();
         for Change { id, fate, .. } in legs::changes(old, new) {
             let list = match fate {
-                Fate::Added => &mut difference.added,
-                Fate::Removed => &mut difference.removed,
-                Fate::Changed | Fate::Moved => &mut difference.changed,
+                ChangeKind::Added => &mut difference.added,
+                ChangeKind::Removed => &mut difference.removed,
+                ChangeKind::Changed | ChangeKind::Moved => &mut difference.changed,
             };
             list.extend(id);
         }
@@ -94,7 +94,7 @@ pub fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
     changes.extend((!words.is_empty()).then_some(Change {
         part: "plan",
         id: None,
-        fate: Fate::Changed,
+        fate: ChangeKind::Changed,
         words,
     }));
     list("fix", (&old.fixes, &new.fixes), |f| (&f.id, Piece::Fix(f)), &mut changes);
@@ -129,17 +129,17 @@ fn list<'p, T>(
     for item in new {
         let (id, piece) = of(item);
         let Some(was) = before.get(id).and_then(|i| old.get(*i)) else {
-            changes.push(Change { part, id: Some(id.clone()), fate: Fate::Added, words: Vec::new() });
+            changes.push(Change { part, id: Some(id.clone()), fate: ChangeKind::Added, words: Vec::new() });
             continue;
         };
         let words = words::between(&of(was).1, &piece);
-        let fate = if moved.next() == Some(true) { Fate::Moved } else { Fate::Changed };
-        if fate == Fate::Moved || !words.is_empty() {
+        let fate = if moved.next() == Some(true) { ChangeKind::Moved } else { ChangeKind::Changed };
+        if fate == ChangeKind::Moved || !words.is_empty() {
             changes.push(Change { part, id: Some(id.clone()), fate, words });
         }
     }
     for id in old.iter().map(|item| of(item).0).filter(|id| !after.contains_key(id)) {
-        changes.push(Change { part, id: Some(id.clone()), fate: Fate::Removed, words: Vec::new() });
+        changes.push(Change { part, id: Some(id.clone()), fate: ChangeKind::Removed, words: Vec::new() });
     }
 }
 

@@ -1,6 +1,6 @@
 //! Whom a change of a variable or a procedure reaches.
 
-use super::{Change, Fate};
+use super::{Change, ChangeKind};
 use crate::expression::mentioned;
 use crate::{FlightPlan, Id, Leg, LegKind, Procedure, Variable, VariableValue, instantiate};
 use std::collections::{HashMap, HashSet};
@@ -83,7 +83,7 @@ pub(super) fn of_procedures(old: &FlightPlan, new: &FlightPlan, changes: &mut Ve
             None => changes.push(Change {
                 part: "procedure",
                 id: Some(procedure.id.clone()),
-                fate: Fate::Changed,
+                fate: ChangeKind::Changed,
                 words: vec![words],
             }),
         }

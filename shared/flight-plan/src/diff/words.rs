@@ -195,9 +195,9 @@ impl<'a> Element<'a> {
 
     /// ` (on end, photo)`; nothing if there is nothing to say, or too much.
     fn in_brackets(&self) -> String {
-        let told = self.attributes.iter().filter(|(name, _)| !KEYS.contains(name));
-        let told = told.map(|(name, value)| format!("{name} {value}"));
-        let parts: Vec<String> = told.chain(self.children.iter().map(Element::short)).collect();
+        let shown = self.attributes.iter().filter(|(name, _)| !KEYS.contains(name));
+        let shown = shown.map(|(name, value)| format!("{name} {value}"));
+        let parts: Vec<String> = shown.chain(self.children.iter().map(Element::short)).collect();
         let text = parts.join(", ");
         if text.is_empty() || text.len() > LONGEST { String::new() } else { format!(" ({text})") }
     }

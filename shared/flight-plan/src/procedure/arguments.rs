@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Most different arguments of a plan: compiling one takes some 50 µs.
-const MOST_ARGUMENTS: usize = 10_000;
+const MAX_ARGUMENTS: usize = 10_000;
 
 impl Calls<'_> {
     /// The source of each parameter, over the plan's variables alone.
@@ -47,8 +47,8 @@ impl Calls<'_> {
         if let Some(known) = self.types.get(source) {
             return known.clone();
         }
-        if self.types.len() >= MOST_ARGUMENTS {
-            let message = format!("use fewer different arguments: a plan may have {MOST_ARGUMENTS}");
+        if self.types.len() >= MAX_ARGUMENTS {
+            let message = format!("use fewer different arguments: a plan may have {MAX_ARGUMENTS}");
             return Err(Problem::error("too-large", message));
         }
         let compiled = expression::compile_with(source, &self.names);

@@ -152,8 +152,9 @@ fn cycles<'p>(plan: &'p FlightPlan, waiting: &HashMap<&'p Id, Waiting<'p>>, prob
             }
         }
     }
-    let mut told = HashSet::new();
-    for id in plan.procedures.iter().map(|p| &p.id).filter(|id| callers.contains_key(id) && told.insert(*id))
+    let mut reported = HashSet::new();
+    for id in
+        plan.procedures.iter().map(|p| &p.id).filter(|id| callers.contains_key(id) && reported.insert(*id))
     {
         let message = "this procedure calls itself, if only through others: remove one of these calls";
         problems.push(Problem::error("procedure-cycle", message).of(id));

@@ -1,6 +1,6 @@
 //! The expanding square search: legs of 1, 1, 2, 2, 3, 3 … spacings, every turn a right angle to the same side.
 
-use super::{MOST_VERTICES, PatternError, Vertex, counted, finite, positive};
+use super::{MAX_VERTICES, PatternError, Vertex, counted, finite, positive};
 use crate::Vec2;
 use crate::turn::Turn;
 use serde::{Deserialize, Serialize};
@@ -53,7 +53,7 @@ impl ExpandingSquare {
         finite("centre", p.centre.length())?;
         positive("spacing", p.spacing_m)?;
         finite("heading", p.heading_deg)?;
-        counted("legs", p.legs, MOST_VERTICES)?;
+        counted("legs", p.legs, MAX_VERTICES)?;
         let heading_rad = p.heading_deg.to_radians();
         let second_rad = heading_rad + p.turn.sign() * FRAC_PI_2;
         Ok(Self {

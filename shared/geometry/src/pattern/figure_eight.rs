@@ -1,6 +1,6 @@
 //! The figure-eight: two circles that touch in the middle, one flown right, one left.
 
-use super::{MOST_VERTICES, PatternError, Vertex, counted, finite, positive};
+use super::{MAX_VERTICES, PatternError, Vertex, counted, finite, positive};
 use crate::turn::Turn;
 use crate::{Flattening, Vec2};
 use serde::{Deserialize, Serialize};
@@ -44,7 +44,7 @@ impl FigureEight {
         positive("radius", p.radius_m)?;
         positive("tolerance", p.tolerance_m)?;
         let corners = Flattening::Circumscribed.segments(p.radius_m, 360.0, p.tolerance_m) as u64;
-        counted("laps", p.laps, MOST_VERTICES / (2 * corners) - 1)?;
+        counted("laps", p.laps, MAX_VERTICES / (2 * corners) - 1)?;
         Ok(Self { p: *p, corners })
     }
 

@@ -1,7 +1,7 @@
 //! Patterns besides the plain scan: each is laid out in a plane from numbers, and gives its waypoints by number.
 //!
 //! A cursor can so bookmark a place, go on from it, and fly a pattern backwards. Patterns that follow a formula store nothing
-//! but their parameters; those along a route or a polygon's edge store their waypoints, at most [`MOST_STORED`].
+//! but their parameters; those along a route or a polygon's edge store their waypoints, at most [`MAX_STORED`].
 
 mod contour;
 mod corridor;
@@ -32,9 +32,9 @@ use crate::polygon::PolygonError;
 use crate::scan::{Scan, ScanError};
 
 /// Waypoints that a pattern which follows a formula may have.
-pub const MOST_VERTICES: u64 = 1_000_000_000;
+pub const MAX_VERTICES: u64 = 1_000_000_000;
 /// Waypoints that a pattern which stores them may have: 24 MB.
-pub const MOST_STORED: usize = 1_000_000;
+pub const MAX_STORED: usize = 1_000_000;
 
 /// A waypoint of a pattern.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,7 +162,7 @@ pub enum PatternError {
         spacing_m: f64,
     },
     /// A route needs two points.
-    #[error("the route has {points} points: give it from 2 to {}", route::MOST_POINTS)]
+    #[error("the route has {points} points: give it from 2 to {}", route::MAX_POINTS)]
     RoutePoints {
         /// How many it has.
         points: usize,
@@ -218,11 +218,11 @@ fn counted(what: &'static str, value: u64, most: u64) -> Result<(), PatternError
 
 /// A computed number of waypoints as a whole number.
 fn whole(count: f64) -> Result<u64, PatternError> {
-    if count <= MOST_VERTICES as f64 {
+    if count <= MAX_VERTICES as f64 {
         // rounded up, never negative
         return Ok(count.ceil().max(1.0) as u64);
     }
-    Err(PatternError::TooMany { most: MOST_VERTICES })
+    Err(PatternError::TooMany { most: MAX_VERTICES })
 }
 
 /// The waypoints of tracks in order; the corners of the path to a track come before it.
@@ -247,8 +247,8 @@ impl Stored {
         self.points.extend(way);
         self.starts.push((start, self.points.len()));
         self.points.extend(track);
-        if self.points.len() > MOST_STORED {
-            return Err(PatternError::TooMany { most: MOST_STORED as u64 });
+        if self.points.len() > MAX_STORED {
+            return Err(PatternError::TooMany { most: MAX_STORED as u64 });
         }
         Ok(())
     }

@@ -1,11 +1,11 @@
 //! A route in the plane, and the paths parallel to it.
 
-use super::{MOST_STORED, PatternError};
+use super::{MAX_STORED, PatternError};
 use crate::Vec2;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
 /// Most points of a route; bounds the cost of laying out parallel tracks.
-pub(super) const MOST_POINTS: usize = 10_000;
+pub(super) const MAX_POINTS: usize = 10_000;
 /// Corners up to this turn are mitred on their outside; sharper ones rounded.
 const MITRED_RAD: f64 = FRAC_PI_2;
 /// Greatest turn between waypoints of a rounded corner.
@@ -45,7 +45,7 @@ impl Route {
     /// # Errors
     /// Fewer than two or too many; a point that is not a number or lies on the one before.
     pub fn new(points: &[Vec2]) -> Result<Self, PatternError> {
-        if !(2..=MOST_POINTS).contains(&points.len()) {
+        if !(2..=MAX_POINTS).contains(&points.len()) {
             return Err(PatternError::RoutePoints { points: points.len() });
         }
         if let Some(point) = points.iter().position(|p| !p.length().is_finite()) {
@@ -74,8 +74,8 @@ impl Route {
     /// Refuses more parallel paths than can be laid out at once.
     pub(super) fn check_paths(&self, paths: u64) -> Result<(), PatternError> {
         let points = (self.edges.len() as u64 + 1).saturating_mul(paths);
-        if points > MOST_STORED as u64 {
-            return Err(PatternError::TooMany { most: MOST_STORED as u64 });
+        if points > MAX_STORED as u64 {
+            return Err(PatternError::TooMany { most: MAX_STORED as u64 });
         }
         Ok(())
     }
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(at(&[(0.0, 0.0)]), PatternError::RoutePoints { points: 1 });
         assert_eq!(at(&[(0.0, 0.0), (f64::NAN, 1.0)]), PatternError::RoutePoint { point: 1 });
         assert_eq!(at(&[(0.0, 0.0), (5.0, 1.0), (5.0, 1.0)]), PatternError::RoutePoint { point: 2 });
-        let many = vec![(0.0, 0.0); MOST_POINTS + 1];
-        assert_eq!(at(&many), PatternError::RoutePoints { points: MOST_POINTS + 1 });
+        let many = vec![(0.0, 0.0); MAX_POINTS + 1];
+        assert_eq!(at(&many), PatternError::RoutePoints { points: MAX_POINTS + 1 });
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A second (third …) pass is turned by this from the one before, degrees (IAMSAR).
 pub const PASS_TURN_DEG: f64 = 30.0;
 /// After so many passes the first would be repeated.
-const MOST_PASSES: u64 = 12;
+const MAX_PASSES: u64 = 12;
 
 /// What makes a sector search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ impl SectorSearch {
         finite("centre", p.centre.length())?;
         positive("radius", p.radius_m)?;
         finite("heading", p.heading_deg)?;
-        counted("passes", p.passes, MOST_PASSES)?;
+        counted("passes", p.passes, MAX_PASSES)?;
         if !matches!(p.sectors, 3 | 4 | 6) {
             return Err(PatternError::Sectors(p.sectors));
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Waypoints cut the curve by no more than this share of the spacing, at any tolerance.
-const MOST_CUT: f64 = 1.0 / 40.0;
+const MAX_CUT: f64 = 1.0 / 40.0;
 /// So much of the tolerance is planned with: chords bend most at their outer end, where the curve's bound grows
 /// by less than (2 + π/4) / (2 + π/8) = 1.17 over a chord's.
 const PLANNED: f64 = 0.8;
@@ -62,7 +62,7 @@ impl Spiral {
         positive("spacing", p.spacing_m)?;
         finite("start bearing", p.start_bearing_deg)?;
         positive("tolerance", p.tolerance_m)?;
-        let cut_m = p.tolerance_m.min(MOST_CUT * p.spacing_m);
+        let cut_m = p.tolerance_m.min(MAX_CUT * p.spacing_m);
         // turns are nearer by what their chords may cut, and the outer circle is farther out
         let growth_m = (p.spacing_m - cut_m) / TAU;
         let holed = p.inner_radius_m > 0.0;

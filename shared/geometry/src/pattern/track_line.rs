@@ -5,7 +5,7 @@ use crate::turn::Turn;
 use serde::{Deserialize, Serialize};
 
 /// Pairs of passes that may be flown.
-const MOST_PAIRS: u64 = 1000;
+const MAX_PAIRS: u64 = 1000;
 
 /// What makes a track line search, besides its route.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -34,7 +34,7 @@ impl TrackLine {
     /// A parameter that makes no sense; more waypoints than can be stored.
     pub fn new(route: &Route, p: &TrackLineParameters) -> Result<Self, PatternError> {
         positive("spacing", p.spacing_m)?;
-        counted("pairs of passes", p.pairs.saturating_add(u64::from(!p.returns)), MOST_PAIRS)?;
+        counted("pairs of passes", p.pairs.saturating_add(u64::from(!p.returns)), MAX_PAIRS)?;
         route.check_paths(2 * p.pairs)?;
         let mut stored = Stored::default();
         if !p.returns {

@@ -152,7 +152,7 @@ proptest! {
             prop_assert!(pair[0].end().distance_m(pair[1].start()) < 0.02);
             let kink = course_change_deg(pair[0].end_course_deg(), pair[1].start_course_deg());
             let shortest = pair[0].length_m().min(pair[1].length_m());
-            prop_assert!(kink.abs() < LEAST_FLY_BY_DEG + 0.1 + 0.6 / shortest, "{kink} {pair:?}");
+            prop_assert!(kink.abs() < MIN_FLY_BY_DEG + 0.1 + 0.6 / shortest, "{kink} {pair:?}");
         }
         for corner in corners.iter().filter(|c| c.fly_over) {
             let crossed = path.iter().any(|e| e.nearest(corner.position).separation_m < 0.02);

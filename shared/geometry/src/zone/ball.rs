@@ -7,7 +7,7 @@ const A_M: f64 = 6_378_137.0;
 /// Its first eccentricity squared.
 const E2: f64 = 0.006_694_379_990_141_316;
 /// Nothing on the ellipsoid curves more sharply than this, metres: the meridian at the equator.
-const LEAST_CURVATURE_M: f64 = A_M * (1.0 - E2);
+const MIN_CURVATURE_M: f64 = A_M * (1.0 - E2);
 /// Makes up for rounding, metres.
 const ROUNDING_M: f64 = 0.01;
 
@@ -35,12 +35,12 @@ impl Ball {
     /// The geodesic stays as near to the chord's middle as half the chord and the height of its bulge.
     fn around_line(a: [f64; 3], b: [f64; 3]) -> Self {
         let half_m = squared_distance_m2(a, b).sqrt() / 2.0;
-        let below_m = (LEAST_CURVATURE_M * LEAST_CURVATURE_M - half_m * half_m).max(0.0).sqrt();
+        let below_m = (MIN_CURVATURE_M * MIN_CURVATURE_M - half_m * half_m).max(0.0).sqrt();
         let mut middle_m = a;
         for (m, b) in middle_m.iter_mut().zip(b) {
             *m = (*m + b) / 2.0;
         }
-        Self { middle_m, radius_m: half_m + (LEAST_CURVATURE_M - below_m) + ROUNDING_M }
+        Self { middle_m, radius_m: half_m + (MIN_CURVATURE_M - below_m) + ROUNDING_M }
     }
 
     /// Larger by a distance, metres.

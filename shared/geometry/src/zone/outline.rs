@@ -14,7 +14,7 @@ const ARC_TOLERANCE_M: f64 = 0.1;
 /// The worst point is found to this, metres.
 const FOUND_TO_M: f64 = 0.05;
 /// Most parts into which a chord is divided; each division halves the error where it matters.
-const MOST_PARTS: usize = 400;
+const MAX_PARTS: usize = 400;
 
 /// A polygon in its frame.
 #[derive(Debug, Clone)]
@@ -198,7 +198,7 @@ impl Outline {
         while let Some((from, to)) = open.pop() {
             looked_at += 1;
             let at_most_m = self.bound_m(chord.at(from), chord.at(to));
-            if at_most_m <= best.wrong_m + FOUND_TO_M || looked_at > MOST_PARTS {
+            if at_most_m <= best.wrong_m + FOUND_TO_M || looked_at > MAX_PARTS {
                 continue;
             }
             let middle = (from + to) / 2.0;

@@ -32,9 +32,9 @@ pub fn stage(kind: StageKind, at: &Vertex, runways: &mut [Runway], names: &mut N
         // no position in a file gives it better
         runway.heading_deg = (heading_deg * 100.0).round() / 100.0 % 360.0;
     }
-    let (wish, name) =
+    let (preferred, name) =
         if kind == StageKind::TakeOff { ("take-off", "Take-off") } else { ("land", "Landing") };
-    let mut stage = synthetic::stage(names.take(wish, wish), name, kind);
+    let mut stage = synthetic::stage(names.take(preferred, preferred), name, kind);
     stage.runway = Some(runway.id.clone());
     stage.altitude = at.altitude.clone().filter(|_| kind == StageKind::TakeOff);
     Some(stage)

@@ -190,12 +190,12 @@ impl Importer<'_> {
             let to = waypoint(vertex.position, false);
             // the transit to a line begins anywhere
             let kind = if index == 0 { LegKind::Df { to, turn: None } } else { LegKind::Tf(to) };
-            let wish = if vertex.name.is_empty() {
+            let preferred = if vertex.name.is_empty() {
                 format!("{}.{}", stage.id, index + 1)
             } else {
                 vertex.name.clone()
             };
-            let mut way = leg(self.names.take(&wish, "leg"), kind);
+            let mut way = leg(self.names.take(&preferred, "leg"), kind);
             way.altitude = Some(self.altitude(vertex.altitude.as_ref(), &feature.place));
             stage.legs.push(way.into());
         }

@@ -8,7 +8,7 @@ use crate::synthetic::altitude;
 use flight_plan::{Altitude, AltitudeReference};
 
 /// Highest altitude that is believed, metres either way.
-const MOST_M: f64 = 100_000.0;
+const MAX_M: f64 = 100_000.0;
 
 /// What the altitudes of a mission count from.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ pub struct Datum {
 impl Datum {
     /// An altitude in a frame; `None`, with a note, if it can't be understood.
     pub fn altitude(self, frame: u16, metres: f64, place: &str, notes: &mut Notes) -> Option<Altitude> {
-        if !metres.is_finite() || metres.abs() > MOST_M {
+        if !metres.is_finite() || metres.abs() > MAX_M {
             notes.push(
                 "bad-altitude",
                 place,

@@ -83,7 +83,7 @@ pub fn is_somewhere(command: u16) -> bool {
 }
 
 /// Commands that have no counterpart in a plan, with their names.
-const TOLD: &[(u16, &str)] = &[
+const DESCRIBED: &[(u16, &str)] = &[
     (30, "NAV_CONTINUE_AND_CHANGE_ALT"),
     (33, "NAV_FOLLOW"),
     (80, "NAV_ROI"),
@@ -130,7 +130,7 @@ const TOLD: &[(u16, &str)] = &[
 
 /// What people call a command that is not carried over: `command 183 (DO_SET_SERVO)`.
 pub fn shown(command: u16) -> String {
-    match TOLD.iter().find(|(number, _)| *number == command) {
+    match DESCRIBED.iter().find(|(number, _)| *number == command) {
         Some((number, name)) => format!("command {number} ({name})"),
         None => format!("command {command}"),
     }

@@ -279,7 +279,7 @@ impl Importer<'_> {
         self.ready(item.number, leg);
     }
 
-    /// A leg with everything that waits for one; its identifier is a wish.
+    /// A leg with everything that waits for one; its identifier is a proposal.
     pub(super) fn ready(&mut self, number: i64, mut leg: Leg) {
         leg.id = self.names.take(leg.id.as_str(), "leg");
         leg.speed_mps = self.speed_mps.map(Value::Constant);

@@ -58,7 +58,7 @@ impl Item {
 pub enum Entry {
     /// A plain item.
     Item(Item),
-    /// A pattern that is a leg of ours; its identifier is only a wish.
+    /// A pattern that is a leg of ours; its identifier is only a proposal.
     Leg {
         /// For notes.
         place: String,

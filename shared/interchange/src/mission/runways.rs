@@ -30,7 +30,7 @@ impl<'a> Runways<'a> {
     /// A runway at a point, in the direction towards `to` (or `heading_deg`, if the mission gives one).
     pub fn at(
         &mut self,
-        wish: &str,
+        preferred: &str,
         point: (LatLon, f64),
         direction: Direction,
         place: &str,
@@ -53,7 +53,8 @@ impl<'a> Runways<'a> {
             return same.id.clone();
         }
         let length_m = self.assumptions.runway_length_m;
-        let made = runway(names.take(wish, "runway"), point.0, point.1, heading_deg, length_m, place, notes);
+        let made =
+            runway(names.take(preferred, "runway"), point.0, point.1, heading_deg, length_m, place, notes);
         let id = made.id.clone();
         self.list.push(made);
         id

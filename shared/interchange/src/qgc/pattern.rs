@@ -45,21 +45,21 @@ pub fn read(
         Spacing::Metres(Value::Constant(assumptions.spacing_m))
     });
     lost(item, transect, &camera, place, notes);
-    let (kind, wish) = match corridor {
+    let (kind, preferred) = match corridor {
         true => (LegKind::Pattern(along(item, transect, &corners, spacing, place, notes)), "corridor"),
         false => (LegKind::Scan(survey(item, transect, corners, spacing, place, notes)), "survey"),
     };
-    Ok(Some(leg(wish, kind, &camera)))
+    Ok(Some(leg(preferred, kind, &camera)))
 }
 
-fn leg(wish: &str, kind: LegKind, camera: &Camera) -> Leg {
+fn leg(preferred: &str, kind: LegKind, camera: &Camera) -> Leg {
     let action = |trigger, act| LegAction { trigger, act };
     let pictures = camera.every_m.map(|every_m| {
         let series = Act::PhotoSeries { every_m: Value::Constant(every_m) };
         vec![action(Trigger::Start, series), action(Trigger::End, Act::PhotoStop)]
     });
     Leg {
-        id: Id::new(wish),
+        id: Id::new(preferred),
         name: String::new(),
         emergency: Default::default(),
         altitude: camera.height_m.map(|m| altitude(m, camera.reference)),

@@ -62,10 +62,10 @@ impl Simulator {
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => done(self.autopilot.change_speed(c.params[1].into())),
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => self.set_current_command(c),
             MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => self.set_interval(peer, c),
-            MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => self.tell_interval(peer, c.params[0]),
-            MavCmd::MAV_CMD_REQUEST_MESSAGE => self.tell(peer, c.params[0] as u32),
-            MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => self.tell(peer, 148),
-            MavCmd::MAV_CMD_GET_HOME_POSITION => self.tell(peer, 242),
+            MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => self.send_interval(peer, c.params[0]),
+            MavCmd::MAV_CMD_REQUEST_MESSAGE => self.send_requested(peer, c.params[0] as u32),
+            MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => self.send_requested(peer, 148),
+            MavCmd::MAV_CMD_GET_HOME_POSITION => self.send_requested(peer, 242),
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         }
     }
@@ -142,14 +142,14 @@ impl Simulator {
         done(known)
     }
 
-    fn tell_interval(&mut self, peer: Peer, id: f32) -> MavResult {
+    fn send_interval(&mut self, peer: Peer, id: f32) -> MavResult {
         let interval_us = self.streams_of(peer).map_or(0, |s| s.interval_us(id as u32));
         let message_id = id as u16;
         self.send(peer, &MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA { interval_us, message_id }));
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    fn tell(&mut self, peer: Peer, id: u32) -> MavResult {
+    fn send_requested(&mut self, peer: Peer, id: u32) -> MavResult {
         let message = telemetry::message(&self.autopilot, self.now_ns, id);
         if let Some(message) = &message {
             self.send(peer, message);

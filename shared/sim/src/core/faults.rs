@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 const NS_PER_S: f64 = 1e9;
 /// Requests kept at most; more are refused.
-const MOST_REQUESTS: usize = 64;
+const MAX_REQUESTS: usize = 64;
 
 /// Something that goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +123,7 @@ pub struct Effects {
     pub gps_lost: bool,
     /// No engine power.
     pub engine_out: bool,
-    /// Nothing sent or heard.
+    /// Nothing sent or received.
     pub silent: bool,
     /// The battery dropped.
     pub low_battery: bool,
@@ -143,7 +143,7 @@ pub struct Schedule(Vec<Scheduled>);
 impl Schedule {
     /// Adds a request; false if there are too many already.
     pub fn add(&mut self, request: FaultRequest, now_ns: u64) -> bool {
-        if self.0.len() >= MOST_REQUESTS {
+        if self.0.len() >= MAX_REQUESTS {
             return false;
         }
         let from_ns = request.at_s.map_or(now_ns, |s| (s * NS_PER_S) as u64);

@@ -48,7 +48,7 @@ impl Simulator {
             MavMessage::TIMESYNC(c) => self.timesync(peer, c),
             MavMessage::PARAM_REQUEST_LIST(_) => {
                 for index in 0..self.autopilot.params.len() {
-                    self.tell_param(peer, index);
+                    self.send_param(peer, index);
                 }
             }
             MavMessage::PARAM_REQUEST_READ(c) => self.param_read(peer, c),
@@ -73,8 +73,8 @@ impl Simulator {
             MavMessage::MISSION_ITEM(c) => self.mission_item(party, &item::from_float(c)),
             MavMessage::MISSION_ACK(_) => self.autopilot.mission.cancel(party),
             MavMessage::MISSION_REQUEST_LIST(c) => self.send_count(party, c.mission_type),
-            MavMessage::MISSION_REQUEST_INT(c) => self.tell_item(party, c.seq, c.mission_type, true),
-            MavMessage::MISSION_REQUEST(c) => self.tell_item(party, c.seq, c.mission_type, false),
+            MavMessage::MISSION_REQUEST_INT(c) => self.send_item(party, c.seq, c.mission_type, true),
+            MavMessage::MISSION_REQUEST(c) => self.send_item(party, c.seq, c.mission_type, false),
             MavMessage::MISSION_SET_CURRENT(c) => {
                 if !self.set_current(c.seq) {
                     let text = format!("No mission item {}", c.seq);
@@ -158,7 +158,7 @@ impl Simulator {
         let by_name = || self.autopilot.params.index_of(c.param_id.to_str().unwrap_or_default());
         let index = usize::try_from(c.param_index).ok().or_else(by_name);
         if let Some(index) = index {
-            self.tell_param(peer, index);
+            self.send_param(peer, index);
         }
     }
 
@@ -167,11 +167,11 @@ impl Simulator {
         let name = c.param_id.to_str().unwrap_or_default();
         self.autopilot.params.set(name, c.param_value);
         if let Some(index) = self.autopilot.params.index_of(name) {
-            self.tell_param(peer, index);
+            self.send_param(peer, index);
         }
     }
 
-    fn tell_param(&mut self, peer: Peer, index: usize) {
+    fn send_param(&mut self, peer: Peer, index: usize) {
         let Some(param) = self.autopilot.params.by_index(index).copied() else {
             return;
         };
@@ -232,7 +232,7 @@ impl Simulator {
     }
 
     /// Read-back: what was taken, altitudes rounded to centimetres as the real list does.
-    fn tell_item(&mut self, party: Party, seq: u16, mission_type: MavMissionType, as_int: bool) {
+    fn send_item(&mut self, party: Party, seq: u16, mission_type: MavMissionType, as_int: bool) {
         let item = self.autopilot.mission.items().get(usize::from(seq));
         let Some(item) = item.filter(|_| is_mission(mission_type)) else {
             let result = MavMissionResult::MAV_MISSION_INVALID_SEQUENCE;

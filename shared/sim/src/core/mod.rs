@@ -25,7 +25,7 @@ use streams::Streams;
 pub const STEP_NS: u64 = 100_000_000;
 const STEP_S: f64 = STEP_NS as f64 / 1e9;
 /// Peers served at most.
-pub const MOST_PEERS: usize = 8;
+pub const MAX_PEERS: usize = 8;
 /// Id of `TIMESYNC`, which no fault touches: time has to go on.
 const TIMESYNC_ID: u32 = 111;
 /// Share of the battery that the low-battery fault leaves.
@@ -43,8 +43,8 @@ pub struct Outgoing {
 /// How the link did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
-    /// Frames heard.
-    pub heard: u64,
+    /// Frames received.
+    pub received: u64,
     /// Frames for somebody else, or of no use.
     pub ignored: u64,
     /// Frames handed out for sending.
@@ -102,7 +102,7 @@ impl Simulator {
 
     /// A partner appears: it gets telemetry from now on. False: there are too many already.
     pub fn connect(&mut self, peer: Peer) -> bool {
-        if self.peers.len() >= MOST_PEERS && !self.peers.contains_key(&peer) {
+        if self.peers.len() >= MAX_PEERS && !self.peers.contains_key(&peer) {
             return false;
         }
         let now_ns = self.now_ns;
@@ -130,7 +130,7 @@ impl Simulator {
         if !self.peers.contains_key(&peer) {
             return;
         }
-        self.counters.heard += 1;
+        self.counters.received += 1;
         if is_timesync(&frame) {
             self.handle(peer, &frame);
             return;
@@ -157,8 +157,8 @@ impl Simulator {
             self.mission_reply(party, reply);
         }
         self.watch_battery();
-        self.tell_events(before);
-        self.tell_streams();
+        self.send_events(before);
+        self.send_streams();
     }
 
     /// The question of the lockstep, to every partner; no fault touches it.
@@ -213,7 +213,7 @@ impl Simulator {
         self.battery_level = level;
     }
 
-    fn tell_events(&mut self, current_before: u16) {
+    fn send_events(&mut self, current_before: u16) {
         for seq in self.autopilot.take_reached() {
             self.broadcast(&telemetry::item_reached(seq));
         }
@@ -230,7 +230,7 @@ impl Simulator {
         }
     }
 
-    fn tell_streams(&mut self) {
+    fn send_streams(&mut self) {
         let mut due = Vec::new();
         for (peer, streams) in &mut self.peers {
             due.extend(streams.due(self.now_ns).into_iter().map(|id| (*peer, id)));

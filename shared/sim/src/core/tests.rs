@@ -17,14 +17,14 @@ const PEER: Peer = Peer(1);
 struct Ground {
     sim: Simulator,
     decoder: Decoder,
-    heard: Vec<MavMessage>,
+    received: Vec<MavMessage>,
 }
 
 impl Ground {
     fn new(wind: Wind) -> Self {
         let mut sim = Simulator::new(Profile::default(), Config::default().home, wind, 1);
         assert!(sim.connect(PEER));
-        Self { sim, decoder: Decoder::default(), heard: Vec::new() }
+        Self { sim, decoder: Decoder::default(), received: Vec::new() }
     }
 
     fn home(&self) -> LatLon {
@@ -36,7 +36,7 @@ impl Ground {
             self.decoder.push(&outgoing.bytes);
             for frame in frame::take_frames(&mut self.decoder) {
                 if let Body::Known(message) = frame.body {
-                    self.heard.push(*message);
+                    self.received.push(*message);
                 }
             }
         }
@@ -45,10 +45,10 @@ impl Ground {
     /// Says something and returns what is answered at once.
     fn say(&mut self, message: MavMessage) -> Vec<MavMessage> {
         self.listen();
-        let before = self.heard.len();
+        let before = self.received.len();
         self.sim.receive(PEER, Frame::new(GROUND, message));
         self.listen();
-        self.heard[before..].to_vec()
+        self.received[before..].to_vec()
     }
 
     /// Steps until `done`, at most `limit_s`; false if it never was.
@@ -137,7 +137,7 @@ impl Ground {
             MavMessage::STATUSTEXT(t) => Some(t.text.to_str().unwrap().to_owned()),
             _ => None,
         };
-        self.heard.iter().filter_map(text).collect()
+        self.received.iter().filter_map(text).collect()
     }
 
     fn reached(&self) -> Vec<u16> {
@@ -145,7 +145,7 @@ impl Ground {
             MavMessage::MISSION_ITEM_REACHED(r) => Some(r.seq),
             _ => None,
         };
-        self.heard.iter().filter_map(seq).collect()
+        self.received.iter().filter_map(seq).collect()
     }
 
     fn position(&self) -> LatLon {
@@ -307,11 +307,11 @@ fn an_aborted_upload_is_cancelled_after_eight_seconds_with_ack_15() {
     ground.count(5);
     ground.item(&MISSION_ITEM_INT_DATA { seq: 0, ..waypoint(LatLon::new(36.0, -84.0)) });
     ground.fly_until(7.8, |_| false);
-    assert_eq!(Ground::ack(&ground.heard), None);
+    assert_eq!(Ground::ack(&ground.received), None);
     ground.fly_until(0.4, |_| false);
     let cancelled = MavMissionResult::MAV_MISSION_OPERATION_CANCELLED;
-    assert_eq!(Ground::ack(&ground.heard), Some(cancelled));
-    let asked = ground.heard.iter().filter(|m| matches!(m, MavMessage::MISSION_REQUEST(_))).count();
+    assert_eq!(Ground::ack(&ground.received), Some(cancelled));
+    let asked = ground.received.iter().filter(|m| matches!(m, MavMessage::MISSION_REQUEST(_))).count();
     assert!((7..=10).contains(&asked), "asked {asked} times");
 }
 
@@ -547,18 +547,18 @@ fn silence_stops_everything_but_time() {
     let mut ground = Ground::new(Wind::CALM);
     ground.sim.inject("silence@1+5".parse().unwrap());
     ground.fly_until(1.0, |_| false);
-    ground.heard.clear();
+    ground.received.clear();
     ground.fly_until(3.0, |_| false);
-    assert_eq!(ground.heard, []);
+    assert_eq!(ground.received, []);
     assert!(ground.say(MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT)).is_empty());
     ground.sim.ask_time();
     let question = ground.say(telemetry::timesync(0, 77));
     assert_eq!(question.len(), 1, "its own question must be answered: {question:?}");
-    assert!(matches!(&ground.heard[0], MavMessage::TIMESYNC(t) if t.tc1 == 0));
+    assert!(matches!(&ground.received[0], MavMessage::TIMESYNC(t) if t.tc1 == 0));
     ground.say(telemetry::timesync(1, 4_000_000_000));
     assert_eq!(ground.sim.take_sync_answers(), [(PEER, 4_000_000_000)]);
     ground.fly_until(3.0, |_| false);
-    assert!(ground.heard.iter().any(|m| matches!(m, MavMessage::HEARTBEAT(_))));
+    assert!(ground.received.iter().any(|m| matches!(m, MavMessage::HEARTBEAT(_))));
 }
 
 #[test]
@@ -572,11 +572,11 @@ fn packet_loss_of_a_fifth_delays_an_upload_but_does_not_break_it() {
     let total = items.len() as u16 + 1;
     for attempt in 0.. {
         assert!(attempt < 50, "no upload in 50 attempts");
-        ground.heard.clear();
+        ground.received.clear();
         ground.count(total);
         // answers what it is asked for, as slow clients do
         for _ in 0..300 {
-            let asked = ground.heard.drain(..).filter_map(|m| match m {
+            let asked = ground.received.drain(..).filter_map(|m| match m {
                 MavMessage::MISSION_REQUEST(r) => Some(Ok(r.seq)),
                 MavMessage::MISSION_ACK(a) => Some(Err(a.mavtype)),
                 _ => None,
@@ -602,11 +602,11 @@ fn packet_loss_of_a_fifth_delays_an_upload_but_does_not_break_it() {
 fn telemetry_tells_what_is_flown() {
     let home = Config::default().home.position;
     let mut ground = airborne_in_auto(&circuit(home), Wind::from_direction(270.0, 5.0));
-    ground.heard.clear();
+    ground.received.clear();
     ground.fly_until(2.0, |_| false);
     let s = *ground.sim.autopilot.aircraft.state();
     let mut kinds = std::collections::BTreeSet::new();
-    for m in &ground.heard {
+    for m in &ground.received {
         kinds.insert(mavlink::Message::message_id(m));
         match m {
             MavMessage::HEARTBEAT(h) => {

@@ -21,7 +21,7 @@ fn run_until(flight: &mut Flight, what: &str, done: impl Fn(&Flight) -> bool) {
         }
         flight.step();
     }
-    panic!("never: {what}; asked {:?}, heard {:?}", flight.gateway.requests, flight.heard);
+    panic!("never: {what}; asked {:?}, heard {:?}", flight.gateway.requests, flight.events);
 }
 
 fn run(flight: &mut Flight, steps: usize) {
@@ -29,7 +29,7 @@ fn run(flight: &mut Flight, steps: usize) {
 }
 
 fn emergencies(flight: &Flight) -> usize {
-    flight.heard.iter().filter(|e| matches!(e, Event::EmergencyStarted { .. })).count()
+    flight.events.iter().filter(|e| matches!(e, Event::EmergencyStarted { .. })).count()
 }
 
 fn in_emergency(flight: &Flight) -> bool {
@@ -46,9 +46,9 @@ fn events_lost_an_alarm_among_them_is_found_and_answered() {
     flight.gateway.events.clear();
     run(&mut flight, 4);
     assert!(!in_emergency(&flight), "it waits for the event");
-    flight.tell(|manager, now, out| manager.events_lost(now, 1, out));
+    flight.with_manager(|manager, now, out| manager.events_lost(now, 1, out));
     run(&mut flight, 2);
-    assert!(in_emergency(&flight), "{:?}", flight.heard);
+    assert!(in_emergency(&flight), "{:?}", flight.events);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn events_lost_the_landing_among_them_is_noticed() {
     flight.gateway.events.clear();
     run(&mut flight, 4);
     assert_eq!(flight.process.manager.executor().status_phase(), Phase::Flying);
-    flight.tell(|manager, now, out| manager.events_lost(now, 9, out));
+    flight.with_manager(|manager, now, out| manager.events_lost(now, 9, out));
     run(&mut flight, 4);
     assert_eq!(flight.process.manager.executor().status_phase(), Phase::Finished);
 }
@@ -82,7 +82,7 @@ fn alarm_raised_on_the_ground_is_answered_in_the_air() {
         run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
         assert_eq!(emergencies(&flight), 0, "it is not for the ground");
         run(&mut flight, 3);
-        assert_eq!(emergencies(&flight), 1, "{:?}", flight.heard);
+        assert_eq!(emergencies(&flight), 1, "{:?}", flight.events);
     }
 }
 
@@ -96,7 +96,7 @@ fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
     flight.ask_once(&What::Command(Command::ReturnToMain { leg: Id::new("back") }), "return").unwrap();
     run(&mut flight, 2);
     assert_eq!(emergencies(&flight), 2);
-    let starts = flight.heard.iter().rev();
+    let starts = flight.events.iter().rev();
     let last = starts.filter(|e| matches!(e, Event::EmergencyStarted { .. })).take(1);
     assert!(format!("{:?}", last.collect::<Vec<_>>()).contains("Energy"));
     // the engine's was answered, and so is this now
@@ -183,12 +183,12 @@ fn holding_when_safe_mode_ends_it_holds_again() {
 }
 
 /// What is told of legs and actions, and what is asked of services.
-fn told_of_the_plan(flight: &Flight) -> usize {
+fn reports_of_plan(flight: &Flight) -> usize {
     use Event::*;
     let of_plan = |e: &&Event| {
         matches!(e, LegEntered { .. } | IterationFinished { .. } | DecisionTaken { .. } | ActionDone { .. })
     };
-    flight.heard.iter().filter(of_plan).count()
+    flight.events.iter().filter(of_plan).count()
 }
 
 #[test]
@@ -196,14 +196,14 @@ fn brought_down_by_the_pilot_or_safe_mode_nothing_ahead_counts_as_flown() {
     for by in [GatewayState::Manual, GatewayState::SafeLand] {
         let mut flight = flown(10, STARTED);
         run(&mut flight, 2);
-        let told = told_of_the_plan(&flight);
+        let told = reports_of_plan(&flight);
         flight.gateway.state = by;
         run(&mut flight, 4);
         // down it has no waypoints
         flight.gateway.safe_return();
         flight.gateway.state = GatewayState::Stop;
         run(&mut flight, 4);
-        assert_eq!(told_of_the_plan(&flight), told, "{by:?}: {:?}", flight.heard);
+        assert_eq!(reports_of_plan(&flight), told, "{by:?}: {:?}", flight.events);
         assert_eq!(flight.process.manager.executor().status_phase(), Phase::Finished);
         let joins = flight.gateway.joins.len();
         run(&mut flight, 20);
@@ -242,7 +242,7 @@ fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
     let command = Command::Commit { hash, entry: Some(Id::new("back")) };
     flight.ask_once(&What::Command(command), "commit").unwrap();
     run(&mut flight, 2);
-    assert_eq!(emergencies(&flight), 2, "{:?}", flight.heard);
+    assert_eq!(emergencies(&flight), 2, "{:?}", flight.events);
 }
 
 /// It ran dry; what it then took is not flown by what it says of before.
@@ -253,12 +253,12 @@ fn everything_flown_told_before_more_was_taken_is_not_the_end() {
     let before = ahead(&flight);
     assert!(before.len() > 1);
     let taken = before[0].convert();
-    flight.tell(|manager, now, out| {
+    flight.with_manager(|manager, now, out| {
         manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
     });
     assert_eq!(ahead(&flight), before);
     let taken = before[before.len() - 1].convert();
-    flight.tell(|manager, now, out| {
+    flight.with_manager(|manager, now, out| {
         manager.gateway_event(now, GatewayEvent::Progress { current: None, taken }, out);
     });
     assert_ne!(ahead(&flight), before, "everything that was taken");

@@ -50,7 +50,7 @@ struct Flight {
     random: Random,
     deadly: bool,
     kills: u64,
-    heard: Vec<Event>,
+    events: Vec<Event>,
     /// States after the latest turns; the last turn that was written, and the last that was synced for sure.
     history: VecDeque<(u64, Saved)>,
     turn: u64,
@@ -82,7 +82,7 @@ impl Flight {
             random: Random(seed),
             deadly,
             kills: 0,
-            heard: Vec::new(),
+            events: Vec::new(),
             turn: 0,
             written: 0,
             synced: 0,
@@ -179,7 +179,7 @@ impl Flight {
                     manager.requested(now, &request, answer, &mut out);
                 }
             }
-            Effect::Event(event) => self.heard.push(event),
+            Effect::Event(event) => self.events.push(event),
             Effect::Invoke { .. } => {}
             Effect::Record(_) | Effect::Keep(_) | Effect::Sync => unreachable!("recorded before"),
         }
@@ -187,7 +187,7 @@ impl Flight {
     }
 
     /// Something reaches the process. If it dies of it, the next one goes on, and this is not repeated.
-    fn tell(&mut self, what: impl FnOnce(&mut Manager, Time, &mut Vec<Effect>)) {
+    fn with_manager(&mut self, what: impl FnOnce(&mut Manager, Time, &mut Vec<Effect>)) {
         let mut effects = Vec::new();
         what(&mut self.process.manager, self.time, &mut effects);
         if self.perform(effects).is_err() {
@@ -257,13 +257,13 @@ impl Flight {
         self.time += Time::from_millis(500);
         self.gateway.fly();
         while let Some(event) = self.gateway.events.pop_front() {
-            self.tell(|manager, now, out| manager.gateway_event(now, event, out));
+            self.with_manager(|manager, now, out| manager.gateway_event(now, event, out));
         }
         let (status, navigation, position) =
             (self.gateway.status(), self.gateway.navigation(), self.gateway.position());
-        self.tell(|manager, now, out| manager.gateway_status(now, &status, out));
-        self.tell(|manager, now, out| manager.navigation(now, &navigation, out));
-        self.tell(|manager, now, out| {
+        self.with_manager(|manager, now, out| manager.gateway_status(now, &status, out));
+        self.with_manager(|manager, now, out| manager.navigation(now, &navigation, out));
+        self.with_manager(|manager, now, out| {
             manager.aircraft().position(position);
             manager.tick(now, out);
         });
@@ -305,7 +305,7 @@ impl Flight {
                     self.revive();
                     // the event is gone for good: the gateway's state says so too
                     let status = self.gateway.status();
-                    self.tell(|manager, now, out| manager.gateway_status(now, &status, out));
+                    self.with_manager(|manager, now, out| manager.gateway_status(now, &status, out));
                 }
                 return Ok(());
             }
@@ -370,7 +370,7 @@ fn expect_as_undisturbed(killed: &Flight, undisturbed: &Flight) {
     assert_eq!(rest(&path), rest(&other), "flown, from waypoint {from}");
     assert_eq!(killed.variables(), undisturbed.variables());
     assert_eq!(killed.gateway.launches(), 1);
-    let (once, ever) = (happened(&undisturbed.heard), happened(&killed.heard));
+    let (once, ever) = (happened(&undisturbed.events), happened(&killed.events));
     for (event, count) in ever {
         assert!(count <= once.get(&event).copied().unwrap_or(0), "{count} times {event}");
     }
@@ -407,12 +407,12 @@ fn killed_while_the_disk_was_full_it_holds_and_says_that_its_place_is_not_known(
     let (process, troubles) = begin(&flight.disk, &flight.config);
     assert_eq!(troubles.len(), 1, "{troubles:?}");
     flight.process = process;
-    flight.heard.clear();
+    flight.events.clear();
     flight.hand_in_state();
     flight.come_back().unwrap();
     assert_eq!(flight.gateway.state, GatewayState::Hold);
     let told = |event: &Event| matches!(event, Event::NotJournalled { reason } if reason.contains("place"));
-    assert_eq!(flight.heard.iter().filter(|e| told(e)).count(), 1, "{:?}", flight.heard);
+    assert_eq!(flight.events.iter().filter(|e| told(e)).count(), 1, "{:?}", flight.events);
     for _ in 0..5 {
         flight.step();
     }

@@ -48,7 +48,7 @@ pub struct List {
     home: Option<Item>,
     /// The ground under the aircraft, for an autopilot that does not say where its home is.
     ground: Option<Item>,
-    told: Course,
+    reported: Course,
 }
 
 impl List {
@@ -157,6 +157,6 @@ impl List {
     pub fn new_course(&mut self) -> Option<Course> {
         let w = &self.window;
         let course = Course { aboard: w.installed(), ready: w.ready(), target: w.target() };
-        (std::mem::replace(&mut self.told, course) != course).then_some(course)
+        (std::mem::replace(&mut self.reported, course) != course).then_some(course)
     }
 }

@@ -73,7 +73,7 @@ impl ArduPlane {
         loop {
             let mut more = vec![];
             for item in events.drain(..) {
-                self.hear(now, item, &mut more);
+                self.on_event(now, item, &mut more);
             }
             if std::mem::take(&mut self.stirred) {
                 self.work(now, &mut more);
@@ -86,9 +86,9 @@ impl ArduPlane {
         self.events = events;
     }
 
-    fn hear(&mut self, now: Time, event: SessionEvent, more: &mut Vec<SessionEvent>) {
+    fn on_event(&mut self, now: Time, event: SessionEvent, more: &mut Vec<SessionEvent>) {
         if let SessionEvent::Telemetry(report) = event {
-            self.look_at(&report);
+            self.observe(&report);
             return self.reports.push_back(report);
         }
         self.stirred = true;
@@ -101,7 +101,7 @@ impl ArduPlane {
             SessionEvent::Heartbeat { mode, armed } => {
                 self.mode = Some(mode);
                 self.list.flown = armed && mode == modes::AUTO;
-                let report = Report::Heard { mode: modes::meaning(mode), name: modes::name(mode), armed };
+                let report = Report::Heartbeat { mode: modes::meaning(mode), name: modes::name(mode), armed };
                 self.reports.push_back(report);
             }
             SessionEvent::Current(seq) => {
@@ -117,7 +117,7 @@ impl ArduPlane {
     }
 
     /// What telemetry means to the list.
-    fn look_at(&mut self, report: &Report) {
+    fn observe(&mut self, report: &Report) {
         match report {
             Report::Home { position, altitude_amsl_m } => {
                 self.list.set_home(*position, *altitude_amsl_m);

@@ -88,7 +88,7 @@ impl Mission {
     }
 
     /// A message came in, and what it ended, if anything. `None`: it is not about what is being done.
-    pub fn hear(
+    pub fn on_message(
         &mut self,
         now: Time,
         message: &MavMessage,
@@ -96,8 +96,8 @@ impl Mission {
         out: &mut Vec<MavMessage>,
     ) -> Option<Option<Outcome>> {
         let outcome = match self.job.as_mut()? {
-            Job::Transfer(transfer) => hear_transfer(transfer, now, message, peer, out)?,
-            Job::Write(write) => hear_write(write, now, message)?,
+            Job::Transfer(transfer) => on_transfer_message(transfer, now, message, peer, out)?,
+            Job::Write(write) => on_write_message(write, now, message)?,
         };
         Some(self.finish(outcome))
     }
@@ -113,7 +113,7 @@ impl Mission {
 }
 
 #[expect(deprecated, reason = "ArduPilot asks by the deprecated message, and has to be answered")]
-fn hear_transfer(
+fn on_transfer_message(
     transfer: &mut Transfer,
     now: Time,
     message: &MavMessage,
@@ -141,7 +141,7 @@ fn hear_transfer(
     }
 }
 
-fn hear_write(write: &mut PartialWrite, now: Time, message: &MavMessage) -> Option<Option<Outcome>> {
+fn on_write_message(write: &mut PartialWrite, now: Time, message: &MavMessage) -> Option<Option<Outcome>> {
     let plan = mission_type();
     match message {
         MavMessage::MISSION_ACK(a) if a.mission_type == plan => {

@@ -8,7 +8,7 @@ const FIRST: Duration = Duration::from_millis(500);
 const SHORTEST: Duration = Duration::from_millis(150);
 const LONGEST: Duration = Duration::from_millis(3000);
 /// A radio link loses frames by noise more than by congestion: backing off further only wastes time.
-const MOST_DOUBLINGS: u32 = 1;
+const MAX_DOUBLINGS: u32 = 1;
 /// A timeout makes a link suspect for so many exchanges.
 const SUSPECT_FOR: u32 = 16;
 
@@ -44,7 +44,7 @@ impl Rto {
             None => FIRST,
             Some((mean, spread)) => Duration::try_from_secs_f64(mean + 4.0 * spread).unwrap_or(LONGEST),
         };
-        (base.max(SHORTEST) * (1 << self.doublings.min(MOST_DOUBLINGS))).min(LONGEST)
+        (base.max(SHORTEST) * (1 << self.doublings.min(MAX_DOUBLINGS))).min(LONGEST)
     }
 
     /// Starts the timer anew.

@@ -97,7 +97,7 @@ impl Session {
         let Some(frame) = self.decoder.next_frame() else { return false };
         let (sender, message) = (frame.sender, frame.message());
         match message {
-            Some(message) => self.hear(now, sender, &message, events),
+            Some(message) => self.on_message(now, sender, &message, events),
             // an unknown value in an enumeration loses this message only
             None => self.ignored += 1,
         }
@@ -169,7 +169,13 @@ impl Session {
     }
 
     /// A message came in.
-    pub fn hear(&mut self, now: Time, sender: Sender, message: &MavMessage, events: &mut Vec<SessionEvent>) {
+    pub fn on_message(
+        &mut self,
+        now: Time,
+        sender: Sender,
+        message: &MavMessage,
+        events: &mut Vec<SessionEvent>,
+    ) {
         if let MavMessage::HEARTBEAT(beat) = message {
             self.bind(sender, beat, events);
         }
@@ -186,14 +192,14 @@ impl Session {
         };
         self.streams.seen(mavlink::Message::message_id(message));
         match message {
-            MavMessage::HEARTBEAT(beat) => self.heard(now, beat, events),
+            MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
             }
             MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq, events),
-            _ => match self.mission.hear(now, message, peer, &mut self.out) {
+            _ => match self.mission.on_message(now, message, peer, &mut self.out) {
                 Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
                 None => self.readings.take(now, message, events, &mut self.ignored),
             },
@@ -210,7 +216,7 @@ impl Session {
         events.push(SessionEvent::Bound(beat.clone()));
     }
 
-    fn heard(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
+    fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
         events.push(SessionEvent::Heartbeat { mode: beat.custom_mode, armed });
         self.shown(now, Shown::Mode(beat.custom_mode, armed), events);

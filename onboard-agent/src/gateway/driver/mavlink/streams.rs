@@ -8,9 +8,9 @@ use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
 /// So long is looked how often a message comes before it is asked for again.
-const LOOK: Duration = Duration::from_secs(3);
+const OBSERVED: Duration = Duration::from_secs(3);
 /// And each time twice as long, up to so many times: an autopilot may have its reasons.
-const MOST_DOUBLINGS: u32 = 5;
+const MAX_DOUBLINGS: u32 = 5;
 
 /// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
 const WANTED: [(u32, u32); 14] = [
@@ -54,7 +54,7 @@ impl Stream {
             return true;
         };
         let looked = now.saturating_sub(since);
-        if looked < LOOK * (1 << self.in_vain.min(MOST_DOUBLINGS)) {
+        if looked < OBSERVED * (1 << self.in_vain.min(MAX_DOUBLINGS)) {
             return false;
         }
         let wanted = looked.as_millis() / u128::from(interval_ms.max(1));

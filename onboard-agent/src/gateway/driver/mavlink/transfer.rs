@@ -18,7 +18,7 @@ const PATIENCE: u32 = 30;
 /// Times that a list that reads back differently is written again.
 const REWRITES: u32 = 5;
 /// More entries than this is no list.
-const MOST_ITEMS: u16 = 2000;
+const MAX_ITEMS: u16 = 2000;
 
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
@@ -252,7 +252,7 @@ impl Transfer {
         if self.phase != Phase::Counting {
             return None;
         }
-        if count > MOST_ITEMS {
+        if count > MAX_ITEMS {
             return Some(Outcome::Failed(format!("the autopilot claims a list of {count} entries")));
         }
         self.progressed(now);

@@ -11,9 +11,9 @@ use geometry::{LatLon, LocalFrame};
 /// So near to a piece's ends a position counts as beside it, metres.
 const NEAR_M: f64 = 1.0;
 /// Repeated actions nearer to each other than this are refused, metres.
-const LEAST_EVERY_M: f64 = 1.0;
+const MIN_EVERY_M: f64 = 1.0;
 /// Most repetitions caught up with at once; those still missing follow in the next steps.
-const MOST_AT_ONCE: usize = 64;
+const MAX_AT_ONCE: usize = 64;
 
 /// How far the flight is.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +61,7 @@ impl Passage {
                 scene.reported.report(LayoutError::Expression { leg: self.leg.clone(), reason }, out);
                 Vec::new()
             });
-            let caught_up_m = ways_m.get(MOST_AT_ONCE - 1).copied().unwrap_or(moment.way_m - self.began_m);
+            let caught_up_m = ways_m.get(MAX_AT_ONCE - 1).copied().unwrap_or(moment.way_m - self.began_m);
             up_to_m.push(caught_up_m.max(done.up_to_m));
             due.extend(ways_m.into_iter().map(|way_m| (way_m, number, &action.act)));
         }
@@ -159,11 +159,11 @@ impl Piece {
 
 /// Multiples of a distance on the distance flown since `up_to_m`, metres.
 fn multiples(every_m: f64, up_to_m: f64, way_m: f64) -> Result<Vec<f64>, String> {
-    if every_m < LEAST_EVERY_M {
-        return Err(format!("an action every {every_m} m can't be done: give it {LEAST_EVERY_M} m or more"));
+    if every_m < MIN_EVERY_M {
+        return Err(format!("an action every {every_m} m can't be done: give it {MIN_EVERY_M} m or more"));
     }
     // a cast of a negative number gives 0
     let passed = |way_m: f64| (way_m / every_m).floor() as u64;
     let since = passed(up_to_m).saturating_add(1)..=passed(way_m);
-    Ok(since.take(MOST_AT_ONCE).map(|n| n as f64 * every_m).collect())
+    Ok(since.take(MAX_AT_ONCE).map(|n| n as f64 * every_m).collect())
 }

@@ -12,7 +12,7 @@ use flight_plan::{Branch, Fork, Id, IterativeForm, Leg, LegKind, Loop, Stage};
 use std::sync::Arc;
 
 /// Most intersections whose passings are counted apart.
-const MOST_CROSSINGS_KEPT: usize = 256;
+const MAX_CROSSINGS_KEPT: usize = 256;
 
 impl Cursor {
     /// The leg's points are all given out: on to what follows.
@@ -220,7 +220,7 @@ impl Cursor {
             Some((_, n)) => *n += 1,
             None => {
                 self.crossings.push((leg.clone(), self.uncounted + 1));
-                let surplus = self.crossings.len().saturating_sub(MOST_CROSSINGS_KEPT);
+                let surplus = self.crossings.len().saturating_sub(MAX_CROSSINGS_KEPT);
                 // a number is never given twice: what is known of one of them must not be taken for another
                 let forgotten = self.crossings.drain(..surplus).map(|(_, n)| n).max();
                 self.uncounted = self.uncounted.max(forgotten.unwrap_or(0));

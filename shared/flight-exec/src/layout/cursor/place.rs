@@ -9,7 +9,7 @@ use crate::layout::world::World;
 use flight_plan::{Id, LegPath, Program};
 
 /// Most legs in a row that were left out and are passed over when one behind them is gone on with.
-const MOST_LEFT_OUT: usize = 100;
+const MAX_LEFT_OUT: usize = 100;
 
 impl Cursor {
     /// Where it is, for people; the distance is left at zero.
@@ -61,7 +61,7 @@ impl Cursor {
         while self.place(world).leg != *leg {
             let left_out =
                 self.doing == CursorPhase::Flying && self.leg(world).is_some_and(has_own_waypoints);
-            if !left_out || passed == MOST_LEFT_OUT {
+            if !left_out || passed == MAX_LEFT_OUT {
                 return false;
             }
             (self.path, self.leg_start) = (path, path);

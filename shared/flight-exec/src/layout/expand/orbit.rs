@@ -8,7 +8,7 @@ use geometry::geodesy::normalise_360;
 use serde::{Deserialize, Serialize};
 
 /// More turns than any aircraft can fly.
-const MOST_TURNS: f64 = 1e6;
+const MAX_TURNS: f64 = 1e6;
 
 /// The point to leave at may lie so little before where the turns end, degrees: nobody wants a whole circle more for it.
 const SHORT_DEG: f64 = 1.0;
@@ -35,7 +35,7 @@ impl Circle {
         continuation: Option<LatLon>,
         tolerance_m: f64,
     ) -> Result<Self, ExpandError> {
-        if !(radius_m > 0.0 && turns > 0.0 && radius_m.is_finite() && turns <= MOST_TURNS) {
+        if !(radius_m > 0.0 && turns > 0.0 && radius_m.is_finite() && turns <= MAX_TURNS) {
             let advice = "give it a positive radius and at most a million turns";
             return Err(ExpandError::Geometry(format!(
                 "an orbit of radius {radius_m} m and {turns} turns can't be flown: {advice}"

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Time between two points, seconds: so much later than the altitude the track may be left.
 const EVERY_S: f64 = 20.0;
 /// An aircraft that never reaches the altitude turns back to its plan after so many points.
-const MOST_POINTS: u64 = 200;
+const MAX_POINTS: u64 = 200;
 
 /// The points of a track until an altitude.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,7 +32,7 @@ impl Track {
             Some(before) => before + 1,
         };
         let reach_m = self.step_m * steps as f64;
-        (steps <= MOST_POINTS).then(|| Point::fly(self.fix.position.destination(self.course_deg, reach_m)))
+        (steps <= MAX_POINTS).then(|| Point::fly(self.fix.position.destination(self.course_deg, reach_m)))
     }
 
     /// The fix is behind, or the path began there, when `given` points are passed.
@@ -67,12 +67,12 @@ mod tests {
             let track = Track::new(Point::fly(fix), to_fix, 30.0, 25.0);
             let first = u64::from(to_fix);
             assert_eq!(track.point(0).unwrap().position == fix, to_fix);
-            for i in 0..MOST_POINTS {
+            for i in 0..MAX_POINTS {
                 let p = track.point(first + i).unwrap().position;
                 assert!((fix.distance_m(p) - 500.0 * (i + 1) as f64).abs() < 0.01);
                 assert!((fix.bearing_deg(p) - 30.0).abs() < 1e-6);
             }
-            assert_eq!(track.point(first + MOST_POINTS), None);
+            assert_eq!(track.point(first + MAX_POINTS), None);
             assert_eq!((track.passing(first), track.passing(first + 3)), (Some(0), Some(3)));
         }
         assert_eq!(Track::new(Point::fly(fix), true, 0.0, 25.0).passing(0), None);

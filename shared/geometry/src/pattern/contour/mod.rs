@@ -12,20 +12,20 @@ use serde::{Deserialize, Serialize};
 use shapes::{Shape, area_m2, contains, grown, minus, rings_of};
 
 /// Distances from the edge at which loops may be flown.
-const MOST_LEVELS: u64 = 10_000;
+const MAX_LEVELS: u64 = 10_000;
 /// Limit of (reflex corners² + corners) · levels: the library's time grows with that, because offsets at reflex corners
 /// cross themselves. This takes a second or two.
-const MOST_WORK: f64 = 5e5;
+const MAX_WORK: f64 = 5e5;
 /// Edges compared to find the paths between loops: a quarter of a second.
-const MOST_EDGES: u64 = 40_000_000;
+const MAX_EDGES: u64 = 40_000_000;
 /// Share of a strip along loops that their sharp corners may leave unseen.
-const MOST_UNSEEN: f64 = 0.0015;
+const MAX_UNSEEN: f64 = 0.0015;
 /// What is left unseen between loops is flown round if it is larger than a square of this share of the spacing …
 const FLOWN_ROUND: f64 = 0.25;
 /// … or than this share of a small area.
 const FLOWN_ROUND_OF_AREA: f64 = 0.0005;
 /// Places on an edge at which a loop may begin.
-const MOST_PARTS: f64 = 50.0;
+const MAX_PARTS: f64 = 50.0;
 /// Strips are taken to be so much wider, metres: between exact ones films would be left.
 const FILM_M: f64 = 0.01;
 
@@ -114,7 +114,7 @@ impl ContourParameters {
     fn check(&self) -> Result<(), PatternError> {
         positive("spacing", self.spacing_m)?;
         not_negative("distance from the edge", self.first_m)?;
-        counted("distances from the edge", self.levels, MOST_LEVELS)?;
+        counted("distances from the edge", self.levels, MAX_LEVELS)?;
         finite("entry", self.entry.length())?;
         not_negative("turn radius", self.turn_radius_m)?;
         positive("tolerance", self.tolerance_m)
@@ -131,7 +131,7 @@ impl ContourParameters {
         let drawn_in =
             shape.iter().map(|ring| corners_of(ring).filter(|&(_, turn_rad)| turn_rad < 0.0).count());
         let drawn_in = drawn_in.sum::<usize>() as f64;
-        if (drawn_in * drawn_in + corners as f64) * levels <= MOST_WORK {
+        if (drawn_in * drawn_in + corners as f64) * levels <= MAX_WORK {
             return Ok(());
         }
         Err(PatternError::TooIntricate { corners, levels: levels as u64 })
@@ -201,7 +201,7 @@ fn reach_m(level: &[Shape], spacing_m: f64) -> f64 {
         let half_rad = turn_rad.max(0.0) / 2.0;
         unseen += half_rad.tan() - half_rad;
     }
-    (MOST_UNSEEN * length_m * spacing_m / unseen).sqrt().min(spacing_m / 2.0)
+    (MAX_UNSEEN * length_m * spacing_m / unseen).sqrt().min(spacing_m / 2.0)
 }
 
 /// Length of each edge, metres, and the turn at its end, radians, positive to the left.
@@ -258,7 +258,7 @@ impl Path {
             at: p.entry,
             along: None,
             interior,
-            budget: EdgeBudget::new(MOST_EDGES),
+            budget: EdgeBudget::new(MAX_EDGES),
         }
     }
 
@@ -318,7 +318,7 @@ impl Path {
 fn places(ring: &[Vec2], every_m: f64) -> impl Iterator<Item = (usize, Vec2, Vec2)> + '_ {
     ring.iter().zip(ring.iter().cycle().skip(1)).enumerate().flat_map(move |(edge, (&from, &to))| {
         let way = to - from;
-        let parts = (way.length() / every_m.max(1.0)).clamp(1.0, MOST_PARTS).floor();
+        let parts = (way.length() / every_m.max(1.0)).clamp(1.0, MAX_PARTS).floor();
         (0..parts as u32).map(move |i| (edge, from + way * (f64::from(i) / parts), way))
     })
 }

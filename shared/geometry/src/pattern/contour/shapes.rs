@@ -12,7 +12,7 @@ use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 /// The library computes in whole numbers: tenths of a millimetre.
 const UNITS_PER_M: f64 = 10_000.0;
 /// Smaller rings are dust of the computation, square metres.
-const LEAST_AREA_M2: f64 = 0.01;
+const MIN_AREA_M2: f64 = 0.01;
 
 /// An area in one piece: its outer ring anticlockwise, then its holes, clockwise.
 pub(super) type Shape = Vec<Vec<Vec2>>;
@@ -79,7 +79,7 @@ fn from_library(shapes: Library) -> Vec<Shape> {
 
 /// Without rings that are none; nothing if the outer one is none.
 fn without_dust(mut shape: Shape) -> Shape {
-    let dust = |ring: &Vec<Vec2>| signed_area_m2(ring).abs() < LEAST_AREA_M2;
+    let dust = |ring: &Vec<Vec2>| signed_area_m2(ring).abs() < MIN_AREA_M2;
     if shape.first().is_none_or(dust) {
         return Shape::new();
     }

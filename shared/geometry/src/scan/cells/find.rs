@@ -7,11 +7,11 @@ use crate::polygon::{EdgeBudget, Interior};
 use std::ops::Range;
 
 /// Most lines of a concave area: each is examined.
-const MOST_LINES: u64 = 1_000_000;
+const MAX_LINES: u64 = 1_000_000;
 /// Most cells.
-const MOST_CELLS: usize = 2_000;
+const MAX_CELLS: usize = 2_000;
 /// Edges compared to find out where cells end.
-const MOST_EDGES: u64 = 40_000_000;
+const MAX_EDGES: u64 = 40_000_000;
 
 /// A cell that is not yet part of a flight.
 #[derive(Debug, Clone)]
@@ -47,7 +47,7 @@ impl<'a> Finder<'a> {
             scan,
             interior,
             most_jump_m: p.overshoot_m.max(2.0 * p.turn_radius_m).max(scan.lines.spacing_m()),
-            budget: EdgeBudget::new(MOST_EDGES),
+            budget: EdgeBudget::new(MAX_EDGES),
             cells: Vec::new(),
             open: Vec::new(),
             too_intricate: ScanError::TooIntricate { corners: interior.area().edges().count() },
@@ -56,7 +56,7 @@ impl<'a> Finder<'a> {
 
     pub fn cells(mut self) -> Result<Vec<Found>, ScanError> {
         let scan = self.scan;
-        if scan.lines.count() > MOST_LINES {
+        if scan.lines.count() > MAX_LINES {
             return Err(ScanError::TooManyLines(scan.lines.spacing_m()));
         }
         let mut sweep = Sweep::default();
@@ -142,7 +142,7 @@ impl<'a> Finder<'a> {
         let pieces = vec![(line, piece)];
         let neighbours = Vec::new();
         self.cells.push(Found { lines: line..line + 1, pieces, first: ends, last: ends, neighbours });
-        if self.cells.len() > MOST_CELLS {
+        if self.cells.len() > MAX_CELLS {
             return Err(self.too_intricate);
         }
         Ok(self.cells.len() - 1)

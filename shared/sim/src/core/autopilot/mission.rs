@@ -8,7 +8,7 @@ use aircraft::{Action, Demand, Target};
 use geometry::LatLon;
 
 /// Items reached in one step at most: a list of points on one spot must not hold time up.
-const MOST_REACHED_A_STEP: usize = 16;
+const MAX_REACHED_A_STEP: usize = 16;
 
 impl Autopilot {
     /// Goes on where the mission was stopped; from the start if it never ran or is complete.
@@ -49,7 +49,7 @@ impl Autopilot {
         // the speed may have been changed by command since the item became active
         self.guidance.set_airspeed(self.airspeed_mps());
         let mut demand = Demand::default();
-        for _ in 0..MOST_REACHED_A_STEP {
+        for _ in 0..MAX_REACHED_A_STEP {
             let next = self.run.upcoming(self.mission.items());
             let next = next.map(|item| self.target(&item));
             let guided = self.follow(next);

@@ -14,7 +14,7 @@ use geometry::{LatLon, LocalFrame, Pattern, Turn, Vec2};
 use serde::{Deserialize, Serialize};
 
 /// Loops of a contour that is to fill its area: more than any has.
-const MOST_LOOPS: u64 = 10_000;
+const MAX_LOOPS: u64 = 10_000;
 
 /// Numbers and positions only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -99,7 +99,7 @@ impl Recipe {
                     spacing_m,
                     first_m: 0.5 * spacing_m,
                     side: if inward { shapes::Side::Inward } else { shapes::Side::Outward },
-                    levels: loops.unwrap_or(MOST_LOOPS),
+                    levels: loops.unwrap_or(MAX_LOOPS),
                     turn,
                     entry: frame.to_local(from),
                     turn_radius_m: self.turn_radius_m,

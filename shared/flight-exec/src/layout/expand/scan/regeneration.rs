@@ -11,7 +11,7 @@ use geometry::LatLon;
 use std::ops::Range;
 
 /// Most tracks flown before a regeneration that are remembered, the latest ones.
-const MOST_FLOWN: u64 = 512;
+const MAX_FLOWN: u64 = 512;
 
 impl Sweep {
     /// The sweep with the values of now, begun at the unflown track nearest to `at`, without the tracks that are
@@ -68,8 +68,8 @@ impl Sweep {
     /// The latest tracks that are flown when `given` points are.
     fn flown_until(&self, given: u64) -> Vec<(LatLon, LatLon)> {
         let complete = self.stretches().map_or(0, |s| s.complete(given));
-        let latest = complete.saturating_sub(MOST_FLOWN)..complete;
-        let old = (MOST_FLOWN - (latest.end - latest.start)) as usize;
+        let latest = complete.saturating_sub(MAX_FLOWN)..complete;
+        let old = (MAX_FLOWN - (latest.end - latest.start)) as usize;
         let before = self.flown.iter().skip(self.flown.len().saturating_sub(old)).copied();
         before.chain(self.ends_of(latest)).collect()
     }

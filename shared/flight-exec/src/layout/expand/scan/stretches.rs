@@ -9,7 +9,7 @@ use geometry::{LatLon, Vec2};
 use std::ops::Range;
 
 /// Edges of the area that are tried to find all the ways of a sweep: a quarter of a second.
-const MOST_EDGES: u64 = 40_000_000;
+const MAX_EDGES: u64 = 40_000_000;
 
 /// The order in which the tracks of a pattern are flown.
 pub struct Order<'a> {
@@ -66,7 +66,7 @@ impl Stretches {
     pub fn of(order: &Order, laid_out: &LaidOut) -> Result<Self, ExpandError> {
         let tracks = order.count();
         let mut stretches = Self { all: Vec::new(), tracks };
-        let mut budget = EdgeBudget::new(MOST_EDGES);
+        let mut budget = EdgeBudget::new(MAX_EDGES);
         for place in order.breaks(laid_out) {
             let Some(track) = order.track(place) else { continue };
             let before = place.checked_sub(1).and_then(|before| Some((before, order.track(before)?)));

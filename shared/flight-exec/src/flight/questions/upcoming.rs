@@ -5,7 +5,7 @@
 
 use super::Questions;
 use crate::api::{DecisionRequest, Event, Output};
-use crate::flight::path_ahead::{LEAST_GROUND_MPS, PathAhead, Way};
+use crate::flight::path_ahead::{MIN_GROUND_MPS, PathAhead, Way};
 use crate::layout::cursor::{Cursor, Emission, Step};
 use crate::layout::stretch::Continuation;
 use crate::layout::world::World;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The path is followed for at most so many waypoints.
-const MOST_WAYPOINTS: usize = 2000;
+const MAX_WAYPOINTS: usize = 2000;
 
 /// A question about an intersection beyond what is issued.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ impl DistantQuestion {
 }
 
 /// An intersection seen from afar.
-struct Sighted {
+struct Upcoming {
     leg: Id,
     crossing: u64,
     /// Before the intersection.
@@ -43,8 +43,9 @@ struct Sighted {
 
 impl Questions {
     /// Follows the path behind what is issued to a question that is due soon, and asks it.
-    pub fn look_ahead(&mut self, path: &PathAhead, world: &World, out: &mut Vec<Output>) {
-        self.distant = self.sight(path, world).and_then(|sighted| self.soon(&sighted, path, world));
+    pub fn ask_ahead(&mut self, path: &PathAhead, world: &World, out: &mut Vec<Output>) {
+        self.distant =
+            self.next_intersection(path, world).and_then(|upcoming| self.soon(&upcoming, path, world));
         let Some(DistantQuestion { request, crossing }) = self.distant.clone() else { return };
         let key = (request.leg.clone(), crossing);
         if !self.requested.contains(&key) && !self.has_decision(&key.0, crossing) {
@@ -53,19 +54,19 @@ impl Questions {
         }
     }
 
-    fn soon(&self, sighted: &Sighted, path: &PathAhead, world: &World) -> Option<DistantQuestion> {
-        let fork = world.program.leg(&sighted.leg)?.as_fork()?;
-        let left = sighted.way.until_due(fork.decide_before);
+    fn soon(&self, upcoming: &Upcoming, path: &PathAhead, world: &World) -> Option<DistantQuestion> {
+        let fork = world.program.leg(&upcoming.leg)?.as_fork()?;
+        let left = upcoming.way.until_due(fork.decide_before);
         // one that comes into sight after its deadline is asked when it is issued
         if left.seconds > path.config.ask_ahead_s || left.seconds <= 0.0 {
             return None;
         }
-        let request = self.request((&sighted.leg, sighted.crossing), &sighted.before, left, world)?;
-        Some(DistantQuestion { request, crossing: sighted.crossing })
+        let request = self.request((&upcoming.leg, upcoming.crossing), &upcoming.before, left, world)?;
+        Some(DistantQuestion { request, crossing: upcoming.crossing })
     }
 
     /// The first intersection behind what is issued, if it may be asked about now.
-    fn sight(&self, path: &PathAhead, world: &World) -> Option<Sighted> {
+    fn next_intersection(&self, path: &PathAhead, world: &World) -> Option<Upcoming> {
         if !world.program.has_forks() {
             return None;
         }
@@ -74,7 +75,7 @@ impl Questions {
         let lead_s = stages.filter_map(|s| longest_lead_s(&s.legs, path)).reduce(f64::max)?;
         let mut world = World { waited, decisions: &self.decisions, ..*world };
         let mut way = path.way_along(path.horizon.len());
-        for _ in 0..MOST_WAYPOINTS {
+        for _ in 0..MAX_WAYPOINTS {
             if way.seconds > lead_s + path.config.ask_ahead_s {
                 return None;
             }
@@ -89,7 +90,7 @@ impl Questions {
                 _ => None,
             });
             if let Some((leg, crossing)) = fork {
-                return Some(Sighted { leg, crossing, before, way });
+                return Some(Upcoming { leg, crossing, before, way });
             }
             let emission = emission?;
             let from = before.path.last.position;
@@ -117,7 +118,7 @@ fn onward_cursor(path: &PathAhead, world: &World) -> Option<(Cursor, Option<u64>
 
 /// The earliest that any of these legs wants a decision, seconds before its intersection.
 fn longest_lead_s(legs: &[Arc<Leg>], path: &PathAhead) -> Option<f64> {
-    let slowest_mps = path.profile.min_airspeed_mps.max(LEAST_GROUND_MPS);
+    let slowest_mps = path.profile.min_airspeed_mps.max(MIN_GROUND_MPS);
     let of = |leg: &Arc<Leg>| match leg.as_fork() {
         Some(fork) if fork.branches.len() > 1 => Some(match fork.decide_before {
             DecideBefore::Distance(metres) => metres / slowest_mps,

@@ -1,17 +1,17 @@
 //! A trace for people: short enough to be read, without the lines of its documents that begin with a bar.
 
-use crate::trace::{Deed, Moment};
+use crate::trace::{Moment, Stimulus};
 use flight_exec::{Action, Command, Event, Input, Output, PlacePointer, Waypoint};
 use flight_plan::{Leg, LegKind, Program};
 use std::sync::Arc;
 
 /// Time, what was done, what came of it, and where that led; nothing of a moment that led to nothing.
 pub fn moment(moment: &Moment) -> String {
-    let quiet = matches!(moment.deed, Deed::Input(Input::Tick | Input::Aircraft(_)));
+    let quiet = matches!(moment.stimulus, Stimulus::Input(Input::Tick | Input::Aircraft(_)));
     if quiet && moment.outputs.is_empty() {
         return String::new();
     }
-    let mut text = format!("    {:.1} {}\n", moment.now.as_secs_f64(), deed(&moment.deed));
+    let mut text = format!("    {:.1} {}\n", moment.now.as_secs_f64(), stimulus(&moment.stimulus));
     for output in &moment.outputs {
         text += &format!("        {}\n", told(output));
     }
@@ -22,14 +22,16 @@ pub fn moment(moment: &Moment) -> String {
     text
 }
 
-fn deed(deed: &Deed) -> String {
-    match deed {
-        Deed::Input(Input::Propose { program, .. }) => format!("propose {}", outline(program)),
-        Deed::Input(Input::Command { command: Command::Commit { hash, entry }, .. }) => {
+fn stimulus(stimulus: &Stimulus) -> String {
+    match stimulus {
+        Stimulus::Input(Input::Propose { program, .. }) => format!("propose {}", outline(program)),
+        Stimulus::Input(Input::Command { command: Command::Commit { hash, entry }, .. }) => {
             format!("commit {} entering {entry:?}", short(hash))
         }
-        Deed::Input(Input::Command { command, .. }) => format!("{command:?}"),
-        Deed::Input(Input::Aircraft(a)) => format!("at {:.4} {:.4}", a.position.lat_deg, a.position.lon_deg),
+        Stimulus::Input(Input::Command { command, .. }) => format!("{command:?}"),
+        Stimulus::Input(Input::Aircraft(a)) => {
+            format!("at {:.4} {:.4}", a.position.lat_deg, a.position.lon_deg)
+        }
         other => format!("{other:?}"),
     }
 }

@@ -5,7 +5,7 @@ use flight_plan::{Cause, Id, Leg, LegKind, VariableValue};
 use geometry::LatLon;
 
 #[derive(Debug, Arbitrary)]
-pub enum Happening {
+pub enum Occurrence {
     Wait { tenths_s: u8 },
     Leap { nanoseconds: u64 },
     UntilDue,
