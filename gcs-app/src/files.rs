@@ -1,4 +1,4 @@
-//! Files: dialogs, reading and saving, each on a thread of its own; the window hears of it later.
+//! Files: dialogs, reading and saving, each on a thread of its own; the window gets the result later.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl Files {
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
             if let Some(event) = job().unwrap_or_else(|why| Some(FileEvent::Failed(why))) {
-                // the window may be gone: nobody to tell
+                // the window may be gone: nobody receives it
                 let _ = outbox.send(event);
                 wake();
             }

@@ -65,7 +65,7 @@ impl Hop {
         received.expect("within ten seconds").unwrap() - sent
     }
 
-    /// Sends until the other side hears.
+    /// Sends until the other side receives.
     async fn ready(mut self) -> Self {
         loop {
             (self.send)();

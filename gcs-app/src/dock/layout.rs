@@ -1,4 +1,4 @@
-//! A layout as it is stored: which panel is where, and how big. What comes from a file is looked at
+//! A layout as it is stored: which panel is where, and how big. What comes from a file is checked
 //! before it is used; whatever is wrong with it, the default layout takes its place.
 
 use super::{MAP, PanelTree};

@@ -8,7 +8,7 @@ use geometry::LocalFrame;
 use std::sync::Arc;
 use terrain::Terrain;
 
-/// Most points of a forecast: a longer flight is told in coarser steps.
+/// Most points of a forecast: a longer flight is given in coarser steps.
 const MAX_POINTS: f64 = 60_000.0;
 
 /// Flies plan after plan ahead of time, in calm air.

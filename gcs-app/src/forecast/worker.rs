@@ -1,7 +1,7 @@
 //! The worker: newest plan in, analysis out.
 //!
 //! Two threads: one checks, compiles and previews, and keeps from plan to plan what the next edit doesn't reach, so that a
-//! plan can be dragged about; the other looks at the path of a plan that was left alone, which takes longer.
+//! plan can be dragged about; the other reviews the path of a plan that was left alone, which takes longer.
 
 use super::Shared;
 use super::preview::Forecaster;
@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use terrain::Terrain;
 
-/// A plan to be looked into.
+/// A plan to be analysed.
 #[derive(Debug, Clone)]
 pub struct Question {
     /// Which document it is of.
@@ -60,7 +60,7 @@ impl Analysis {
     }
 }
 
-/// The plan has to be left alone for so long before its path is looked at.
+/// The plan has to be left alone for so long before its path is reviewed.
 const REST: Duration = Duration::from_millis(80);
 
 /// What the threads find out.
@@ -72,7 +72,7 @@ enum Found {
     Problems(u64, Vec<Problem>),
 }
 
-/// A path to be looked at.
+/// A path to be reviewed.
 struct Path {
     version: u64,
     program: Arc<Program>,

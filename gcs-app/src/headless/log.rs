@@ -15,7 +15,7 @@ use std::process::ExitCode;
 /// Longer texts of a file are cut where they are printed, characters.
 const SHOWN_MAX: usize = 200;
 
-/// What is looked at, and what is wanted of it.
+/// Which recording is read, and what is wanted of it.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// Recordings (MCAP); of several, the export has all flights.

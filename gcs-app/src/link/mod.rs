@@ -59,7 +59,7 @@ pub enum Call {
     PlanAboard,
 }
 
-/// What a link has to tell, and of which vehicle. A recording that is played is a link like any other.
+/// A message of a link, and the vehicle it is about. A recording that is played is a link like any other.
 #[derive(Debug)]
 pub struct LinkMessage {
     /// Which link.
@@ -77,9 +77,9 @@ pub enum LinkEvent {
     Link(LinkState),
     /// The services that are there now.
     Services(Arc<BTreeSet<String>>),
-    /// Something was heard of the vehicle.
+    /// A value or an event of the vehicle was received.
     Telemetry(Telemetry),
-    /// Something was not heard, and never will be.
+    /// Something was lost, and will not come again.
     Lost(Loss),
     /// A question was answered, or was not in time.
     Answer {
@@ -119,7 +119,7 @@ pub enum Reply {
     Plan(Option<ActivePlan>),
 }
 
-/// What services tell of the vehicle.
+/// What services publish of the vehicle.
 #[derive(Debug)]
 #[expect(
     missing_docs,
@@ -163,7 +163,7 @@ pub enum LinkState {
     /// Nobody asked for one.
     #[default]
     Off,
-    /// Looking for the vehicle; goes on until told otherwise.
+    /// Looking for the vehicle; goes on until it is asked to stop.
     Connecting(String),
     /// The vehicle's services answer.
     Connected(String),
@@ -215,7 +215,7 @@ pub struct Links {
 pub struct Endpoint {
     /// What is asked.
     pub orders: mpsc::UnboundedReceiver<Order>,
-    /// What there is to tell.
+    /// What happened.
     pub messages: mpsc::Sender<LinkMessage>,
 }
 

@@ -52,7 +52,7 @@ pub(super) struct Outlet {
 impl Outlet {
     /// Waits for room: answers and events are never lost here.
     async fn send(&self, event: LinkEvent) {
-        // the window may be gone: nobody to tell
+        // the window may be gone: nobody receives it
         let _ = self.messages.send(self.message(event)).await;
         (self.wake)();
     }
@@ -131,7 +131,7 @@ async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, C
             while let Some((ticket, call)) = questions.recv().await {
                 open.ask(ticket, call, &outlet);
             }
-            // not before every listener has fallen silent: what it hears would come from a closed link
+            // not before every listener has fallen silent: what it receives would come from a closed link
             open.tasks.shutdown().await;
         }
         Err(error) => {
@@ -185,7 +185,7 @@ impl Open {
         Ok(())
     }
 
-    /// A stream of events: each is told with its number, a gap with its size.
+    /// A stream of events: each is passed on with its number, a gap with its size.
     pub(super) fn listen<T>(
         &mut self,
         events: Events<Stamped<T>>,
@@ -215,7 +215,7 @@ impl Open {
         Ok(())
     }
 
-    /// Tells whether the vehicle's services are there, and speak our version.
+    /// Reports whether the vehicle's services are there, and speak our version.
     fn watch(&mut self, endpoint: &str, outlet: &Outlet) -> Result<(), usal::SessionError> {
         let mut presence = self.session.presence()?;
         let (session, endpoint, outlet) = (self.session.clone(), endpoint.to_owned(), outlet.clone());
@@ -232,7 +232,7 @@ impl Open {
         Ok(())
     }
 
-    /// Asks, and tells the answer when it comes.
+    /// Asks, and passes the answer on when it comes.
     fn ask(&mut self, ticket: Ticket, call: Call, outlet: &Outlet) {
         let (session, outlet) = (self.session.clone(), outlet.clone());
         self.tasks.spawn(async move { answer(&session, ticket, call, &outlet).await });
@@ -272,7 +272,7 @@ async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) 
     outlet.send(LinkEvent::Answer { ticket, result }).await;
 }
 
-/// What may have to be looked at first is not answered at once.
+/// What may have to be reviewed first is not answered at once.
 fn timeout(command: &Command) -> Duration {
     match command {
         Command::SetVariable { .. } | Command::Commit { .. } => PLAN_TIMEOUT,

@@ -45,7 +45,7 @@ impl Layer {
         self.coming = Some(receiver);
         let ctx = ctx.clone();
         let work = move || {
-            // the window may be gone by then: nobody to tell
+            // the window may be gone by then: nobody receives it
             let _ = sender.send(paint(&ground));
             ctx.request_repaint();
         };

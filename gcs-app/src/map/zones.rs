@@ -4,7 +4,7 @@ use super::polyline::{self, Style};
 use super::text;
 use super::view::View;
 use crate::chart::Point;
-use crate::chart::zones::{self as chart, ZoneStyle, Surface};
+use crate::chart::zones::{self as chart, Surface, ZoneStyle};
 use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;

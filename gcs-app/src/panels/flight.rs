@@ -24,7 +24,7 @@ impl Panel for Flight {
     fn place(&self) -> Place {
         Place::Right { height: 468.0 }
     }
-    /// Once a vehicle was heard.
+    /// Once something was received from a vehicle.
     fn is_relevant(&self, scene: &Scene<'_>) -> bool {
         scene.vehicle.received_s.is_some()
     }

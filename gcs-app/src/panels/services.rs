@@ -30,7 +30,7 @@ impl Panel for Services {
         let failed = scene.vehicle.recording.as_ref().is_some_and(|r| r.value.failure.is_some());
         if failed { "⚠ Services".into() } else { self.name().into() }
     }
-    /// Once a vehicle was heard.
+    /// Once something was received from a vehicle.
     fn is_relevant(&self, scene: &Scene<'_>) -> bool {
         scene.vehicle.received_s.is_some()
     }

@@ -1,4 +1,4 @@
-//! From what the executor told (in flight or in the preview) to the pieces of a record.
+//! From what the executor reported (in flight or in the preview) to the pieces of a record.
 
 use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
 use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
@@ -24,7 +24,7 @@ pub fn key(place: &PlacePointer) -> PassageKey {
     }
 }
 
-/// One pass that bears the name of the call whose leg this is: it tells nothing that the leg's own name does not.
+/// One pass that bears the name of the call whose leg this is: it says nothing that the leg's own name does not.
 fn is_call(place: &IterationPlace, leg: &Id) -> bool {
     place.of == Some(1)
         && leg.as_str().strip_prefix(place.leg.as_str()).is_some_and(|rest| rest.starts_with('.'))

@@ -30,7 +30,7 @@ pub use tables::{clock, from_authored};
 
 use std::path::Path;
 
-/// What was measured, for whoever judges the flight.
+/// What was measured, to judge the flight by.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
     /// One row per passage of a leg, in the order of flight.

@@ -165,7 +165,7 @@ pub struct Area {
     pub passage: PassageKey,
 }
 
-/// Something worth telling.
+/// Something worth reporting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Happening {
     /// Seconds since the flight began.

@@ -5,7 +5,7 @@ use super::labels::Labels;
 use super::style::*;
 use super::view::View;
 use crate::chart::Point;
-use crate::chart::zones::{self as chart, ZoneStyle, Surface};
+use crate::chart::zones::{self as chart, Surface, ZoneStyle};
 use flight_plan::{Zone, ZoneKind};
 use geometry::LatLon;
 

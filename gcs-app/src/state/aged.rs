@@ -2,7 +2,7 @@
 
 use usal::contract::Stamped;
 
-/// A value, when it was heard, and how long it may be believed.
+/// A value, when it was received, and how long it is valid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aged<T> {
     /// The value.
@@ -11,7 +11,7 @@ pub struct Aged<T> {
     pub time_s: f64,
     /// Seconds it may be believed.
     pub validity_s: f64,
-    /// When it was heard, seconds of the window's clock.
+    /// When it was received, seconds of the window's clock.
     pub received_s: f64,
 }
 
@@ -25,7 +25,7 @@ impl<T> Aged<T> {
             received_s: now_s,
         }
     }
-    /// Seconds since it was heard.
+    /// Seconds since it was received.
     pub fn age_s(&self, now_s: f64) -> f64 {
         (now_s - self.received_s).max(0.0)
     }

@@ -1,4 +1,4 @@
-//! What was not heard of a vehicle, and is known to be missing.
+//! What was lost of a vehicle's messages, as far as it is known.
 
 use crate::link::Loss;
 

@@ -1,5 +1,5 @@
-//! Events that are heard again. A new link begins with what the publisher still remembers: what was
-//! heard over the last one must not be logged twice.
+//! Events that are received again. A new link begins with what the publisher still remembers: what was
+//! received over the last one must not be logged twice.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -13,18 +13,18 @@ const RESTARTED_S: f64 = 5.0;
 /// to the reader of the log as well.
 type Key = (u32, u64, u64);
 
-/// What was heard of one stream of events.
+/// What was received of one stream of events.
 #[derive(Debug, Default)]
 pub struct Repeats {
     seen: BTreeSet<Key>,
     order: VecDeque<Key>,
-    /// Heard over links that are closed: only these can come again.
+    /// Received over links that are closed: only these can come again.
     earlier: BTreeSet<Key>,
     latest_s: Option<f64>,
 }
 
 impl Repeats {
-    /// What comes from now on may repeat what was heard until now.
+    /// What comes from now on may repeat what was received until now.
     pub fn begin_link(&mut self) {
         self.earlier.clone_from(&self.seen);
     }
@@ -36,7 +36,7 @@ impl Repeats {
             return false;
         }
         if self.latest_s.is_some_and(|latest| time_s < latest - RESTARTED_S) {
-            // another flight: nothing of it was heard before
+            // another flight: nothing of it was received before
             *self = Self::default();
         }
         self.latest_s = Some(time_s);

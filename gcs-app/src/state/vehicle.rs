@@ -41,7 +41,7 @@ pub struct Vehicle {
     pub link: LinkState,
     /// Which link that is; older ones are closed, and what still comes from them is not listened to.
     link_id: Option<LinkId>,
-    /// When anything was heard of it last, seconds of the window's clock.
+    /// When anything was received from it last, seconds of the window's clock.
     pub received_s: Option<f64>,
     /// Where it is.
     pub position: Option<Aged<Position>>,
@@ -81,7 +81,7 @@ pub struct Vehicle {
     pub requests: Requests,
     /// What happened.
     pub log: Log,
-    /// What was not heard of it.
+    /// What was lost of its messages.
     pub losses: Losses,
     plan_events: Repeats,
     gateway_events: Repeats,
@@ -113,7 +113,7 @@ macro_rules! remember {
 }
 
 impl Vehicle {
-    /// Takes in what a link has to tell of this vehicle.
+    /// Takes in a link's message about this vehicle.
     pub(super) fn receive(&mut self, link: LinkId, event: LinkEvent, now_s: f64) {
         if self.link_id.is_some_and(|current| link < current) {
             return;
@@ -187,7 +187,7 @@ impl Vehicle {
         }
     }
 
-    /// A flight that is not recorded any more is told once.
+    /// That a flight is not recorded any more is reported once.
     fn recording(&mut self, recording: Stamped<Recording>, now_s: f64) {
         let failure = recording.value.failure.as_ref();
         let known = self.recording.as_ref().and_then(|known| known.value.failure.as_ref());
@@ -278,7 +278,7 @@ impl Vehicle {
         self.position.as_ref().is_some_and(|p| !p.value.on_ground)
     }
 
-    /// Seconds since anything was heard, if ever.
+    /// Seconds since anything was received, if ever.
     pub fn silence_s(&self, now_s: f64) -> Option<f64> {
         self.received_s.map(|received_s| (now_s - received_s).max(0.0))
     }

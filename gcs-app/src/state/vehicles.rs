@@ -4,7 +4,7 @@ use super::{Vehicle, VehicleName};
 use crate::link::{LinkId, LinkMessage, LinkState};
 use std::collections::BTreeMap;
 
-/// Most vehicles remembered. Beyond it goes the one that was heard longest ago, has no link and is not shown.
+/// Most vehicles remembered. Beyond it goes the one that was silent longest, has no link and is not shown.
 const CAPACITY: usize = 256;
 
 /// What is known of the vehicles.
@@ -40,10 +40,10 @@ impl Vehicles {
     }
 
     fn forget_one(&mut self) {
-        let heard = |v: &Vehicle| v.received_s.unwrap_or(f64::NEG_INFINITY);
+        let received = |v: &Vehicle| v.received_s.unwrap_or(f64::NEG_INFINITY);
         let idle = self.by_name.iter().filter(|(name, _)| self.shown.as_ref() != Some(*name));
         let oldest = idle.min_by(|(_, a), (_, b)| {
-            a.link.is_wanted().cmp(&b.link.is_wanted()).then(heard(a).total_cmp(&heard(b)))
+            a.link.is_wanted().cmp(&b.link.is_wanted()).then(received(a).total_cmp(&received(b)))
         });
         if let Some(name) = oldest.map(|(name, _)| name.clone()) {
             self.by_name.remove(&name);

@@ -73,7 +73,7 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
     for of_the_first in ["⏸ Hold", "Airspeed", "keeps its old pattern"] {
         assert!(!window.shows(of_the_first), "{of_the_first}");
     }
-    // the first is still heard, and still not shown
+    // the first is still received, and still not shown
     window.send_of("uav1", ONE, LinkEvent::Telemetry(position(30.0, 500.0, false)));
     assert!(window.app().vehicle().position.is_none());
     connected(&mut window, "uav2", TWO, 900.0);
@@ -81,7 +81,7 @@ fn a_second_vehicle_shows_nothing_of_the_first() {
     assert!(window.shows("● uav2 · Link 0."));
 }
 
-/// The vehicle tells which plan is aboard, is asked for it, and gives it.
+/// The vehicle reports which plan is aboard, is asked for it, and gives it.
 fn reports_its_plan(window: &mut Window, vehicle: &str, link: LinkId, name: &str) {
     let plan = flight_plan::read(SQUARE.replace("Square circuit", name).as_bytes()).plan;
     let hash = Arc::<str>::from(flight_plan::hash(&plan));

@@ -45,7 +45,7 @@ fn flying() -> (Window, flight_exec::Status) {
     value.place = Some(place("circuit", "side2"));
     window.receive_position(false);
     window.receive_status(value.clone());
-    // the window reads the plan aboard; this vehicle does not tell it
+    // the window reads the plan aboard; this vehicle does not give it
     while window.asked().is_some() {}
     (window, value)
 }

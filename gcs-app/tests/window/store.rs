@@ -154,7 +154,7 @@ fn a_new_link_to_the_same_vehicle_keeps_its_history_and_repeats_no_event() {
     let before = log(&store.vehicles);
     assert_eq!(before.iter().filter(|l| l.contains("keeps its old pattern")).count(), 5);
     store.take(&name, Step::Connect, 3);
-    // the vehicle tells what it remembers, and one event more
+    // the vehicle sends what it remembers, and one event more
     for n in history.iter().chain(&[6]) {
         store.take(&name, Step::Receive(Sent::Event(*n)), 4);
     }

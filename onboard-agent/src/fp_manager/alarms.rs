@@ -17,7 +17,7 @@ const MOST: usize = 256;
 pub struct Alarms {
     /// Identifiers of alarms that were answered and are still raised, as far as known.
     answered: BTreeSet<String>,
-    /// Alarms may have been raised unheard, or can be answered now.
+    /// Alarms may have been missed when they were raised, or can be answered now.
     unread: bool,
 }
 
@@ -53,7 +53,7 @@ impl Alarms {
         self.answered.remove(id);
     }
 
-    /// The next list of the gateway's alarms has to be looked at.
+    /// The next list of the gateway's alarms has to be read.
     pub fn read_again(&mut self) {
         self.unread = true;
     }
@@ -64,7 +64,7 @@ impl Alarms {
     }
 
     /// The alarms raised now, as the gateway publishes them; those that nobody answered yet, the most severe first.
-    /// Nothing, unless they have to be looked at.
+    /// Nothing, unless they have to be read.
     pub fn listed(&mut self, alarms: &[Alarm]) -> Vec<Call> {
         if !std::mem::take(&mut self.unread) {
             return Vec::new();
@@ -108,7 +108,7 @@ mod tests {
         }
     }
 
-    /// CommandReview at a list and answers what it asks for.
+    /// Reads a list and answers what it asks for.
     fn answered(alarms: &mut Alarms, list: &[Alarm]) -> Vec<Cause> {
         alarms.read_again();
         let calls = alarms.listed(list);

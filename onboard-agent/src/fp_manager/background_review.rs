@@ -1,27 +1,27 @@
-//! Commands that take effect at once though they lead where nobody has looked (a go-to, a leg skipped, a return to the main plan): the
-//! way is flown ahead afterwards, on a thread of its own, and what is wrong with it told.
+//! Commands that take effect at once although the path was not reviewed: a go-to, a leg skipped, a return to the main plan. The path
+//! is flown ahead afterwards, on a thread of its own, and what is wrong with it is reported.
 
 use super::proposals::broken;
 use super::service::{Input, Out};
 use flight_exec::Event;
 use flight_plan::Problem;
 
-/// Most problems that are told of one command.
+/// Most problems that are reported of one command.
 const MAX_REPORTED: usize = 20;
 
-/// Finds out what is wrong with a way.
+/// Finds out what is wrong with a path.
 type Review = Box<dyn FnOnce() -> Vec<Problem> + Send>;
 
-/// What is looked at afterwards: one way at a time, then the latest.
+/// What is reviewed afterwards: one path at a time, then the latest.
 #[derive(Default)]
 pub struct BackgroundReview {
     is_reviewing: bool,
-    /// Taken since; the way being looked at is not flown any more.
+    /// Taken since; the path being reviewed is not flown any more.
     next: Option<Review>,
 }
 
 impl BackgroundReview {
-    /// Has a way looked at.
+    /// Has a path reviewed.
     pub fn review(&mut self, review: impl FnOnce() -> Vec<Problem> + Send + 'static, out: &mut Out) {
         if std::mem::replace(&mut self.is_reviewing, true) {
             self.next = Some(Box::new(review));
@@ -30,7 +30,7 @@ impl BackgroundReview {
         }
     }
 
-    /// What there is to be told of the way that was taken last.
+    /// What there is to be reported of the path that was taken last.
     pub fn reviewed(&mut self, problems: Result<Vec<Problem>, String>, out: &mut Out) -> Vec<Event> {
         if let Some(review) = self.next.take() {
             out.work(review, Input::WayReviewed);

@@ -1,4 +1,4 @@
-//! Commands in flight that lead to where nobody has looked (another plan, a value that legs are laid out from): flown ahead on
+//! Commands in flight that lead along a path that was not reviewed (another plan, a value that legs are laid out from): flown ahead on
 //! a thread of their own, one after the other in the order in which they came, and given only then.
 
 use super::listed;
@@ -14,7 +14,7 @@ use wire::Convert;
 
 /// Most commands that wait.
 const MAX_WAITING: usize = 16;
-/// Looks at one command: when the flight has been taken elsewhere meanwhile, it is looked at again.
+/// Reviews of one command: when the flight has changed meanwhile, it is reviewed again.
 const MAX_REVIEWS: u32 = 3;
 
 /// A command that wants its answer.
@@ -29,21 +29,21 @@ pub struct Asked {
     reply: Reply<Empty>,
 }
 
-/// What becomes of a command that was looked at.
+/// What becomes of a command that was reviewed.
 pub enum Verdict {
     /// It may be given.
     Give(Asked),
     /// It may not.
     Refuse(Asked, Refusal),
-    /// It has to be looked at again.
+    /// It has to be reviewed again.
     Again,
 }
 
-/// The commands that wait, the first of them being looked at.
+/// The commands that wait, the first of them being reviewed.
 #[derive(Default)]
 pub struct CommandReview {
     waiting: VecDeque<Waiting>,
-    /// One is being looked at, for the flight as it was after so many turns.
+    /// One is being reviewed, for the flight as it was after so many turns.
     reviewing: Option<u64>,
 }
 
@@ -53,7 +53,7 @@ struct Waiting {
 }
 
 impl CommandReview {
-    /// It has to wait: to be looked at, or because its asker's earlier one does, if it is a write.
+    /// It has to wait: to be reviewed, or because its asker's earlier one does, if it is a write.
     pub fn concern(&self, asked: &Asked, manager: &Manager) -> bool {
         let behind = || self.waiting.iter().any(|waiting| waiting.asked.by == asked.by);
         manager.executor().changes_what_is_flown(&asked.command)
@@ -63,13 +63,13 @@ impl CommandReview {
     /// Takes a command in; where too many wait, it is refused.
     pub fn take(&mut self, asked: Asked, out: &mut Out) {
         if self.waiting.len() >= MAX_WAITING {
-            let reason = "too many changes of the flight are being looked at: ask again in a moment";
+            let reason = "too many changes of the flight are being reviewed: ask again in a moment";
             return asked.answer(Err(busy(reason)), out);
         }
         self.waiting.push_back(Waiting { asked, reviews: 0 });
     }
 
-    /// Begins to look at the first that waits, unless one is being looked at; gives that which needs no look (any more).
+    /// Begins to review the first that waits, unless one is being reviewed; gives that which needs no review (any more).
     pub fn begin(&mut self, manager: &Manager, now: Time, out: &mut Out) -> Option<Asked> {
         let first = self.waiting.front_mut().filter(|_| self.reviewing.is_none())?;
         let (command, by) = (first.asked.command.clone(), first.asked.by.clone());
@@ -97,7 +97,7 @@ impl CommandReview {
             return Some(Verdict::Give(first.asked));
         }
         if first.reviews >= MAX_REVIEWS {
-            let reason = "the flight changes faster than it can be looked at: ask again in a moment";
+            let reason = "the flight changes faster than it can be reviewed: ask again in a moment";
             return Some(Verdict::Refuse(first.asked, busy(reason)));
         }
         self.waiting.push_front(first);

@@ -2,7 +2,7 @@
 //!
 //! What waits is one transaction: later ones are merged into it, so it never holds more than the
 //! executor's horizon. A transaction whose answer got lost may or may not have been taken; that
-//! is settled by the highest token the gateway tells at a join.
+//! is settled by the highest token the gateway gives at a join.
 
 use service::Time;
 use std::time::Duration;
@@ -32,7 +32,7 @@ pub enum BatchResult {
     Refused(Token, String),
     /// Not now; it will be sent again.
     Later(String),
-    /// Nobody knows: join, and tell [`Feeder::settle`].
+    /// Nobody knows: join, and pass the answer to [`Feeder::settle`].
     Unknown,
 }
 
@@ -92,7 +92,7 @@ impl Feeder {
         BatchResult::Later(why.to_owned())
     }
 
-    /// The gateway has told the highest token it ever took: what it took is done, the rest is sent again.
+    /// The gateway has given the highest token it ever took: what it took is done, the rest is sent again.
     pub fn settle(&mut self, highest: Token) {
         if !std::mem::take(&mut self.uncertain) {
             return;
@@ -110,7 +110,7 @@ impl Feeder {
         });
     }
 
-    /// Room was made or the gateway changed its mind: what waits may go at once.
+    /// There is room again, or the gateway takes waypoints again: what waits may go at once.
     pub fn hurry(&mut self) {
         self.not_before = None;
     }

@@ -1,4 +1,4 @@
-//! Pure: what is heard of the gateway, and what its alarms lead to.
+//! Pure: what is received from the gateway, and what its alarms lead to.
 
 use super::alarms;
 use super::manager::{Effect, Manager};
@@ -93,7 +93,7 @@ impl Manager {
         self.send(now, out);
     }
 
-    /// Events of the gateway are lost for good: what they would have told is settled by a join.
+    /// Events of the gateway are lost for good: what they would have said is settled by a join.
     pub fn events_lost(&mut self, now: Time, missed: u64, out: &mut Vec<Effect>) {
         tracing::warn!(missed, "events of the gateway were lost");
         self.gateway_appeared(now, out);

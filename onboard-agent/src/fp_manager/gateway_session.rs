@@ -123,7 +123,7 @@ impl GatewaySession {
     /// How the join went: the answer, if it was accepted.
     ///
     /// # Errors
-    /// It was not; a reason that people have not been told yet.
+    /// It was not; a reason that was not reported yet.
     pub fn joined(&mut self, now: Time, answer: Option<JoinAnswer>) -> Result<JoinAnswer, Option<String>> {
         self.joining = false;
         self.not_before = Some(now + RETRY);
@@ -188,7 +188,7 @@ impl GatewaySession {
         Some(request)
     }
 
-    /// How it went; a reason against it that people have not been told yet.
+    /// How it went; a reason against it that was not reported yet.
     pub fn requested(
         &mut self,
         now: Time,

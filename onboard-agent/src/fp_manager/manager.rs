@@ -24,11 +24,11 @@ use wire::Convert;
 /// What has to be done outside.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// Feed the gateway; tell [`Manager::fed`] the answer.
+    /// Feed the gateway; pass the answer to [`Manager::fed`].
     Feed(Feed),
-    /// Join the gateway; tell [`Manager::joined`] the answer.
+    /// Join the gateway; pass the answer to [`Manager::joined`].
     Join(Join),
-    /// Ask the gateway; tell [`Manager::requested`] the answer.
+    /// Ask the gateway; pass the answer to [`Manager::requested`].
     Request(GatewayRequest),
     /// Call a service for the plan; nobody waits for the answer.
     Invoke {
@@ -68,7 +68,7 @@ pub struct Manager {
     pub(super) last_request: u64,
     /// Commands that may have taken the flight elsewhere.
     turns: u64,
-    /// The time of day when it was told last, seconds since 1970.
+    /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
     /// As recorded last.
     pub(super) noted: ManagerState,
@@ -102,7 +102,7 @@ impl Manager {
         }
     }
 
-    /// The executor, to be looked at.
+    /// The executor, to be read.
     pub fn executor(&self) -> &Executor {
         &self.executor
     }
@@ -122,7 +122,7 @@ impl Manager {
         Conditions { wind, start_unix_s, ..Conditions::default() }
     }
 
-    /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites tell it.
+    /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites give it.
     pub fn time_of_day(&mut self, now: Time, unix_s: i64) {
         self.day = Some((now, unix_s));
     }
@@ -186,7 +186,7 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
         let starts = command == Command::Start;
-        // what is written is looked at one after the other
+        // writes are reviewed one after the other
         self.turns += u64::from(!matches!(command, Command::SetVariable { .. }));
         let in_emergency = self.is_in_emergency();
         let request = self.next_request();
@@ -246,7 +246,7 @@ impl Manager {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
                 self.step(now, Input::Rejected { first: first.convert(), reason }, out);
                 if self.is_in_emergency() {
-                    // its plan can't be flown: whoever takes no waypoints has to bring the aircraft home
+                    // its plan can't be flown: a gateway that takes no waypoints has to bring the aircraft home
                     self.gateway_session.want(GatewayRequest::Safe);
                 }
             }
@@ -352,7 +352,7 @@ impl Manager {
     }
 }
 
-/// The call that an act asks for. The other acts are told by their events, for whoever does them.
+/// The call that an act asks for. The other acts are published as events, for the services that do them.
 fn invocation(leg: Id, passage: u64, act: ResolvedAct) -> Option<Effect> {
     let ResolvedAct::Invoke { service, operation, argument } = act else { return None };
     let text = if argument.is_empty() { "null" } else { &argument };

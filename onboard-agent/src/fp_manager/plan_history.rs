@@ -1,9 +1,9 @@
-//! Pure: the plans flown one after the other in a flight. The gateway knows the flight by its plan, and may not have heard
+//! Pure: the plans flown one after the other in a flight. The gateway knows the flight by its plan, and may not have learnt
 //! of an update that was made just before a crash, or before the join that follows it.
 
 use serde::{Deserialize, Serialize};
 
-/// So many are remembered; the gateway hears of an update within a second, unless one of the two has just died.
+/// So many are remembered; the gateway learns of an update within a second, unless one of the two has just died.
 const MOST: usize = 16;
 
 /// Hashes of the plans of this flight; the last one is being flown.

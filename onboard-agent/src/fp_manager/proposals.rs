@@ -58,7 +58,7 @@ impl ProposalReview {
     /// Begins to review a proposal; one that comes while another is being reviewed is refused.
     pub fn take(&mut self, asked: Asked, config: &Config, situation: Situation, out: &mut Out) {
         if self.0.is_some() {
-            let reason = "another proposal is being looked at: propose again in a moment";
+            let reason = "another proposal is being reviewed: propose again in a moment";
             let refusal = Refusal { code: "busy".into(), reason: reason.into() };
             return out.answer(asked.reply, Err(refusal.convert()));
         }
@@ -98,7 +98,7 @@ impl ProposalReview {
 /// The flight is over.
 pub fn good_for_now(in_flight: bool, executor: &Executor) -> Result<(), Refusal> {
     if in_flight && !executor.is_under_way() {
-        let reason = "the flight that this plan was looked at for is over: propose it again";
+        let reason = "the flight that this plan was reviewed for is over: propose it again";
         return Err(Refusal { code: "flight-over".into(), reason: reason.into() });
     }
     Ok(())
@@ -171,7 +171,7 @@ mod tests {
         executor
     }
 
-    /// A landing ends the flight while the plan is looked at, or while its document is kept.
+    /// A landing ends the flight while the plan is reviewed, or while its document is kept.
     #[test]
     fn a_plan_reviewed_for_a_flight_that_is_over_is_not_put_forward() {
         let mut executor = flying();

@@ -7,7 +7,7 @@ use usal::contract::*;
 use usal::topics::fp_manager as topic;
 use wire::Convert;
 
-/// What there is to be published is looked at so often, and when something happened.
+/// What there is to be published is compared so often, and when something happened.
 const PACE: Duration = Duration::from_millis(200);
 
 /// Shows what is due; `heartbeats` counts up.

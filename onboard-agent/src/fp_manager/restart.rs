@@ -127,7 +127,7 @@ fn restored<S: Storage>(
     Ok(manager)
 }
 
-/// Has the parts know again what the notes say.
+/// Gives the parts back what the entries say.
 fn restore_parts(manager: &mut Manager) {
     manager.gateway_session =
         GatewaySession::restored(manager.noted.wanted.clone(), manager.noted.controlled);

@@ -59,15 +59,15 @@ pub enum Input {
     Joined(Result<JoinAnswer, CallError>),
     /// The gateway's answer.
     Requested(GatewayRequest, Result<Empty, CallError>),
-    /// The proposal has been looked at.
+    /// The proposal has been reviewed.
     ProposalReviewed(Result<Reviewed, String>),
     /// The proposal's document is on the disk.
     ProposalKept,
     /// The command that was the first to wait has been reviewed.
     CommandReviewed(Result<Vec<Problem>, String>),
-    /// A way that was taken at once has been looked at.
+    /// A path that was taken at once has been reviewed.
     WayReviewed(Result<Vec<Problem>, String>),
-    /// The journal has something to tell people.
+    /// The journal has something to report.
     Journal(Event),
     /// The journal wants a new state.
     StateWanted,
@@ -195,7 +195,7 @@ impl FpManager {
         }
     }
 
-    /// What the manager hears of the gateway and of the clock.
+    /// What comes from the gateway and from the clock.
     fn handle(&mut self, now: Time, input: Input, out: &mut Out) {
         let (manager, mut effects) = (&mut self.manager, Vec::new());
         match input {
@@ -238,13 +238,13 @@ impl FpManager {
         self.proposal_review.take(asked, &self.config, situation, out);
     }
 
-    /// What a plan put forward now is looked at for.
+    /// What a plan put forward now is reviewed for.
     fn situation(&self, now: Time) -> Situation {
         let flight = Some(self.manager.executor()).filter(|executor| executor.is_under_way());
         Situation { conditions: self.manager.conditions(now), flight: flight.cloned() }
     }
 
-    /// A proposal has been looked at. The executor sees to it that the plan it was made for is still the one being flown.
+    /// A proposal has been reviewed. The executor sees to it that the plan it was made for is still the one being flown.
     fn concluded(&mut self, now: Time, conclusion: Conclusion, out: &mut Out) {
         let Conclusion { asked, in_flight, outcome } = conclusion;
         let fit =

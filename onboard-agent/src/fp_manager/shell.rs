@@ -47,7 +47,7 @@ fn open(config: &Config) -> anyhow::Result<(Journal, Restart)> {
     Ok((Journal(Some(journal)), past))
 }
 
-/// Time since the machine was started, as far as the system tells; else zero.
+/// Time since the machine was started, as far as the system says; else zero.
 fn time_since_boot() -> Time {
     let uptime = std::fs::read_to_string("/proc/uptime").unwrap_or_default();
     let seconds = uptime.split(' ').next().and_then(|text| text.parse().ok());
@@ -98,14 +98,14 @@ impl Adapter<FpManager> for Journal {
     }
 }
 
-/// Nothing is kept: whoever waits for that need not.
+/// Nothing is kept: who waits for that need not.
 fn without(outputs: Vec<Output>, tasks: &mut Tasks<Input>) {
     if outputs.iter().any(|output| matches!(output, Output::Document { .. })) {
         tasks.wait(ready(Input::ProposalKept));
     }
 }
 
-/// Asks for a state when one is wanted, and tells people what they have to know of the disk.
+/// Asks for a state when one is wanted, and reports a disk that fails, or works again.
 fn poll_journal(journal: &mut JournalHandle, tasks: &mut Tasks<Input>) {
     let wants_state = journal.wants_state();
     if let Some(event) = journal.state_event() {

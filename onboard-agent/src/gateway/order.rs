@@ -1,7 +1,7 @@
 //! Pure: what the gateway asks of a driver and what a driver reports, whatever the autopilot.
 //!
 //! The core speaks of waypoints and of what it wants flown; how an autopilot is brought to do so (its list, its
-//! modes, its messages) is the driver's own business.
+//! modes, its messages) is known to the driver alone.
 
 use geometry::LatLon;
 use std::borrow::Cow;
@@ -128,7 +128,7 @@ pub enum Report {
     },
     /// Another sign of life, without news.
     Alive,
-    /// How far it is with the waypoints; told when it changes.
+    /// How far it is with the waypoints; reported when it changes.
     Course(Course),
     /// Where it is.
     Fix(Fix),
@@ -171,7 +171,7 @@ pub struct Course {
 /// What the autopilot steers to, as it says itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Target {
-    /// Nothing that we told it.
+    /// Nothing that we ordered.
     #[default]
     None,
     /// This waypoint; it may have been cancelled meanwhile. Those before it were flown.

@@ -17,7 +17,7 @@ pub struct Station {
 }
 
 impl Station {
-    /// A station that has heard nothing. `restored`: what an earlier one stored.
+    /// A station that has received nothing. `restored`: what an earlier one stored.
     pub fn new(settings: Settings, restored: Option<Snapshot>, driver: Box<dyn Driver>) -> Self {
         Self {
             gateway: Gateway::new(settings, restored),
@@ -29,12 +29,12 @@ impl Station {
         }
     }
 
-    /// The core, to be looked at.
+    /// The core, to be read.
     pub fn gateway(&self) -> &Gateway {
         &self.gateway
     }
 
-    /// Takes in what the link brought; [`Self::process`] looks at it.
+    /// Takes in what the link brought; [`Self::process`] handles it.
     pub fn receive(&mut self, incoming: FromLink<'_>) {
         self.driver.receive(incoming);
     }
@@ -103,7 +103,7 @@ impl Station {
         self.driver.send(outbox);
     }
 
-    /// Events to be told.
+    /// Events to be published.
     pub fn take_events(&mut self) -> Vec<GatewayEvent> {
         std::mem::take(&mut self.events)
     }

@@ -1,4 +1,4 @@
-//! What changes a flight is looked at before it takes effect.
+//! What changes a flight is reviewed before it takes effect.
 
 use super::*;
 use geometry::LatLon;
@@ -80,7 +80,7 @@ async fn place_written_into_the_open_takes_effect() {
     assert!(scan.iter().all(|p| p.distance_m(LatLon::new(36.3000, -84.1600)) < 600.0), "{scan:?}");
 }
 
-/// One look at a time; what an asker wrote first is answered first, whatever has to be looked at.
+/// One review at a time; what a caller wrote first is answered first, whatever has to be reviewed.
 #[tokio::test(flavor = "multi_thread")]
 async fn writes_of_one_asker_keep_their_order_and_very_many_are_too_many() {
     let mut flight = Flight::searching().await;

@@ -52,7 +52,7 @@ pub struct FakeGateway {
     gps: VariablePublisher<Gps>,
     /// Share of the energy left.
     pub battery: f64,
-    /// Time of day at the start, if satellites tell it.
+    /// Time of day at the start, if satellites give it.
     pub unix_s: Option<i64>,
     _announcement: Announcement,
     time_s: f64,

@@ -1,6 +1,6 @@
 //! The virtual machine: inputs in, outputs out, time as an argument.
 //!
-//! What it remembers is in the parts of [`crate::flight`], each of which looks after itself. Here an input is dispatched to them, and
+//! What it remembers is in the parts of [`crate::flight`], each the only writer of its fields. Here an input is dispatched to them, and
 //! what concerns several of them is put in order.
 
 mod acting;

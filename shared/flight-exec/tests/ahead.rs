@@ -43,7 +43,7 @@ fn document(legs: &str, active: &str) -> String {
     document_with(legs, &variables, "").replace("</variables>", &zones)
 }
 
-/// A flight by an autopilot that is at once where it is told to go.
+/// A flight by an autopilot that is at once where it is sent.
 struct Flight {
     executor: Executor,
     seconds: u64,
@@ -138,7 +138,7 @@ impl Flight {
     }
 }
 
-/// What lies behind the aircraft when a plan comes in flight, nobody has looked at: it is, before that is started on the ground.
+/// What lies behind the aircraft when a plan comes in flight, nobody has reviewed: it is, before that is started on the ground.
 #[test]
 fn plan_that_came_in_flight_is_looked_at_whole_before_it_is_started() {
     let legs =

@@ -103,7 +103,7 @@ fn a_plan_that_is_good_only_as_long_as_its_variables_stay_what_they_are() {
     assert_eq!(found(r#"min="0""#, ""), one("turn-too-tight", "when `r` is 0 m"));
 }
 
-/// The overlap alone makes the spacing bad when it is 1, the height alone when it is 0: both are told, and nothing more of both.
+/// The overlap alone makes the spacing bad when it is 1, the height alone when it is 0: both are reported, and nothing more of both.
 #[test]
 fn each_extreme_that_makes_a_plan_bad_is_told() {
     let scan = r#"<scan id="sweep" fieldOfView="60" overlap="= ov" height="= h"><area fix="D" radius="600"/></scan><DF id="on" fix="A"/>"#;
@@ -145,7 +145,7 @@ fn a_wind_that_is_too_strong_is_the_reason_that_is_told() {
     }
 }
 
-/// What comes after a wait is looked at as well.
+/// What comes after a wait is reviewed as well.
 #[test]
 fn a_plan_with_a_wait_is_reviewed_to_its_end() {
     let document = std::fs::read(assets().join("docs/fragments/actions.xml")).unwrap();
@@ -605,7 +605,7 @@ fn ground_of_which_nothing_is_known() {
     assert_eq!(found(r#"<TF id="far" fix="B"/>"#), [""; 0]);
     let far = r#"<TF id="far" fix="B" altitude="200" altitudeReference="agl"/>"#;
     assert_eq!(found(far), ["far"]);
-    // told once, however often it would be flown
+    // reported once, however often it would be flown
     let round = |body: &str| format!(r#"<iterative id="laps" form="forward" count="2">{body}</iterative>"#);
     assert_eq!(found(&round(&format!(r#"<TF id="near" fix="A"/>{far}"#))), ["far"]);
     // so many that the path is given up
@@ -617,7 +617,7 @@ fn ground_of_which_nothing_is_known() {
     assert!(found(&many).len() > 500);
 }
 
-/// Where no elevation is known, that is told; what is below the sea, or below a runway that is lower still, is in the ground all
+/// Where no elevation is known, that is reported; what is below the sea, or below a runway that is lower still, is in the ground all
 /// the same.
 #[test]
 fn below_unknown_ground() {

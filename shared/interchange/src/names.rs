@@ -10,7 +10,7 @@ const LONGEST: usize = 56;
 #[derive(Debug, Default)]
 pub struct Names {
     taken: HashSet<String>,
-    /// Where the numbers behind a name go on, so that a thousand equal names cost no million looks.
+    /// Where the numbers behind a name go on, so that a thousand equal names cost no million comparisons.
     next: HashMap<String, usize>,
 }
 

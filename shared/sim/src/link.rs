@@ -8,7 +8,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::net::{TcpListener, UdpSocket};
 
-/// A UDP partner not heard of for this long is forgotten.
+/// A UDP partner silent for this long is forgotten.
 const FORGET_AFTER: Duration = Duration::from_secs(60);
 
 /// A bound socket that is not yet part of a runtime.

@@ -1,7 +1,7 @@
 //! The thread around the core: it owns the link and the clock.
 //!
 //! Pace: with a lockstep partner, a step is taken when the partner has answered the question before it; without
-//! one, in real time times `speed`. A partner is whoever first answers; it is lost after eight silent
+//! one, in real time times `speed`. A partner is the first that answers; it is lost after eight silent
 //! seconds and found again when it answers.
 
 use crate::config::{Config, Control};

@@ -56,7 +56,7 @@ impl Client {
         received
     }
 
-    /// Hears until something passes the test.
+    /// Receives until something passes the test.
     fn receive_until(&mut self, what: &str, mut test: impl FnMut(&MavMessage) -> bool) {
         let deadline = Instant::now() + DEADLINE;
         while Instant::now() < deadline {
@@ -257,7 +257,7 @@ fn the_binary_prints_its_address_and_obeys_lines() {
         .args(["--tcp", "127.0.0.1:0", "--wind", "270,5", "--seed", "9", "--fault", "gps-loss"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        // a file, so that its log is not in the way of what the tests tell
+        // a file, so that its log is not in the way of what the tests print
         .stderr(File::create(concat!(env!("CARGO_TARGET_TMPDIR"), "/legwork-sim.log")).unwrap())
         .spawn()
         .unwrap();

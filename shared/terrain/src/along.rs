@@ -13,7 +13,7 @@ pub struct Ground {
     pub highest_m: Option<f64>,
     /// Where that is (the path's start if nothing is known).
     pub at: LatLon,
-    /// Share of the looked-at points where nothing is known, 0..=1.
+    /// Share of the sampled points where nothing is known, 0..=1.
     pub unknown: f64,
 }
 

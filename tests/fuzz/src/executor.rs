@@ -1,4 +1,4 @@
-//! The executor: a flight told by bytes, with everything that people, services, autopilots and broken sensors may do.
+//! The executor: a flight made from bytes, with everything that people, services, autopilots and broken sensors may do.
 
 mod occurrence;
 

@@ -1,4 +1,4 @@
-//! Map tools. A tool is a value that is told what the pointer and the keys do over the map, answers with
+//! Map tools. A tool is a value that gets what the pointer and the keys do over the map, answers with
 //! commands, and paints. It sees no widgets: the toolbox turns what it offers to be grabbed into widgets
 //! with names, so that screen readers and tests find them, and keeps what is dragged under the pointer.
 //!
@@ -179,7 +179,7 @@ impl Toolbox {
         }
     }
 
-    /// Tells the tool in use what happened on the map, and lets it paint.
+    /// Passes what happened on the map to the tool in use, and lets it paint.
     pub fn run(&mut self, ui: &Ui, map: &Response, canvas: &Canvas<'_>, queue: &mut Queue, p: &Palette) {
         let Some(tool) = self.tools.get_mut(self.current) else { return };
         tool.hover(map.hover_pos(), canvas);

@@ -26,7 +26,7 @@ pub struct JournalHandle {
     state: u64,
     /// The disk was too slow, and has not caught up.
     behind: bool,
-    /// What people were told last.
+    /// Whether trouble was reported last.
     reported: bool,
 }
 
@@ -136,7 +136,7 @@ impl JournalHandle {
         progress.report.wants_state && progress.done >= self.state
     }
 
-    /// What people have to be reported: that recording stopped, or that it is back.
+    /// What has to be reported: that recording stopped, or that it is back.
     pub fn state_event(&mut self) -> Option<Event> {
         let progress = self.progress.borrow();
         let slow =

@@ -23,7 +23,7 @@ const PLAN_TEMPORARY: &str = "plan.tmp";
 const DOCUMENT_TEMPORARY: &str = "document.tmp";
 /// A document is written in pieces of so many bytes: each is on a slow card within the time that a turn may take.
 const PIECE: usize = 256 << 10;
-/// Segments that could not be used and are kept for whoever wants to look at them.
+/// Segments that could not be used and are kept for inspection.
 const UNUSABLE_KEPT: usize = 3;
 /// Longest plan, bytes: no more can be proposed.
 const PLAN_MAX: u64 = 64 << 20;
@@ -158,7 +158,7 @@ impl<S: Storage> Log<S> {
         self.previous = Some(found.name.clone());
     }
 
-    /// Keeps an unusable segment for whoever wants to look at it, out of the way; its new name.
+    /// Keeps an unusable segment for inspection, out of the way; its new name.
     pub fn set_aside(&mut self, found: &Found) -> String {
         let aside = format!("{SEGMENT}{:08}{UNUSABLE}", found.number);
         match self.storage.rename(&found.name, &aside) {

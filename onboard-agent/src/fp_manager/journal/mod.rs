@@ -18,7 +18,7 @@
 //! dropped: it was done once, or its process died before and the join with the gateway puts it right. An action is
 //! therefore triggered at most once.
 //!
-//! The flight waits for the disk for half a second at most. A disk that is full, fails or is slow is told as
+//! The flight waits for the disk for half a second at most. A disk that is full, fails or is slow is reported as
 //! [`NotJournalled`](flight_exec::Event::NotJournalled) and flown on without; a new state is tried every second, and when it is written
 //! recording goes on ([`Journalled`](flight_exec::Event::Journalled)).
 //!
@@ -43,7 +43,7 @@
 //!
 //! The newest segment is read up to the first frame that is not sound. Are there no sound ones behind it, the tail was **torn** by the
 //! crash and is dropped: nothing of it had taken effect. Are there, the segment is **corrupt**: replay stops before it, and
-//! that is told as an event, as something that took effect may be missing. The executor is restored from the state, and the
+//! that is reported as an event, as something that took effect may be missing. The executor is restored from the state, and the
 //! turns are replayed through `Executor::step` at their recorded times. Then a new segment is begun. A segment whose state cannot be
 //! used is set aside, and the one before it, which leads up to the same state, is taken.
 //!

@@ -41,7 +41,7 @@ impl Job {
     pub fn bytes(&self) -> usize {
         match self {
             Self::Turn { payload, .. } => payload.len(),
-            // there is one document at a time, that of the proposal being looked at
+            // there is one document at a time, that of the proposal being reviewed
             Self::Document { .. } | Self::Plan(_) | Self::State(..) => 4096,
         }
     }

@@ -5,7 +5,7 @@ use crate::gateway::order::Time;
 use std::time::Duration;
 use usal::contract::{Alarm, Cause, GatewayEvent, Severity};
 
-/// The autopilot was not heard for so long.
+/// Nothing was received from the autopilot for so long.
 const SILENT: Duration = Duration::from_secs(3);
 /// The position did not change for so long although the aircraft flies.
 const STALE: Duration = Duration::from_secs(1);
@@ -17,7 +17,7 @@ const ENERGY_LOW: (f64, f64) = (0.20, 0.23);
 const STOPPED_RPM: f64 = 300.0;
 /// Throttle above which an engine has to turn, 0..1.
 const THROTTLE: f64 = 0.1;
-/// The autopilot did not do as told for so long.
+/// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
 
 /// What the gateway watches.
@@ -117,10 +117,10 @@ impl Watch {
     }
 }
 
-/// What the alarms are told beside telemetry.
+/// What the alarms need beside telemetry.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AlarmInputs {
-    /// Since when the autopilot has not done as told.
+    /// Since when the autopilot has not followed an order.
     pub disobeys_since: Option<Time>,
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
     pub sinks_below_target: bool,

@@ -194,7 +194,7 @@ impl Gateway {
         self.leave_loiter(out);
     }
 
-    /// A gateway that starts while the aircraft flies: it looks what is flown before it acts.
+    /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
     fn meet_in_flight(&mut self, out: &mut Vec<Output>) {
         let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
         let aloft = self.telemetry.is_airborne() && self.telemetry.on_ground == Some(false);

@@ -42,8 +42,8 @@ impl Gateway {
     }
 
     fn knows_the_flight(&self, join: &Join) -> Result<(), String> {
-        // an update may have been made while nothing was heard of it
-        let known = |plan| self.fp_manager.plan.as_ref().is_none_or(|heard| heard == plan);
+        // an update may have been made while the link was down
+        let known = |plan| self.fp_manager.plan.as_ref().is_none_or(|flown| flown == plan);
         if join.plan.is_none() || !join.plan.iter().chain(&join.earlier).any(known) {
             return Err(
                 "It does not fly the plan of this flight; restore that plan, or use the request `recover`."

@@ -1,8 +1,8 @@
 //! Pure: the gateway's state machine. No IO, clock or randomness: time is an argument.
 //!
 //! `step` takes one thing that happened and gives what is to be done about it. Every step ends
-//! with the same round: alarms, what the autopilot is seen to do, what the FP Manager is heard to
-//! do, then the orders that follow. The state tells what was confirmed, the intent what is wanted.
+//! with the same round: alarms, what the autopilot is seen to do, what the FP Manager is known to
+//! do, then the orders that follow. The state says what was confirmed, the intent what is wanted.
 
 mod alarms;
 mod batch;
@@ -55,7 +55,7 @@ pub struct Gateway {
     ended: bool,
     /// The last flight ended with a landing of the FP Manager's.
     finished: bool,
-    /// What was last told as progress.
+    /// What was last reported as progress.
     reported: Option<Option<Token>>,
     low_reported: bool,
     /// What must survive a restart can't be written.
@@ -67,7 +67,7 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// A gateway that has heard nothing yet. `restored`: what an earlier one stored.
+    /// A gateway that has received nothing yet. `restored`: what an earlier one stored.
     pub fn new(settings: Settings, restored: Option<Snapshot>) -> Self {
         let known = restored.clone();
         Self {
@@ -285,7 +285,7 @@ impl Gateway {
         out.push(Output::Save);
     }
 
-    /// Makes a transition, if the table has one; tells it; does what entering the state asks for.
+    /// Makes a transition, if the table has one; reports it; does what entering the state asks for.
     fn change(&mut self, trigger: Trigger, cause: &str, out: &mut Vec<Output>) {
         let Some(to) = states::next(self.state, trigger) else { return };
         let from = std::mem::replace(&mut self.state, to);
@@ -308,7 +308,7 @@ impl Gateway {
             return;
         }
         let current = match self.buffer.current() {
-            // our own waypoints are nobody else's business
+            // our own waypoints are not reported
             Some(w) if w.token == Token(0) => return,
             Some(w) => Some(w.token),
             None if self.buffer.at_end() && !is_safe(self.state) => None,

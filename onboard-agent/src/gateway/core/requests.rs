@@ -72,7 +72,7 @@ impl Gateway {
 
     fn hold(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
         self.is_free()?;
-        // whoever wants a hold means it: waypoints do not end it
+        // a hold that was asked for is not ended by waypoints
         self.fp_manager.awaited_since = None;
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
         out.push(Output::Save);
@@ -194,8 +194,8 @@ impl Gateway {
 
     /// What was ended by force before a restart of the gateway stays ended, until it is on the ground.
     pub(super) fn keep_terminated(&mut self, out: &mut Vec<Output>) {
-        let heard = self.telemetry.mode.is_some();
-        if !self.terminated || self.state == GatewayState::Terminate || !heard {
+        let connected = self.telemetry.mode.is_some();
+        if !self.terminated || self.state == GatewayState::Terminate || !connected {
             return;
         }
         if self.telemetry.is_landed() {

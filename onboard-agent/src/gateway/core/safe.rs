@@ -11,7 +11,7 @@ const GLIDE_SLOPE: f64 = 0.08;
 const INITIAL_M: f64 = 700.0;
 /// Height kept above the ground on the way, metres.
 const CLEARANCE_M: f64 = 100.0;
-/// Spacing at which the ground on the way is looked at, metres.
+/// Spacing at which the ground on the way is sampled, metres.
 const GROUND_STEP_M: f64 = 200.0;
 /// Share of the energy left that may be planned with.
 const USABLE: f64 = 0.8;
@@ -80,7 +80,7 @@ pub fn is_usable(runway: &SafeRunway, profile: &Profile) -> bool {
 }
 
 /// The way to a runway: over the ground on the way, down to the initial approach point, along the
-/// extended centre line, and the landing. Its tokens are 0: they are nobody else's business.
+/// extended centre line, and the landing. Its tokens are 0: they are not reported.
 pub fn path(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Vec<Waypoint> {
     let height_m = safe.return_height_m.clamp(40.0, 500.0);
     let back_deg = runway.heading_deg + 180.0;

@@ -60,7 +60,7 @@ impl FpManager {
         self.last_received.max(self.expected_since).map(|t| t + seconds(safe.t1_s))
     }
 
-    /// Silent for T1, or never heard.
+    /// Silent for T1, or never received.
     pub fn is_silent(&self, now: Time, safe: &SafeParameters) -> bool {
         self.silent_at(safe).is_none_or(|t| now >= t)
     }

@@ -16,7 +16,7 @@ const STANDING_MPS: f64 = 0.5;
 pub struct Telemetry {
     /// Last sign of life.
     pub last_received: Option<Time>,
-    /// Mode, once heard.
+    /// Mode, once received.
     pub mode: Option<Mode>,
     /// What the autopilot calls it.
     pub mode_name: Cow<'static, str>,

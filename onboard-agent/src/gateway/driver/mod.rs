@@ -23,10 +23,10 @@ pub enum FromLink<'a> {
 
 /// A state machine without socket and clock that speaks with one autopilot.
 pub trait Driver: Send + Sync {
-    /// Takes in what the link brought; [`Self::process`] looks at it.
+    /// Takes in what the link brought; [`Self::process`] handles it.
     fn receive(&mut self, incoming: FromLink<'_>);
 
-    /// Looks at the next message of what was received, so that what it leads to is done before the one after
+    /// Handles the next message of what was received, so that what it leads to is done before the one after
     /// it. False: there is no whole message left.
     fn process(&mut self, now: Time) -> bool;
 
@@ -39,7 +39,7 @@ pub trait Driver: Send + Sync {
     /// When `tick` is due.
     fn deadline(&self) -> Time;
 
-    /// The next thing to be told.
+    /// The next report.
     fn next_report(&mut self) -> Option<Report>;
 
     /// Hands over the frames to be sent.

@@ -31,8 +31,9 @@ async fn a_lockstep_simulator_is_seen_on_the_network_and_time_runs_fast() {
             }
         }
     };
-    let begun_s =
-        tokio::time::timeout(Duration::from_secs(60), wait).await.expect("the gateway hears the simulator");
+    let begun_s = tokio::time::timeout(Duration::from_secs(60), wait)
+        .await
+        .expect("the gateway receives the simulator");
     let (begun, mut now_s) = (Instant::now(), begun_s);
     while now_s < begun_s + 100.0 {
         let next = tokio::time::timeout(Duration::from_secs(20), state.changed()).await.unwrap().unwrap();

@@ -15,7 +15,7 @@ const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 const PEER: Peer = Peer(1);
 
 enum State {
-    /// An attempt that goes on although nobody looks.
+    /// An attempt that goes on in the background.
     Connecting(JoinHandle<io::Result<TcpStream>>),
     Open(Connection),
 }
@@ -25,7 +25,7 @@ pub struct Connect {
     to: String,
     state: State,
     backoff: Duration,
-    /// It broke, and that was not told yet.
+    /// It broke, and that was not reported yet.
     broke: bool,
 }
 

@@ -53,7 +53,7 @@ impl Udp {
         udp
     }
 
-    /// Sends to whoever listens there.
+    /// Sends to the address.
     ///
     /// # Errors
     /// If there is no such place, or no socket.

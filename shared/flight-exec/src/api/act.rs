@@ -36,7 +36,7 @@ pub enum ResolvedAct {
         /// JSON text of the request; empty: `null`.
         argument: String,
     },
-    /// Circles at the end of the leg (the executor does it; only told as an event).
+    /// Circles at the end of the leg (the executor does it; only reported as an event).
     Wait {
         /// Seconds.
         seconds: f64,

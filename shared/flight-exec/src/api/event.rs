@@ -69,7 +69,7 @@ pub enum Event {
         reason: String,
     },
     /// A condition or a number of a leg has no value now (a division by zero, for instance): the condition counts as
-    /// false, the number as not given. Told once.
+    /// false, the number as not given. Reported once.
     ExpressionFailed {
         /// The leg.
         leg: Id,
@@ -110,7 +110,7 @@ pub enum Event {
         reason: String,
     },
     /// A command took effect that leads along a way of its own (a go-to, a leg skipped, a return to the main plan), and what is ahead has
-    /// this problem now, which it did not have before. It is flown nevertheless unless another command comes. Told by the FP Manager.
+    /// this problem now, which it did not have before. It is flown nevertheless unless another command comes. Reported by the FP Manager.
     ProblemAhead {
         /// The leg, if it is one's.
         leg: Option<Id>,
@@ -120,7 +120,7 @@ pub enum Event {
         reason: String,
     },
     /// The gateway does not grant what the flight needs; it is asked again, for the take-off until
-    /// it is granted. Told once for each reason, by the FP Manager.
+    /// it is granted. Reported once for each reason, by the FP Manager.
     NotGranted {
         /// `launch`, `hold`, `resume` or `set-runways`.
         request: String,
@@ -128,7 +128,7 @@ pub enum Event {
         reason: String,
     },
     /// What happens is not recorded (disk full, not writable), or a restart could not use what was: the flight
-    /// goes on, its place would not survive another restart. Told once, by the FP Manager.
+    /// goes on, its place would not survive another restart. Reported once, by the FP Manager.
     NotJournalled {
         /// Why, and what to do.
         reason: String,

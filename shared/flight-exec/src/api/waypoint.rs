@@ -77,7 +77,7 @@ pub struct AircraftState {
     pub wind_north_mps: f64,
     /// Share of the energy left, 0..1.
     pub battery: f64,
-    /// Share of the fuel left, 0..1; `None`: nobody tells of a tank.
+    /// Share of the fuel left, 0..1; `None`: no tank is reported.
     #[serde(default)]
     pub fuel: Option<f64>,
     /// On the ground.

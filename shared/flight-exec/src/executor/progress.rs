@@ -18,7 +18,7 @@ impl Executor {
             Some(token) => {
                 let index = self.flight.horizon.iter().position(|h| h.waypoint.token == token);
                 if let Some(index) = index {
-                    // the next look at conditions counts from here: what comes does not depend on when the last one was
+                    // the next evaluation of conditions counts from here: what comes does not depend on when the last one was
                     self.life.clock.review_in(0.0);
                     self.fly_past(index, out);
                     self.arrive_at_current(out);

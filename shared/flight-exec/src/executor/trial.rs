@@ -75,7 +75,7 @@ impl Executor {
         &self.life.numbers
     }
 
-    /// Legs and loops whose actions are looked after.
+    /// Legs and loops whose actions are due in turn.
     pub(crate) fn acting_legs(&self) -> impl Iterator<Item = &Id> {
         self.flight.acting.legs()
     }

@@ -17,7 +17,7 @@ use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 pub(crate) use trigger::Moment;
 
-/// The passages under way, and when they were looked after last.
+/// The passages under way, and when they were checked last.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Acting {
     /// Those that have actions, outermost first.
@@ -26,7 +26,7 @@ pub(crate) struct Acting {
     acted_s: f64,
 }
 
-/// A passage of a leg, or an activation of a loop, whose actions are looked after.
+/// A passage of a leg, or an activation of a loop, whose actions are due in turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Passage {
     leg: Id,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mode {
     phase: Phase,
-    /// Where the aircraft was when it was told to hold.
+    /// Where the aircraft was when it was ordered to hold.
     held_at: Option<LatLon>,
     gateway_controls: bool,
 }

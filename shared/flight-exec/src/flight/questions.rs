@@ -28,7 +28,7 @@ const PREVIEW_POSITIONS: usize = 20;
 pub(crate) struct Questions {
     decisions: Vec<Decision>,
     requested: Vec<(Id, u64)>,
-    /// Those of them that came into sight after their deadline.
+    /// Those of them that were found after their deadline.
     late: Vec<(Id, u64)>,
     /// A question about an intersection beyond what is issued.
     distant: Option<DistantQuestion>,

@@ -22,7 +22,7 @@ use flight_plan::{Id, Program};
 use std::sync::Arc;
 use terrain::Terrain;
 
-/// The executor hears about the aircraft so often, microseconds.
+/// The executor gets the aircraft's state so often, microseconds.
 const REPORT_EVERY_US: u64 = 500_000;
 /// The callback is called so often, microseconds of simulated time.
 const ADVANCE_EVERY_US: u64 = 10_000_000;

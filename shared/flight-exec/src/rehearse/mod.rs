@@ -223,7 +223,7 @@ pub fn preview(
     preview_with(program, profile, terrain, wind, start, scenario, options, &mut |_| true)
 }
 
-/// As [`preview`], telling about every ten simulated seconds; the callback returns false to cancel.
+/// As [`preview`], reporting about every ten simulated seconds; the callback returns false to cancel.
 ///
 /// # Errors
 /// As [`preview`], and `Cancelled`.

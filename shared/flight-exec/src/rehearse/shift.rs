@@ -91,7 +91,7 @@ pub(super) struct Shift {
     distance_m: f64,
     energy_j: f64,
     tokens: i64,
-    /// Numbers of passages as actions tell them.
+    /// Numbers of passages as actions report them.
     passages: i64,
     /// Indices of passages, and counts of waypoints.
     indices: isize,

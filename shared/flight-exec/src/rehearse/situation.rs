@@ -19,7 +19,7 @@ pub(super) struct Situation {
     /// Waypoints fed and not reached yet.
     pub buffer: VecDeque<Waypoint>,
     pub moment: Moment,
-    /// Since the start, microseconds: whole numbers, so that two flights that differ by a shift in time tell the same time.
+    /// Since the start, microseconds: whole numbers, so that two flights that differ by a shift in time have the same times.
     pub now_us: u64,
     pub due: Due,
     /// The executor was stepped last then.
@@ -30,7 +30,7 @@ pub(super) struct Situation {
     pub fired: Vec<bool>,
     /// The scenario says so.
     pub ended: bool,
-    /// A leg was begun since somebody looked.
+    /// A leg was begun since this was last read.
     pub entered: bool,
     /// Over the ground, metres.
     pub distance_m: f64,

@@ -13,7 +13,7 @@
 //! that the present flight has as well, word for word, is no reason to refuse: it becomes a warning. If another command turns the
 //! flight meanwhile, the review is repeated.
 //!
-//! A go-to, a skip and a return to the main plan take effect at once, because whoever gives one may be in a hurry to get out of
+//! A go-to, a skip and a return to the main plan take effect at once, because the operator may be in a hurry to get out of
 //! somewhere. The direct track that they take is reviewed right afterwards ([`review_turn`], `fp_manager/background_review`), and what is
 //! wrong with it is reported as an event. Variables that no leg is laid out from take effect at once; the review before the flight has
 //! flown what the plan's own actions write. A plan that was reviewed only ahead, or that came between a start without effect and
@@ -64,7 +64,7 @@ pub fn review_turn(before: &Executor, after: &Executor, conditions: Conditions) 
 }
 
 /// As [`super::compile_and_review`], for a plan that would take over a flight under way where that is. A plan in which the leg to enter has
-/// still to be named is checked, and looked at with that leg by [`review_command`] when it is committed.
+/// still to be named is checked, and reviewed with that leg by [`review_command`] when it is committed.
 ///
 /// # Errors
 /// As [`super::compile_and_review`].
@@ -96,8 +96,8 @@ fn brought_about(present: &Executor, changed: &Executor, conditions: Conditions)
 }
 
 impl Executor {
-    /// A command that leads to where nobody has looked: in flight another plan, or a value that legs are laid out from; on the ground the
-    /// start of a plan that came in flight, or after a start of which nothing came. It is for [`review_command`] before it is given.
+    /// A command that leads along a path that was not reviewed: in flight another plan, or a value that legs are laid out from; on the
+    /// ground the start of a plan that came in flight, or after a start of which nothing came. It is for [`review_command`] before it is given.
     pub fn changes_what_is_flown(&self, command: &Command) -> bool {
         let anew = *command == Command::Start && self.is_reviewed_ahead_only() && self.may_start();
         let otherwise = self.is_under_way()

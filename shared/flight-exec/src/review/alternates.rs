@@ -23,7 +23,7 @@ pub(super) struct Alternate<'a> {
     pub energy_j: f64,
 }
 
-/// A place of the flight from which a way out is looked for.
+/// A place of the flight from which a way out is sought.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     pub leg: Id,

@@ -2,7 +2,7 @@
 //! runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered. The worst point is named.
 //!
 //! A plan that is named for an engine failure promises that all of it is within the glide. The fallback does not: it is reported where
-//! its runway is so far away that even a glide straight there ends before it (whoever steers may leave out the rest of the plan),
+//! its runway is so far away that even a glide straight there ends before it (the operator may leave out the rest of the plan),
 //! and on how much of the flight.
 //!
 //! The glide: at the cruise speed with the best glide ratio, in the wind, with more sink in the turns from track to track, through

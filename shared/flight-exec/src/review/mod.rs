@@ -90,7 +90,7 @@ impl Default for Margins {
     }
 }
 
-/// What the rules look at.
+/// What the rules read.
 struct View<'a> {
     program: &'a Program,
     profile: &'a Profile,
@@ -127,7 +127,7 @@ const RULES: [Rule; 16] = [
 
 /// Every problem of the path that a compiled plan makes the aircraft fly, each once for a leg.
 ///
-/// Variables have their initial values; [`review_extremes`] looks at others.
+/// Variables have their initial values; [`review_extremes`] tries others.
 pub fn review(
     program: &Arc<Program>,
     profile: &Profile,
@@ -239,7 +239,7 @@ pub fn compile_and_review(
     reviewed(document, profile, terrain, |program| review(program, profile, terrain, conditions))
 }
 
-/// Reads, checks and compiles a document, and looks at the program.
+/// Reads, checks and compiles a document, and reviews the program.
 fn reviewed(
     document: &[u8],
     profile: &Profile,

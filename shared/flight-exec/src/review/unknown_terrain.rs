@@ -1,5 +1,5 @@
 //! `unknown-terrain`: an altitude counts from the ground, and nothing is known of it there: the aircraft would leave the leg.
-//! `not-reviewed`, once: nothing is known of the ground below a part of the path, so that nobody has looked how near it is.
+//! `not-reviewed`, once: nothing is known of the ground below a part of the path, so that it was not reviewed how near it is.
 
 use super::View;
 use flight_plan::{Id, Problem};

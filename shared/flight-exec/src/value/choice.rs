@@ -17,7 +17,7 @@ pub enum By {
 }
 
 impl By {
-    /// As events tell it.
+    /// As events report it.
     pub fn name(&self) -> &str {
         match self {
             By::Somebody(name) => name,

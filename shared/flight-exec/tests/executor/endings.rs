@@ -1,4 +1,4 @@
-//! How plans end: where they do, what is told, and what comes when an end was none.
+//! How plans end: where they do, what is reported, and what comes when an end was none.
 
 use crate::rig::{HOME, Rig, document, document_with, fix, program};
 use flight_exec::{AircraftState, Command, Event, Input, Phase, Time, Token};
@@ -304,7 +304,7 @@ fn brought_down_by_somebody_else_nothing_ahead_happens_and_it_may_start_again() 
     rig.fly_to_the_end();
 }
 
-/// It was looked at from where the aircraft was.
+/// It was reviewed from where the aircraft was.
 #[test]
 fn proposal_of_the_flight_is_forgotten_when_that_is_over() {
     let mut rig = Rig::started(r#"<TF id="a" fix="A3"/>"#);

@@ -200,7 +200,7 @@ fn released_a_holding_is_left_at_the_next_crossing_and_asked_again_at_once() {
     }
 }
 
-/// A division by zero at run time: told once, and the condition counts as false.
+/// A division by zero at run time: reported once, and the condition counts as false.
 #[test]
 fn a_condition_without_a_value_is_told_and_does_not_hold() {
     // outside loops the iteration is 0

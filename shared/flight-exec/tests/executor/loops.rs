@@ -163,7 +163,7 @@ fn a_plan_that_ends_with_a_loop_finishes() {
     assert_eq!(rig.executor.status().phase, Phase::Finished);
 }
 
-/// Where the next pass begins is too near to be laid out anew, and told with the count of now all the same.
+/// Where the next pass begins is too near to be laid out anew, and reported with the count of now all the same.
 #[test]
 fn a_count_set_at_the_beginning_of_a_pass_is_told_with_the_pass_before() {
     let legs = r#"<iterative id="l" form="forward" count="3"><TF id="a" fix="B1"/><TF id="b" fix="C2"/></iterative>

@@ -1,4 +1,4 @@
-//! An autopilot that is wherever it is told to go, at once.
+//! An autopilot that is at once where it is sent.
 
 use aircraft::Profile;
 use flight_exec::{

@@ -1,4 +1,4 @@
-//! Actions: done when they are due, once a passage, by somebody who is told.
+//! Actions: done when they are due, once a passage, by somebody to whom it is reported.
 
 use crate::policy::{Findings, Policy, policy};
 use crate::trace::{Seen, Step, Trace, same_passage};
@@ -135,7 +135,7 @@ fn done_once(trace: &Trace, found: &mut Findings) {
     }
 }
 
-/// What somebody was told of a leg's actions: done, or why not.
+/// What was reported of a leg's actions: done, or why not.
 fn reports_of(step: Step, leg: &Id, wanted: &Act) -> usize {
     let refused = |e: &&Event| matches!(e, Event::ActionRefused { leg: of, .. } if of == leg);
     let alike = done(step).filter(|(of, _, act)| *of == leg && is_like(wanted, act)).count();
@@ -195,7 +195,7 @@ fn left_by_itself(trace: &Trace) -> Vec<(&PlacePointer, std::ops::RangeInclusive
     legs
 }
 
-/// Several legs may be passed in one step, when progress is told late.
+/// Several legs may be passed in one step, when progress is reported late.
 fn done_by_its_end(trace: &Trace, found: &mut Findings) {
     for (place, steps) in left_by_itself(trace) {
         let last = trace.step(*steps.end());
@@ -231,7 +231,7 @@ fn every_so_often(trace: &Trace, found: &mut Findings) {
         let made = |at: &usize| trace.step(*at).before.place().filter(|p| same_passage(p, place));
         let way_m = steps.clone().filter_map(|at| made(&at).map(|p| p.distance_m)).fold(0.0, f64::max);
         let told: usize = steps.clone().map(|at| reports_of(trace.step(at), &leg.id, &action.act)).sum();
-        // what lies before the last waypoint has been passed; the aircraft may have been nearer than was told
+        // what lies before the last waypoint has been passed; the aircraft may have been nearer than was reported
         let least = (way_m / 400.0).floor() as usize;
         if least == 0 {
             continue;

@@ -224,7 +224,7 @@ fn variables_change(trace: &Trace, found: &mut Findings) {
     }
 }
 
-/// The value of a variable that a step tells last.
+/// The value of a variable that a step reports last.
 pub fn last_report<'a>(step: Step<'a>, variable: &Id) -> Option<&'a VariableValue> {
     let values = step.events().filter_map(|e| match e {
         Event::VariableChanged { name, value, .. } => Some((name, value)),

@@ -100,7 +100,7 @@ fn is_answered(trace: &Trace, found: &mut Findings) {
     }
 }
 
-/// Where nothing at all is ahead (refused, or not fed while the gateway controls) there is no place to tell it.
+/// Where nothing at all is ahead (refused, or not fed while the gateway controls) there is no place to report.
 fn flies(seen: &Seen, plan: &Id) -> bool {
     let there = seen.place().is_none() || emergency_flown(seen) == Some(plan);
     there && seen.status.emergency.as_ref() == Some(plan)

@@ -122,15 +122,15 @@ fn cancelled_stays(trace: &Trace, found: &mut Findings) {
     }
 }
 
-/// Where a batch was just refused the two differ, until the executor has heard of it and holds.
+/// Where a batch was just refused the two differ, until the executor has received that and holds.
 fn ahead_is_the_buffer(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.after.is_fed()) {
-        let heard = trace.moments.get(step.at + 1).map(|m| &m.stimulus);
-        let rejected = matches!(heard, Some(crate::trace::Stimulus::Input(Input::Rejected { .. })));
+        let next = trace.moments.get(step.at + 1).map(|m| &m.stimulus);
+        let rejected = matches!(next, Some(crate::trace::Stimulus::Input(Input::Rejected { .. })));
         if !rejected {
             let buffer: Vec<_> = step.after.buffer.iter().map(|w| w.token).collect();
             let ahead = step.after.tokens();
-            // what was told late is still ahead for the executor
+            // what was reported late is still ahead for the executor
             let same = ahead.ends_with(&buffer);
             found.expect(step, same, || format!("executor {ahead:?}, gateway {buffer:?}"));
         }
@@ -270,7 +270,7 @@ fn all_anew(step: Step, found: &mut Findings) {
     found.expect(step, new && whole, || "not everything was fed again".into());
 }
 
-/// Changes that keep the way: everything but jumps, and the change of mind at the fork itself.
+/// Changes that keep the way: everything but jumps, and a changed choice at the fork itself.
 fn nothing_near(trace: &Trace, found: &mut Findings) {
     let profile = Profile::default();
     for step in trace.steps().filter(|s| s.before.is_fed() && s.after.is_fed() && keeps_the_way(s)) {

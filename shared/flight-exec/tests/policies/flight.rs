@@ -303,7 +303,7 @@ impl Flight {
         self.refuses_next = true;
     }
 
-    /// Several waypoints flown, one told.
+    /// Several waypoints flown, one reported.
     fn lose_progress(&mut self) {
         let flown = self.random.below(3).min(self.buffer.len().saturating_sub(1));
         if self.is_steering() {

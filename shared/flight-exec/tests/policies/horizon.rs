@@ -133,7 +133,7 @@ fn time_alone_once(trace: &Trace, found: &mut Findings) {
     for step in trace.steps() {
         let again = last == Some(step.moment.now) && matches!(step.input(), Some(Input::Tick));
         if again && step.at > 0 {
-            // a batch that was refused is told of in the same instant
+            // a batch that was refused is reported in the same instant
             // nor is everything that is to be done every so often after a leap done in one step
             let late = |e: &Event| {
                 matches!(

@@ -2,7 +2,7 @@
 //! and by a reference model that shares no code with the executor.
 //!
 //! A sequence is its seed. A failure prints it, and the shortest beginning of it that fails:
-//! `LEGWORK_SEED=17 cargo test -p flight-exec --test policies` flies that one again and tells what happened.
+//! `LEGWORK_SEED=17 cargo test -p flight-exec --test policies` flies that one again and prints what happened.
 //! `LEGWORK_SEQUENCES=1000000 LEGWORK_FROM=250000 cargo test --release -p flight-exec --test policies -- --nocapture`
 //! flies many, and goes on where another run has stopped; `LEGWORK_THREADS=1` leaves the other cores to others.
 #![cfg(test)]
@@ -40,10 +40,10 @@ use trace::Trace;
 
 /// Sequences in a plain `cargo test`.
 const SEQUENCES: u64 = 400;
-/// Moments told before the one that is wrong.
+/// Moments printed before the one that is wrong.
 const REPORTED: usize = 500;
 const EVERY_HAPPENING: usize = usize::MAX;
-/// Seeds told of those that break a policy.
+/// Seeds printed of those that break a policy.
 const SEEDS_REPORTED: usize = 12;
 
 fn number(variable: &str, default: u64) -> u64 {

@@ -120,7 +120,7 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// Lost until the next jump: the place is what is told, what was visited in its loops isn't known.
+    /// Lost until the next jump: the place is what is reported, what was visited in its loops isn't known.
     fn listen(&mut self, place: &PlacePointer) {
         let frame = |i: &IterationPlace| {
             let id = Some(i.leg.clone());
@@ -131,7 +131,7 @@ impl<'a> Model<'a, '_> {
         self.here = Some(place.leg.clone()).filter(|_| self.stack.is_empty());
     }
 
-    /// Lost, too, it is heard that a pass is over: the next one has begun, or the loop is left, and its own count with it.
+    /// Lost, too, it is reported that a pass is over: the next one has begun, or the loop is left, and its own count with it.
     fn listen_to_the_pass(&mut self, leg: &Id, finished: u64, of: Option<u64>, stop: &[bool]) {
         let until = match self.program.and_then(|p| p.leg(leg)).map(|l| &l.kind) {
             Some(LegKind::Iterative { until, .. }) => until.as_deref(),
@@ -500,7 +500,7 @@ impl<'a> Model<'a, '_> {
         since.or(before)
     }
 
-    /// A passage must be entered now. Some legs fly something only where the path is not there yet; a leg told to be impossible may be
+    /// A passage must be entered now. Some legs fly something only where the path is not there yet; a leg reported as impossible may be
     /// left out.
     fn enter(&mut self, id: &Id) -> Flown {
         let start = self.program.and_then(|p| p.leg(id)).is_some_and(may_fly_nothing);

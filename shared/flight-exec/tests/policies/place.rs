@@ -214,7 +214,7 @@ fn skip_leaves(trace: &Trace, found: &mut Findings) {
 }
 
 /// A leg that flies nothing (an IF where the path is, an intersection, one that can't be flown) leads on: then the first leg
-/// flown tells.
+/// flown reports.
 fn go_to_goes_there(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         let Command::GoTo { leg } = command else { continue };

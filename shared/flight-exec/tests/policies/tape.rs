@@ -1,4 +1,4 @@
-//! What the reference model reads: what was told of the way, and what people did to it, in order.
+//! What the reference model reads: what was reported of the path, and what people did to it, in order.
 
 use crate::trace::{Step, Trace};
 use flight_exec::{Branching, Command, Event, Phase, PlacePointer};

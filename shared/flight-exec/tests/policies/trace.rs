@@ -1,4 +1,4 @@
-//! What happened, moment by moment: all that a policy may look at.
+//! What happened, moment by moment: all that a policy may read.
 
 use crate::grid::HOME;
 use flight_exec::{

@@ -23,7 +23,7 @@ fn disc(centre: Vec2, radius_m: f64) -> Polygon {
     Polygon::new((0..720).map(corner).collect(), vec![]).unwrap()
 }
 
-/// Coverage is measured on rows: what is smaller than between two of them is not told.
+/// Coverage is measured on rows: what is smaller than between two of them is not seen.
 const ALL: f64 = 0.999_999;
 
 proptest! {

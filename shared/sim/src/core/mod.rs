@@ -141,7 +141,7 @@ impl Simulator {
         }
     }
 
-    /// One step: faults, flight, mission protocol, then everything that is due to be told.
+    /// One step: faults, flight, mission protocol, then everything that is due to be sent.
     pub fn step(&mut self) {
         self.now_ns += STEP_NS;
         if let Some((peer, frame)) = self.inward.release() {

@@ -1,4 +1,4 @@
-//! The parameters it is asked for. Those that act on the flight can be set; the others tell what is so.
+//! The parameters it is asked for. Those that act on the flight can be set; the others can only be read.
 
 use aircraft::Profile;
 

@@ -1,4 +1,4 @@
-//! What the autopilot tells: one function a message.
+//! What the autopilot sends: one function a message.
 
 use super::autopilot::Autopilot;
 use super::item::degrees_e7;

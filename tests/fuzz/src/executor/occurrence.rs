@@ -1,4 +1,4 @@
-//! What can happen, as bytes tell it. Numbers are any numbers: not-a-number and infinities too.
+//! What can happen, made from bytes. Numbers are any numbers: not-a-number and infinities too.
 
 use arbitrary::Arbitrary;
 use flight_plan::{Cause, Id, Leg, LegKind, VariableValue};

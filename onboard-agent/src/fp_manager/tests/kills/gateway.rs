@@ -18,7 +18,7 @@ pub struct Gateway {
     pub refuse_launch: Option<String>,
     /// Safe mode is refused so often, as below the height where a take-off may be interrupted.
     pub refuse_safe: usize,
-    /// What happened and was not told yet.
+    /// What happened and was not reported yet.
     pub events: VecDeque<GatewayEvent>,
     buffer: VecDeque<Waypoint>,
     highest: Token,
@@ -78,7 +78,7 @@ impl Gateway {
         FeedAnswer::Accepted
     }
 
-    /// In Safe mode, whoever knows the flight gets the aircraft back: flying on, or to send waypoints first.
+    /// In Safe mode, a manager that knows the flight gets the aircraft back: flying on, or to send waypoints first.
     pub fn join(&mut self, join: Join) -> JoinAnswer {
         let knows = join.last_token >= self.highest && self.knows_plan(&join) && !self.commanded;
         let taken = matches!(self.state, GatewayState::Manual | GatewayState::SafeLand);

@@ -182,7 +182,7 @@ fn holding_when_safe_mode_ends_it_holds_again() {
     }
 }
 
-/// What is told of legs and actions, and what is asked of services.
+/// What is reported of legs and actions, and what is asked of services.
 fn reports_of_plan(flight: &Flight) -> usize {
     use Event::*;
     let of_plan = |e: &&Event| {

@@ -221,7 +221,7 @@ impl Flight {
             return;
         }
         let ahead = self.process.manager.executor().ahead().next().map(|w| w.token);
-        // on its way home it has no waypoints that would say what was flown unheard
+        // on its way home it has no waypoints that would say what was flown without a report
         let all_heard = ahead == self.gateway.navigation().current.convert();
         match self.random.below(4) {
             0 => self.gateway.safe_hold(),
@@ -273,7 +273,7 @@ impl Flight {
 
     /// The client repeats its request under the same name until it is answered.
     fn ask(&mut self) {
-        // a waypoint that was flown unheard is flown again
+        // a waypoint that was flown without a report is flown again
         let flown = self.path().len();
         let due = |ask: &Ask| flown >= ask.flown && self.since_answer >= ask.steps;
         let Some(ask) = self.asks.pop_front_if(|ask| due(ask)) else { return };

@@ -61,7 +61,7 @@ pub fn matches(a: &Item, b: &Item) -> bool {
     match (a.kind, b.kind) {
         (ItemKind::Jump { to: x }, ItemKind::Jump { to: y }) => x == y,
         (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => here && (x - y).abs() <= 1.0,
-        // where a take-off goes is the runway's business: autopilots keep its altitude only
+        // where a take-off goes follows from the runway: autopilots keep its altitude only
         (ItemKind::TakeOff, ItemKind::TakeOff) => {
             (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
         }

@@ -35,7 +35,7 @@ pub struct List {
     window: Window,
     task: Option<Task>,
     retry_at: Option<Time>,
-    /// A flight that was met in the air is to be looked at.
+    /// A flight that was met in the air is to be examined.
     adopt: Option<(OrderId, Vec<Fed>)>,
     /// The list may be changed: we know this kind of autopilot.
     pub supported: bool,
@@ -68,7 +68,7 @@ impl List {
         self.adopt = None;
     }
 
-    /// Look whether waypoints of ours are flown.
+    /// Find out whether waypoints of ours are flown.
     pub fn adopt(&mut self, id: OrderId, known: Vec<Fed>) {
         self.adopt = Some((id, known));
     }
@@ -83,7 +83,7 @@ impl List {
         self.home = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
     }
 
-    /// The ground under the aircraft, as far as its height above home tells, metres AMSL.
+    /// The ground under the aircraft, as far as its height above home says, metres AMSL.
     pub fn set_ground(&mut self, position: LatLon, altitude_amsl_m: f64) {
         self.ground = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
     }

@@ -48,7 +48,7 @@ pub struct ArduPlane {
 }
 
 impl ArduPlane {
-    /// A driver that has heard nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
+    /// A driver that has received nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
     pub fn new(lockstep: bool) -> Self {
         Self { session: Session::new(lockstep), ..Self::default() }
     }
@@ -116,7 +116,7 @@ impl ArduPlane {
         }
     }
 
-    /// What telemetry means to the list.
+    /// What telemetry means for the list.
     fn observe(&mut self, report: &Report) {
         match report {
             Report::Home { position, altitude_amsl_m } => {
@@ -163,7 +163,7 @@ impl ArduPlane {
         }
     }
 
-    /// Goes on with the list, and tells how far it is.
+    /// Goes on with the list, and reports how far it is.
     fn work(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
         if let Some(peer) = self.session.peer()
             && let Some(step) = self.list.next(now)

@@ -19,7 +19,7 @@ const LONGEST_QUEUE: usize = 32;
 /// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
 const FORCE: f32 = 21_196.0;
 
-/// Who is told how a command ended.
+/// Who gets the result of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Client {
     /// The core, which gave this order.

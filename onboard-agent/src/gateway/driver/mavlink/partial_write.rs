@@ -28,7 +28,7 @@ pub struct PartialWrite {
     differs: Option<u16>,
     rounds: u32,
     rto: Rto,
-    /// When the first round was sent; a later one's answers can't be told from an earlier one's.
+    /// When the first round was sent; a later one's answers can't be distinguished from an earlier one's.
     probe: Option<Time>,
 }
 

@@ -1,6 +1,6 @@
 //! A conversation with one MAVLink autopilot: whom we listen to, heartbeats, time, commands, the list.
 //!
-//! It binds to the first autopilot it hears and ignores every other system; a message with nonsense in it loses
+//! It binds to the first autopilot it receives and ignores every other system; a message with nonsense in it loses
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
 
 use super::Peer;
@@ -19,7 +19,7 @@ use std::time::Duration;
 const HEARTBEAT: Duration = Duration::from_secs(1);
 /// Our component: onboard computer.
 const OWN_COMPONENT: u8 = 191;
-/// Until a vehicle is heard we speak as system 1, the usual number of a single vehicle.
+/// Until a vehicle is received we speak as system 1, the usual number of a single vehicle.
 const FIRST_SYSTEM: u8 = 1;
 /// Bytes that are no frames are logged at most this often.
 const LOG_EVERY: Duration = Duration::from_secs(10);
@@ -27,7 +27,7 @@ const LOG_EVERY: Duration = Duration::from_secs(10);
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionEvent {
-    /// The autopilot was heard for the first time.
+    /// The autopilot was received for the first time.
     Bound(HEARTBEAT_DATA),
     /// Its heartbeat.
     Heartbeat {
@@ -68,12 +68,12 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session that has heard nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
+    /// A session that has received nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
     pub fn new(lockstep: bool) -> Self {
         Self { lockstep, ..Self::default() }
     }
 
-    /// The autopilot, once it was heard.
+    /// The autopilot, once it was received.
     pub fn peer(&self) -> Option<Peer> {
         self.peer
     }
@@ -92,7 +92,7 @@ impl Session {
         }
     }
 
-    /// Looks at the next message of what was received. False: there is none left.
+    /// Handles the next message of what was received. False: there is none left.
     pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
         let Some(frame) = self.decoder.next_frame() else { return false };
         let (sender, message) = (frame.sender, frame.message());
@@ -207,7 +207,7 @@ impl Session {
         self.tick(now, events);
     }
 
-    /// The first autopilot that is heard is ours; the rest are strangers.
+    /// The first autopilot that is received is ours; the rest are strangers.
     fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         if self.peer.is_some() || sender.system == 0 || !is_autopilot(beat) {
             return;

@@ -7,7 +7,7 @@ use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
-/// So long is looked how often a message comes before it is asked for again.
+/// So long a message's rate is observed before it is asked for again.
 const OBSERVED: Duration = Duration::from_secs(3);
 /// And each time twice as long, up to so many times: an autopilot may have its reasons.
 const MAX_DOUBLINGS: u32 = 5;

@@ -13,7 +13,7 @@ const FASTEST_MPS: f64 = 300.0;
 const JUMP_M: f64 = 500.0;
 /// After so many jumps in a row to about the same place, it is believed.
 const BELIEVED_AFTER: u32 = 10;
-/// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not heard it from a satellite.
+/// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not received it from a satellite.
 const NO_TIME_BEFORE_US: u64 = 1_577_836_800_000_000;
 /// The autopilot's clock went back by more than this: it started anew, ms.
 const REBOOT_MS: u32 = 2000;
@@ -31,7 +31,7 @@ pub struct Readings {
     last_fix: Option<(Time, LatLon)>,
     jumps: u32,
     boot_ms: Option<u32>,
-    /// The time of day when it was told last, seconds since 1970.
+    /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
 }
 

@@ -313,7 +313,7 @@ impl Transfer {
             Phase::Sending { acked, asked, .. } if *acked == 0 && *asked == 0 => {
                 self.send_from_start(peer, out)
             }
-            // the end may have come through although nothing says so: look
+            // the end may have come through although nothing says so: ask
             Phase::Sending { acked, .. } if *acked + 1 == self.items.len() && self.silent >= 2 => {
                 self.read(now, self.items.len(), peer, out);
                 self.probe = None;

@@ -242,7 +242,7 @@ fn an_emergency_replaces_everything_at_once_and_no_stale_waypoint_is_steered_to(
     }
 }
 
-/// Heartbeats that tell of what an order did may be lost as well, and orders of how often something is to be sent.
+/// Heartbeats that show what an order did may be lost as well, and orders of how often something is to be sent.
 #[test]
 fn at_a_fifth_of_packets_lost_every_launch_succeeds_and_nothing_is_alarming() {
     for seed in 0..60 {

@@ -32,7 +32,7 @@ impl DistantQuestion {
     }
 }
 
-/// An intersection seen from afar.
+/// An intersection some way ahead.
 struct Upcoming {
     leg: Id,
     crossing: u64,
@@ -57,7 +57,7 @@ impl Questions {
     fn soon(&self, upcoming: &Upcoming, path: &PathAhead, world: &World) -> Option<DistantQuestion> {
         let fork = world.program.leg(&upcoming.leg)?.as_fork()?;
         let left = upcoming.way.until_due(fork.decide_before);
-        // one that comes into sight after its deadline is asked when it is issued
+        // one that is found after its deadline is asked when it is issued
         if left.seconds > path.config.ask_ahead_s || left.seconds <= 0.0 {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Places: telling people where a cursor is, and putting a cursor at a leg.
+//! Places: where a cursor is, for people, and a cursor at a given leg.
 
 use super::enter::has_own_waypoints;
 use super::{Cursor, CursorPhase, LoopFrame};
