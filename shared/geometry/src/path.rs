@@ -183,12 +183,12 @@ fn nearest_on_line(from: LatLon, to: LatLon, p: LatLon) -> Nearest {
     let mut foot = Direct { position: from, bearing_end_deg: line.bearing_start_deg };
     let (mut along_m, mut cross_track_m) = (0.0, 0.0);
     for _ in 0..ROUNDS {
-        let line = foot.position.inverse(p);
-        let angle = (line.bearing_start_deg - foot.bearing_end_deg).to_radians();
-        let (step_m, cross_m) = right_triangle(line.distance_m, angle);
+        let to_point = foot.position.inverse(p);
+        let angle = (to_point.bearing_start_deg - foot.bearing_end_deg).to_radians();
+        let (step_m, cross_m) = right_triangle(to_point.distance_m, angle);
         along_m += step_m;
         cross_track_m = cross_m;
-        if line.distance_m < NEAR_M || step_m.abs() < 1e-3 {
+        if to_point.distance_m < NEAR_M || step_m.abs() < 1e-3 {
             break;
         }
         foot = from.direct(line.bearing_start_deg, along_m);
