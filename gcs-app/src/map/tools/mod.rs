@@ -4,8 +4,11 @@
 //!
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
+mod area;
 mod measure;
+mod new_leg;
 mod select;
+mod track;
 
 use super::sketch::Sketch;
 use super::view::View;
@@ -16,7 +19,12 @@ use egui::{Context, CursorIcon, Key, Modifiers, Painter, Pos2, Rect, Response, R
 
 /// All tools, in the order of the toolbar. The first one is in use unless another one is chosen.
 fn all() -> Vec<Box<dyn Tool>> {
-    vec![Box::new(select::Select), Box::new(measure::Measure::default())]
+    vec![
+        Box::new(select::Select),
+        Box::new(track::Track::default()),
+        Box::new(area::DrawArea::default()),
+        Box::new(measure::Measure::default()),
+    ]
 }
 
 /// What a tool is called.
@@ -261,7 +269,7 @@ mod tests {
     fn an_unknown_tool_is_the_first_one() {
         let mut toolbox = Toolbox::default();
         toolbox.choose("measure");
-        assert_eq!(toolbox.current, 1);
+        assert_ne!(toolbox.current, 0);
         toolbox.choose("no such tool");
         assert_eq!(toolbox.current, 0);
     }
