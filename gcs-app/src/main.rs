@@ -11,7 +11,7 @@ use std::process::ExitCode;
 ///
 /// Without a command, opens the ground station's window. `legwork COMMAND --help` has examples.
 #[derive(Debug, Parser)]
-#[command(name = "legwork", version, about, args_conflicts_with_subcommands = true)]
+#[command(name = "legwork", version, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Task>,

@@ -23,7 +23,7 @@ const DEFAULT_AIRCRAFT: &str = "trainer";
 
 /// Legwork's onboard agent: FCS Gateway, FP Manager and storage, the flight recorder.
 #[derive(Debug, Parser)]
-#[command(name = "onboard-agent", version, about)]
+#[command(name = "onboard-agent", version)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

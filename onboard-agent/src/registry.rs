@@ -55,6 +55,16 @@ mod tests {
     use clap::CommandFactory;
     use usal::contract::Kind;
 
+    #[test]
+    fn help_says_what_each_service_is_in_words_for_who_runs_it() {
+        let help = Cli::command().render_long_help().to_string();
+        for spec in spec::SERVICES {
+            assert!(help.contains(spec.about), "`{}` is missing: {help}", spec.name);
+        }
+        let first = help.lines().next().unwrap_or_default();
+        assert!(first.contains("flight recorder") && !first.starts_with("Shell"), "{first}");
+    }
+
     /// What is aboard is in the contract, in its order; the command line names it; what it follows is said by somebody.
     #[test]
     fn services_aboard_are_those_of_the_contract_and_of_the_command_line() {
