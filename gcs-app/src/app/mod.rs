@@ -223,8 +223,9 @@ impl App {
     /// Another vehicle's plan is not to be seen under this one.
     fn drop_plan_of_another(&mut self, shown: &VehicleName) {
         let version = self.document.version();
-        let is_anothers = self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
-        if is_anothers && self.document.is_nobodys() {
+        let belongs_to_another =
+            self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
+        if belongs_to_another && self.document.is_nobodys() {
             self.document = Document::default();
             self.view.selection = None;
             self.view.cursor_s = None;
