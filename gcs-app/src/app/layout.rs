@@ -34,12 +34,9 @@ impl App {
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
             let floor = floor(map, whole);
             if start::is_wanted(&scene) {
-                let floor = if floor.height() < start::HEIGHT { whole } else { floor };
-                // beside the tools where there is room
-                let tools = if floor.width() < NARROW { 0.0 } else { 44.0 };
-                let clear = Rect::from_min_max(floor.min + egui::vec2(tools, 0.0), floor.max);
-                floating(ui, "new mission", clear, Align2::LEFT_TOP, |ui| {
-                    ui.set_width(start::WIDTH);
+                let (room, width) = room_of_start(floor, whole);
+                floating(ui, "new mission", room, Align2::LEFT_TOP, |ui| {
+                    ui.set_width(width);
                     start::show(ui, new_runway, &scene, queue);
                 });
             }
@@ -70,6 +67,18 @@ const MIN_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
 /// Where the decision and the commands float: over the map, or over everything where there is no room on it.
 fn floor(map: Option<Rect>, whole: Rect) -> Rect {
     map.filter(|m| m.width() >= MIN_MAP.x && m.height() >= MIN_MAP.y).unwrap_or(whole)
+}
+
+/// Where the card for a new mission floats, and its width: beside the map's tools, or where there is no room for it at
+/// the window's left edge, over the plan that is empty.
+fn room_of_start(floor: Rect, whole: Rect) -> (Rect, f32) {
+    const TOOLS: f32 = 44.0;
+    const OUTWARDS: f32 = 9.0;
+    if floor.width() >= NARROW && floor.height() >= start::HEIGHT {
+        (Rect::from_min_max(floor.min + egui::vec2(TOOLS, 0.0), floor.max), start::WIDTH)
+    } else {
+        (Rect::from_min_max(whole.min - egui::vec2(OUTWARDS, 0.0), whole.max), start::NARROW_WIDTH)
+    }
 }
 
 /// The decision above and the commands below; nothing hides them.

@@ -62,6 +62,8 @@ struct Remembered {
 const STORAGE_KEY: &str = "legwork";
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
+/// And so often while none is, as long as something is known of one.
+const SLOW_REFRESH: Duration = Duration::from_secs(1);
 
 /// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
 #[derive(Debug, Clone, Copy)]
@@ -297,6 +299,9 @@ impl eframe::App for App {
         self.ask_before_closing(ctx);
         if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
+        } else if self.vehicles.shown().received_s.is_some() {
+            // without a link values grow old just the same
+            ctx.request_repaint_after(SLOW_REFRESH);
         }
     }
 

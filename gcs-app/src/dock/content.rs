@@ -21,6 +21,8 @@ pub struct Content<'a> {
     queue: &'a mut Queue,
     /// Tiles that have a tab, and so no title of their own.
     tabbed: BTreeSet<u64>,
+    /// Panels whose tab bar has no room for their headers.
+    crowded: BTreeSet<PanelId>,
     closed: Vec<PanelId>,
     map_rect: Option<Rect>,
 }
@@ -33,7 +35,16 @@ impl<'a> Content<'a> {
         scene: &'a Scene<'a>,
         queue: &'a mut Queue,
     ) -> Self {
-        Self { map, panels, scene, queue, tabbed: BTreeSet::new(), closed: Vec::new(), map_rect: None }
+        Self {
+            map,
+            panels,
+            scene,
+            queue,
+            tabbed: BTreeSet::new(),
+            crowded: BTreeSet::new(),
+            closed: Vec::new(),
+            map_rect: None,
+        }
     }
 
     pub(super) fn begin(&mut self, tiles: &Tiles<PanelId>) {
@@ -98,6 +109,8 @@ impl<'a> Content<'a> {
     }
 }
 
+/// Least width of a header beside tabs; with less, it stands below them, screen points.
+const HEADER: f32 = 200.0;
 /// Around a panel.
 const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 8 };
 
@@ -112,6 +125,12 @@ impl Behavior<PanelId> for Content<'_> {
         let frame = Frame::new().fill(theme::of(ui).panel).inner_margin(MARGIN);
         let dragged = frame.show(ui, |ui| {
             let dragged = !self.tabbed.contains(&tile.0) && self.title_bar(ui, id);
+            if self.crowded.contains(id) {
+                // no higher than what is in it
+                let size = vec2(ui.available_width(), 0.0);
+                let row = Layout::left_to_right(Align::Min);
+                ui.allocate_ui_with_layout(size, row, |ui| self.header(ui, id));
+            }
             if let Some(panel) = self.panels.iter_mut().find(|panel| panel.id() == id) {
                 panel.ui(ui, self.scene, self.queue);
             }
@@ -140,6 +159,10 @@ impl Behavior<PanelId> for Content<'_> {
         let width: f32 = titles.into_iter().map(|id| tab_width(ui, self.title(id))).sum();
         let Some(id) = active else { return };
         let room = vec2((ui.available_width() - width - 8.0).max(0.0), TAB_BAR);
+        if room.x < HEADER {
+            self.crowded.insert(id);
+            return;
+        }
         ui.allocate_ui_with_layout(room, Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(room.x);
             self.header(ui, id);

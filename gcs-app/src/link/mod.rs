@@ -141,17 +141,29 @@ pub enum Telemetry {
     GatewayEvent(Numbered<GatewayEvent>),
     Recording(Stamped<Recording>),
     Plain(PlainValue),
+    PlainEvent(PlainEvent),
 }
 
-/// What a service declares and this window has no place of its own for: as rows of name and text.
+/// A variable that a service declares and this window has no place of its own for: as rows of name and text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlainValue {
     /// Whose.
     pub service: &'static str,
-    /// The variable's name, or that of the stream of events.
+    /// The variable's name.
     pub name: &'static str,
     /// Its fields; a value without fields is one row without a name.
     pub rows: Stamped<Rows>,
+}
+
+/// An event of such a kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlainEvent {
+    /// Whose.
+    pub service: &'static str,
+    /// The stream's name.
+    pub name: &'static str,
+    /// Its fields.
+    pub rows: Numbered<Rows>,
 }
 
 /// Names and texts.

@@ -314,10 +314,7 @@ mod tests {
 
     #[tokio::test(flavor = "multi_thread")]
     async fn an_agent_of_another_version_is_told_as_a_failed_link() {
-        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
-        drop(listener);
-        let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let (hub, endpoint) = hub().await;
         let mut describe = hub.serve_description(GATEWAY).unwrap();
         let agent = tokio::spawn(async move {
             let refusals = [usal::contract::check_version(Some("2")), Ok(())];
@@ -334,6 +331,42 @@ mod tests {
         assert!(matches!(&refused, LinkState::Failed(why) if why.contains("version 2")), "{refused:?}");
         assert_eq!(link_state(&client, &alive, "there").await, LinkState::Connected("there".into()));
         agent.await.unwrap();
+    }
+
+    /// A session of the vehicle's, and where it listens.
+    async fn hub() -> (Session, String) {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
+        drop(listener);
+        (Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap(), endpoint)
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_variable_without_a_place_of_its_own_comes_as_plain_rows() {
+        let (hub, endpoint) = hub().await;
+        let plan =
+            hub.publish(Variable::<serde_json::Value>::new(FP_MANAGER, fp_manager::PLAN.name)).unwrap();
+        plan.set(1.0, 3.0, &serde_json::json!({"name": "Fire watch"}));
+        let (messages, mut window) = mpsc::channel(100);
+        let outlet = Outlet {
+            link: LinkId(1),
+            vehicle: VehicleName::from("uav1"),
+            messages,
+            left_out: Arc::default(),
+            is_foreign: Arc::default(),
+            wake: Arc::new(|| {}),
+        };
+        let _open = connect(&endpoint, &outlet).await.unwrap();
+        let told = tokio::time::timeout(Duration::from_secs(10), async {
+            loop {
+                if let LinkEvent::Telemetry(Telemetry::Plain(plain)) = window.recv().await.unwrap().event {
+                    return plain;
+                }
+            }
+        });
+        let plain = told.await.unwrap();
+        assert_eq!((plain.service, plain.name), (FP_MANAGER, "plan"));
+        assert_eq!(plain.rows.value, [("name".to_owned(), "Fire watch".to_owned())]);
     }
 
     #[test]

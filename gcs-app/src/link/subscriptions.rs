@@ -2,7 +2,7 @@
 //! decoded by its type, everything else comes as plain text.
 
 use super::session::{Open, Outlet};
-use super::{Numbered, PlainValue, Rows, Telemetry};
+use super::{Numbered, PlainEvent, PlainValue, Rows, Telemetry};
 use serde_json::Value;
 use usal::SessionError;
 use usal::contract::{Kind, PlanEvent, Stamped};
@@ -14,6 +14,8 @@ use wire::Convert;
 const TEXT_MAX: usize = 120;
 /// Rows of a plain value.
 const ROWS_MAX: usize = 24;
+/// What lies deeper in a plain value is left out.
+const DEPTH_MAX: usize = 4;
 
 type Subscribe = fn(&mut Open, &Outlet) -> Result<(), SessionError>;
 
@@ -80,32 +82,53 @@ pub(super) fn subscribe(
     outlet: &Outlet,
 ) -> Result<(), SessionError> {
     let name = said.name;
-    if let Some(decoded) = decoded(service, said.kind, name) {
-        return (decoded.subscribe)(open, outlet);
-    }
-    match said.kind {
-        Kind::Variable if said.rate.is_some() => {
-            let value = move |value: Stamped<Value>| Telemetry::Plain(PlainValue::new(service, name, &value));
+    match way(service, said) {
+        Way::Decoded(subscribe) => subscribe(open, outlet),
+        Way::PlainVariable => {
+            let value = move |value: Stamped<Value>| {
+                Telemetry::Plain(PlainValue { service, name, rows: stamped_rows(&value) })
+            };
             open.follow(Variable::<Value>::new(service, name), value, outlet)
         }
-        Kind::Event => {
-            let event =
-                move |event: Numbered<Value>| Telemetry::Plain(PlainValue::new(service, name, &event.event));
+        Way::PlainEvents => {
+            let event = move |Numbered { sequence, event }: Numbered<Value>| {
+                let rows = Numbered { sequence, event: stamped_rows(&event) };
+                Telemetry::PlainEvent(PlainEvent { service, name, rows })
+            };
             open.listen(Events::<Stamped<Value>>::new(service, name), event, outlet)
         }
-        _ => Ok(()),
+        Way::OnRequest | Way::Participants => Ok(()),
     }
 }
 
-fn decoded(service: &str, kind: Kind, name: &str) -> Option<&'static Decoded> {
-    DECODED.iter().find(|d| (d.service, d.kind, d.name) == (service, kind, name))
+/// How the window gets what a service declares.
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    /// By its type.
+    Decoded(Subscribe),
+    /// As plain rows.
+    PlainVariable,
+    /// As plain rows.
+    PlainEvents,
+    /// It is asked for when it is wanted.
+    OnRequest,
+    /// Not at all: it is for those who take part in a simulation.
+    Participants,
 }
 
-impl PlainValue {
-    fn new(service: &'static str, name: &'static str, stamped: &Stamped<Value>) -> Self {
-        let Stamped { time_s, validity_s, value } = stamped;
-        Self { service, name, rows: Stamped { time_s: *time_s, validity_s: *validity_s, value: rows(value) } }
+fn way(service: &str, said: &Said) -> Way {
+    let is_it = |d: &&Decoded| (d.service, d.kind, d.name) == (service, said.kind, said.name);
+    match (DECODED.iter().find(is_it), said.kind) {
+        (Some(decoded), _) => Way::Decoded(decoded.subscribe),
+        (None, Kind::Variable) if said.rate.is_some() => Way::PlainVariable,
+        (None, Kind::Variable) => Way::Participants,
+        (None, Kind::Event) => Way::PlainEvents,
+        (None, _) => Way::OnRequest,
     }
+}
+
+fn stamped_rows(stamped: &Stamped<Value>) -> Stamped<Rows> {
+    Stamped { time_s: stamped.time_s, validity_s: stamped.validity_s, value: rows(&stamped.value) }
 }
 
 /// A value for people: the fields of an object one by one.
@@ -114,19 +137,47 @@ fn rows(value: &Value) -> Rows {
         Value::Object(fields) => fields
             .iter()
             .take(ROWS_MAX)
-            .map(|(name, value)| (cut(&name.replace('_', " ")), text(value)))
+            .map(|(name, value)| (cut(name).replace('_', " "), text(value)))
             .collect(),
         other => vec![(String::new(), text(other))],
     }
 }
 
 fn text(value: &Value) -> String {
+    let mut out = String::new();
+    write(value, DEPTH_MAX, &mut out);
+    cut(&out)
+}
+
+/// Appends a value, but little more of it than is shown: it may be large and deep.
+fn write(value: &Value, depth: usize, out: &mut String) {
     match value {
-        Value::Null => "–".into(),
-        Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
-        Value::String(text) => cut(text),
-        other => cut(&other.to_string()),
+        Value::Null => out.push('–'),
+        Value::Bool(yes) => out.push_str(if *yes { "yes" } else { "no" }),
+        Value::Number(number) => out.push_str(&number.to_string()),
+        Value::String(text) => out.push_str(&cut(text)),
+        Value::Array(_) | Value::Object(_) if depth == 0 => out.push('…'),
+        Value::Array(items) => list(items, out, |item, out| write(item, depth - 1, out)),
+        Value::Object(fields) => list(fields, out, |(name, value), out| {
+            out.push_str(&cut(name).replace('_', " "));
+            out.push_str(": ");
+            write(value, depth - 1, out);
+        }),
     }
+}
+
+fn list<T>(items: impl IntoIterator<Item = T>, out: &mut String, write: impl Fn(T, &mut String)) {
+    out.push('[');
+    for (i, item) in items.into_iter().enumerate() {
+        if out.len() > 4 * TEXT_MAX {
+            break;
+        }
+        if i > 0 {
+            out.push_str(", ");
+        }
+        write(item, out);
+    }
+    out.push(']');
 }
 
 fn cut(text: &str) -> String {
@@ -154,16 +205,45 @@ mod tests {
     }
 
     #[test]
+    fn whatever_a_service_says_of_itself_is_followed() {
+        for (spec, said) in SERVICES.iter().flat_map(|spec| spec.says.iter().map(move |said| (spec, said))) {
+            let way = way(spec.name, said);
+            let expected = match said.kind {
+                Kind::Variable if said.rate.is_none() => matches!(way, Way::Participants),
+                Kind::Variable => matches!(way, Way::Decoded(_) | Way::PlainVariable),
+                Kind::Event => matches!(way, Way::Decoded(_) | Way::PlainEvents),
+                _ => matches!(way, Way::OnRequest),
+            };
+            assert!(expected, "{}/{}: {way:?}", spec.name, said.name);
+        }
+        let clocks = SERVICES.iter().flat_map(|spec| spec.says).filter(|said| said.rate.is_none());
+        let clocks = clocks.filter(|said| said.kind == Kind::Variable).map(|said| said.name);
+        assert_eq!(clocks.collect::<Vec<_>>(), ["clock", "clock-ack"], "these alone are not followed");
+    }
+
+    #[test]
     fn plain_values_are_rows_of_short_texts() {
         let value = json!({"plan_name": "Fire watch", "active": true, "hash": null, "list": [1, 2], "long": "x".repeat(500)});
         let rows = rows(&value);
         let text_of =
             |name: &str| rows.iter().find(|(n, _)| n == name).map(|(_, text)| text.as_str()).unwrap();
         assert_eq!(text_of("plan name"), "Fire watch");
-        assert_eq!((text_of("active"), text_of("hash"), text_of("list")), ("yes", "–", "[1,2]"));
+        assert_eq!((text_of("active"), text_of("hash"), text_of("list")), ("yes", "–", "[1, 2]"));
         assert_eq!(text_of("long").chars().count(), TEXT_MAX + 1);
         let many: serde_json::Map<String, Value> = (0..100).map(|i| (i.to_string(), json!(i))).collect();
         assert_eq!(super::rows(&Value::Object(many)).len(), ROWS_MAX);
         assert_eq!(super::rows(&json!(7)), [(String::new(), "7".to_owned())]);
+        assert_eq!(text(&json!({"at": {"known": true, "lat_deg": 1.5}})), "[at: [known: yes, lat deg: 1.5]]");
+    }
+
+    #[test]
+    fn neither_a_deep_nor_a_large_value_makes_a_long_text() {
+        let deep = (0..100).fold(json!(1), |inner, _| json!([inner]));
+        assert_eq!(text(&deep), "[[[[…]]]]");
+        let large = json!(vec![json!({ "y".repeat(100_000): "x".repeat(100_000) }); 1000]);
+        let mut written = String::new();
+        write(&large, DEPTH_MAX, &mut written);
+        assert!(written.len() < 2000, "{}", written.len());
+        assert_eq!(text(&large).chars().count(), TEXT_MAX + 1);
     }
 }

@@ -7,7 +7,7 @@ use crate::panels::Scene;
 use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
 /// The layer; keeps the decimated trail until view or trail change.
 #[derive(Debug, Default)]
@@ -75,7 +75,7 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     } else {
         format!("{} AMSL · {}", u.altitude().show(v.altitude_amsl_m), u.speed().show(v.ground_speed_mps))
     };
-    text::haloed(painter, at + vec2(16.0, 10.0), Align2::LEFT_TOP, &label, 12.0, p.text, p);
+    text::on_plate(painter, at + vec2(16.0, 10.0), &label, 12.0, p);
 }
 
 /// A plan view of an aeroplane, pointing up, about 26 points long.

@@ -24,8 +24,44 @@ pub fn haloed(
     rect
 }
 
+/// Text on a plate, readable over other names too; kept within the map.
+pub fn on_plate(painter: &Painter, at: Pos2, text: &str, size: f32, p: &Palette) {
+    let galley = painter.layout_no_wrap(text.into(), FontId::proportional(size), p.text);
+    let plate = within(Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, 1.0)), painter.clip_rect());
+    painter.rect_filled(plate, 3.0, p.panel.gamma_multiply(0.8));
+    painter.galley(plate.min + vec2(4.0, 1.0), galley, p.text);
+}
+
+/// Moved so far that nothing of it is outside.
+fn within(rect: Rect, map: Rect) -> Rect {
+    let left = rect.left().min(map.right() - rect.width()).max(map.left());
+    let top = rect.top().min(map.bottom() - rect.height()).max(map.top());
+    Rect::from_min_size(Pos2::new(left, top), rect.size())
+}
+
 impl From<Rect> for Room {
     fn from(rect: Rect) -> Self {
         Self { left: rect.left(), top: rect.top(), right: rect.right(), bottom: rect.bottom() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn a_text_at_the_edge_is_moved_inside() {
+        let map = Rect::from_min_size(pos2(100.0, 50.0), vec2(300.0, 200.0));
+        let size = vec2(120.0, 16.0);
+        for (at, expected) in [
+            (pos2(150.0, 90.0), pos2(150.0, 90.0)),
+            (pos2(390.0, 90.0), pos2(280.0, 90.0)),
+            (pos2(20.0, 300.0), pos2(100.0, 234.0)),
+        ] {
+            assert_eq!(within(Rect::from_min_size(at, size), map).min, expected, "{at}");
+        }
+        let large = Rect::from_min_size(pos2(390.0, 90.0), vec2(500.0, 16.0));
+        assert_eq!(within(large, map).left(), 100.0, "its beginning is in view");
     }
 }

@@ -20,6 +20,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (button, _) = MenuButton::new(text).config(stays).ui(ui, |ui| {
         ui.set_width(280.0);
+        // not as narrow as the entries of a menu
+        ui.spacing_mut().button_padding = egui::vec2(10.0, 4.0);
         chooser(ui, scene, queue);
         form(ui, scene, queue);
     });
@@ -99,8 +101,8 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let id = egui::Id::unique("connection form").with(scene.vehicles.shown_name());
     let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_else(|| Form::of(scene));
     ui.label(scene.vehicle.link.text());
-    super::field::row(ui, "Gateway at", |ui| ui.text_edit_singleline(&mut form.endpoint));
-    super::field::row(ui, "Vehicle", |ui| ui.text_edit_singleline(&mut form.vehicle));
+    super::field::row(ui, "Gateway at", |ui| ui.add(text(&mut form.endpoint)));
+    super::field::row(ui, "Vehicle", |ui| ui.add(text(&mut form.vehicle)));
     ui.horizontal(|ui| {
         if ui.add(super::primary_button("Connect", theme::of(ui))).clicked() {
             let (endpoint, vehicle) = (form.endpoint.clone(), form.vehicle.as_str().into());
@@ -110,6 +112,10 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         disconnect(ui, scene, queue);
     });
     ui.data_mut(|d| d.insert_temp(id, form));
+}
+
+fn text(typed: &mut String) -> egui::TextEdit<'_> {
+    egui::TextEdit::singleline(typed).align(egui::Align2::LEFT_CENTER)
 }
 
 fn disconnect(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

@@ -173,11 +173,14 @@ pub fn aged_row(ui: &mut Ui, (name, width): (&str, f32), text: &str, age: Option
             }
             None => (RichText::new("–").color(p.weak), String::new()),
         };
-        ui.add(egui::Label::new(shown).truncate());
+        // the age first: a long text ends before it
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             // clear of the scroll bar
             ui.add_space(8.0);
             ui.label(RichText::new(age_text).size(10.5).color(p.weak));
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.add(egui::Label::new(shown).truncate());
+            });
         });
     });
 }

@@ -5,7 +5,7 @@ use crate::command::Queue;
 use crate::theme;
 use egui::{RichText, ScrollArea, Ui};
 use usal::Spec;
-use usal::contract::Recording;
+use usal::contract::{Kind, Recording};
 use usal::spec::SERVICES;
 use usal::topics::STORAGE;
 
@@ -57,7 +57,31 @@ fn service(ui: &mut Ui, scene: &Scene<'_>, spec: &Spec) {
             aged_row(ui, (&format!("{variable} · {name}"), NAMES), text, age);
         }
     }
+    let events = scene.vehicle.plain_events.iter().filter(|((service, _), _)| *service == spec.name);
+    for ((_, stream), recent) in events {
+        for (text, event) in recent.lines() {
+            // what happened stays true
+            aged_row(ui, (stream, NAMES), &text, Some((event.age_s(scene.now_s), false)));
+        }
+    }
+    declared(ui, spec);
     ui.add_space(4.0);
+}
+
+/// What the service declares, kind by kind.
+fn declared(ui: &mut Ui, spec: &Spec) {
+    let kinds = [
+        (Kind::Variable, "variables"),
+        (Kind::Event, "events"),
+        (Kind::Invocation, "requests"),
+        (Kind::File, "files"),
+    ];
+    let of_kind = |(kind, word): (Kind, &str)| {
+        let names: Vec<&str> = spec.says.iter().filter(|s| s.kind == kind).map(|s| s.name).collect();
+        (!names.is_empty()).then(|| format!("{word}: {}", names.join(", ")))
+    };
+    let text = kinds.into_iter().filter_map(of_kind).collect::<Vec<_>>().join(" · ");
+    ui.add(egui::Label::new(RichText::new(text).size(11.0).color(theme::of(ui).weak)).wrap());
 }
 
 fn heading(ui: &mut Ui, scene: &Scene<'_>, name: &str, about: &str) {

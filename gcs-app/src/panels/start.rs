@@ -16,6 +16,8 @@ use std::ops::RangeInclusive;
 
 /// Width of the card, and the height that it needs, screen points.
 pub const WIDTH: f32 = 280.0;
+/// Its width where it is not to reach over the panels on the left.
+pub const NARROW_WIDTH: f32 = 252.0;
 /// See [`WIDTH`].
 pub const HEIGHT: f32 = 470.0;
 

@@ -5,7 +5,7 @@ use crate::command::{Queue, Selection, ViewCommand};
 use crate::forecast::{Passage, Point};
 use crate::theme;
 use crate::units;
-use egui::{RichText, Sense, Ui};
+use egui::{RichText, ScrollArea, Sense, Ui};
 use egui_extras::{Column, TableBuilder};
 
 /// The panel.
@@ -26,7 +26,8 @@ impl Panel for Table {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        rows(ui, scene, queue);
+        // where the columns have no room
+        ScrollArea::horizontal().id_salt("columns").auto_shrink(false).show(ui, |ui| rows(ui, scene, queue));
     }
 }
 

@@ -5,6 +5,7 @@
 mod aged;
 pub mod log;
 mod losses;
+mod recent;
 mod repeats;
 mod requests;
 mod trail;
@@ -14,6 +15,7 @@ mod vehicles;
 pub use aged::Aged;
 pub use log::{Level, Line, Log};
 pub use losses::Losses;
+pub use recent::RecentEvents;
 pub use requests::{Outcome, READ_ABOARD, Request, Requests, Ticket};
 pub use trail::Trail;
 pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Vehicle, VehicleName};

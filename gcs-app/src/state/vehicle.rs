@@ -1,7 +1,9 @@
 //! One vehicle: what is known of it, and how old that is.
 
-use super::{Aged, Level, Log, Losses, Outcome, Repeats, Requests, Ticket, Trail, log};
-use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, PlainValue, Reply, Rows, Telemetry};
+use super::{Aged, Level, Log, Losses, Outcome, RecentEvents, Repeats, Requests, Ticket, Trail, log};
+use crate::link::{
+    LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
+};
 use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{FlightPlan, Id};
 use std::collections::{BTreeMap, BTreeSet};
@@ -71,6 +73,8 @@ pub struct Vehicle {
     pub services: Arc<BTreeSet<String>>,
     /// What else they say, by service and name.
     pub plain: BTreeMap<(&'static str, &'static str), Aged<Rows>>,
+    /// Their events of that kind, by service and name.
+    pub plain_events: BTreeMap<(&'static str, &'static str), RecentEvents>,
     /// The active plan.
     pub aboard: Option<ActivePlan>,
     /// What the last proposal would do, until committed or dropped.
@@ -138,6 +142,7 @@ impl Vehicle {
         self.link_id = Some(link);
         self.plan_events.begin_link();
         self.gateway_events.begin_link();
+        self.plain_events.values_mut().for_each(RecentEvents::begin_link);
         self.give_up_requests(now_s);
     }
 
@@ -183,6 +188,9 @@ impl Vehicle {
             Telemetry::Recording(v) => self.recording(v, now_s),
             Telemetry::Plain(PlainValue { service, name, rows }) => {
                 self.plain.insert((service, name), Aged::new(rows, now_s));
+            }
+            Telemetry::PlainEvent(PlainEvent { service, name, rows }) => {
+                self.plain_events.entry((service, name)).or_default().add(rows, now_s);
             }
         }
     }

@@ -64,6 +64,12 @@ fn card_fits_the_smallest_window() {
         let rect = window.harness.get_all_by_label(label).next().unwrap().rect();
         assert!(rect.min.y > 42.0 && rect.max.y < 600.0 && rect.max.x < 960.0, "{label}: {rect:?}");
     }
+    // the map, its tools and the tabs below it stay free
+    let map = window.harness.get_by_label("Map").rect();
+    for label in ["Create", "Open a plan…", "Survey", "Height", "New mission"] {
+        let rect = window.harness.get_all_by_label(label).next().unwrap().rect();
+        assert!(rect.max.x < map.min.x, "{label}: {rect:?} over {map:?}");
+    }
     // by the pointer: what is covered can't be clicked
     let at = window.centre("Create");
     window.harness.hover_at(at);

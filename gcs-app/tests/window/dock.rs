@@ -80,6 +80,39 @@ fn the_commands_are_in_view_at_every_size() {
 }
 
 #[test]
+fn what_stands_beside_the_tabs_is_in_view_at_every_size() {
+    for size in SIZES {
+        let mut window = opened(size);
+        fly(&mut window);
+        for tab in ["Profile", "Table"] {
+            window.harness.get_all_by_label(tab).next().unwrap().click();
+            window.steps(3);
+            let (map, preview) = (rect(&window, "Map"), rect(&window, "▶ Preview"));
+            assert!(
+                preview.left() >= map.left() && preview.right() <= map.right(),
+                "{size}: {preview}, {map}"
+            );
+            let last = rect(&window, "Log");
+            assert!(!preview.intersects(last), "{size}: {preview} over {last}");
+        }
+    }
+}
+
+#[test]
+fn long_text_ends_before_its_age() {
+    let text = "0badc0de".repeat(30);
+    for width in [260.0, 600.0] {
+        let mut harness = Harness::builder().with_size(vec2(width, 60.0)).build_ui(|ui| {
+            panels::aged_row(ui, ("hash", 120.0), &text, Some((2.0, false)));
+        });
+        harness.run_steps(2);
+        let (value, age) = (harness.get_by_label(&text).rect(), harness.get_by_label("2.0 s").rect());
+        assert!(value.right() <= age.left() && age.right() <= width, "{width}: {value}, {age}");
+        assert!(value.width() > 40.0, "{width}: {value}");
+    }
+}
+
+#[test]
 fn the_map_takes_what_the_window_gains_and_the_sides_keep_their_width() {
     let side = |window: &Window| rect(window, "Hide Plan").right();
     let maps: Vec<(Rect, f32)> = SIZES

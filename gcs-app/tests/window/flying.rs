@@ -62,6 +62,10 @@ fn connecting_asks_the_link_and_shows_what_came_of_it() {
     assert_eq!(order, Order::Connect { link, endpoint, vehicle: "uav1".into() });
     window.send(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
     assert!(window.shows("No link"));
+    // it looks for the vehicle on, until it is asked to stop
+    window.click("✖ uav1 · No link");
+    window.click("Disconnect");
+    assert_eq!(window.far.orders.try_recv().unwrap(), Order::Disconnect { link });
     window.connect();
     assert!(window.shows("Link 0."));
     assert!(window.is_enabled("Push"));
