@@ -102,6 +102,17 @@ impl<'a> Content<'a> {
         }
     }
 
+    /// The header in a row of its own; none where the panel has no header.
+    fn header_row(&mut self, ui: &mut Ui, id: PanelId) {
+        let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), TAB_BAR));
+        let layout = Layout::left_to_right(Align::Center);
+        let mut row = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+        self.header(&mut row, id);
+        if row.min_rect().width() > 0.0 {
+            ui.advance_cursor_after_rect(rect);
+        }
+    }
+
     fn header(&mut self, ui: &mut Ui, id: PanelId) {
         if let Some(panel) = self.panels.iter_mut().find(|panel| panel.id() == id) {
             panel.header(ui, self.scene, self.queue);
@@ -126,10 +137,7 @@ impl Behavior<PanelId> for Content<'_> {
         let dragged = frame.show(ui, |ui| {
             let dragged = !self.tabbed.contains(&tile.0) && self.title_bar(ui, id);
             if self.crowded.contains(id) {
-                // no higher than what is in it
-                let size = vec2(ui.available_width(), 0.0);
-                let row = Layout::left_to_right(Align::Min);
-                ui.allocate_ui_with_layout(size, row, |ui| self.header(ui, id));
+                self.header_row(ui, id);
             }
             if let Some(panel) = self.panels.iter_mut().find(|panel| panel.id() == id) {
                 panel.ui(ui, self.scene, self.queue);
@@ -154,8 +162,13 @@ impl Behavior<PanelId> for Content<'_> {
         _scroll: &mut f32,
     ) {
         let active = tabs.active.and_then(|id| tiles.get_pane(&id)).copied();
-        let titles: Vec<PanelId> =
-            tabs.children.iter().filter_map(|id| tiles.get_pane(id)).copied().collect();
+        let titles: Vec<PanelId> = tabs
+            .children
+            .iter()
+            .filter(|id| tiles.is_visible(**id))
+            .filter_map(|id| tiles.get_pane(id))
+            .copied()
+            .collect();
         let width: f32 = titles.into_iter().map(|id| tab_width(ui, self.title(id))).sum();
         let Some(id) = active else { return };
         let room = vec2((ui.available_width() - width - 8.0).max(0.0), TAB_BAR);

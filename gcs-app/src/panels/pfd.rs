@@ -82,14 +82,19 @@ fn heading(painter: &Painter, middle: Rect, heading_deg: Option<f64>) {
     label(painter, at, Align2::CENTER_BOTTOM, &text, 13.0);
 }
 
+/// Wind up to this has no direction worth showing.
+const CALM_MPS: f64 = 0.2;
+
 /// Where the wind comes from, as an arrow relative to the nose, and its speed.
 fn wind(painter: &Painter, middle: Rect, scene: &Scene<'_>, heading_deg: Option<f64>) {
     let Some(air) = live(&scene.vehicle.air, scene.now_s) else { return };
     let speed = air.wind_east_mps.hypot(air.wind_north_mps);
     let unit = scene.units().speed();
     let at = middle.left_bottom() + vec2(6.0, -4.0);
-    let rect = label(painter, at, Align2::LEFT_BOTTOM, &unit.number(speed), 11.5);
-    let (Some(heading), true) = (heading_deg, speed > 0.2) else { return };
+    let is_calm = speed <= CALM_MPS;
+    let text = if is_calm { "CALM".into() } else { unit.number(speed) };
+    let rect = label(painter, at, Align2::LEFT_BOTTOM, &text, 11.5);
+    let (Some(heading), false) = (heading_deg, is_calm) else { return };
     let towards = (air.wind_east_mps.atan2(air.wind_north_mps).to_degrees() - heading).to_radians() as f32;
     let direction = vec2(towards.sin(), -towards.cos()) * 16.0;
     let centre = rect.center_top() - vec2(0.0, 13.0);

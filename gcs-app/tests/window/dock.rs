@@ -99,6 +99,22 @@ fn what_stands_beside_the_tabs_is_in_view_at_every_size() {
 }
 
 #[test]
+fn hidden_tabs_take_no_room_from_the_header() {
+    let mut window = opened(SIZES[1]);
+    fly(&mut window);
+    let before = rect(&window, "▶ Preview").left();
+    window.click("Legwork");
+    window.click("Panels");
+    let log = egui::accesskit::Role::CheckBox;
+    window.harness.get_all_by_role_and_label(log, "Log").next().unwrap().click();
+    window.steps(3);
+    window.harness.key_press(egui::Key::Escape);
+    window.steps(3);
+    let after = rect(&window, "▶ Preview").left();
+    assert!(after < before - 30.0, "{after}, with the tab {before}");
+}
+
+#[test]
 fn long_text_ends_before_its_age() {
     let text = "0badc0de".repeat(30);
     for width in [260.0, 600.0] {
