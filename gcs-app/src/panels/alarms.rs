@@ -10,7 +10,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
     let alarms = scene.vehicle.alarms(scene.now_s);
     if alarms.is_empty() {
         let p = theme::of(ui);
-        let text = if scene.vehicle.gateway.is_some() { "✔ No alarms" } else { "No alarms known" };
+        // what the gateway said long ago is no comfort
+        let is_known = scene.vehicle.gateway.as_ref().is_some_and(|g| !g.is_expired(scene.now_s));
+        let text = if is_known { "✔ No alarms" } else { "No alarms known" };
         ui.label(RichText::new(text).color(p.weak));
     }
     for alarm in &alarms {
