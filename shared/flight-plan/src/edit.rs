@@ -1,6 +1,6 @@
 //! Edits as values: what a person did to a plan, to be applied, undone, or offered as a remedy.
 
-mod lists;
+pub(crate) mod lists;
 mod number;
 mod repair;
 mod shape;
@@ -194,6 +194,15 @@ pub enum Edit {
         /// What it is to name.
         to: Id,
     },
+    /// Gives a leg, stage, fix, runway, zone, procedure or emergency plan another identifier, and whatever refers to it.
+    SetId {
+        /// Its identifier.
+        id: Id,
+        /// Its new one.
+        to: Id,
+    },
+    /// Renames the plan for people.
+    SetTitle(String),
     /// Makes the plan one for another aircraft.
     SetAircraft(String),
     /// Names the runway of a stage or of an emergency plan.
@@ -231,6 +240,13 @@ pub enum Edit {
         stage: Box<Stage>,
         /// Before which.
         before: Id,
+    },
+    /// Gives a stage the properties of another one; its legs stay.
+    ReplaceStage {
+        /// The stage.
+        stage: Id,
+        /// What it is to be like.
+        with: Box<Stage>,
     },
     /// Takes a stage elsewhere.
     MoveStage {
@@ -351,6 +367,8 @@ impl Edit {
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
+            Edit::SetId { id, to } => return repair::set_id(plan, id, to),
+            Edit::SetTitle(name) => plan.name.clone_from(name),
             Edit::SetAircraft(name) => plan.aircraft.clone_from(name),
             Edit::SetRunway { of, runway } => return repair::set_runway(plan, of, runway),
             Edit::Add(thing) => things::add(plan, thing),
@@ -360,6 +378,7 @@ impl Edit {
             Edit::InsertStage { stage, before } => {
                 return lists::insert_stage(plan, stage.as_ref().clone(), before);
             }
+            Edit::ReplaceStage { stage, with } => return lists::replace_stage(plan, stage, with),
             Edit::MoveStage { stage, before } => return lists::move_stage(plan, stage, before),
             Edit::All(edits) => return edits.iter().try_for_each(|edit| edit.change(plan)),
         }

@@ -1,6 +1,7 @@
 //! Pure: the flight plan document: model, XML, problems and checks, edits, compilation to a program.
 
 pub mod checks;
+pub mod create;
 pub mod diff;
 pub mod edit;
 pub mod expression;

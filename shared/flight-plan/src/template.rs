@@ -7,7 +7,7 @@
 use crate::{
     Altitude, AltitudeReference, Area, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Holding,
     HoldingLength, Id, IterativeForm, Leg, LegKind, Pattern, Place, PlanWaypoint, Runway, Scan, ScanEntry,
-    ScanStyle, Spacing, Stage, StageKind, TurnDirection, Value,
+    ScanStyle, Spacing, Stage, StageKind, TurnDirection, Value, Variable, VariableValue,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -40,11 +40,14 @@ pub enum Template {
     Search,
     /// Forth and back between three points.
     Patrol,
+    /// A circle that follows a fire: scanned and orbited, again and again.
+    FireWatch,
 }
 
 impl Template {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Survey, Self::Corridor, Self::Search, Self::Patrol, Self::Circuit];
+    pub const ALL: [Self; 6] =
+        [Self::Survey, Self::Corridor, Self::Search, Self::Patrol, Self::FireWatch, Self::Circuit];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -54,6 +57,7 @@ impl Template {
             Self::Corridor => "Corridor",
             Self::Search => "Search",
             Self::Patrol => "Patrol",
+            Self::FireWatch => "Fire watch",
         }
     }
 
@@ -65,6 +69,7 @@ impl Template {
             Self::Corridor => "A strip along a line, flown up and down",
             Self::Search => "An expanding square around a point",
             Self::Patrol => "Forth and back between three points",
+            Self::FireWatch => "A circle that moves with a fire, scanned and orbited",
         }
     }
 }
@@ -95,6 +100,7 @@ impl Outline {
             aircraft: self.aircraft.clone(),
             fixes: frame.fixes(),
             runways: vec![self.runway.clone()],
+            variables: self.variables(),
             emergency: EmergencyChoice { by_cause: vec![(None, "return".into())] },
             ..FlightPlan::default()
         };
@@ -154,6 +160,110 @@ impl Outline {
                 fixes.extend(ids.iter().zip(line).map(|(id, at)| fix(id, at)));
                 patrol(ids)
             }
+            Template::FireWatch => fire_watch(spacing),
+        }
+    }
+
+    /// What the mission's legs read.
+    fn variables(&self) -> Vec<Variable> {
+        let variable = |name: &str, initial| Variable {
+            name: Id::new(name),
+            initial,
+            unit: String::new(),
+            min: None,
+            max: None,
+            max_length: None,
+            writers: Vec::new(),
+        };
+        if self.template != Template::FireWatch {
+            return Vec::new();
+        }
+        let radius = variable("fire_radius", VariableValue::Number(self.radius_m.round()));
+        vec![
+            variable("fire_centre", VariableValue::Position(self.centre)),
+            Variable {
+                unit: "m".into(),
+                min: Some((self.radius_m / 2.0).max(200.0).round()),
+                max: Some((self.radius_m * 1.2).round()),
+                ..radius
+            },
+        ]
+    }
+}
+
+/// Scan the fire, then look at it from its rim; twice.
+fn fire_watch(spacing: Spacing) -> Vec<Leg> {
+    let centre = || Place::Position(Value::Expression("fire_centre".into()));
+    let radius_m = || Value::Expression("fire_radius".into());
+    let area = Area::Circle { centre: centre(), radius_m: radius_m() };
+    let (turns, turn) = (Value::Constant(1.0), TurnDirection::Left);
+    let look = LegKind::Orbit { centre: centre(), radius_m: radius_m(), turns, turn };
+    let body = vec![
+        leg("sweep", "Scan the fire", LegKind::Scan(scan(area, spacing))),
+        leg("look", "Around the fire", look),
+    ];
+    let watch = LegKind::Iterative {
+        form: IterativeForm::Forward,
+        count: Some(Value::Constant(2.0)),
+        until: None,
+        turn,
+        body: body.into_iter().map(Arc::new).collect(),
+    };
+    vec![leg("watch", "Watch", watch)]
+}
+
+/// Climb-out altitude of a take-off.
+pub(crate) fn climb_out() -> Altitude {
+    above_home(CLIMB_OUT_M)
+}
+
+/// How far around a runway the ground is looked at for a way home, metres.
+const HOME_REACH_M: f64 = 3000.0;
+
+/// An emergency plan that brings the aircraft to a runway from anywhere, and the fixes that it needs. Fixes of the plan that are
+/// in the right places are used.
+pub(crate) fn bring_home(
+    plan: &FlightPlan,
+    id: &Id,
+    runway: &Runway,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+) -> (Vec<Fix>, EmergencyPlan) {
+    let outline = Outline {
+        template: Template::Circuit,
+        aircraft: plan.aircraft.clone(),
+        runway: runway.clone(),
+        centre: runway.threshold,
+        radius_m: HOME_REACH_M,
+        height_m: 150.0,
+    };
+    let mut frame = Frame::new(&outline, profile, terrain);
+    let mut made = Vec::new();
+    let mut on_final = |name: &str, position: LatLon| {
+        let known = plan.fixes.iter().find(|fix| fix.position.distance_m(position) < 1.0);
+        known.map_or_else(
+            || {
+                let id = plan.unique_id(name);
+                made.push(fix(id.as_str(), position));
+                id
+            },
+            |fix| fix.id.clone(),
+        )
+    };
+    frame.final_fix = on_final("FINAL", frame.at(-frame.final_m, 0.0));
+    frame.gate_fix = on_final("GATE", frame.at(-frame.gate_m, 0.0));
+    // altitudes are above the take-off runway, wherever this one is
+    let home_m = plan.home().map_or(runway.elevation_amsl_m, |home| home.elevation_amsl_m);
+    let mut stages = frame.way_home(&format!("{id}-"));
+    stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - home_m));
+    let name = format!("Return to {}", runway.id);
+    (made, EmergencyPlan { id: id.clone(), name, runway: runway.id.clone(), stages })
+}
+
+fn raise(stage: &mut Stage, by_m: f64) {
+    for leg in &mut stage.legs {
+        if let Some(Altitude { metres: Value::Constant(metres), .. }) = &mut Arc::make_mut(leg).altitude {
+            *metres += by_m;
         }
     }
 }
@@ -200,6 +310,9 @@ struct Frame<'a> {
     height_m: f64,
     /// Of the highest ground under the final, metres above the runway.
     hill_m: f64,
+    /// The fixes where the final begins, and lower on it.
+    final_fix: Id,
+    gate_fix: Id,
 }
 
 impl<'a> Frame<'a> {
@@ -213,6 +326,8 @@ impl<'a> Frame<'a> {
             gate_m: (9.0 * turn_radius_m).max(1200.0),
             height_m: outline.height_m,
             hill_m: 0.0,
+            final_fix: "FINAL".into(),
+            gate_fix: "GATE".into(),
         };
         frame.hill_m = frame.hill_on_final(terrain);
         let hilltop_m = frame.highest_ground(outline, terrain) - outline.runway.elevation_amsl_m;
@@ -264,8 +379,8 @@ impl<'a> Frame<'a> {
     fn fixes(&self) -> Vec<Fix> {
         vec![
             fix("DEP", self.at(self.ahead_m, 0.0)),
-            fix("FINAL", self.at(-self.final_m, 0.0)),
-            fix("GATE", self.at(-self.gate_m, 0.0)),
+            fix(self.final_fix.as_str(), self.at(-self.final_m, 0.0)),
+            fix(self.gate_fix.as_str(), self.at(-self.gate_m, 0.0)),
         ]
     }
 
@@ -302,10 +417,10 @@ impl<'a> Frame<'a> {
     /// From anywhere to the runway. `prefix`: of the identifiers.
     fn way_home(&self, prefix: &str) -> Vec<Stage> {
         let id = |text: &str| format!("{prefix}{text}");
-        let holding = hold("FINAL", self.runway.heading_deg, TurnDirection::Right);
+        let holding = hold(self.final_fix.as_str(), self.runway.heading_deg, TurnDirection::Right);
         let (height_m, final_m) = (self.height_m, self.final_height_m());
         let line_up = if height_m > final_m { LegKind::Ha(holding) } else { LegKind::Hf(holding) };
-        let direct = LegKind::Df { to: to("FINAL"), turn: None };
+        let direct = LegKind::Df { to: to(self.final_fix.as_str()), turn: None };
         let arrival = vec![
             Leg {
                 altitude: Some(above_home(height_m.max(final_m))),
@@ -315,7 +430,7 @@ impl<'a> Frame<'a> {
         ];
         let approach = Leg {
             altitude: Some(above_home(self.gate_height_m())),
-            ..leg(&id("ap1"), "Final approach", LegKind::Tf(to("GATE")))
+            ..leg(&id("ap1"), "Final approach", LegKind::Tf(to(self.gate_fix.as_str())))
         };
         let runway = Some(self.runway.id.clone());
         vec![

@@ -103,7 +103,19 @@ impl Leg {
 
     /// Where it goes, holds, or what it is about; `None` for control legs and polygons.
     pub fn place(&self) -> Option<&Place> {
-        match &self.kind {
+        self.kind.place()
+    }
+
+    /// What it is called in the document.
+    pub fn kind_name(&self) -> &'static str {
+        self.kind.name()
+    }
+}
+
+impl LegKind {
+    /// As [`Leg::place`].
+    pub fn place(&self) -> Option<&Place> {
+        match self {
             LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
                 Some(&to.place)
             }
@@ -117,9 +129,9 @@ impl Leg {
         }
     }
 
-    /// What it is called in the document.
-    pub fn kind_name(&self) -> &'static str {
-        match &self.kind {
+    /// As [`Leg::kind_name`].
+    pub fn name(&self) -> &'static str {
+        match self {
             LegKind::If(_) => "IF",
             LegKind::Tf(_) => "TF",
             LegKind::Df { .. } => "DF",

@@ -57,6 +57,11 @@ pub(super) fn insert(plan: &mut FlightPlan, leg: Arc<Leg>, at: &Spot) -> Result<
 }
 
 pub(super) fn relocate(plan: &mut FlightPlan, id: &Id, at: &Spot) -> Result<(), EditError> {
+    let (Spot::Before(to) | Spot::After(to) | Spot::EndOf(to)) = at;
+    let (list, index) = list_in_plan(plan, id)?;
+    if to == id || list.get(index).is_some_and(|leg| holds(leg, to)) {
+        return Err(not_applicable(id, "can't be moved into itself: choose a place outside it"));
+    }
     let moved = remove(plan, id)?;
     insert(plan, moved, at)
 }
@@ -108,7 +113,7 @@ fn for_each(leg: &mut Leg, visit: &mut dyn FnMut(&mut Leg)) {
 }
 
 /// Every identifier of the plan but its variables'.
-fn ids(plan: &FlightPlan) -> HashSet<Id> {
+pub(crate) fn ids(plan: &FlightPlan) -> HashSet<Id> {
     let mut ids: HashSet<Id> = plan.all_legs().iter().map(|c| c.leg.id.clone()).collect();
     ids.extend(plan.all_stages().map(|(_, s)| s.id.clone()));
     ids.extend(plan.fixes.iter().map(|f| f.id.clone()));
@@ -130,7 +135,7 @@ fn add_legs(legs: &[Arc<Leg>], ids: &mut HashSet<Id>) {
 }
 
 /// The identifier itself if it is free, else with the first free number at its end.
-fn fresh(id: &Id, taken: &HashSet<Id>) -> Id {
+pub(crate) fn fresh(id: &Id, taken: &HashSet<Id>) -> Id {
     if !taken.contains(id) {
         return id.clone();
     }
@@ -159,6 +164,13 @@ pub(super) fn remove_stage(plan: &mut FlightPlan, id: &Id) -> Result<Stage, Edit
 pub(super) fn insert_stage(plan: &mut FlightPlan, stage: Stage, before: &Id) -> Result<(), EditError> {
     let (list, index) = stage_list(plan, before)?;
     list.insert(index, stage);
+    Ok(())
+}
+
+/// Everything but the legs.
+pub(super) fn replace_stage(plan: &mut FlightPlan, id: &Id, with: &Stage) -> Result<(), EditError> {
+    let stage = found(stages_mut(plan).find(|s| s.id == *id), id)?;
+    *stage = Stage { legs: std::mem::take(&mut stage.legs), ..with.without_legs() };
     Ok(())
 }
 

@@ -132,6 +132,62 @@ fn leg_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
     });
 }
 
+const TAKEN: &str = "can't be called that: something else is, choose another identifier";
+const NO_IDENTIFIER: &str = "can't be called that: use letters, digits, `-`, `_` and `.`, at most 64 of them";
+
+/// Gives something another identifier, and whatever refers to it.
+pub(super) fn set_id(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
+    if id == to {
+        return Ok(());
+    }
+    let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.');
+    if !(1..=64).contains(&to.as_str().len()) || !to.as_str().bytes().all(allowed) {
+        return Err(not_applicable(id, NO_IDENTIFIER));
+    }
+    if super::lists::ids(plan).contains(to) || plan.variable(id).is_some() {
+        return Err(not_applicable(id, TAKEN));
+    }
+    let mut known = false;
+    Walk::of(plan, &mut |group, found: &mut Id| {
+        if group == DOCUMENT && found == id {
+            found.clone_from(to);
+            known = true;
+        }
+    });
+    if !known {
+        return Err(EditError::Unknown(id.clone()));
+    }
+    let mut rename = |reference: &mut Id| {
+        if reference == id {
+            reference.clone_from(to);
+        }
+    };
+    plan.emergency.by_cause.iter_mut().for_each(|(_, id)| rename(id));
+    plan.emergency_plans.iter_mut().for_each(|e| rename(&mut e.runway));
+    for stage in stages_mut(plan) {
+        stage.runway.iter_mut().for_each(&mut rename);
+        stage.emergency.by_cause.iter_mut().for_each(|(_, id)| rename(id));
+        stage.legs.iter_mut().for_each(|leg| deep_references(Arc::make_mut(leg), &mut rename));
+    }
+    for procedure in &mut plan.procedures {
+        procedure.legs.iter_mut().for_each(|leg| deep_references(Arc::make_mut(leg), &mut rename));
+    }
+    Ok(())
+}
+
+/// What a leg and those in it name; the default of a fork names a branch.
+fn deep_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
+    let branch = leg.as_fork().and_then(|fork| fork.default.cloned());
+    leg_references(leg, rename);
+    match &mut leg.kind {
+        LegKind::Intersection { default, .. } => *default = branch,
+        LegKind::Iterative { body, .. } => {
+            body.iter_mut().for_each(|inner| deep_references(Arc::make_mut(inner), rename))
+        }
+        _ => {}
+    }
+}
+
 /// The runway of a stage or of an emergency plan.
 pub(super) fn set_runway(plan: &mut FlightPlan, of: &Id, runway: &Id) -> Result<(), EditError> {
     if let Some(emergency) = plan.emergency_plans.iter_mut().find(|e| e.id == *of) {

@@ -304,3 +304,36 @@ fn what_is_pasted_gets_fresh_identifiers_throughout() {
     let cut = Edit::DeleteLeg { leg: "tf".into() }.apply(&plan).unwrap();
     assert!(gone.apply(&cut).unwrap().leg(&"tf".into()).is_some(), "a free identifier stays");
 }
+
+#[test]
+fn a_new_identifier_is_known_to_all_that_refer_to_it() {
+    let plan = language();
+    let renamed = |id: &str, to: &str| Edit::SetId { id: id.into(), to: to.into() }.apply(&plan);
+    let ids: Vec<Id> = super::lists::ids(&plan).into_iter().collect();
+    let profile = aircraft::Profile::default();
+    let codes = |plan: &FlightPlan| {
+        let problems = crate::check(plan, &profile, &terrain::Flat(0.0));
+        problems.iter().map(|p| p.code).collect::<Vec<_>>()
+    };
+    let before = codes(&plan);
+    for id in &ids {
+        let there = renamed(id.as_str(), "another.one").unwrap();
+        assert_eq!(codes(&there), before, "{id}: all references follow");
+        let back = Edit::SetId { id: "another.one".into(), to: id.clone() }.apply(&there).unwrap();
+        assert_eq!(back, plan, "{id}");
+        for bad in ["", "with a space", ids.iter().find(|other| *other != id).unwrap().as_str()] {
+            assert!(renamed(id.as_str(), bad).is_err(), "{id}: {bad:?}");
+        }
+    }
+    assert!(renamed("nothing", "something").is_err());
+}
+
+#[test]
+fn a_stage_takes_other_properties_and_keeps_its_legs() {
+    let plan = language();
+    let with = Stage { name: "Other".into(), kind: crate::StageKind::Arrival, ..plan.stages[0].clone() };
+    let stage = plan.stages[1].id.clone();
+    let after = Edit::ReplaceStage { stage, with: Box::new(with) }.apply(&plan).unwrap();
+    assert_eq!((after.stages[1].name.as_str(), &after.stages[1].legs), ("Other", &plan.stages[1].legs));
+    assert_eq!(Edit::SetTitle("T".into()).apply(&plan).unwrap().name, "T");
+}

@@ -1,0 +1,110 @@
+//! Legs that are there, arranged anew: copied, moved, put into a loop, a fork or a procedure.
+
+use super::kind::LegChoice;
+use super::leg::{Drawn, leg};
+use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, Spot, Thing, Value};
+use aircraft::Profile;
+use std::sync::Arc;
+
+/// A copy of a leg behind it.
+pub fn duplicate(plan: &FlightPlan, id: &Id) -> Option<Edit> {
+    let (list, index) = list_of(plan, id)?;
+    let leg = Box::new(list.get(index)?.as_ref().clone());
+    Some(Edit::PasteLeg { leg, at: Spot::After(id.clone()) })
+}
+
+/// A leg one place up (`-1`) or down (`1`) in its list.
+pub fn shift(plan: &FlightPlan, id: &Id, by: isize) -> Option<Edit> {
+    let (list, index) = list_of(plan, id)?;
+    let neighbour = list.get(index.checked_add_signed(by)?)?.id.clone();
+    let at = if by < 0 { Spot::Before(neighbour) } else { Spot::After(neighbour) };
+    Some(Edit::MoveLeg { leg: id.clone(), at })
+}
+
+/// A loop around legs of one list.
+pub fn loop_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
+    let legs = in_order(plan, legs)?;
+    let around = leg(plan, &Profile::default(), LegChoice::Iterative, &Drawn::Nothing, None, None)?;
+    let id = around.id.clone();
+    let mut edits = vec![Edit::InsertLeg { leg: Box::new(around), at: Spot::Before(legs.first()?.clone()) }];
+    edits.extend(legs.into_iter().map(|leg| Edit::MoveLeg { leg, at: Spot::EndOf(id.clone()) }));
+    Some((id, Edit::All(edits)))
+}
+
+/// A loop's legs in its place.
+pub fn unloop(plan: &FlightPlan, id: &Id) -> Option<Edit> {
+    let (list, index) = list_of(plan, id)?;
+    let body = list.get(index)?.body();
+    let out = |leg: &Arc<Leg>| Edit::MoveLeg { leg: leg.id.clone(), at: Spot::Before(id.clone()) };
+    let edits = body.iter().map(out).chain([Edit::DeleteLeg { leg: id.clone() }]);
+    (!body.is_empty()).then(|| Edit::All(edits.collect()))
+}
+
+/// A fork before a leg: through that leg, which is the default, or past it.
+pub fn fork(plan: &FlightPlan, before: &Id) -> Option<(Id, Edit)> {
+    let (list, index) = list_of(plan, before)?;
+    let past = list.get(index + 1)?.id.clone();
+    let mut made = leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
+    if let LegKind::Intersection { branches, .. } = &mut made.kind {
+        let label = format!("Skip {before}");
+        branches.push(Branch { id: Id::new("skip"), label, next: Some(past), when: None });
+    }
+    let id = made.id.clone();
+    Some((id, Edit::InsertLeg { leg: Box::new(made), at: Spot::Before(before.clone()) }))
+}
+
+/// A procedure of legs of one list, which is called in their place.
+pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
+    let legs = in_order(plan, legs)?;
+    let (list, _) = list_of(plan, legs.first()?)?;
+    let moved: Vec<Arc<Leg>> = list.iter().filter(|leg| legs.contains(&leg.id)).cloned().collect();
+    let first = moved.first()?.clone();
+    let procedure = Procedure {
+        id: plan.fresh_id("procedure"),
+        name: String::new(),
+        parameters: Vec::new(),
+        reference: moved.iter().find_map(|leg| place_of(plan, leg)),
+        bearing_deg: 0.0,
+        legs: moved,
+    };
+    let id = procedure.id.clone();
+    let call = Call { procedure: id.clone(), arguments: Vec::new(), anchor: None, bearing_deg: None };
+    let caller = Leg {
+        id: plan.fresh_id("call"),
+        name: String::new(),
+        next: None,
+        actions: Vec::new(),
+        kind: LegKind::Call(call),
+        ..first.as_ref().clone()
+    };
+    let mut edits = vec![Edit::InsertLeg { leg: Box::new(caller), at: Spot::Before(first.id.clone()) }];
+    edits.extend(legs.into_iter().map(|leg| Edit::DeleteLeg { leg }));
+    edits.push(Edit::Add(Box::new(Thing::Procedure(procedure))));
+    Some((id, Edit::All(edits)))
+}
+
+fn place_of(plan: &FlightPlan, leg: &Leg) -> Option<geometry::LatLon> {
+    match leg.first_flown().place()? {
+        Place::Fix(id) => plan.fix(id).map(|fix| fix.position),
+        Place::Position(Value::Constant(at)) => Some(*at),
+        Place::Position(Value::Expression(_)) => None,
+    }
+}
+
+/// Legs in the order of their list; `None`: they are of several lists, or none.
+fn in_order(plan: &FlightPlan, legs: &[Id]) -> Option<Vec<Id>> {
+    let (list, _) = list_of(plan, legs.first()?)?;
+    let ordered: Vec<Id> = list.iter().map(|leg| leg.id.clone()).filter(|id| legs.contains(id)).collect();
+    (ordered.len() == legs.len()).then_some(ordered)
+}
+
+/// The list that a leg is in, and its index there.
+fn list_of<'a>(plan: &'a FlightPlan, id: &Id) -> Option<(&'a [Arc<Leg>], usize)> {
+    fn within<'a>(list: &'a [Arc<Leg>], id: &Id) -> Option<(&'a [Arc<Leg>], usize)> {
+        let here = list.iter().position(|leg| leg.id == *id).map(|index| (list, index));
+        here.or_else(|| list.iter().find_map(|leg| within(leg.body(), id)))
+    }
+    let stages = plan.all_stages().map(|(_, stage)| stage.legs.as_slice());
+    let mut lists = stages.chain(plan.procedures.iter().map(|procedure| procedure.legs.as_slice()));
+    lists.find_map(|list| within(list, id))
+}

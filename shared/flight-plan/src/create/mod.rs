@@ -1,0 +1,38 @@
+//! New parts of a plan from what was drawn: legs of every kind, and things that legs use. Each gets an identifier that
+//! nothing else has, and values with which it can be flown; whoever drew it goes on with edits.
+
+mod arrange;
+mod course;
+mod kind;
+mod leg;
+mod thing;
+
+pub use arrange::{duplicate, fork, loop_around, procedure_of, shift, unloop};
+pub use course::{Approach, arc_centre};
+pub use kind::{LegChoice, Shape};
+pub use leg::{Drawn, convert, leg};
+pub use thing::{emergency_plan, fix, move_fix_into_legs, remove, runway, stage, variable, zone};
+
+use crate::edit::lists;
+use crate::{FlightPlan, Id};
+
+impl FlightPlan {
+    /// A name as an identifier that nothing in the plan has, with a number where it is taken.
+    pub fn unique_id(&self, name: &str) -> Id {
+        let mut taken = lists::ids(self);
+        taken.extend(self.variables.iter().map(|variable| variable.name.clone()));
+        lists::fresh(&Id::new(name), &taken)
+    }
+
+    /// An identifier that nothing in the plan has: `<stem>1`, `<stem>2`, …, the first that is free.
+    pub fn fresh_id(&self, stem: &str) -> Id {
+        let taken = lists::ids(self);
+        let is_free = |id: &Id| !taken.contains(id) && self.variable(id).is_none();
+        // one more candidate than there are identifiers: one of them is free
+        let most = taken.len() + self.variables.len() + 1;
+        (1..=most).map(|n| Id::new(&format!("{stem}{n}"))).find(is_free).unwrap_or_else(|| Id::new(stem))
+    }
+}
+
+#[cfg(test)]
+mod tests;

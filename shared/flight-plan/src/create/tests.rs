@@ -1,0 +1,208 @@
+//! Whatever is drawn gives a plan without errors.
+
+use super::*;
+use crate::template::{Outline, Template};
+use crate::{
+    Edit, FlightPlan, Id, LegKind, Place, Runway, Spot, StageKind, Thing, Value, VariableValue, ZoneKind,
+    ZoneShape, check,
+};
+use aircraft::Profile;
+use geometry::LatLon;
+use proptest::prelude::*;
+use terrain::Flat;
+
+const HOME: LatLon = LatLon::new(46.0, 8.0);
+
+fn made(template: Template) -> FlightPlan {
+    let runway = Runway {
+        id: "R09".into(),
+        threshold: HOME,
+        elevation_amsl_m: 200.0,
+        heading_deg: 90.0,
+        length_m: 600.0,
+        priority: 1,
+        approach_entry: None,
+    };
+    let centre = HOME.destination(180.0, 3500.0);
+    let outline =
+        Outline { template, aircraft: "trainer".into(), runway, centre, radius_m: 1000.0, height_m: 150.0 };
+    outline.plan(&Profile::default(), &Flat(200.0))
+}
+
+fn errors(plan: &FlightPlan) -> Vec<String> {
+    errors_but(plan, "nothing")
+}
+
+fn errors_but(plan: &FlightPlan, code: &str) -> Vec<String> {
+    let problems = check(plan, &Profile::default(), &Flat(200.0));
+    let errors = problems.iter().filter(|p| p.is_error() && p.code != code);
+    errors.map(ToString::to_string).collect()
+}
+
+fn at(position: LatLon) -> Place {
+    Place::Position(Value::Constant(position))
+}
+
+/// What a person would draw around a place for a kind.
+fn drawn(shape: Shape, middle: LatLon, radius_m: f64, turned_deg: f64) -> Drawn {
+    let around = |bearing_deg: f64| middle.destination(turned_deg + bearing_deg, radius_m);
+    match shape {
+        Shape::Place => Drawn::Place(at(middle)),
+        Shape::Line => Drawn::Line([180.0, 80.0].map(|b| at(around(b))).to_vec()),
+        Shape::Area => Drawn::Area([0.0, 100.0, 190.0, 280.0].map(around).to_vec()),
+        Shape::Circle => Drawn::Circle { centre: at(middle), radius_m },
+        Shape::Nothing => Drawn::Nothing,
+    }
+}
+
+/// The plan with a track from one place to another at the end of its mission, and how it arrives there.
+fn with_track(plan: &FlightPlan, before: LatLon, from: LatLon) -> (FlightPlan, Spot, Approach) {
+    let profile = Profile::default();
+    let mut plan = plan.clone();
+    let mut spot = Spot::EndOf("mission".into());
+    for position in [before, from] {
+        let leg = leg(&plan, &profile, LegChoice::Tf, &Drawn::Place(at(position)), None, None).unwrap();
+        let id = leg.id.clone();
+        plan = Edit::InsertLeg { leg: Box::new(leg), at: spot }.apply(&plan).unwrap();
+        spot = Spot::After(id);
+    }
+    let course_deg = Some(before.inverse(from).bearing_end_deg);
+    (plan, spot, Approach { from, course_deg })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn every_kind_of_leg_can_be_drawn_and_checked(
+        which in 0..LegChoice::ALL.len(),
+        template in 0..Template::ALL.len(),
+        (bearing_deg, away_m) in (0.0..360.0, 4000.0..9000.0),
+        (radius_m, turned_deg, aside_deg) in (700.0..2000.0, 0.0..360.0, 20.0..100.0),
+    ) {
+        let choice = LegChoice::ALL[which];
+        prop_assume!(!matches!(choice, LegChoice::Call | LegChoice::Iterative));
+        let before = HOME.destination(200.0, 9000.0);
+        let from = before.destination(bearing_deg, 4000.0);
+        let (plan, spot, approach) = with_track(&made(Template::ALL[template]), before, from);
+        prop_assert_eq!(errors(&plan), Vec::<String>::new());
+        let middle = from.destination(bearing_deg + aside_deg, away_m);
+        let drawn = drawn(choice.shape(), middle, radius_m, turned_deg);
+        let leg = leg(&plan, &Profile::default(), choice, &drawn, Some(approach), None).unwrap();
+        prop_assert_eq!(LegChoice::of(&leg.kind), choice);
+        let after = Edit::InsertLeg { leg: Box::new(leg), at: spot }.apply(&plan).unwrap();
+        // an arc ends on a course of its own: whoever drew it goes on from there
+        prop_assert_eq!(errors_but(&after, "rf-not-tangent"), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn every_kind_becomes_every_other_that_its_place_allows() {
+    let (plan, _, approach) =
+        with_track(&made(Template::Survey), HOME.destination(200.0, 9000.0), HOME.destination(190.0, 6000.0));
+    let profile = Profile::default();
+    for from in LegChoice::ALL.into_iter().filter(|choice| *choice != LegChoice::Call) {
+        let drawn = drawn(from.shape(), HOME.destination(150.0, 7000.0), 900.0, 0.0);
+        let old = leg(&plan, &profile, from, &drawn, Some(approach), None).unwrap();
+        for to in LegChoice::ALL {
+            let Some(new) = convert(&plan, &profile, &old, to, Some(approach)) else { continue };
+            assert_eq!((new.id, LegChoice::of(&new.kind)), (old.id.clone(), to), "{from:?}");
+        }
+        let same = convert(&plan, &profile, &old, from, Some(approach)).unwrap();
+        assert_eq!(same.kind.name(), old.kind.name());
+    }
+    let old = leg(&plan, &profile, LegChoice::Tf, &Drawn::Place(at(HOME)), None, None).unwrap();
+    assert!(convert(&plan, &profile, &old, LegChoice::Scan, None).is_some());
+    assert!(convert(&plan, &profile, &old, LegChoice::Corridor, None).is_none(), "a point is no line");
+    assert!(convert(&plan, &profile, &old, LegChoice::Call, None).is_none(), "there is no procedure");
+}
+
+#[test]
+fn things_get_names_of_their_own() {
+    let mut plan = made(Template::Patrol);
+    let add = |plan: &FlightPlan, thing: Thing| Edit::Add(Box::new(thing)).apply(plan).unwrap();
+    for _ in 0..3 {
+        plan = add(&plan, Thing::Fix(fix(&plan, HOME.destination(10.0, 900.0))));
+        let (threshold, end) = (HOME.destination(0.0, 2000.0), HOME.destination(10.0, 2500.0));
+        plan = add(&plan, Thing::Runway(runway(&plan, threshold, end, 201.4)));
+        let circle = ZoneShape::Circle { centre: HOME.destination(0.0, 9000.0), radius_m: 300.0 };
+        plan = add(&plan, Thing::Zone(zone(&plan, ZoneKind::KeepOut, circle)));
+        plan = add(&plan, Thing::Variable(variable(&plan, VariableValue::Number(1.0))));
+        let en_route = Box::new(stage(&plan, StageKind::EnRoute));
+        plan = Edit::InsertStage { stage: en_route, before: "arrival".into() }.apply(&plan).unwrap();
+    }
+    assert_eq!((plan.runways.len(), plan.runways[1].elevation_amsl_m), (4, 201.0));
+    assert_eq!(plan.runways.iter().map(|r| r.priority).collect::<Vec<_>>(), [1, 2, 3, 4]);
+    assert_eq!(errors(&plan), Vec::<String>::new());
+    let ids: Vec<&str> = plan.stages.iter().map(|s| s.id.as_str()).collect();
+    assert!(ids.contains(&"en-route") && ids.contains(&"en-route3"), "{ids:?}");
+    assert_eq!(plan.unique_id("number1"), Id::new("number4"), "a variable has that name");
+}
+
+#[test]
+fn a_way_home_is_made_for_any_runway() {
+    let plan = made(Template::Survey);
+    let second = runway(&plan, HOME.destination(0.0, 6000.0), HOME.destination(5.0, 6500.0), 260.0);
+    let plan = Edit::Add(Box::new(Thing::Runway(second.clone()))).apply(&plan).unwrap();
+    let profile = Profile::default();
+    let plan = emergency_plan(&plan, &second, &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    let plan = emergency_plan(&plan, &plan.runways[0], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    assert_eq!(errors(&plan), Vec::<String>::new());
+    let ids: Vec<&str> = plan.emergency_plans.iter().map(|e| e.id.as_str()).collect();
+    assert_eq!(ids, ["return", "return2", "return3"]);
+    let finals = plan.fixes.iter().filter(|f| f.id.as_str().starts_with("FINAL")).count();
+    assert_eq!(finals, 2, "one is used again");
+    assert_eq!(plan.emergency.by_cause, [(None, "return".into())], "it has one already");
+    let gone = remove(&plan, &"return".into()).apply(&plan).unwrap();
+    assert!(gone.emergency.by_cause.is_empty() && gone.emergency_plan(&"return".into()).is_none());
+}
+
+#[test]
+fn legs_keep_the_place_of_a_fix_that_is_removed() {
+    let plan = made(Template::Patrol);
+    let p2 = plan.fix(&"P2".into()).unwrap().position;
+    let after = remove(&plan, &"P2".into()).apply(&plan).unwrap();
+    assert_eq!(after.leg(&"p2".into()).unwrap().leg.place(), Some(&at(p2)));
+    assert_eq!((errors(&after), after.fix(&"P2".into())), (Vec::new(), None));
+}
+
+#[test]
+fn legs_are_copied_moved_and_put_into_loops_forks_and_procedures() {
+    let (before, from) = (HOME.destination(200.0, 7000.0), HOME.destination(190.0, 5000.0));
+    let (plan, _, _) = with_track(&made(Template::Survey), before, from);
+    let ids = |plan: &FlightPlan| -> Vec<String> {
+        plan.stage(&"mission".into()).unwrap().legs.iter().map(|leg| leg.id.to_string()).collect()
+    };
+    let then = |edit: Option<Edit>| edit.unwrap().apply(&plan).unwrap();
+    assert_eq!(ids(&plan), ["scan", "leg1", "leg2"]);
+    assert_eq!(ids(&then(duplicate(&plan, &"leg1".into()))), ["scan", "leg1", "leg3", "leg2"]);
+    assert_eq!(ids(&then(shift(&plan, &"leg2".into(), -1))), ["scan", "leg2", "leg1"]);
+    assert_eq!(ids(&then(shift(&plan, &"scan".into(), 1))), ["leg1", "scan", "leg2"]);
+    assert_eq!(shift(&plan, &"scan".into(), -1), None);
+    let (id, edit) = loop_around(&plan, &["leg2".into(), "leg1".into()]).unwrap();
+    let looped = then(Some(edit));
+    assert_eq!((ids(&looped), errors(&looped)), (vec!["scan".into(), "loop1".into()], Vec::new()));
+    let body: Vec<&str> = looped.leg(&id).unwrap().leg.body().iter().map(|leg| leg.id.as_str()).collect();
+    assert_eq!(body, ["leg1", "leg2"]);
+    assert_eq!(unloop(&looped, &id).unwrap().apply(&looped).unwrap(), plan, "and back");
+    let forked = then(Some(fork(&plan, &"leg1".into()).unwrap().1));
+    assert_eq!((ids(&forked).join(" "), errors(&forked)), ("scan fork1 leg1 leg2".into(), Vec::new()));
+    let (id, edit) = procedure_of(&plan, &["leg1".into(), "leg2".into()]).unwrap();
+    let called = then(Some(edit));
+    assert_eq!((ids(&called).join(" "), errors(&called)), ("scan call1".into(), Vec::new()));
+    assert_eq!(called.procedure(&id).unwrap().legs.len(), 2);
+    let place = Drawn::Place(at(HOME));
+    let anchored = leg(&called, &Profile::default(), LegChoice::Call, &place, None, None).unwrap();
+    assert!(matches!(anchored.kind, LegKind::Call(ref call) if call.anchor.is_some()));
+}
+
+#[test]
+fn a_leg_is_not_moved_into_itself() {
+    let plan = made(Template::Patrol);
+    for at in [Spot::EndOf("patrol".into()), Spot::Before("p2".into()), Spot::After("patrol".into())] {
+        let refused = Edit::MoveLeg { leg: "patrol".into(), at }.apply(&plan).unwrap_err();
+        assert!(refused.to_string().contains("into itself"), "{refused}");
+    }
+    let out = Edit::MoveLeg { leg: "p2".into(), at: Spot::After("patrol".into()) }.apply(&plan).unwrap();
+    assert_eq!(out.leg(&"patrol".into()).map(|c| c.leg.body().len()), Some(2));
+}

@@ -1,0 +1,176 @@
+//! What legs use: fixes, runways, zones, variables, stages, emergency plans.
+
+use crate::template;
+use crate::uses::SlotMut;
+use crate::{
+    Edit, EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Runway, Stage, StageKind, Thing, Value, Variable,
+    VariableValue, Zone, ZoneKind, ZoneShape,
+};
+use aircraft::Profile;
+use geometry::LatLon;
+use geometry::geodesy::normalise_360;
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// A fix.
+pub fn fix(plan: &FlightPlan, position: LatLon) -> Fix {
+    Fix { id: plan.fresh_id("FIX"), position, name: String::new(), description: String::new() }
+}
+
+/// A runway from its landing threshold to its other end, called by its direction.
+pub fn runway(plan: &FlightPlan, threshold: LatLon, end: LatLon, elevation_amsl_m: f64) -> Runway {
+    let way = threshold.inverse(end);
+    let heading_deg = normalise_360(way.bearing_start_deg.round());
+    let last = plan.runways.iter().map(|runway| runway.priority).max().unwrap_or(0);
+    Runway {
+        id: runway_id(plan, heading_deg),
+        threshold,
+        elevation_amsl_m: elevation_amsl_m.round(),
+        heading_deg,
+        length_m: way.distance_m.round(),
+        priority: last.saturating_add(1),
+        approach_entry: None,
+    }
+}
+
+/// As runways are called: `R` and a tenth of the heading, 01 to 36; with a letter where that is taken.
+fn runway_id(plan: &FlightPlan, heading_deg: f64) -> Id {
+    let tenth = (heading_deg / 10.0).round().rem_euclid(36.0);
+    let name = format!("R{:02}", if tenth < 1.0 { 36.0 } else { tenth });
+    let mut letters = ["", "L", "R", "C"].map(|letter| format!("{name}{letter}")).into_iter();
+    let free = letters.find(|name| plan.unique_id(name).as_str() == name);
+    free.map_or_else(|| plan.fresh_id(&format!("{name}-")), |name| Id::new(&name))
+}
+
+/// A zone at every altitude, at all times.
+pub fn zone(plan: &FlightPlan, kind: ZoneKind, shape: ZoneShape) -> Zone {
+    let stem = match kind {
+        ZoneKind::KeepIn => "keep-in-",
+        ZoneKind::KeepOut => "keep-out-",
+    };
+    let id = plan.fresh_id(stem);
+    Zone { id, name: String::new(), kind, shape, floor: None, ceiling: None, active: Vec::new() }
+}
+
+/// A variable that anybody may write.
+pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Variable {
+    let stem = match initial {
+        VariableValue::Bool(_) => "flag",
+        VariableValue::Number(_) => "number",
+        VariableValue::Text(_) => "text",
+        VariableValue::Position(_) => "place",
+        VariableValue::Polygon(_) => "area",
+    };
+    Variable {
+        name: plan.fresh_id(stem),
+        initial,
+        unit: String::new(),
+        min: None,
+        max: None,
+        max_length: None,
+        writers: Vec::new(),
+    }
+}
+
+/// An empty stage; one to take off or land gets the plan's first runway.
+pub fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
+    let (stem, name) = match kind {
+        StageKind::TakeOff => ("take-off", "Take-off"),
+        StageKind::Departure => ("departure", "Departure"),
+        StageKind::EnRoute => ("en-route", "En route"),
+        StageKind::Mission => ("mission", "Mission"),
+        StageKind::Arrival => ("arrival", "Arrival"),
+        StageKind::Approach => ("approach", "Approach"),
+        StageKind::Land => ("land", "Landing"),
+    };
+    let on_runway = matches!(kind, StageKind::TakeOff | StageKind::Land);
+    Stage {
+        id: plan.unique_id(stem),
+        name: name.into(),
+        kind,
+        emergency: EmergencyChoice::default(),
+        runway: plan.runways.first().filter(|_| on_runway).map(|runway| runway.id.clone()),
+        altitude: (kind == StageKind::TakeOff).then(template::climb_out),
+        speed_mps: None,
+        legs: Vec::new(),
+    }
+}
+
+/// An emergency plan that brings the aircraft to a runway from anywhere, with the fixes that it needs; the first of a plan
+/// becomes the plan's own.
+pub fn emergency_plan(
+    plan: &FlightPlan,
+    runway: &Runway,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+) -> (Id, Edit) {
+    let id = plan.unique_id("return");
+    let (fixes, emergency) = template::bring_home(plan, &id, runway, profile, terrain);
+    let mut edits: Vec<Edit> = fixes.into_iter().map(|fix| Edit::Add(Box::new(Thing::Fix(fix)))).collect();
+    edits.push(Edit::Add(Box::new(Thing::EmergencyPlan(emergency))));
+    if plan.emergency.by_cause.is_empty() {
+        edits.push(Edit::SetEmergency { of: None, cause: None, plan: Some(id.clone()) });
+    }
+    (id, Edit::All(edits))
+}
+
+/// Removes a fix, runway, zone, procedure, emergency plan, stage or variable; legs keep the place of a fix, and nothing
+/// is associated with an emergency plan any more.
+pub fn remove(plan: &FlightPlan, id: &Id) -> Edit {
+    let mut edits = Vec::new();
+    if plan.fix(id).is_some() {
+        edits.push(move_fix_into_legs(plan, id));
+    }
+    if plan.emergency_plan(id).is_some() {
+        edits.extend(dissociate(plan, id));
+    }
+    edits.push(Edit::Remove { id: id.clone() });
+    Edit::All(edits)
+}
+
+/// Every leg that goes to a fix goes to its position instead.
+pub fn move_fix_into_legs(plan: &FlightPlan, id: &Id) -> Edit {
+    let Some(fix) = plan.fix(id) else { return Edit::All(Vec::new()) };
+    let loose = |leg: &Arc<Leg>| {
+        let mut leg = leg.as_ref().clone();
+        let mut hit = false;
+        leg.for_each_slot_mut(&mut |slot| {
+            if let SlotMut::Place(place) = slot
+                && *place == Place::Fix(id.clone())
+            {
+                *place = Place::Position(Value::Constant(fix.position));
+                hit = true;
+            }
+        });
+        hit.then(|| Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
+    };
+    // a loop goes nowhere itself; to replace it would put its old body back
+    Edit::All(every_leg(plan).into_iter().filter(|leg| leg.body().is_empty()).filter_map(loose).collect())
+}
+
+/// Every leg, in emergency plans and procedures too.
+fn every_leg(plan: &FlightPlan) -> Vec<&Arc<Leg>> {
+    fn collect<'a>(legs: &'a [Arc<Leg>], found: &mut Vec<&'a Arc<Leg>>) {
+        for leg in legs {
+            found.push(leg);
+            collect(leg.body(), found);
+        }
+    }
+    let mut found = Vec::new();
+    plan.all_stages().for_each(|(_, stage)| collect(&stage.legs, &mut found));
+    plan.procedures.iter().for_each(|procedure| collect(&procedure.legs, &mut found));
+    found
+}
+
+/// Takes an emergency plan from whatever is associated with it.
+fn dissociate(plan: &FlightPlan, id: &Id) -> Vec<Edit> {
+    let stages = plan.all_stages().map(|(_, stage)| (Some(stage.id.clone()), &stage.emergency));
+    let legs = every_leg(plan).into_iter().map(|leg| (Some(leg.id.clone()), &leg.emergency));
+    let all = std::iter::once((None, &plan.emergency)).chain(stages).chain(legs);
+    let of = |(of, choice): (Option<Id>, &EmergencyChoice)| {
+        let hits = choice.by_cause.iter().filter(|(_, to)| to == id);
+        let edit = |(cause, _): &_| Edit::SetEmergency { of: of.clone(), cause: *cause, plan: None };
+        hits.map(edit).collect::<Vec<_>>()
+    };
+    all.flat_map(of).collect()
+}
