@@ -7,6 +7,7 @@ use crate::units::Units;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
 use flight_plan::{Edit, Id};
+use geometry::LatLon;
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
 
@@ -32,6 +33,17 @@ pub enum DocumentCommand {
     Discard(Replacement),
     /// A new plan made from a template, in the place of an empty one.
     Create(Box<Outline>),
+    /// A runway from its landing threshold to its other end, on the ground there.
+    AddRunway {
+        /// Its landing threshold.
+        threshold: LatLon,
+        /// Its other end.
+        end: LatLon,
+        /// Another one the other way, too.
+        both: bool,
+    },
+    /// An emergency plan that brings the aircraft to this runway.
+    BringHome(Id),
     /// Save where it came from, asking if it came from nowhere.
     Save,
     /// Ask where to save.

@@ -310,7 +310,7 @@ impl eframe::App for App {
         let now = Now::read(&ctx);
         self.play(&ctx);
         let mut queue = std::mem::take(&mut self.queue);
-        self.map.keys(&ctx, &mut queue);
+        self.map.keys(&ctx);
         keys::read(&ctx, &self.scene(now), &mut queue);
         self.lay_out(ui, now, &mut queue);
         // what was asked for was meant for the vehicle that was drawn

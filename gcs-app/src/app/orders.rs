@@ -1,7 +1,9 @@
 //! Carrying out commands, one function per owner.
 
 use super::App;
-use crate::command::{Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, ViewCommand};
+use crate::command::{
+    Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
+};
 use crate::document::Document;
 use crate::link::Call;
 use crate::panels::bar::PUSH;
@@ -9,6 +11,8 @@ use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
+use flight_plan::{Edit, Id, Thing, create};
+use geometry::LatLon;
 use usal::contract::{GatewayRequest, Propose};
 
 impl App {
@@ -29,6 +33,8 @@ impl App {
     fn change_document(&mut self, command: DocumentCommand) {
         let done = match command {
             DocumentCommand::Edit(edit) => self.document.edit(&edit),
+            DocumentCommand::AddRunway { threshold, end, both } => self.add_runway(threshold, end, both),
+            DocumentCommand::BringHome(runway) => self.bring_home(&runway),
             DocumentCommand::DragEdit(edit) => self.document.drag_edit(&edit),
             other => {
                 self.handle_file(other);
@@ -54,7 +60,11 @@ impl App {
             DocumentCommand::EndGesture => self.document.end_gesture(),
             DocumentCommand::Undo => self.document.undo(),
             DocumentCommand::Redo => self.document.redo(),
-            DocumentCommand::Edit(_) | DocumentCommand::DragEdit(_) => {}
+            // they are carried out above
+            DocumentCommand::Edit(_)
+            | DocumentCommand::DragEdit(_)
+            | DocumentCommand::AddRunway { .. }
+            | DocumentCommand::BringHome(_) => {}
         }
     }
 
@@ -74,14 +84,46 @@ impl App {
     /// A step that can be undone, like any other.
     fn create(&mut self, mut outline: Outline) {
         let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
-        let ground = self.terrain.elevation_m(outline.runway.threshold);
+        outline.runway.elevation_amsl_m = self.ground_amsl_m(outline.runway.threshold).round();
+        self.document.replace(outline.plan(&profile, self.terrain.as_ref()));
+        self.map.fit();
+    }
+
+    /// Says so where it is not known.
+    fn ground_amsl_m(&mut self, at: LatLon) -> f64 {
+        let ground = self.terrain.elevation_m(at);
         if ground.is_none() {
             let why = "The ground is not known here: the runway is taken to be at sea level. Add elevation tiles, or correct it.";
             self.view.notice = Some(why.into());
         }
-        outline.runway.elevation_amsl_m = ground.unwrap_or(0.0).round();
-        self.document.replace(outline.plan(&profile, self.terrain.as_ref()));
-        self.map.fit();
+        ground.unwrap_or(0.0)
+    }
+
+    fn add_runway(&mut self, threshold: LatLon, end: LatLon, both: bool) -> Result<(), String> {
+        let ways = [(threshold, end), (end, threshold)];
+        let mut plan = self.document.plan().as_ref().clone();
+        let mut edits = Vec::new();
+        let mut made = None;
+        for (threshold, end) in ways.into_iter().take(if both { 2 } else { 1 }) {
+            let runway = create::runway(&plan, threshold, end, self.ground_amsl_m(threshold));
+            made = made.or_else(|| Some(runway.id.clone()));
+            // the second is called as nothing is then
+            plan.runways.push(runway.clone());
+            edits.push(Edit::Add(Box::new(Thing::Runway(runway))));
+        }
+        self.document.edit(&Edit::All(edits))?;
+        self.view.selection = made.map(Selection::Runway);
+        Ok(())
+    }
+
+    fn bring_home(&mut self, runway: &Id) -> Result<(), String> {
+        let plan = self.document.plan().clone();
+        let Some(runway) = plan.runway(runway) else { return Ok(()) };
+        let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+        let (id, edit) = create::emergency_plan(&plan, runway, &profile, self.terrain.as_ref());
+        self.document.edit(&edit)?;
+        self.view.selection = Some(Selection::Emergency(id));
+        Ok(())
     }
 
     fn save_to(&mut self, path: std::path::PathBuf) {

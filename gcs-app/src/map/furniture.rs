@@ -98,7 +98,7 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 }
 
 /// The tools at the map's left edge, and what the one in use says.
-pub fn toolbar(ui: &mut Ui, tools: &Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let area = Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), vec2(34.0, map.height().max(40.0)));
     let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map tools"));
@@ -113,17 +113,18 @@ pub fn toolbar(ui: &mut Ui, tools: &Toolbox, scene: &Scene<'_>, queue: &mut Queu
     let beside = Rect::from_min_max(map.left_top() + vec2(52.0, 12.0), map.right_bottom() - vec2(52.0, 0.0));
     let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
     theme::card(&chip).show(&mut chip, |ui| {
-        ui.add(egui::Label::new(status).wrap_mode(egui::TextWrapMode::Extend));
+        ui.add(egui::Label::new(status).wrap());
+        ui.horizontal_wrapped(|ui| tools.options(ui, scene));
     });
 }
 
 fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {
     let p = theme::of(ui);
     let button = egui::Button::new(egui::RichText::new(symbol).size(16.0))
-        .min_size(vec2(32.0, 32.0))
         .stroke(Stroke::new(1.0, p.line))
         .selected(on);
-    let response = ui.add(button).on_hover_text(name);
+    ui.spacing_mut().button_padding.x = 0.0;
+    let response = ui.add_sized([32.0, 32.0], button).on_hover_text(name);
     let name = name.to_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     response.clicked()

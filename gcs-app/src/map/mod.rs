@@ -77,9 +77,9 @@ impl MapState {
     }
 
     /// Takes the keys that choose a tool and those that the tool in use understands.
-    pub fn keys(&mut self, ctx: &egui::Context, queue: &mut Queue) {
+    pub fn keys(&mut self, ctx: &egui::Context) {
         if !ctx.text_edit_focused() {
-            self.tools.keys(ctx, queue);
+            self.tools.keys(ctx);
         }
     }
 
@@ -130,7 +130,7 @@ impl MapState {
             queue.view(ViewCommand::Follow(false));
         }
         furniture::buttons(ui, &mut memory, scene, queue);
-        furniture::toolbar(ui, &self.tools, scene, queue);
+        furniture::toolbar(ui, &mut self.tools, scene, queue);
         self.memory = memory;
     }
 
@@ -155,7 +155,8 @@ impl MapState {
         aircraft::draw_ahead(&painter, view, scene, p);
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);
-        let canvas = Canvas { view, sketch: &self.sketch, scene };
+        let snaps = !ui.input(|i| i.modifiers.alt);
+        let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
         self.tools.run(ui, response, &canvas, queue, p);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);

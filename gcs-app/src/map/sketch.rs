@@ -2,8 +2,8 @@
 //! plans. Broken drafts give what can be made of them.
 
 use flight_plan::{
-    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
-    VariableValue, Variables, expression,
+    Area, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Pattern, Place, Scan, Section, Value,
+    VariableValue, Variables, Zone, ZoneShape, expression,
 };
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -37,16 +37,34 @@ pub enum Handled {
         /// Which corner.
         corner: usize,
     },
+    /// Between two corners or points: dragged, it is a new one.
+    Ghost {
+        /// The scan, route or zone.
+        leg: Id,
+        /// `None`: the outer ring or the route.
+        hole: Option<usize>,
+        /// Before which corner.
+        before: usize,
+    },
+    /// In the middle of a leg: dragged, it is a new leg before that one.
+    Between {
+        /// The leg.
+        leg: Id,
+        /// How long that is, whole metres.
+        gap_m: u32,
+    },
 }
 
 impl Handled {
     /// The leg it belongs to, if it is a leg's.
     pub fn leg(&self) -> Option<&Id> {
         match self {
-            Self::Fix(_) => None,
-            Self::Waypoint(leg) | Self::Centre(leg) | Self::Radius(leg) | Self::Corner { leg, .. } => {
-                Some(leg)
-            }
+            Self::Fix(_) | Self::Between { .. } => None,
+            Self::Waypoint(leg)
+            | Self::Centre(leg)
+            | Self::Radius(leg)
+            | Self::Corner { leg, .. }
+            | Self::Ghost { leg, .. } => Some(leg),
         }
     }
     /// Its name.
@@ -60,6 +78,11 @@ impl Handled {
             Self::Corner { leg, hole: Some(hole), corner } => {
                 format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1)
             }
+            Self::Ghost { leg, hole: None, before } => format!("New corner {} of {leg}", before + 1),
+            Self::Ghost { leg, hole: Some(hole), before } => {
+                format!("New corner {} of hole {} of {leg}", before + 1, hole + 1)
+            }
+            Self::Between { leg, .. } => format!("New leg before {leg}"),
         }
     }
 }
@@ -104,7 +127,9 @@ impl Sketch {
         }
         for context in plan.all_legs() {
             sketch.add_leg(context.leg, &reader);
+            sketch.add_middle(&context, &reader);
         }
+        plan.zones.iter().for_each(|zone| sketch.add_zone(zone));
         sketch.add_lines(plan, &reader);
         sketch
     }
@@ -128,6 +153,48 @@ impl Sketch {
         }
     }
 
+    /// The middle of a straight leg, if both of its ends are known.
+    fn add_middle(&mut self, context: &LegContext<'_>, reader: &Reader<'_>) {
+        let is_straight = matches!(context.leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
+        let before = context.index.checked_sub(1).and_then(|i| context.siblings.get(i));
+        let place = |leg: &Leg| leg.place().and_then(|place| reader.place(place));
+        let ends = before.and_then(|before| place(before)).zip(place(context.leg)).filter(|_| is_straight);
+        let Some((from, to)) = ends else { return };
+        let what = Handled::Between { leg: context.leg.id.clone(), gap_m: from.distance_m(to) as u32 };
+        self.handles.push(Handle { what, at: from.interpolate(to, 0.5) });
+    }
+
+    fn add_zone(&mut self, zone: &Zone) {
+        match &zone.shape {
+            ZoneShape::Circle { centre, radius_m } if centre.is_valid() && radius_m.is_finite() => {
+                self.handles.push(Handle { what: Handled::Centre(zone.id.clone()), at: *centre });
+                let rim = centre.destination(90.0, *radius_m);
+                self.handles.push(Handle { what: Handled::Radius(zone.id.clone()), at: rim });
+            }
+            ZoneShape::Circle { .. } => {}
+            ZoneShape::Polygon(corners) => self.add_ring(&zone.id, None, corners),
+        }
+    }
+
+    /// Handles of a closed ring.
+    fn add_ring(&mut self, of: &Id, hole: Option<usize>, points: &[LatLon]) {
+        for (corner, at) in points.iter().enumerate().filter(|(_, at)| at.is_valid()) {
+            let what = Handled::Corner { leg: of.clone(), hole, corner };
+            self.handles.push(Handle { what, at: *at });
+        }
+        let next = points.iter().cycle().skip(1);
+        for (index, (from, to)) in points.iter().zip(next).enumerate() {
+            self.add_ghost(of, hole, index + 1, *from, *to);
+        }
+    }
+
+    fn add_ghost(&mut self, of: &Id, hole: Option<usize>, before: usize, from: LatLon, to: LatLon) {
+        if from.is_valid() && to.is_valid() {
+            let what = Handled::Ghost { leg: of.clone(), hole, before };
+            self.handles.push(Handle { what, at: from.interpolate(to, 0.5) });
+        }
+    }
+
     /// Its first point moves all of it, each other point itself.
     fn add_route(&mut self, leg: &Leg, route: &[Place], reader: &Reader<'_>) {
         route.first().into_iter().for_each(|place| self.add_waypoint(leg, place, reader));
@@ -135,6 +202,12 @@ impl Sketch {
             let Place::Position(Value::Constant(at)) = place else { continue };
             let what = Handled::Corner { leg: leg.id.clone(), hole: None, corner };
             self.handles.extend(at.is_valid().then_some(Handle { what, at: *at }));
+        }
+        let points: Vec<Option<LatLon>> = route.iter().map(|place| reader.place(place)).collect();
+        for (index, ends) in points.windows(2).enumerate() {
+            if let [Some(from), Some(to)] = ends {
+                self.add_ghost(&leg.id, None, index + 1, *from, *to);
+            }
         }
     }
 
@@ -144,7 +217,11 @@ impl Sketch {
             Area::Polygon { corners, holes } => self.add_polygon(leg, corners, holes),
             // its corners are a variable's
             Area::Expression(source) => {
-                self.polygons.extend(reader.polygon(source).map(|ring| (leg.id.clone(), vec![ring])))
+                let Some(ring) = reader.polygon(source) else { return };
+                if reader.plan.variable(&Id::new(source)).is_some() {
+                    self.add_ring(&leg.id, None, &ring);
+                }
+                self.polygons.push((leg.id.clone(), vec![ring]));
             }
         }
     }
@@ -184,10 +261,7 @@ impl Sketch {
         let rings: Vec<Vec<LatLon>> =
             std::iter::once(corners.to_vec()).chain(holes.iter().cloned()).collect();
         for (ring, points) in rings.iter().enumerate() {
-            for (corner, at) in points.iter().enumerate().filter(|(_, at)| at.is_valid()) {
-                let what = Handled::Corner { leg: leg.id.clone(), hole: ring.checked_sub(1), corner };
-                self.handles.push(Handle { what, at: *at });
-            }
+            self.add_ring(&leg.id, ring.checked_sub(1), points);
         }
         self.polygons.push((leg.id.clone(), rings));
     }
@@ -208,6 +282,15 @@ impl Sketch {
                     }
                 }
             }
+        }
+    }
+
+    /// The middle of what a rim belongs to.
+    pub fn centre_of(&self, of: &Id, plan: &FlightPlan) -> Option<LatLon> {
+        match plan.zone(of).map(|zone| &zone.shape) {
+            Some(ZoneShape::Circle { centre, .. }) => Some(*centre),
+            Some(ZoneShape::Polygon(_)) => None,
+            None => self.circles.iter().find(|circle| circle.leg == *of).map(|circle| circle.centre),
         }
     }
 
@@ -273,13 +356,23 @@ pub fn bound_radius(source: &str) -> Option<(Id, f64)> {
 /// The edit that gives a circle of a leg another radius, in metres; within its variable's bounds if it has one.
 pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<flight_plan::Edit> {
     use flight_plan::Edit;
+    if plan.zone(leg).is_some() {
+        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
+    }
     let radius = match &plan.leg(leg)?.leg.kind {
         LegKind::Orbit { radius_m, .. } => radius_m,
-        LegKind::Scan(flight_plan::Scan { area: Area::Circle { radius_m, .. }, .. }) => radius_m,
+        LegKind::Scan(Scan { area: Area::Circle { radius_m, .. }, .. })
+        | LegKind::Pattern(
+            Pattern::Contour { area: Area::Circle { radius_m, .. }, .. }
+            | Pattern::Spiral { outer_radius_m: radius_m, .. }
+            | Pattern::ExpandingSquare { radius_m, .. }
+            | Pattern::Sector { radius_m, .. }
+            | Pattern::FigureEight { radius_m, .. },
+        ) => radius_m,
         _ => return None,
     };
     let Value::Expression(source) = radius else {
-        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0) });
+        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
     };
     let (name, added) = bound_radius(source)?;
     let variable = plan.variable(&name)?;

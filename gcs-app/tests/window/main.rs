@@ -4,6 +4,7 @@
 
 mod creating;
 mod dock;
+mod drawing;
 mod fleet;
 mod flying;
 mod planning;
@@ -82,6 +83,37 @@ impl Window {
 
     fn is_enabled(&self, label: &str) -> bool {
         !self.harness.get_by_label(label).accesskit_node().is_disabled()
+    }
+
+    /// Clicks a place of the screen.
+    fn click_at(&mut self, at: Pos2) {
+        self.harness.hover_at(at);
+        self.steps(1);
+        self.harness.drag_at(at);
+        self.steps(1);
+        self.harness.drop_at(at);
+        self.steps(3);
+    }
+
+    fn press(&mut self, key: egui::Key) {
+        self.harness.key_press(key);
+        self.steps(3);
+    }
+
+    /// The present plan.
+    fn plan(&self) -> flight_plan::FlightPlan {
+        self.app().document().plan().as_ref().clone()
+    }
+
+    /// What is selected, by its identifier.
+    fn selected(&self) -> String {
+        self.app().view().selection.as_ref().map(|s| s.id().to_string()).unwrap_or_default()
+    }
+
+    /// Sentences of the errors of the present plan.
+    fn errors(&self) -> Vec<String> {
+        let problems = &self.app().analysis().problems;
+        problems.iter().filter(|p| p.is_error()).map(ToString::to_string).collect()
     }
 
     fn centre(&self, label: &str) -> Pos2 {

@@ -72,7 +72,7 @@ fn corners_make_a_scan_that_can_be_flown() {
         }
     }
     assert!(!window.is_enabled("Undo"), "nothing is in the plan yet");
-    assert!(window.shows("closes the area"));
+    assert!(window.shows("closes it"));
     click_at(&mut window, at + vec2(3.0, 2.0));
     assert!(window.shows("SCAN scan1"));
     let plan = window.app().document().plan().clone();

@@ -78,12 +78,12 @@ impl Tool for Measure {
         self.set(grip, canvas.view.geo(to));
     }
 
-    fn key(&mut self, key: Key, _queue: &mut Queue) -> bool {
-        let clears = key == Key::Escape && self.from.is_some();
-        if clears {
-            self.leave();
-        }
-        clears
+    fn wants(&self, key: Key) -> bool {
+        key == Key::Escape && self.from.is_some()
+    }
+
+    fn key(&mut self, _key: Key, _canvas: &Canvas<'_>, _queue: &mut Queue) {
+        self.leave();
     }
 
     fn leave(&mut self) {

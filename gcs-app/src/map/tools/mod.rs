@@ -4,25 +4,35 @@
 //!
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
-mod area;
+mod draw_leg;
 mod measure;
-mod new_leg;
-mod select;
+pub mod new_leg;
+mod pen;
+pub mod select;
+mod thing;
 mod track;
 
-use super::sketch::Sketch;
+use super::sketch::{Handled, Sketch};
 use super::view::View;
 use crate::command::Queue;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{Context, CursorIcon, Key, Modifiers, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2};
+use flight_plan::{Place, Value};
+use geometry::LatLon;
+use pen::Mark;
 
 /// All tools, in the order of the toolbar. The first one is in use unless another one is chosen.
 fn all() -> Vec<Box<dyn Tool>> {
     vec![
-        Box::new(select::Select),
+        Box::new(select::Select::default()),
         Box::new(track::Track::default()),
-        Box::new(area::DrawArea::default()),
+        Box::new(draw_leg::DrawLeg::new(&draw_leg::AREA)),
+        Box::new(draw_leg::DrawLeg::new(&draw_leg::LINE)),
+        Box::new(draw_leg::DrawLeg::new(&draw_leg::CIRCLE)),
+        Box::new(thing::PlaceFix),
+        Box::new(thing::DrawZone::default()),
+        Box::new(thing::DrawRunway::default()),
         Box::new(measure::Measure::default()),
     ]
 }
@@ -49,6 +59,26 @@ pub struct Canvas<'a> {
     pub sketch: &'a Sketch,
     /// Everything else there is to know.
     pub scene: &'a Scene<'a>,
+    /// What is drawn near a fix means the fix; Alt holds that off.
+    pub snaps: bool,
+}
+
+/// A place so near to a fix means the fix, screen points.
+const SNAP: f32 = 12.0;
+
+/// The place under the pointer: a fix, the threshold of a runway, or the ground.
+fn snap(at: Pos2, canvas: &Canvas<'_>) -> Mark {
+    let is_near = |place: LatLon| canvas.snaps && canvas.view.place(place).distance(at) < SNAP;
+    let fixes = canvas.sketch.handles.iter().filter_map(|handle| match &handle.what {
+        Handled::Fix(id) => Some((id, handle.at)),
+        _ => None,
+    });
+    if let Some((id, at)) = fixes.into_iter().find(|(_, at)| is_near(*at)) {
+        return Mark { place: Place::Fix(id.clone()), at };
+    }
+    let thresholds = canvas.scene.document.plan().runways.iter().map(|runway| runway.threshold);
+    let at = thresholds.into_iter().find(|at| is_near(*at)).unwrap_or_else(|| canvas.view.geo(at));
+    Mark { place: Place::Position(Value::Constant(at)), at }
 }
 
 /// Something that can be grabbed.
@@ -90,6 +120,9 @@ pub trait Tool: std::fmt::Debug {
         None
     }
 
+    /// Choices about what it draws, beside its status.
+    fn options(&mut self, _ui: &mut Ui, _scene: &Scene<'_>) {}
+
     /// What can be grabbed now.
     fn grips(&self, _canvas: &Canvas<'_>) -> Vec<Grip> {
         Vec::new()
@@ -101,16 +134,22 @@ pub trait Tool: std::fmt::Debug {
     /// The map or a grip was clicked, or a grip begins to be dragged.
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue);
 
+    /// The map was clicked twice: what is drawn ends here. Both clicks were presses before.
+    fn finish(&mut self, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
     /// A grip is dragged to a place of the screen.
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue);
 
     /// The drag is over.
     fn release(&mut self, _queue: &mut Queue) {}
 
-    /// A key of [`KEYS`] was pressed; true if it meant something here.
-    fn key(&mut self, _key: Key, _queue: &mut Queue) -> bool {
+    /// Does a key of [`KEYS`] mean something here now?
+    fn wants(&self, _key: Key) -> bool {
         false
     }
+
+    /// A key that it wants was pressed.
+    fn key(&mut self, _key: Key, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     /// Another tool is chosen.
     fn leave(&mut self) {}
@@ -125,7 +164,7 @@ pub trait Tool: std::fmt::Debug {
 }
 
 /// Keys that a tool in use may take.
-const KEYS: [Key; 3] = [Key::Escape, Key::Enter, Key::Backspace];
+const KEYS: [Key; 4] = [Key::Escape, Key::Enter, Key::Backspace, Key::Delete];
 /// Reach of a grip, screen points.
 const REACH: f32 = 18.0;
 
@@ -136,11 +175,13 @@ pub struct Toolbox {
     current: usize,
     /// From the pointer to the grip when the drag began, so that nothing jumps.
     offset: Vec2,
+    /// Keys that the tool in use has not seen yet.
+    pressed: Vec<Key>,
 }
 
 impl Default for Toolbox {
     fn default() -> Self {
-        Self { tools: all(), current: 0, offset: Vec2::ZERO }
+        Self { tools: all(), current: 0, offset: Vec2::ZERO, pressed: Vec::new() }
     }
 }
 
@@ -155,6 +196,13 @@ impl Toolbox {
         self.tools.get(self.current)?.status(scene)
     }
 
+    /// Draws the choices that the tool in use offers.
+    pub fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+        if let Some(tool) = self.tools.get_mut(self.current) {
+            tool.options(ui, scene);
+        }
+    }
+
     /// Puts the tool of this name to use; of none, the first.
     pub fn choose(&mut self, id: &str) {
         let next = self.tools.iter().position(|tool| tool.card().id == id).unwrap_or(0);
@@ -165,10 +213,11 @@ impl Toolbox {
             left.leave();
         }
         self.current = next;
+        self.pressed.clear();
     }
 
     /// Keys that choose a tool, and those that the tool in use takes. Escape ends its gesture, then the mode.
-    pub fn keys(&mut self, ctx: &Context, queue: &mut Queue) {
+    pub fn keys(&mut self, ctx: &Context) {
         let pressed = |key: Key| ctx.input(|i| i.modifiers.is_none() && i.key_pressed(key));
         let consume = |key: Key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
         let chosen = self.tools.iter().map(|tool| tool.card()).find(|card| pressed(card.key));
@@ -177,11 +226,13 @@ impl Toolbox {
             self.choose(card.id);
         }
         for key in KEYS.into_iter().filter(|key| pressed(*key)) {
-            let taken = self.tools.get_mut(self.current).is_some_and(|tool| tool.key(key, queue));
-            if taken || (key == Key::Escape && self.current != 0) {
+            let wanted = self.tools.get(self.current).is_some_and(|tool| tool.wants(key));
+            if wanted || (key == Key::Escape && self.current != 0) {
                 consume(key);
             }
-            if !taken && key == Key::Escape {
+            if wanted {
+                self.pressed.push(key);
+            } else if key == Key::Escape {
                 self.choose("");
             }
         }
@@ -191,6 +242,9 @@ impl Toolbox {
     pub fn run(&mut self, ui: &Ui, map: &Response, canvas: &Canvas<'_>, queue: &mut Queue, p: &Palette) {
         let Some(tool) = self.tools.get_mut(self.current) else { return };
         tool.hover(map.hover_pos(), canvas);
+        for key in std::mem::take(&mut self.pressed) {
+            tool.key(key, canvas, queue);
+        }
         if map.hovered() {
             ui.ctx().set_cursor_icon(tool.cursor());
         }
@@ -206,7 +260,9 @@ impl Toolbox {
             }
             react(tool.as_mut(), &mut self.offset, &response, &grip, canvas, queue);
         }
-        if map.clicked()
+        if map.double_clicked() || map.triple_clicked() {
+            tool.finish(canvas, queue);
+        } else if map.clicked()
             && let Some(at) = map.interact_pointer_pos()
         {
             tool.press(Pointer { at, grip: None }, canvas, queue);

@@ -1,14 +1,58 @@
-//! What the tools that draw legs share: where a new leg goes, and what it is called.
+//! What the tools that draw legs share: where a new leg goes, and how the path arrives there.
 
-use crate::command::Selection;
-use flight_plan::{EmergencyChoice, FlightPlan, Id, Leg, LegKind, Spot, StageKind};
+use super::Canvas;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::forecast::{Forecast, Passage};
+use crate::map::sketch::{Handle, Handled};
+use crate::panels::Scene;
+use aircraft::Profile;
+use egui::{ComboBox, Response, Role, Ui, WidgetInfo};
+use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape};
+use flight_plan::{
+    Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, Spot, StageKind, TurnDirection, Value,
+};
+use geometry::LatLon;
+use geometry::geodesy::normalise_360;
+use std::sync::Arc;
 
-/// Where a first leg goes: behind the selected one, or to the end of the selected stage or of the mission.
-pub fn spot(plan: &FlightPlan, selected: Option<&Selection>) -> Option<Spot> {
+/// Height of the list of kinds, screen points: all of them are seen.
+const LIST: f32 = 420.0;
+
+/// On which side of the selected leg a new one goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Side {
+    /// After it.
+    #[default]
+    Behind,
+    /// Before it.
+    Before,
+    /// At its end, if it is a loop.
+    Inside,
+}
+
+impl Side {
+    const ALL: [Self; 3] = [Self::Behind, Self::Before, Self::Inside];
+}
+
+/// Where a new leg goes: beside the selected one, or to the end of what is selected, or of the mission.
+pub fn spot(plan: &FlightPlan, selected: Option<&Selection>, side: Side) -> Option<Spot> {
     match selected {
-        Some(Selection::Leg(leg)) if plan.leg(leg).is_some() => return Some(Spot::After(leg.clone())),
-        Some(Selection::Stage(stage)) if plan.stage(stage).is_some_and(|s| has_legs(s.kind)) => {
-            return Some(Spot::EndOf(stage.clone()));
+        Some(Selection::Leg(id)) => {
+            if let Some(leg) = any_leg(plan, id) {
+                return Some(beside(leg, side));
+            }
+        }
+        Some(Selection::Stage(id)) if plan.stage(id).is_some_and(|s| has_legs(s.kind)) => {
+            return Some(Spot::EndOf(id.clone()));
+        }
+        Some(Selection::Procedure(id)) if plan.procedure(id).is_some() => {
+            return Some(Spot::EndOf(id.clone()));
+        }
+        Some(Selection::Emergency(id)) => {
+            let stages = plan.emergency_plan(id).into_iter().flat_map(|e| &e.stages);
+            if let Some(stage) = stages.into_iter().find(|stage| has_legs(stage.kind)) {
+                return Some(Spot::EndOf(stage.id.clone()));
+            }
         }
         _ => {}
     }
@@ -16,6 +60,20 @@ pub fn spot(plan: &FlightPlan, selected: Option<&Selection>) -> Option<Spot> {
     let stage =
         stages.clone().find(|stage| stage.kind == StageKind::Mission).or_else(|| stages.clone().next());
     stage.map(|stage| Spot::EndOf(stage.id.clone()))
+}
+
+fn beside(leg: &Leg, side: Side) -> Spot {
+    match side {
+        Side::Before => Spot::Before(leg.id.clone()),
+        Side::Inside if leg.as_loop().is_some() => Spot::EndOf(leg.id.clone()),
+        Side::Behind | Side::Inside => Spot::After(leg.id.clone()),
+    }
+}
+
+/// A leg, in a procedure too.
+fn any_leg<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a Leg> {
+    let flown = plan.leg(id).map(|context| context.leg);
+    flown.or_else(|| crate::document::procedure_leg(plan, id).map(|(_, leg)| leg))
 }
 
 /// The autopilot performs take-off and landing by itself.
@@ -32,18 +90,166 @@ pub fn words(spot: &Spot) -> String {
     }
 }
 
-/// A leg with nothing but its kind, called `<stem>1`, `<stem>2`, …: the first that nothing is called.
-pub fn make(plan: &FlightPlan, stem: &str, kind: LegKind) -> Leg {
-    let is_free = |id: &Id| plan.leg(id).is_none() && plan.stage(id).is_none() && plan.fix(id).is_none();
-    let id = (1u64..).map(|n| Id::new(&format!("{stem}{n}"))).find(is_free);
-    Leg {
-        id: id.unwrap_or_else(|| Id::new(stem)),
-        name: String::new(),
-        emergency: EmergencyChoice::default(),
-        altitude: None,
-        speed_mps: None,
-        next: None,
-        actions: Vec::new(),
-        kind,
+/// Lets the side be chosen, where there is a choice.
+pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
+    let (plan, selected) = (scene.document.plan(), scene.view.selection.as_ref());
+    let Some(Selection::Leg(id)) = selected else { return };
+    let Some(leg) = any_leg(plan, id) else { return };
+    let shown = words(&beside(leg, *side));
+    let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
+        for other in Side::ALL.into_iter().filter(|s| *s != Side::Inside || leg.as_loop().is_some()) {
+            ui.selectable_value(side, other, words(&beside(leg, other)));
+        }
+    });
+    named(&choice.response, format!("Where: {shown}"));
+}
+
+/// Lets a kind of leg be chosen.
+pub fn choose_kind(ui: &mut Ui, choices: impl Iterator<Item = LegChoice>, choice: &mut LegChoice) {
+    let shown = choice.name();
+    let list = ComboBox::from_id_salt("kind").height(LIST).selected_text(shown).show_ui(ui, |ui| {
+        for other in choices {
+            ui.selectable_value(choice, other, other.name()).on_hover_text(other.about());
+        }
+    });
+    named(&list.response, format!("Kind: {shown}"));
+}
+
+/// A name for those who can't see what a list is of.
+fn named(response: &Response, name: String) {
+    response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &name));
+}
+
+/// Puts what was drawn into the plan as a leg, and selects it; says why if that can't be.
+pub fn add(
+    choice: LegChoice,
+    drawn: &Drawn,
+    at: Spot,
+    approach: Option<Approach>,
+    plan: &FlightPlan,
+    queue: &mut Queue,
+) -> Option<Id> {
+    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+    let Some(leg) = create::leg(plan, &profile, choice, drawn, approach, level(plan, &at)) else {
+        queue.view(ViewCommand::Notice(impossible(choice).into()));
+        return None;
+    };
+    let id = leg.id.clone();
+    queue.edit(Edit::InsertLeg { leg: Box::new(leg), at });
+    queue.view(ViewCommand::Select(Some(Selection::Leg(id.clone()))));
+    Some(id)
+}
+
+fn impossible(choice: LegChoice) -> &'static str {
+    match choice {
+        LegChoice::Rf => {
+            "An arc needs a leg before it, and leads to its side: click a place to the left or right of the path's end."
+        }
+        LegChoice::Call => "There is no procedure to call: select a leg and make one of it (right-click).",
+        _ => "Nothing can be made of that: draw it larger.",
     }
+}
+
+/// The altitude in force at a place of the plan.
+fn level<'a>(plan: &'a FlightPlan, at: &Spot) -> Option<&'a Altitude> {
+    let (Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) = at;
+    if let Some(stage) = plan.stage(id) {
+        return stage.altitude.as_ref();
+    }
+    let context = plan.leg(id)?;
+    let around = context.loops.iter().rev().find_map(|l| l.altitude.as_ref());
+    context.leg.altitude.as_ref().or(around).or(context.stage.altitude.as_ref())
+}
+
+/// Where the path is before a new leg, and which way it goes there.
+pub fn approach(canvas: &Canvas<'_>, at: &Spot) -> Option<Approach> {
+    let plan = canvas.scene.document.plan();
+    match at {
+        Spot::After(id) => end_of(canvas, last_flown(plan.leg(id)?.leg)),
+        Spot::Before(id) => {
+            let context = plan.leg(id)?;
+            match context.index.checked_sub(1).and_then(|i| context.siblings.get(i)) {
+                Some(before) => end_of(canvas, last_flown(before)),
+                None => start_of(canvas.scene.forecast(), context.leg.first_flown()),
+            }
+        }
+        Spot::EndOf(id) => {
+            let inside = plan.stage(id).map(|s| s.legs.as_slice());
+            let inside: Option<&[Arc<Leg>]> = inside.or_else(|| plan.leg(id).map(|c| c.leg.body()));
+            let last = inside.and_then(<[_]>::last).or_else(|| before_stage(plan, id))?;
+            end_of(canvas, last_flown(last))
+        }
+    }
+}
+
+/// The last leg before an empty stage.
+fn before_stage<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a Arc<Leg>> {
+    let stages = plan.stages.iter().take_while(|stage| stage.id != *id);
+    stages.filter_map(|stage| stage.legs.last()).last()
+}
+
+/// Where a leg leads, if it leads to a place.
+pub fn place_of(canvas: &Canvas<'_>, leg: &Leg) -> Option<LatLon> {
+    match leg.place()? {
+        Place::Fix(id) => canvas.scene.document.plan().fix(id).map(|fix| fix.position),
+        Place::Position(_) => {
+            let is_its = |h: &&Handle| matches!(&h.what, Handled::Waypoint(id) if *id == leg.id);
+            canvas.sketch.handles.iter().find(is_its).map(|handle| handle.at)
+        }
+    }
+}
+
+/// The end of a leg: by its place and course where it has them, else as it was flown ahead last.
+fn end_of(canvas: &Canvas<'_>, leg: &Leg) -> Option<Approach> {
+    let flown = end_of_flown(canvas.scene.forecast(), leg);
+    let is_track = LegChoice::of(&leg.kind).shape() == Shape::Place && !matches!(leg.kind, LegKind::Call(_));
+    let Some(from) = place_of(canvas, leg).filter(|_| is_track) else { return flown };
+    let constant = |value: &Value<f64>| match value {
+        Value::Constant(x) => Some(*x),
+        Value::Expression(_) => None,
+    };
+    let course_deg = match &leg.kind {
+        LegKind::If(_) => None,
+        LegKind::Tf(_) => start_of_track(canvas, &leg.id).map(|start| start.inverse(from).bearing_end_deg),
+        LegKind::Cf { course_deg, .. } => constant(course_deg),
+        LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => {
+            h.inbound_course_deg.as_ref().and_then(constant)
+        }
+        LegKind::Rf { centre, turn, .. } => {
+            let aside_deg = if *turn == TurnDirection::Right { 90.0 } else { -90.0 };
+            Some(normalise_360(centre.bearing_deg(from) + aside_deg))
+        }
+        _ => flown.and_then(|flown| flown.course_deg),
+    };
+    Some(Approach { from, course_deg })
+}
+
+/// Where a track begins: where the leg before it leads.
+fn start_of_track(canvas: &Canvas<'_>, id: &Id) -> Option<LatLon> {
+    let context = canvas.scene.document.plan().leg(id)?;
+    let before = context.index.checked_sub(1).and_then(|i| context.siblings.get(i))?;
+    place_of(canvas, last_flown(before))
+}
+
+fn last_flown(leg: &Leg) -> &Leg {
+    leg.body().last().map_or(leg, |last| last_flown(last))
+}
+
+fn end_of_flown(forecast: &Forecast, leg: &Leg) -> Option<Approach> {
+    let passage = forecast.passages.iter().rfind(|passage| passage.leg == leg.id)?;
+    towards(forecast, passage.end)
+}
+
+fn start_of(forecast: &Forecast, leg: &Leg) -> Option<Approach> {
+    let Passage { first, .. } = forecast.passages.iter().find(|passage| passage.leg == leg.id)?;
+    towards(forecast, *first)
+}
+
+/// From the point before that index to it.
+fn towards(forecast: &Forecast, end: usize) -> Option<Approach> {
+    let at = |i: usize| forecast.points.get(i).map(|point| point.position);
+    let index = end.min(forecast.points.len().checked_sub(1)?);
+    let from = at(index)?;
+    let before = index.checked_sub(1).and_then(at).filter(|before| before.distance_m(from) > 0.5);
+    Some(Approach { from, course_deg: before.map(|before| before.inverse(from).bearing_end_deg) })
 }

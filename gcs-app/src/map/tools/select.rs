@@ -1,23 +1,59 @@
-//! Select and move: waypoints, fixes, the middle and the rim of circles, corners of polygons. A drag is
-//! one undo step.
+//! Select and move: waypoints, fixes, the middle and the rim of circles, corners of areas, routes and zones. The small marks
+//! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::chart::labels::Labels;
+use crate::chart::zones as chart;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::sketch::{Handle, Handled, Sketch, radius_edit};
 use crate::map::{path, text};
-use crate::panels::Scene;
 use crate::theme::Palette;
+use aircraft::Profile;
 use egui::{Align2, Key, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
-use flight_plan::{Edit, FlightPlan};
+use flight_plan::create::{self, Drawn, LegChoice};
+use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Spot, Value, ZoneShape};
 use geometry::LatLon;
 
 /// Most handles that react at once; more could not be told apart.
 const MOST: usize = 1000;
+/// A line so near to the pointer is meant, screen points.
+const NEAR: f32 = 7.0;
+/// A leg that is shorter on the screen shows no middle to be dragged, screen points.
+const GAP: f64 = 90.0;
 
 /// The tool; the one in use unless another one is chosen.
 #[derive(Debug, Default)]
-pub struct Select;
+pub struct Select {
+    /// The corner that was grabbed last: Delete removes it.
+    corner: Option<Handled>,
+    /// The mark that is being dragged, by its name, and what it has become.
+    inserting: Option<(String, Handled)>,
+}
+
+impl Select {
+    /// A mark between two corners, or in the middle of a leg, becomes what it stands for.
+    fn insert(&mut self, mark: &Handled, at: LatLon, plan: &FlightPlan, queue: &mut Queue) {
+        let (edit, becomes) = match mark {
+            Handled::Ghost { leg, hole, before } => {
+                let edit = Edit::InsertCorner { leg: leg.clone(), hole: *hole, before: *before, at };
+                (edit, Handled::Corner { leg: leg.clone(), hole: *hole, corner: *before })
+            }
+            Handled::Between { leg, .. } => {
+                let place = Drawn::Place(Place::Position(Value::Constant(at)));
+                let new = create::leg(plan, &Profile::default(), LegChoice::Tf, &place, None, None);
+                let Some(new) = new else { return };
+                let becomes = Handled::Waypoint(new.id.clone());
+                (Edit::InsertLeg { leg: Box::new(new), at: Spot::Before(leg.clone()) }, becomes)
+            }
+            _ => return,
+        };
+        queue.document(DocumentCommand::DragEdit(edit));
+        if let Handled::Waypoint(new) = &becomes {
+            queue.view(ViewCommand::Select(Some(Selection::Leg(new.clone()))));
+        }
+        self.inserting = Some((mark.name(), becomes));
+    }
+}
 
 impl Tool for Select {
     fn card(&self) -> &'static Card {
@@ -25,46 +61,95 @@ impl Tool for Select {
     }
 
     fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
-        near(canvas).map(|(key, handle, at)| Grip { key, name: handle.what.name(), at }).collect()
+        // what a mark has become is dragged on under the mark's name
+        let name = |handle: &Handle| match &self.inserting {
+            Some((name, becomes)) if *becomes == handle.what => name.clone(),
+            _ => handle.what.name(),
+        };
+        let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
+        shown.map(|(key, handle, at)| Grip { key, name: name(handle), at }).collect()
+    }
+
+    fn hover(&mut self, _at: Option<Pos2>, canvas: &Canvas<'_>) {
+        let plan = canvas.scene.document.plan();
+        let selected = |what: &Handled| canvas.scene.is_selected(&selection(plan, what));
+        self.corner = self.corner.take().filter(selected);
     }
 
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        let picked = match pointer.grip {
-            Some(key) => canvas.sketch.handles.get(key).map(selection),
+        let plan = canvas.scene.document.plan();
+        let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
+        let picked = match handle {
+            Some(handle) => Some(selection(plan, &handle.what)),
             None => path::leg_near(pointer.at, canvas.view, canvas.scene)
-                .map(|leg| Selection::Leg(canvas.scene.document.written(&leg))),
+                .map(|leg| Selection::Leg(canvas.scene.document.written(&leg)))
+                .or_else(|| outline_near(pointer.at, canvas)),
         };
+        let corner = handle.map(|handle| &handle.what).filter(|what| matches!(what, Handled::Corner { .. }));
+        // hover forgets it until its owner is the selected one
+        self.corner = corner.filter(|what| canvas.scene.is_selected(&selection(plan, what))).cloned();
         queue.view(ViewCommand::Select(picked));
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
         let Some(handle) = canvas.sketch.handles.get(grip) else { return };
-        let plan = canvas.scene.document.plan();
-        if let Some(edit) = edit(plan, canvas.sketch, &handle.what, canvas.view.geo(to)) {
+        let (plan, to) = (canvas.scene.document.plan(), canvas.view.geo(to));
+        if is_mark(handle) {
+            return if to.is_valid() {
+                self.insert(&handle.what, to, plan, queue)
+            };
+        }
+        if let Some(edit) = edit(plan, canvas.sketch, &handle.what, to) {
             queue.document(DocumentCommand::DragEdit(edit));
         }
     }
 
     fn release(&mut self, queue: &mut Queue) {
+        self.inserting = None;
         queue.document(DocumentCommand::EndGesture);
     }
 
+    fn wants(&self, key: Key) -> bool {
+        key == Key::Delete && self.corner.is_some()
+    }
+
+    fn key(&mut self, _key: Key, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(corner) = self.corner.take() {
+            remove_corner(canvas.scene.document.plan(), &corner, queue);
+        }
+    }
+
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, touch: Touch, p: &Palette) {
+        let plan = canvas.scene.document.plan();
         let mut labels = Vec::new();
         for (key, handle, at) in near(canvas) {
-            let selected = is_selected(canvas.scene, handle);
+            let selected = canvas.scene.is_selected(&selection(plan, &handle.what));
             let hot = touch.hovered == Some(key) || touch.dragged == Some(key);
-            draw(painter, at, handle, selected, hot, p);
+            let chosen = self.corner.as_ref() == Some(&handle.what);
+            draw(painter, at, handle, selected, hot || chosen, p);
             labels.extend(label(handle, at, selected || touch.hovered == Some(key)));
         }
         draw_labels(painter, labels, p);
     }
 }
 
+/// Not there yet: it is when it is dragged.
+fn is_mark(handle: &Handle) -> bool {
+    matches!(handle.what, Handled::Ghost { .. } | Handled::Between { .. })
+}
+
 /// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
 fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
-    let Canvas { view, sketch, scene } = *canvas;
-    let of_outline = |h: &Handle| matches!(h.what, Handled::Radius(_) | Handled::Corner { .. });
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let plan = scene.document.plan();
+    let is_shown = move |handle: &Handle| match &handle.what {
+        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
+            scene.is_selected(&selection(plan, &handle.what))
+        }
+        Handled::Centre(id) => plan.zone(id).is_none() || scene.is_selected(&Selection::Zone(id.clone())),
+        Handled::Between { gap_m, .. } => f64::from(*gap_m) * view.points_per_metre() > GAP,
+        Handled::Fix(_) | Handled::Waypoint(_) => true,
+    };
     sketch
         .handles
         .iter()
@@ -72,21 +157,93 @@ fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos
         .map(move |(key, handle)| (key, handle, view.place(handle.at)))
         .filter(move |(_, _, at)| view.rect.contains(*at))
         .take(MOST)
-        .filter(move |(_, handle, _)| !of_outline(handle) || is_selected(scene, handle))
+        .filter(move |(_, handle, _)| is_shown(handle))
 }
 
-fn selection(handle: &Handle) -> Selection {
-    match &handle.what {
+/// What is selected with a handle.
+pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
+    match what {
         Handled::Fix(id) => Selection::Fix(id.clone()),
-        Handled::Waypoint(leg)
-        | Handled::Centre(leg)
-        | Handled::Radius(leg)
-        | Handled::Corner { leg, .. } => Selection::Leg(leg.clone()),
+        Handled::Waypoint(id)
+        | Handled::Centre(id)
+        | Handled::Radius(id)
+        | Handled::Corner { leg: id, .. }
+        | Handled::Ghost { leg: id, .. }
+        | Handled::Between { leg: id, .. } => match plan.zone(id) {
+            Some(_) => Selection::Zone(id.clone()),
+            None => Selection::Leg(id.clone()),
+        },
     }
 }
 
-fn is_selected(scene: &Scene<'_>, handle: &Handle) -> bool {
-    scene.is_selected(&selection(handle))
+/// Removes a corner, unless too few would be left.
+pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {
+    let Handled::Corner { leg, hole, corner } = corner else { return };
+    let (have, least, what) = points_of(plan, leg, *hole);
+    if have <= least {
+        let why = format!("{what} has at least {least} points: delete the whole of it instead.");
+        return queue.view(ViewCommand::Notice(why));
+    }
+    queue.edit(Edit::RemoveCorner { leg: leg.clone(), hole: *hole, corner: *corner });
+}
+
+/// How many points a ring or route has, how many it must have, and what it is.
+fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, &'static str) {
+    if let Some(ZoneShape::Polygon(corners)) = plan.zone(of).map(|zone| &zone.shape) {
+        return (corners.len(), 3, "A zone");
+    }
+    match plan.leg(of).map(|context| &context.leg.kind) {
+        Some(LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. })) => {
+            (route.len(), 2, "A line")
+        }
+        Some(
+            LegKind::Scan(Scan { area: Area::Polygon { corners, holes }, .. })
+            | LegKind::Pattern(Pattern::Contour { area: Area::Polygon { corners, holes }, .. }),
+        ) => {
+            let ring = hole.map_or(Some(corners), |hole| holes.get(hole));
+            (ring.map_or(0, Vec::len), 3, "An area")
+        }
+        // of a variable: the edit counts them
+        _ => (usize::MAX, 3, "An area"),
+    }
+}
+
+/// The area, circle, runway or zone whose line is under the pointer.
+pub fn outline_near(at: Pos2, canvas: &Canvas<'_>) -> Option<Selection> {
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let on_line = |line: &[LatLon], closed: bool| {
+        let points: Vec<Pos2> = line.iter().map(|p| view.place(*p)).collect();
+        let back = points.first().copied().filter(|_| closed);
+        points.windows(2).any(|ends| is_near(at, ends[0], ends[1]))
+            || back.zip(points.last()).is_some_and(|(first, last)| is_near(at, *last, first))
+    };
+    let plan = scene.document.plan();
+    let runway = plan.runways.iter().find(|runway| {
+        let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
+        on_line(&[runway.threshold, end], false)
+    });
+    if let Some(runway) = runway {
+        return Some(Selection::Runway(runway.id.clone()));
+    }
+    let polygon = sketch.polygons.iter().find(|(_, rings)| rings.iter().any(|ring| on_line(ring, true)));
+    let on_circle = |centre: LatLon, radius_m: f64| {
+        (view.place(centre).distance(at) - (radius_m * view.points_per_metre()) as f32).abs() < NEAR
+    };
+    let circle = sketch.circles.iter().find(|circle| on_circle(circle.centre, circle.radius_m));
+    let leg = polygon.map(|(leg, _)| leg).or(circle.map(|circle| &circle.leg));
+    if let Some(leg) = leg {
+        return Some(Selection::Leg(leg.clone()));
+    }
+    let zone = plan.zones.iter().find(|zone| on_line(&chart::outline(zone), true));
+    let emergency = || sketch.emergencies.iter().find(|(_, line)| on_line(line, false));
+    zone.map(|zone| Selection::Zone(zone.id.clone()))
+        .or_else(|| emergency().map(|(id, _)| Selection::Emergency(id.clone())))
+}
+
+fn is_near(at: Pos2, from: Pos2, to: Pos2) -> bool {
+    let (way, off) = (to - from, at - from);
+    let share = (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0);
+    (from + way * share).distance(at) < NEAR
 }
 
 /// The edit that moves what a handle stands for.
@@ -98,12 +255,13 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         Handled::Fix(fix) => Some(Edit::MoveFix { fix: fix.clone(), to }),
         Handled::Waypoint(leg) | Handled::Centre(leg) => Some(Edit::MoveWaypoint { leg: leg.clone(), to }),
         Handled::Radius(leg) => {
-            let centre = sketch.circles.iter().find(|c| c.leg == *leg)?.centre;
+            let centre = sketch.centre_of(leg, plan)?;
             radius_edit(plan, leg, centre.distance_m(to))
         }
         Handled::Corner { leg, hole, corner } => {
             Some(Edit::MoveCorner { leg: leg.clone(), hole: *hole, corner: *corner, to })
         }
+        Handled::Ghost { .. } | Handled::Between { .. } => None,
     }
 }
 
@@ -125,6 +283,14 @@ fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: bool,
             painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
             painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
         }
+        Handled::Ghost { .. } | Handled::Between { .. } => {
+            let size = if hot { 6.0 } else { 3.5 };
+            painter.circle(at, size, p.halo.gamma_multiply(0.8), Stroke::new(1.4, p.accent));
+            if hot {
+                painter.line_segment([at - vec2(3.5, 0.0), at + vec2(3.5, 0.0)], stroke);
+                painter.line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], stroke);
+            }
+        }
         Handled::Radius(_) | Handled::Corner { .. } => {
             let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
             painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
@@ -145,7 +311,9 @@ fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
     let (id, offset, anchor) = match &handle.what {
         Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
         Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
-        Handled::Radius(_) | Handled::Corner { .. } => return None,
+        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } | Handled::Between { .. } => {
+            return None;
+        }
     };
     Some(Label { at: at + offset, anchor, text: id.to_string(), first })
 }

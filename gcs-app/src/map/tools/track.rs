@@ -1,28 +1,55 @@
 //! Track: legs from place to place, one for each click.
 
-use super::new_leg::{self, spot, words};
-use super::{Canvas, Card, Pointer, Tool, Touch};
+use super::new_leg::{self, Side, choose_kind, choose_side, spot, words};
+use super::pen::{Mark, way};
+use super::{Canvas, Card, Pointer, Tool, Touch, snap};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::map::polyline::{self, Style};
-use crate::map::sketch::Handled;
 use crate::map::text;
 use crate::map::view::Mercator;
 use crate::panels::Scene;
 use crate::theme::Palette;
-use crate::units;
-use egui::{Align2, CursorIcon, Key, Painter, Pos2, Stroke, vec2};
-use flight_plan::{Edit, Id, LegKind, Place, PlanWaypoint, Spot, Value};
+use egui::{Align2, CursorIcon, Key, Painter, Pos2, Stroke, Ui, vec2};
+use flight_plan::create::{Approach, Drawn, LegChoice, Shape, arc_centre};
+use flight_plan::{Edit, Id, Place, Spot, TurnDirection};
 use geometry::LatLon;
 
-/// A click so near to a fix means the fix, screen points.
-const SNAP: f32 = 12.0;
+/// Pieces of an arc on the screen.
+const PIECES: u32 = 24;
 
-/// The tool: each click adds a TF leg behind the one before, the first behind what is selected.
-#[derive(Debug, Default)]
+/// The tool: each click adds a leg behind the one before, the first beside what is selected.
+#[derive(Debug)]
 pub struct Track {
-    /// The legs that were drawn, and where they lead.
-    drawn: Vec<(Id, LatLon)>,
-    pointer: Option<LatLon>,
+    choice: LegChoice,
+    side: Side,
+    /// The legs that were drawn.
+    drawn: Vec<Id>,
+    pointer: Option<Mark>,
+    /// How the path arrives where the next leg begins.
+    approach: Option<Approach>,
+    /// Where the path goes on behind it.
+    onward: Option<LatLon>,
+}
+
+impl Default for Track {
+    fn default() -> Self {
+        Self {
+            choice: LegChoice::Tf,
+            side: Side::default(),
+            drawn: Vec::new(),
+            pointer: None,
+            approach: None,
+            onward: None,
+        }
+    }
+}
+
+impl Track {
+    /// Where the next leg goes.
+    fn next_spot(&self, scene: &Scene<'_>) -> Option<Spot> {
+        let behind = self.drawn.last().map(|id| Spot::After(id.clone()));
+        behind.or_else(|| spot(scene.document.plan(), scene.view.selection.as_ref(), self.side))
+    }
 }
 
 impl Tool for Track {
@@ -31,57 +58,70 @@ impl Tool for Track {
     }
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
-        let plan = scene.document.plan();
-        Some(match (self.drawn.last(), spot(plan, scene.view.selection.as_ref())) {
-            (None, None) => "Draw legs: make a new mission first, it has a stage to draw into.".into(),
-            (None, Some(spot)) => format!("Draw legs {}: click where to fly. Esc ends it.", words(&spot)),
-            (Some((_, last)), _) => match self.pointer {
-                Some(to) => format!("Next leg: {}. Backspace takes the last back.", result(*last, to, scene)),
-                None => "Draw legs: Backspace takes the last back, Enter ends it.".into(),
+        Some(match (self.drawn.is_empty(), self.next_spot(scene)) {
+            (_, None) => "Draw legs: make a new mission first, it has a stage to draw into.".into(),
+            (true, Some(spot)) => format!("Draw legs {}: click where to fly. Esc ends it.", words(&spot)),
+            (false, _) => match (&self.pointer, self.approach) {
+                (Some(to), Some(at)) => {
+                    let result = way(at.from, to.at, scene.units());
+                    format!("Next leg: {result}. Backspace takes the last back.")
+                }
+                _ => "Draw legs: Backspace takes the last back, Enter ends it.".into(),
             },
         })
     }
 
-    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
-        self.pointer = at.map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
-        // what was undone or removed meanwhile is not gone on from
-        let plan = canvas.scene.document.plan();
-        while self.drawn.last().is_some_and(|(id, _)| plan.leg(id).is_none()) {
-            self.drawn.pop();
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+        choose_kind(ui, LegChoice::drawn_as(Shape::Place), &mut self.choice);
+        if self.drawn.is_empty() {
+            choose_side(ui, scene, &mut self.side);
         }
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pointer = at.map(|at| snap(at, canvas)).filter(|mark| mark.at.is_valid());
+        // what was undone or removed meanwhile is not gone on from
         let plan = canvas.scene.document.plan();
-        let (place, to) = place_at(pointer.at, canvas);
-        let selected = canvas.scene.view.selection.as_ref();
-        let behind = self.drawn.last().map(|(id, _)| Spot::After(id.clone()));
-        let Some(at) = behind.or_else(|| spot(plan, selected)).filter(|_| to.is_valid()) else { return };
-        let waypoint = PlanWaypoint { place, fly_over: false };
-        let leg = new_leg::make(plan, "leg", LegKind::Tf(waypoint));
-        self.drawn.push((leg.id.clone(), to));
-        let drawn = Selection::Leg(leg.id.clone());
-        queue.edit(Edit::InsertLeg { leg: Box::new(leg), at });
-        queue.view(ViewCommand::Select(Some(drawn)));
+        while self.drawn.last().is_some_and(|id| plan.leg(id).is_none()) {
+            self.drawn.pop();
+        }
+        let spot = self.next_spot(canvas.scene);
+        self.approach = spot.as_ref().and_then(|spot| new_leg::approach(canvas, spot));
+        self.onward = spot.and_then(|spot| onward(canvas, &spot));
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let mark = snap(pointer.at, canvas);
+        let Some(at) = self.next_spot(canvas.scene).filter(|_| mark.at.is_valid()) else { return };
+        let (approach, plan) = (new_leg::approach(canvas, &at), canvas.scene.document.plan());
+        let drawn = Drawn::Place(mark.place);
+        if let Some(id) = new_leg::add(self.choice, &drawn, at, approach, plan, queue) {
+            self.drawn.push(id);
+        }
+    }
+
+    fn finish(&mut self, _canvas: &Canvas<'_>, _queue: &mut Queue) {
+        self.drawn.clear();
     }
 
     fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
-    fn key(&mut self, key: Key, queue: &mut Queue) -> bool {
-        let Some((id, _)) = self.drawn.last().cloned() else { return false };
-        if key == Key::Backspace {
-            self.drawn.pop();
-            queue.edit(Edit::DeleteLeg { leg: id });
-            let before = self.drawn.last().map(|(id, _)| Selection::Leg(id.clone()));
-            queue.view(ViewCommand::Select(before));
-        } else {
-            self.leave();
+    fn wants(&self, key: Key) -> bool {
+        !self.drawn.is_empty() && matches!(key, Key::Escape | Key::Enter | Key::Backspace)
+    }
+
+    fn key(&mut self, key: Key, _canvas: &Canvas<'_>, queue: &mut Queue) {
+        if key != Key::Backspace {
+            return self.drawn.clear();
         }
-        true
+        let Some(id) = self.drawn.pop() else { return };
+        queue.edit(Edit::DeleteLeg { leg: id });
+        let before = self.drawn.last().map(|id| Selection::Leg(id.clone()));
+        queue.view(ViewCommand::Select(before));
     }
 
     fn leave(&mut self) {
-        self.drawn.clear();
+        *self = Self { choice: self.choice, ..Self::default() };
     }
 
     fn cursor(&self) -> CursorIcon {
@@ -89,34 +129,53 @@ impl Tool for Track {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
-        let (Some((_, from)), Some(to)) = (self.drawn.last(), self.pointer) else { return };
-        let line = [Mercator::from(*from), Mercator::from(to)];
-        let parts = polyline::visible_parts(&line, canvas.view);
-        polyline::draw(painter, &parts, Stroke::new(2.0, p.accent), Style::Dashed, p.halo);
-        let at = canvas.view.place(to) + vec2(10.0, -10.0);
-        let result = result(*from, to, canvas.scene);
-        text::haloed(painter, at, Align2::LEFT_BOTTOM, &result, 13.0, p.text, p);
-    }
-}
-
-/// `1.2 km · 045°`: the length and the track at its beginning.
-fn result(from: LatLon, to: LatLon, scene: &Scene<'_>) -> String {
-    let way = from.inverse(to);
-    let distance = scene.units().distance().show(way.distance_m);
-    format!("{distance} · {}", units::bearing(way.bearing_start_deg))
-}
-
-/// The fix under the pointer, or the place there.
-fn place_at(at: Pos2, canvas: &Canvas<'_>) -> (Place, LatLon) {
-    let fix = canvas.sketch.handles.iter().find_map(|handle| match &handle.what {
-        Handled::Fix(id) if canvas.view.place(handle.at).distance(at) < SNAP => Some((id, handle.at)),
-        _ => None,
-    });
-    match fix {
-        Some((id, at)) => (Place::Fix(id.clone()), at),
-        None => {
-            let at = canvas.view.geo(at);
-            (Place::Position(Value::Constant(at)), at)
+        let Some(to) = &self.pointer else { return };
+        if matches!(to.place, Place::Fix(_)) {
+            painter.circle_stroke(canvas.view.place(to.at), 10.0, Stroke::new(2.0, p.accent));
         }
+        if let Some(onward) = self.onward {
+            let line = [to.at.into(), onward.into()];
+            let parts = polyline::visible_parts(&line, canvas.view);
+            polyline::draw(painter, &parts, Stroke::new(1.2, p.weak), Style::Dotted, p.halo);
+        }
+        let Some(at) = self.approach else { return };
+        let ghost = ghost(self.choice, &at, to.at);
+        let colour = if ghost.is_some() { p.accent } else { p.warning };
+        let line = ghost.unwrap_or_else(|| vec![at.from, to.at]);
+        let line: Vec<Mercator> = line.into_iter().map(Mercator::from).collect();
+        let parts = polyline::visible_parts(&line, canvas.view);
+        polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
+        let beside = canvas.view.place(to.at) + vec2(10.0, -10.0);
+        let result = way(at.from, to.at, canvas.scene.units());
+        text::haloed(painter, beside, Align2::LEFT_BOTTOM, &result, 13.0, p.text, p);
     }
+}
+
+/// The line of a leg of a kind to a place; `None`: it can't lead there.
+fn ghost(choice: LegChoice, at: &Approach, to: LatLon) -> Option<Vec<LatLon>> {
+    if choice != LegChoice::Rf {
+        return Some(vec![at.from, to]);
+    }
+    let (centre, turn) = arc_centre(at, to)?;
+    let (start, end) = (centre.inverse(at.from), centre.bearing_deg(to));
+    let swept = match turn {
+        TurnDirection::Right => (end - start.bearing_start_deg).rem_euclid(360.0),
+        TurnDirection::Left => -(start.bearing_start_deg - end).rem_euclid(360.0),
+    };
+    let on = |i: u32| {
+        let share = f64::from(i) / f64::from(PIECES);
+        centre.destination(start.bearing_start_deg + swept * share, start.distance_m)
+    };
+    Some((0..=PIECES).map(on).collect())
+}
+
+/// The place that the leg behind a new one leads to.
+fn onward(canvas: &Canvas<'_>, spot: &Spot) -> Option<LatLon> {
+    let plan = canvas.scene.document.plan();
+    let next = match spot {
+        Spot::Before(id) => plan.leg(id)?.leg,
+        Spot::After(id) => plan.leg(id)?.successor()?,
+        Spot::EndOf(_) => return None,
+    };
+    new_leg::place_of(canvas, next)
 }

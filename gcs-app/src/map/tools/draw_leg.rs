@@ -1,0 +1,157 @@
+//! Areas, lines and circles that become patterns.
+
+use super::new_leg::{self, Side, choose_kind, choose_side, spot, words};
+use super::pen::{Figure, Mark, Pen};
+use super::{Canvas, Card, Pointer, Tool, Touch};
+use crate::command::Queue;
+use crate::panels::Scene;
+use crate::theme::Palette;
+use egui::{CursorIcon, Key, Painter, Pos2, Ui};
+use flight_plan::create::{Drawn, LegChoice, Shape};
+
+/// What a tool of this sort is.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Form {
+    card: Card,
+    shape: Shape,
+    first: LegChoice,
+    /// How it can be drawn.
+    figures: &'static [(Figure, &'static str)],
+}
+
+/// Areas that are scanned or flown around.
+pub const AREA: Form = Form {
+    card: Card { id: "area", name: "Draw an area to scan", symbol: "⬟", key: Key::A },
+    shape: Shape::Area,
+    first: LegChoice::Scan,
+    figures: &[(Figure::Ring, "outline"), (Figure::Circle, "circle")],
+};
+
+/// Lines with something along them.
+pub const LINE: Form = Form {
+    card: Card { id: "line", name: "Draw a line to follow", symbol: "〰", key: Key::L },
+    shape: Shape::Line,
+    first: LegChoice::Corridor,
+    figures: &[(Figure::Line, "line")],
+};
+
+/// Circles and searches around a point.
+pub const CIRCLE: Form = Form {
+    card: Card { id: "circle", name: "Draw a circle or search", symbol: "◎", key: Key::O },
+    shape: Shape::Circle,
+    first: LegChoice::Orbit,
+    figures: &[(Figure::Circle, "circle")],
+};
+
+/// The tool: when its figure is whole, it becomes a leg.
+#[derive(Debug)]
+pub struct DrawLeg {
+    form: &'static Form,
+    choice: LegChoice,
+    side: Side,
+    pen: Pen,
+}
+
+impl DrawLeg {
+    /// With nothing drawn yet.
+    pub fn new(form: &'static Form) -> Self {
+        let figure = form.figures.first().map_or(Figure::Ring, |(figure, _)| *figure);
+        Self { form, choice: form.first, side: Side::default(), pen: Pen::new(figure) }
+    }
+
+    fn complete(&mut self, marks: Vec<Mark>, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let (plan, selected) = (canvas.scene.document.plan(), canvas.scene.view.selection.as_ref());
+        let Some(at) = spot(plan, selected, self.side) else { return };
+        let approach = new_leg::approach(canvas, &at);
+        new_leg::add(self.choice, &drawn(self.pen.figure(), marks), at, approach, plan, queue);
+    }
+}
+
+/// What a whole figure is.
+fn drawn(figure: Figure, marks: Vec<Mark>) -> Drawn {
+    match (figure, marks.as_slice()) {
+        (Figure::Circle, [centre, rim, ..]) => {
+            Drawn::Circle { centre: centre.place.clone(), radius_m: centre.at.distance_m(rim.at) }
+        }
+        (Figure::Ring, _) => Drawn::Area(marks.into_iter().map(|mark| mark.at).collect()),
+        _ => Drawn::Line(marks.into_iter().map(|mark| mark.place).collect()),
+    }
+}
+
+impl Tool for DrawLeg {
+    fn card(&self) -> &'static Card {
+        &self.form.card
+    }
+
+    fn status(&self, scene: &Scene<'_>) -> Option<String> {
+        let at = spot(scene.document.plan(), scene.view.selection.as_ref(), self.side);
+        Some(match (self.pen.len(), at) {
+            (_, None) => {
+                format!("{}: make a new mission first, it has a stage to draw into.", self.choice.name())
+            }
+            (0, Some(at)) => {
+                format!("{} {}: {}. Esc ends it.", self.choice.name(), words(&at), self.pen.hint())
+            }
+            _ => format!("{}: {}.", self.choice.name(), self.pen.hint()),
+        })
+    }
+
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+        if self.pen.len() > 0 {
+            return;
+        }
+        choose_kind(ui, LegChoice::drawn_as(self.form.shape), &mut self.choice);
+        if self.form.figures.len() > 1 {
+            for (figure, name) in self.form.figures {
+                if ui.selectable_label(self.pen.figure() == *figure, *name).clicked() {
+                    self.pen.set_figure(*figure);
+                }
+            }
+        }
+        choose_side(ui, scene, &mut self.side);
+    }
+
+    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pen.hover(at, canvas);
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let (plan, selected) = (canvas.scene.document.plan(), canvas.scene.view.selection.as_ref());
+        if spot(plan, selected, self.side).is_none() {
+            return;
+        }
+        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+            self.complete(marks, canvas, queue);
+        }
+    }
+
+    fn finish(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.finish() {
+            self.complete(marks, canvas, queue);
+        }
+    }
+
+    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
+    fn wants(&self, key: Key) -> bool {
+        self.pen.wants(key)
+    }
+
+    fn key(&mut self, key: Key, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.key(key) {
+            self.complete(marks, canvas, queue);
+        }
+    }
+
+    fn leave(&mut self) {
+        self.pen.clear();
+    }
+
+    fn cursor(&self) -> CursorIcon {
+        CursorIcon::Crosshair
+    }
+
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        self.pen.paint(painter, canvas, p);
+    }
+}

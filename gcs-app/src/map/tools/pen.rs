@@ -1,0 +1,240 @@
+//! What all drawing has in common: places are clicked one after the other until the figure is whole.
+
+use super::{Canvas, snap};
+use crate::map::polyline::{self, Style};
+use crate::map::text;
+use crate::map::view::Mercator;
+use crate::theme::Palette;
+use crate::units::{self, Units};
+use egui::{Align2, Key, Painter, Pos2, Stroke, vec2};
+use flight_plan::Place;
+use geometry::LatLon;
+
+/// A click so near to the first corner closes an outline, screen points.
+const NEAR: f32 = 12.0;
+/// An outline can't do that.
+const CROSSES: &str = "crosses itself";
+/// Points of a circle on the screen.
+const ROUND: usize = 72;
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Figure {
+    /// From one place to another.
+    Segment,
+    /// A middle and a place on the rim.
+    Circle,
+    /// Two places or more.
+    Line,
+    /// Three corners or more, closed.
+    Ring,
+}
+
+/// A place that was clicked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// As a leg names it: a fix, where one was under the pointer.
+    pub place: Place,
+    /// Where it is.
+    pub at: LatLon,
+}
+
+/// A figure on its way.
+#[derive(Debug)]
+pub struct Pen {
+    figure: Figure,
+    marks: Vec<Mark>,
+    pointer: Option<Mark>,
+    /// What is wrong with it as it is.
+    fault: Option<&'static str>,
+}
+
+impl Pen {
+    /// With nothing drawn yet.
+    pub fn new(figure: Figure) -> Self {
+        Self { figure, marks: Vec::new(), pointer: None, fault: None }
+    }
+
+    /// What it draws.
+    pub fn figure(&self) -> Figure {
+        self.figure
+    }
+
+    /// Draws another figure from now on.
+    pub fn set_figure(&mut self, figure: Figure) {
+        if figure != self.figure {
+            *self = Self::new(figure);
+        }
+    }
+
+    /// How many places were clicked.
+    pub fn len(&self) -> usize {
+        self.marks.len()
+    }
+
+    /// Follows the pointer.
+    pub fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pointer = at.map(|at| snap(at, canvas)).filter(|mark| mark.at.is_valid());
+        let ring: Vec<Pos2> = self.places().map(|at| canvas.view.place(at)).collect();
+        self.fault = (self.figure == Figure::Ring && crosses_itself(&ring)).then_some(CROSSES);
+    }
+
+    /// Takes a click; gives the figure when it is whole.
+    pub fn press(&mut self, at: Pos2, canvas: &Canvas<'_>) -> Option<Vec<Mark>> {
+        let mark = snap(at, canvas);
+        if !mark.at.is_valid() {
+            return None;
+        }
+        let first = self.marks.first().map(|first| canvas.view.place(first.at));
+        if self.figure == Figure::Ring && first.is_some_and(|f| self.len() >= 3 && f.distance(at) < NEAR) {
+            return self.finish();
+        }
+        self.marks.push(mark);
+        let is_whole = matches!(self.figure, Figure::Segment | Figure::Circle) && self.len() == 2;
+        if is_whole { self.finish() } else { None }
+    }
+
+    /// The figure, if it has enough places.
+    pub fn finish(&mut self) -> Option<Vec<Mark>> {
+        (self.len() >= self.least()).then(|| std::mem::take(&mut self.marks))
+    }
+
+    fn least(&self) -> usize {
+        if self.figure == Figure::Ring { 3 } else { 2 }
+    }
+
+    /// Does this key mean something to it now?
+    pub fn wants(&self, key: Key) -> bool {
+        !self.marks.is_empty() && matches!(key, Key::Escape | Key::Enter | Key::Backspace)
+    }
+
+    /// Enter ends the figure, Backspace takes the last place back, Escape all of them.
+    pub fn key(&mut self, key: Key) -> Option<Vec<Mark>> {
+        match key {
+            Key::Enter => return self.finish(),
+            Key::Backspace => drop(self.marks.pop()),
+            _ => self.marks.clear(),
+        }
+        None
+    }
+
+    /// Forgets what was drawn.
+    pub fn clear(&mut self) {
+        self.marks.clear();
+    }
+
+    /// What to do next.
+    pub fn hint(&self) -> &'static str {
+        if self.fault.is_some() {
+            return "the outline crosses itself; Backspace takes the last corner back";
+        }
+        match (self.figure, self.len()) {
+            (Figure::Segment, 0) => "click where it begins",
+            (Figure::Segment, _) => "click where it ends",
+            (Figure::Circle, 0) => "click the middle",
+            (Figure::Circle, _) => "click the rim",
+            (Figure::Line, 0) => "click the points of the line",
+            (Figure::Ring, 0) => "click the corners",
+            (Figure::Line, 1) | (Figure::Ring, 1 | 2) => {
+                "click the next point; Backspace takes the last back"
+            }
+            (Figure::Line, _) => "Enter or a double click ends the line",
+            (Figure::Ring, _) => "Enter, a double click or the first corner closes it",
+        }
+    }
+
+    /// What was clicked, and where the pointer is.
+    fn places(&self) -> impl Iterator<Item = LatLon> {
+        self.marks.iter().chain(&self.pointer).map(|mark| mark.at)
+    }
+
+    /// Draws what there is, red if it can't be.
+    pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+        let Some(first) = self.marks.first() else {
+            return self.paint_snap(painter, canvas, p);
+        };
+        let colour = if self.fault.is_some() { p.warning } else { p.accent };
+        let parts = polyline::visible_parts(&self.outline(first.at), canvas.view);
+        polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
+        for mark in &self.marks {
+            painter.circle(canvas.view.place(mark.at), 4.5, p.halo, Stroke::new(2.0, colour));
+        }
+        self.paint_snap(painter, canvas, p);
+        let (Some(last), Some(pointer)) = (self.marks.last(), &self.pointer) else { return };
+        let mut words = self.size(last.at, pointer.at, canvas.scene.units());
+        if let Some(fault) = self.fault {
+            words = format!("{words} · {fault}");
+        }
+        let at = canvas.view.place(pointer.at) + vec2(10.0, -10.0);
+        text::haloed(painter, at, Align2::LEFT_BOTTOM, &words, 13.0, p.text, p);
+    }
+
+    /// A ring around the fix that a click would take.
+    fn paint_snap(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+        if let Some(Mark { place: Place::Fix(_), at }) = &self.pointer {
+            painter.circle_stroke(canvas.view.place(*at), 10.0, Stroke::new(2.0, p.accent));
+        }
+    }
+
+    fn outline(&self, first: LatLon) -> Vec<Mercator> {
+        match (self.figure, self.places().nth(1)) {
+            (Figure::Circle, Some(rim)) => {
+                let radius_m = first.distance_m(rim);
+                let step_deg = 360.0 / ROUND as f64;
+                (0..=ROUND).map(|i| first.destination(step_deg * i as f64, radius_m).into()).collect()
+            }
+            (Figure::Ring, _) => self.places().chain([first]).map(Mercator::from).collect(),
+            _ => self.places().map(Mercator::from).collect(),
+        }
+    }
+
+    fn size(&self, from: LatLon, to: LatLon, units: Units) -> String {
+        match self.figure {
+            Figure::Circle => format!("radius {}", length(from.distance_m(to), units)),
+            _ => way(from, to, units),
+        }
+    }
+}
+
+/// `850 m`, `3.2 km`.
+pub fn length(metres: f64, units: Units) -> String {
+    let far = units.distance();
+    if metres >= far.to_si(1.0) { far.show(metres) } else { units.length().show(metres) }
+}
+
+/// `1.2 km · 045°`: the length, and the track at its beginning.
+pub fn way(from: LatLon, to: LatLon, units: Units) -> String {
+    let way = from.inverse(to);
+    format!("{} · {}", length(way.distance_m, units), units::bearing(way.bearing_start_deg))
+}
+
+/// Do two edges of a ring that are no neighbours cross?
+fn crosses_itself(ring: &[Pos2]) -> bool {
+    let edges: Vec<(Pos2, Pos2)> =
+        ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)).take(ring.len()).collect();
+    let are_neighbours = |i: usize, j: usize| j == i + 1 || (i == 0 && j + 1 == edges.len());
+    edges.iter().enumerate().any(|(i, a)| {
+        edges.iter().enumerate().skip(i + 1).any(|(j, b)| !are_neighbours(i, j) && cross(*a, *b))
+    })
+}
+
+fn cross((a, b): (Pos2, Pos2), (c, d): (Pos2, Pos2)) -> bool {
+    let side = |p: Pos2, q: Pos2, r: Pos2| (q - p).rot90().dot(r - p);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn rings_that_cross_themselves_are_recognised() {
+        let square = [pos2(0.0, 0.0), pos2(9.0, 0.0), pos2(9.0, 9.0), pos2(0.0, 9.0)];
+        let bow = [square[0], square[2], square[1], square[3]];
+        let dart = [pos2(0.0, 0.0), pos2(9.0, 0.0), pos2(3.0, 3.0), pos2(0.0, 9.0)];
+        for (ring, expected) in [(&square[..], false), (&bow, true), (&dart, false), (&square[..3], false)] {
+            assert_eq!(crosses_itself(ring), expected, "{ring:?}");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Fixes, runways and zones.
+
+use super::pen::{Figure, Mark, Pen};
+use super::{Canvas, Card, Pointer, Tool, Touch};
+use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::panels::Scene;
+use crate::theme::Palette;
+use egui::{CursorIcon, Key, Painter, Pos2, Ui};
+use flight_plan::{Edit, Thing, ZoneKind, ZoneShape, create};
+
+/// Each click makes a fix.
+#[derive(Debug, Default)]
+pub struct PlaceFix;
+
+impl Tool for PlaceFix {
+    fn card(&self) -> &'static Card {
+        &Card { id: "fix", name: "Place a fix", symbol: "△", key: Key::X }
+    }
+
+    fn status(&self, _scene: &Scene<'_>) -> Option<String> {
+        Some("Fix: click where it is; legs that are drawn near it go there. Esc ends it.".into())
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let at = canvas.view.geo(pointer.at);
+        if !at.is_valid() {
+            return;
+        }
+        let fix = create::fix(canvas.scene.document.plan(), at);
+        let id = fix.id.clone();
+        queue.edit(Edit::Add(Box::new(Thing::Fix(fix))));
+        queue.view(ViewCommand::Select(Some(Selection::Fix(id))));
+    }
+
+    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
+    fn cursor(&self) -> CursorIcon {
+        CursorIcon::Crosshair
+    }
+
+    fn paint(&self, _painter: &Painter, _canvas: &Canvas<'_>, _touch: Touch, _p: &Palette) {}
+}
+
+/// Two clicks along a runway.
+#[derive(Debug)]
+pub struct DrawRunway {
+    pen: Pen,
+    /// It is used in both directions.
+    both: bool,
+}
+
+impl Default for DrawRunway {
+    fn default() -> Self {
+        Self { pen: Pen::new(Figure::Segment), both: true }
+    }
+}
+
+impl DrawRunway {
+    fn complete(&self, marks: &[Mark], queue: &mut Queue) {
+        if let [threshold, end, ..] = marks {
+            let (threshold, end, both) = (threshold.at, end.at, self.both);
+            queue.document(DocumentCommand::AddRunway { threshold, end, both });
+        }
+    }
+}
+
+impl Tool for DrawRunway {
+    fn card(&self) -> &'static Card {
+        &Card { id: "runway", name: "Draw a runway", symbol: "═", key: Key::R }
+    }
+
+    fn status(&self, _scene: &Scene<'_>) -> Option<String> {
+        let next = if self.pen.len() == 0 { "click the landing threshold" } else { "click its other end" };
+        Some(format!("Runway: {next}. Esc ends it."))
+    }
+
+    fn options(&mut self, ui: &mut Ui, _scene: &Scene<'_>) {
+        ui.checkbox(&mut self.both, "Both directions")
+            .on_hover_text("Make two runways of it, one for each landing direction");
+    }
+
+    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pen.hover(at, canvas);
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+            self.complete(&marks, queue);
+        }
+    }
+
+    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
+    fn wants(&self, key: Key) -> bool {
+        self.pen.wants(key)
+    }
+
+    fn key(&mut self, key: Key, _canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.key(key) {
+            self.complete(&marks, queue);
+        }
+    }
+
+    fn leave(&mut self) {
+        self.pen.clear();
+    }
+
+    fn cursor(&self) -> CursorIcon {
+        CursorIcon::Crosshair
+    }
+
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        self.pen.paint(painter, canvas, p);
+    }
+}
+
+/// Where the flight must not be, or must stay.
+#[derive(Debug)]
+pub struct DrawZone {
+    pen: Pen,
+    kind: ZoneKind,
+}
+
+impl Default for DrawZone {
+    fn default() -> Self {
+        Self { pen: Pen::new(Figure::Ring), kind: ZoneKind::KeepOut }
+    }
+}
+
+impl DrawZone {
+    fn complete(&self, marks: &[Mark], canvas: &Canvas<'_>, queue: &mut Queue) {
+        let shape = match (self.pen.figure(), marks) {
+            (Figure::Circle, [centre, rim, ..]) => {
+                ZoneShape::Circle { centre: centre.at, radius_m: centre.at.distance_m(rim.at).round() }
+            }
+            _ => ZoneShape::Polygon(marks.iter().map(|mark| mark.at).collect()),
+        };
+        let zone = create::zone(canvas.scene.document.plan(), self.kind, shape);
+        let id = zone.id.clone();
+        queue.edit(Edit::Add(Box::new(Thing::Zone(zone))));
+        queue.view(ViewCommand::Select(Some(Selection::Zone(id))));
+    }
+}
+
+/// What a kind of zone is called.
+fn zone_name(kind: ZoneKind) -> &'static str {
+    match kind {
+        ZoneKind::KeepOut => "Keep-out zone",
+        ZoneKind::KeepIn => "Keep-in zone",
+    }
+}
+
+impl Tool for DrawZone {
+    fn card(&self) -> &'static Card {
+        &Card { id: "zone", name: "Draw a zone", symbol: "⛔", key: Key::Z }
+    }
+
+    fn status(&self, _scene: &Scene<'_>) -> Option<String> {
+        Some(format!("{}: {}. Esc ends it.", zone_name(self.kind), self.pen.hint()))
+    }
+
+    fn options(&mut self, ui: &mut Ui, _scene: &Scene<'_>) {
+        if self.pen.len() > 0 {
+            return;
+        }
+        ui.selectable_value(&mut self.kind, ZoneKind::KeepOut, "keep out");
+        ui.selectable_value(&mut self.kind, ZoneKind::KeepIn, "keep in");
+        ui.separator();
+        for (figure, name) in [(Figure::Ring, "outline"), (Figure::Circle, "circle")] {
+            if ui.selectable_label(self.pen.figure() == figure, name).clicked() {
+                self.pen.set_figure(figure);
+            }
+        }
+    }
+
+    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pen.hover(at, canvas);
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+            self.complete(&marks, canvas, queue);
+        }
+    }
+
+    fn finish(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.finish() {
+            self.complete(&marks, canvas, queue);
+        }
+    }
+
+    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
+    fn wants(&self, key: Key) -> bool {
+        self.pen.wants(key)
+    }
+
+    fn key(&mut self, key: Key, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.key(key) {
+            self.complete(&marks, canvas, queue);
+        }
+    }
+
+    fn leave(&mut self) {
+        self.pen.clear();
+    }
+
+    fn cursor(&self) -> CursorIcon {
+        CursorIcon::Crosshair
+    }
+
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        self.pen.paint(painter, canvas, p);
+    }
+}
