@@ -1,5 +1,7 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
+mod menu;
+
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme::{self, Palette};
@@ -344,6 +346,9 @@ fn draw(
             matches!(&row.selection, Some(Selection::Leg(id)) if scene.vehicle.current_leg() == Some(id));
         background(ui, rect, selected, response.hovered(), p);
         contents(ui, rect, row, active, folded, problems, p);
+    }
+    if let Some(selection) = &row.selection {
+        response.context_menu(|ui| menu::show(ui, scene.document.plan(), selection, queue));
     }
     let on_triangle = response.interact_pointer_pos().is_some_and(|at| at.x < indent(rect, row) + 14.0);
     if response.clicked() && row.selection.is_some() && !(row.folds.is_some() && on_triangle) {

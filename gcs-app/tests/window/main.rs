@@ -10,6 +10,7 @@ mod flying;
 mod planning;
 mod store;
 mod tools;
+mod tree;
 mod vehicle;
 
 use egui::{Pos2, Vec2, vec2};

@@ -1,0 +1,67 @@
+//! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
+
+use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use egui::{Button, Ui};
+use flight_plan::{Edit, FlightPlan, Id, LegKind, create};
+
+/// One row of the menu; `edit` is `None` where it cannot be done.
+struct Entry {
+    name: &'static str,
+    keys: &'static str,
+    edit: Option<Edit>,
+    /// What is selected after it.
+    selects: Option<Selection>,
+}
+
+impl Entry {
+    fn new(name: &'static str, keys: &'static str, edit: Option<Edit>) -> Self {
+        Self { name, keys, edit, selects: None }
+    }
+
+    /// An entry that makes something, which is selected then.
+    fn making(name: &'static str, made: Option<(Id, Edit)>, select: fn(Id) -> Selection) -> Self {
+        let (id, edit) = made.unzip();
+        Self { name, keys: "", edit, selects: id.map(select) }
+    }
+}
+
+/// The menu of what a row stands for.
+pub fn show(ui: &mut Ui, plan: &FlightPlan, of: &Selection, queue: &mut Queue) {
+    if let Selection::Runway(runway) = of
+        && ui.button("Emergency plan that lands here").clicked()
+    {
+        queue.document(DocumentCommand::BringHome(runway.clone()));
+    }
+    for entry in entries(plan, of) {
+        let button = Button::new(entry.name).shortcut_text(entry.keys);
+        if ui.add_enabled(entry.edit.is_some(), button).clicked() {
+            entry.edit.into_iter().for_each(|edit| queue.edit(edit));
+            entry.selects.into_iter().for_each(|made| queue.view(ViewCommand::Select(Some(made))));
+        }
+    }
+}
+
+fn entries(plan: &FlightPlan, of: &Selection) -> Vec<Entry> {
+    match of {
+        Selection::Leg(leg) => of_leg(plan, leg),
+        other => vec![Entry::new("Delete", "", Some(create::remove(plan, other.id())))],
+    }
+}
+
+fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
+    let one = std::slice::from_ref(leg);
+    let is_loop = plan.leg(leg).is_some_and(|c| matches!(c.leg.kind, LegKind::Iterative { .. }));
+    let mut entries = vec![
+        Entry::new("Duplicate", "", create::duplicate(plan, leg)),
+        Entry::new("Move up", "Ctrl+Up", create::shift(plan, leg, -1)),
+        Entry::new("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
+        Entry::making("Put into a loop", create::loop_around(plan, one), Selection::Leg),
+        Entry::making("Fork before it", create::fork(plan, leg), Selection::Leg),
+        Entry::making("Make a procedure of it", create::procedure_of(plan, one), Selection::Procedure),
+    ];
+    if is_loop {
+        entries.push(Entry::new("Take its legs out of the loop", "", create::unloop(plan, leg)));
+    }
+    entries.push(Entry::new("Delete", "Del", Some(Edit::DeleteLeg { leg: leg.clone() })));
+    entries
+}
