@@ -31,40 +31,54 @@ impl App {
     }
 
     fn change_document(&mut self, command: DocumentCommand) {
-        let done = match command {
-            DocumentCommand::Edit(edit) => self.document.edit(&edit),
-            DocumentCommand::AddRunway { threshold, end, both } => self.add_runway(threshold, end, both),
-            DocumentCommand::BringHome(runway) => self.bring_home(&runway),
-            DocumentCommand::DragEdit(edit) => self.document.drag_edit(&edit),
-            other => {
-                self.handle_file(other);
-                Ok(())
-            }
-        };
-        if let Err(why) = done {
-            self.view.notice = Some(why);
-        }
-    }
-
-    fn handle_file(&mut self, command: DocumentCommand) {
         match command {
-            DocumentCommand::Replace(with) if self.document.is_dirty() => self.view.unsaved = Some(with),
-            DocumentCommand::Replace(with) | DocumentCommand::Discard(with) => self.replace(with),
+            DocumentCommand::Edit(edit) => {
+                let done = self.document.edit(&edit);
+                self.tell(done);
+            }
+            DocumentCommand::DragEdit(edit) => {
+                let done = self.document.drag_edit(&edit);
+                self.tell(done);
+            }
+            DocumentCommand::AddRunway { threshold, end, both } => {
+                let done = self.add_runway(threshold, end, both);
+                self.tell(done);
+            }
+            DocumentCommand::BringHome(runway) => {
+                let done = self.bring_home(&runway);
+                self.tell(done);
+            }
+            DocumentCommand::Replace(with) => self.ask_or_replace(with),
+            DocumentCommand::Discard(with) => self.replace(with),
             DocumentCommand::Create(outline) => self.create(*outline),
-            DocumentCommand::Save => match self.document.path() {
-                Some(path) => self.save_to(path.to_owned()),
-                None => self.ask_save(),
-            },
+            DocumentCommand::Save => self.save(),
             DocumentCommand::AskSaveAs => self.ask_save(),
             DocumentCommand::SaveTo(path) => self.save_to(path),
             DocumentCommand::EndGesture => self.document.end_gesture(),
             DocumentCommand::Undo => self.document.undo(),
             DocumentCommand::Redo => self.document.redo(),
-            // they are carried out above
-            DocumentCommand::Edit(_)
-            | DocumentCommand::DragEdit(_)
-            | DocumentCommand::AddRunway { .. }
-            | DocumentCommand::BringHome(_) => {}
+        }
+    }
+
+    /// Says why an edit could not be done.
+    fn tell(&mut self, done: Result<(), String>) {
+        if let Err(why) = done {
+            self.view.notice = Some(why);
+        }
+    }
+
+    fn ask_or_replace(&mut self, with: Replacement) {
+        if self.document.is_dirty() {
+            self.view.unsaved = Some(with);
+        } else {
+            self.replace(with);
+        }
+    }
+
+    fn save(&mut self) {
+        match self.document.path() {
+            Some(path) => self.save_to(path.to_owned()),
+            None => self.ask_save(),
         }
     }
 

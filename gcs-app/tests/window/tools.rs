@@ -1,7 +1,7 @@
 //! Map tools, used as a person uses them.
 
 use super::{SQUARE, Window};
-use egui::{Key, Pos2, vec2};
+use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::{Area, LegKind, Place};
 
@@ -12,15 +12,6 @@ fn window() -> Window {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
     window
-}
-
-fn click_at(window: &mut Window, at: Pos2) {
-    window.harness.hover_at(at);
-    window.steps(1);
-    window.harness.drag_at(at);
-    window.steps(1);
-    window.harness.drop_at(at);
-    window.steps(3);
 }
 
 /// What the chip of the tool says.
@@ -36,7 +27,7 @@ fn two_clicks_measure_and_the_ends_can_be_dragged() {
     window.click(MEASURE);
     assert!(window.shows("Measure: click two places"));
     let from = window.centre("Map") + vec2(-60.0, 120.0);
-    click_at(&mut window, from);
+    window.click_at(from);
     window.harness.hover_at(from + vec2(100.0, 0.0));
     window.steps(2);
     assert!(
@@ -44,7 +35,7 @@ fn two_clicks_measure_and_the_ends_can_be_dragged() {
         "the pointer is the other end until there is one: {:?}",
         status(&window)
     );
-    click_at(&mut window, from + vec2(0.0, -150.0));
+    window.click_at(from + vec2(0.0, -150.0));
     let first = status(&window).unwrap();
     assert!(first.contains("000° true"), "{first}");
     let end = window.centre("Measure to here");
@@ -64,7 +55,7 @@ fn corners_make_a_scan_that_can_be_flown() {
     let at = window.centre("Map") + vec2(20.0, 20.0);
     let corners = [vec2(0.0, 0.0), vec2(120.0, 0.0), vec2(200.0, 10.0), vec2(120.0, 100.0), vec2(0.0, 100.0)];
     for (n, corner) in corners.into_iter().enumerate() {
-        click_at(&mut window, at + corner);
+        window.click_at(at + corner);
         if n == 2 {
             // that one was a mistake
             window.harness.key_press(Key::Backspace);
@@ -73,7 +64,7 @@ fn corners_make_a_scan_that_can_be_flown() {
     }
     assert!(!window.is_enabled("Undo"), "nothing is in the plan yet");
     assert!(window.shows("closes it"));
-    click_at(&mut window, at + vec2(3.0, 2.0));
+    window.click_at(at + vec2(3.0, 2.0));
     assert!(window.shows("SCAN scan1"));
     let plan = window.app().document().plan().clone();
     let LegKind::Scan(scan) = &plan.leg(&"scan1".into()).unwrap().leg.kind else { panic!("no scan") };
@@ -92,7 +83,7 @@ fn click_on_a_fix_goes_to_the_fix() {
     window.click("TF side4");
     let fix = window.centre("Fix A");
     window.click("Draw legs (T)");
-    click_at(&mut window, fix + vec2(4.0, -3.0));
+    window.click_at(fix + vec2(4.0, -3.0));
     let plan = window.app().document().plan().clone();
     let LegKind::Tf(to) = &plan.leg(&"leg1".into()).unwrap().leg.kind else { panic!("no track") };
     assert_eq!(to.place, Place::Fix("A".into()));
@@ -110,11 +101,11 @@ fn each_click_adds_a_leg_and_backspace_takes_it_back() {
     window.click("Draw legs (T)");
     assert!(window.shows("Draw legs behind side2"));
     let at = window.centre("Map");
-    click_at(&mut window, at + vec2(40.0, 90.0));
+    window.click_at(at + vec2(40.0, 90.0));
     window.harness.hover_at(at + vec2(40.0, 160.0));
     window.steps(2);
     assert!(window.shows("Next leg: ") && window.shows("180°"));
-    click_at(&mut window, at + vec2(-30.0, 120.0));
+    window.click_at(at + vec2(-30.0, 120.0));
     assert_eq!(ids(&window), ["side1", "side2", "leg1", "leg2", "side3", "side4"]);
     assert!(window.shows("TF leg2"));
     window.harness.key_press(Key::Backspace);
@@ -144,7 +135,7 @@ fn escape_ends_the_measurement_then_the_mode_then_the_selection() {
     window.harness.key_press(Key::M);
     window.steps(2);
     let at = window.centre("Map") + vec2(-60.0, 120.0);
-    click_at(&mut window, at);
+    window.click_at(at);
     assert!(window.app().view().selection.is_some(), "a click of this tool selects nothing");
     let escape = |window: &mut Window| {
         window.harness.key_press(Key::Escape);

@@ -144,6 +144,21 @@ pub struct Variable {
     pub writers: Vec<Id>,
 }
 
+impl Variable {
+    /// Without a unit and without limits; anybody may write it.
+    pub fn new(name: Id, initial: VariableValue) -> Self {
+        Self {
+            name,
+            initial,
+            unit: String::new(),
+            min: None,
+            max: None,
+            max_length: None,
+            writers: Vec::new(),
+        }
+    }
+}
+
 /// Which emergency plan applies, possibly by cause; the entry without a cause is the fallback.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EmergencyChoice {

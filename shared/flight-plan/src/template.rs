@@ -166,21 +166,12 @@ impl Outline {
 
     /// What the mission's legs read.
     fn variables(&self) -> Vec<Variable> {
-        let variable = |name: &str, initial| Variable {
-            name: Id::new(name),
-            initial,
-            unit: String::new(),
-            min: None,
-            max: None,
-            max_length: None,
-            writers: Vec::new(),
-        };
         if self.template != Template::FireWatch {
             return Vec::new();
         }
-        let radius = variable("fire_radius", VariableValue::Number(self.radius_m.round()));
+        let radius = Variable::new("fire_radius".into(), VariableValue::Number(self.radius_m.round()));
         vec![
-            variable("fire_centre", VariableValue::Position(self.centre)),
+            Variable::new("fire_centre".into(), VariableValue::Position(self.centre)),
             Variable {
                 unit: "m".into(),
                 min: Some((self.radius_m / 2.0).max(200.0).round()),

@@ -61,15 +61,7 @@ pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Variable {
         VariableValue::Position(_) => "place",
         VariableValue::Polygon(_) => "area",
     };
-    Variable {
-        name: plan.fresh_id(stem),
-        initial,
-        unit: String::new(),
-        min: None,
-        max: None,
-        max_length: None,
-        writers: Vec::new(),
-    }
+    Variable::new(plan.fresh_id(stem), initial)
 }
 
 /// An empty stage; one to take off or land gets the plan's first runway.

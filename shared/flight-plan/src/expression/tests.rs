@@ -5,15 +5,7 @@ use crate::{FlightPlan, Variable, VariableValue, Variables};
 use proptest::prelude::*;
 
 fn variable(name: &str, initial: VariableValue) -> Variable {
-    Variable {
-        name: name.into(),
-        initial,
-        unit: String::new(),
-        min: None,
-        max: None,
-        max_length: None,
-        writers: Vec::new(),
-    }
+    Variable::new(name.into(), initial)
 }
 
 /// A square of 2 km around a position.
