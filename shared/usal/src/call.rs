@@ -24,6 +24,9 @@ use zenoh::query::{ConsolidationMode, Reply};
 const RETRY: Duration = Duration::from_millis(50);
 /// Share of the deadline that is left for the answer, at most.
 const ANSWER_TIME: Duration = Duration::from_millis(50);
+/// Part of a call's time that its last attempt needs: with less, a busy machine could not hear
+/// that nobody is there, and the caller would have to believe that somebody took the request.
+const LAST_ATTEMPT: u32 = 4;
 /// Our deadline comes first; only then the network gives up.
 const GRACE: Duration = Duration::from_millis(500);
 
@@ -162,12 +165,13 @@ impl Request {
         first: Result<mpsc::Receiver<Reply>, CallError>,
     ) -> Result<A, CallError> {
         let mut attempt = first?;
+        let last_attempt = self.deadline - self.timeout / LAST_ATTEMPT;
         loop {
             match tokio::time::timeout_at(self.deadline, attempt.recv()).await {
                 Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
                 Ok(Some(reply)) => return self.read(&reply),
                 Ok(None) => {
-                    if Instant::now() + RETRY >= self.deadline {
+                    if Instant::now() + RETRY >= last_attempt {
                         return Err(CallError::Unreachable { name: self.name });
                     }
                     tokio::time::sleep(RETRY).await;

@@ -235,7 +235,7 @@ async fn silent_service_the_caller_hears_of_it_at_the_deadline() {
 async fn absent_service_is_said_to_be_unreachable() {
     let net = Net::open().await;
     let client = net.client().await;
-    let mut call = client.call(fp_manager::COMMAND, &Command::Start, Duration::from_secs(1));
+    let mut call = client.call(fp_manager::COMMAND, &Command::Start, Duration::from_secs(4));
     let result = loop {
         match call.try_take() {
             Some(result) => break result,
