@@ -44,6 +44,10 @@ pub enum DocumentCommand {
     },
     /// An emergency plan that brings the aircraft to this runway.
     BringHome(Id),
+    /// Open what a crashed window left behind.
+    Recover,
+    /// Delete it.
+    ForgetLeftBehind,
     /// Save where it came from, asking if it came from nowhere.
     Save,
     /// Ask where to save.

@@ -52,6 +52,14 @@ impl Document {
         Self::new(reading.plan, path, reading.problems)
     }
 
+    /// A plan that was never saved to its file; it differs from that.
+    pub fn recovered(bytes: &[u8], path: Option<PathBuf>) -> Self {
+        let reading = flight_plan::read(bytes);
+        let mut document = Self::new(new_plan(), path, Vec::new());
+        document.replace(reading.plan);
+        document
+    }
+
     /// The plan.
     pub fn plan(&self) -> &Arc<FlightPlan> {
         self.history.plan()

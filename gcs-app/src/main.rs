@@ -77,6 +77,7 @@ fn open(window: Window) -> anyhow::Result<ExitCode> {
     let vehicle = window.vehicle;
     app::run(Options {
         document,
+        recover: window.screenshot.is_none(),
         connect: window.connect.map(|endpoint| (vehicle, endpoint)),
         screenshot: window.screenshot.map(|file| Screenshot::new(file, window.after)),
         follow: window.follow,

@@ -6,17 +6,27 @@ use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
 use crate::map::furniture::NARROW;
 use crate::panels::bar::PanelEntry;
-use crate::panels::{self, Scene, bar, decision, flight, push, start, unsaved};
+use crate::panels::{self, Scene, bar, decision, flight, push, recover, start, unsaved};
+use crate::recovery::Keeper;
 use crate::theme;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
-        let Self { document, vehicles, view, analysis, map, panels, dock, .. } = self;
+        let Self { document, vehicles, view, analysis, map, panels, dock, keeper, .. } = self;
         let vehicle = vehicles.shown();
         let new_runway = map.new_runway();
-        let scene = Scene { document, analysis, vehicle, vehicles, view, now_s: now.window_s, utc: now.utc };
+        let scene = Scene {
+            document,
+            analysis,
+            vehicle,
+            vehicles,
+            view,
+            left_behind: keeper.as_ref().and_then(Keeper::left_behind),
+            now_s: now.window_s,
+            utc: now.utc,
+        };
         let entry = |panel: &dyn panels::Panel| PanelEntry {
             id: panel.id(),
             name: panel.name(),
@@ -44,6 +54,7 @@ impl App {
         });
         push::show(ui, &scene, queue);
         unsaved::show(ui, &scene, queue);
+        recover::show(ui, &scene, queue);
         dropped_files(ui, queue);
     }
 }

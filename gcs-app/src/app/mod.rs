@@ -18,10 +18,12 @@ use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
 use crate::panels::{self, Panel, Scene, ViewState};
+use crate::recovery::Keeper;
 use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
@@ -40,6 +42,8 @@ pub struct App {
     worker: Worker,
     terrain: Arc<dyn Terrain>,
     files: Files,
+    /// `None`: no copy of unsaved changes is kept.
+    keeper: Option<Keeper>,
     /// The vehicle whose plan aboard the document is, and the document's version.
     mirrored: Option<(VehicleName, u64)>,
     /// The window closes, whatever was not saved.
@@ -113,12 +117,34 @@ impl App {
             worker: Worker::spawn(terrain.clone(), wake.clone())?,
             terrain,
             files: Files::new(wake),
+            keeper: None,
             mirrored: None,
             leaving: false,
             screenshot: None,
         };
         app.map.fit();
         Ok(app)
+    }
+
+    /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
+    pub fn keep_copies(&mut self, folder: &Path) {
+        match Keeper::open(folder) {
+            Ok(keeper) => self.keeper = Some(keeper),
+            Err(error) => {
+                self.view.notice = Some(format!(
+                    "No copy of unsaved changes can be kept in {}: {error}. Save the plan often.",
+                    folder.display()
+                ));
+            }
+        }
+    }
+
+    fn tend_copy(&mut self, ctx: &egui::Context) {
+        let Some(keeper) = &mut self.keeper else { return };
+        if let Some(wait) = keeper.tend(&self.document, ctx.input(|i| i.time)) {
+            ctx.request_repaint_after(wait);
+        }
+        self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
     }
 
     /// Paints the ground in the background, and shows it on the map when it is ready.
@@ -158,6 +184,7 @@ impl App {
             vehicle: self.vehicles.shown(),
             vehicles: &self.vehicles,
             view: &self.view,
+            left_behind: self.keeper.as_ref().and_then(Keeper::left_behind),
             now_s: now.window_s,
             utc: now.utc,
         }
@@ -296,6 +323,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.drain(ctx);
+        self.tend_copy(ctx);
         self.ask_before_closing(ctx);
         if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
@@ -321,6 +349,12 @@ impl eframe::App for App {
         self.queue = queue;
         if let Some(screenshot) = &mut self.screenshot {
             screenshot.run(&ctx, now.window_s);
+        }
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        if let Some(keeper) = &mut self.keeper {
+            keeper.close();
         }
     }
 

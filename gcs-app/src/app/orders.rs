@@ -7,6 +7,7 @@ use crate::command::{
 use crate::document::Document;
 use crate::link::Call;
 use crate::panels::bar::PUSH;
+use crate::recovery::{Keeper, LeftBehind};
 use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
@@ -51,6 +52,8 @@ impl App {
             DocumentCommand::Replace(with) => self.ask_or_replace(with),
             DocumentCommand::Discard(with) => self.replace(with),
             DocumentCommand::Create(outline) => self.create(*outline),
+            DocumentCommand::Recover => self.recover(),
+            DocumentCommand::ForgetLeftBehind => drop(self.take_left_behind()),
             DocumentCommand::Save => self.save(),
             DocumentCommand::AskSaveAs => self.ask_save(),
             DocumentCommand::SaveTo(path) => self.save_to(path),
@@ -80,6 +83,17 @@ impl App {
             Some(path) => self.save_to(path.to_owned()),
             None => self.ask_save(),
         }
+    }
+
+    fn recover(&mut self) {
+        let Some(found) = self.take_left_behind() else { return };
+        self.document = Document::recovered(found.text.as_bytes(), found.path);
+        self.view.selection = None;
+        self.map.fit();
+    }
+
+    fn take_left_behind(&mut self) -> Option<LeftBehind> {
+        self.keeper.as_mut().and_then(Keeper::take_left_behind)
     }
 
     fn replace(&mut self, with: Replacement) {

@@ -19,6 +19,8 @@ pub struct Options {
     pub screenshot: Option<Screenshot>,
     /// Keep the aircraft in the middle of the map from the start.
     pub follow: bool,
+    /// Keep a copy of unsaved changes, and offer what a crashed window left behind.
+    pub recover: bool,
     /// Begin with the light theme instead of the system's or the remembered one.
     pub theme: Option<egui::Theme>,
 }
@@ -98,6 +100,11 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     if let Ok(tile) = assets::demo_tile() {
         let (south_west, north_east) = tile.known_box();
         app.show_ground(Ground { terrain, south_west, north_east }, &creation.egui_ctx);
+    }
+    if options.recover
+        && let Some(folder) = eframe::storage_dir("legwork")
+    {
+        app.keep_copies(&folder.join("recovery"));
     }
     app.screenshot = options.screenshot;
     if options.follow {

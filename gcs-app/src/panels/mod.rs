@@ -14,6 +14,7 @@ pub mod pfd;
 pub mod problems;
 pub mod profile;
 pub mod push;
+pub mod recover;
 pub mod services;
 pub mod start;
 pub mod table;
@@ -24,6 +25,7 @@ pub mod unsaved;
 use crate::command::{Queue, Replacement, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
+use crate::recovery::LeftBehind;
 use crate::state::{Aged, Vehicle, Vehicles};
 use crate::theme;
 use crate::units::{self, Units};
@@ -124,6 +126,8 @@ pub struct Scene<'a> {
     pub vehicles: &'a Vehicles,
     /// What the operator looks at.
     pub view: &'a ViewState,
+    /// What a window left behind that crashed, until the operator has decided.
+    pub left_behind: Option<&'a LeftBehind>,
     /// The window's clock, seconds.
     pub now_s: f64,
     /// The time of day.

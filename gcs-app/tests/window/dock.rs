@@ -159,6 +159,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             vehicle: app.vehicle(),
             vehicles: app.vehicles(),
             view: app.view(),
+            left_behind: None,
             now_s: 1.0,
             utc: Default::default(),
         };

@@ -8,6 +8,7 @@ mod drawing;
 mod fleet;
 mod flying;
 mod planning;
+mod recovering;
 mod store;
 mod tools;
 mod tree;

@@ -1,0 +1,291 @@
+//! Work that was not saved survives a crash. While the document has unsaved changes, a copy of it is kept in a folder of
+//! the program's own. It is taken away when the changes are saved or discarded; the next window offers one that is left.
+
+use crate::document::Document;
+use crate::files::write_whole;
+use flight_plan::FlightPlan;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Seconds between two copies, at least.
+const PERIOD_S: f64 = 2.0;
+/// So many windows at a time have a copy.
+const PLACES: usize = 16;
+
+/// A copy of a document as it is kept.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+struct Kept {
+    /// The document's file.
+    path: Option<PathBuf>,
+    /// The plan as it would be saved.
+    text: String,
+}
+
+/// What a window left behind that ended without being closed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftBehind {
+    /// The document's file, if it had one.
+    pub path: Option<PathBuf>,
+    /// The plan as it would have been saved.
+    pub text: String,
+    /// How long ago it was written.
+    pub age: Duration,
+}
+
+/// What the worker is to do.
+enum Job {
+    Keep { path: Option<PathBuf>, plan: Arc<FlightPlan> },
+    TakeAway,
+}
+
+/// Keeps the copy of one window's document, on a thread of its own.
+#[derive(Debug)]
+pub struct Keeper {
+    jobs: Option<Sender<Job>>,
+    failures: Receiver<String>,
+    worker: Option<JoinHandle<()>>,
+    /// The version of which there is a copy.
+    kept: Option<u64>,
+    last_s: f64,
+    left_behind: Option<LeftBehind>,
+    /// Held while the window lives: the place is not free.
+    _place: File,
+}
+
+impl Keeper {
+    /// Takes a place in the folder, rather one with something left behind than an empty one. A place belongs to whoever
+    /// has its lock, and a lock ends with its process.
+    ///
+    /// # Errors
+    /// The folder can't be made or written, or all places are taken.
+    pub fn open(folder: &Path) -> std::io::Result<Self> {
+        std::fs::create_dir_all(folder)?;
+        let mut places: Vec<usize> = (0..PLACES).collect();
+        places.sort_by_key(|place| !copy_in(folder, *place).exists());
+        for place in places {
+            let lock = File::create(folder.join(format!("{place}.lock")))?;
+            match lock.try_lock() {
+                Ok(()) => return Self::at(lock, copy_in(folder, place)),
+                Err(std::fs::TryLockError::WouldBlock) => {}
+                Err(std::fs::TryLockError::Error(error)) => return Err(error),
+            }
+        }
+        Err(std::io::Error::other(format!("{PLACES} windows are open")))
+    }
+
+    fn at(place: File, copy: PathBuf) -> std::io::Result<Self> {
+        let left_behind = read(&copy);
+        let (jobs, inbox) = channel();
+        let (outbox, failures) = channel();
+        let work = move || {
+            while let Ok(job) = inbox.recv() {
+                // only the last one counts
+                let job = inbox.try_iter().last().unwrap_or(job);
+                if let Err(error) = carry_out(&job, &copy) {
+                    // the window may be gone
+                    let _ = outbox.send(error.to_string());
+                }
+            }
+        };
+        let worker = std::thread::Builder::new().name("recovery".into()).spawn(work)?;
+        Ok(Self {
+            jobs: Some(jobs),
+            failures,
+            worker: Some(worker),
+            kept: None,
+            last_s: f64::NEG_INFINITY,
+            left_behind,
+            _place: place,
+        })
+    }
+
+    /// What is to be decided before anything else is kept here.
+    pub fn left_behind(&self) -> Option<&LeftBehind> {
+        self.left_behind.as_ref()
+    }
+
+    /// It was decided: what was left behind is given away, and its copy is no longer needed once the document that it
+    /// became is kept or saved.
+    pub fn take_left_behind(&mut self) -> Option<LeftBehind> {
+        // what is there now is not of this document
+        self.kept = Some(0);
+        self.left_behind.take()
+    }
+
+    /// Keeps a copy of the document if it has changed, or takes it away. Returns after how long to look again.
+    pub fn tend(&mut self, document: &Document, now_s: f64) -> Option<Duration> {
+        if self.left_behind.is_some() {
+            return None;
+        }
+        let wanted = document.is_dirty().then(|| document.version());
+        if wanted == self.kept {
+            return None;
+        }
+        let wait_s = self.last_s + PERIOD_S - now_s;
+        if wanted.is_some() && wait_s > 0.0 {
+            return Some(Duration::from_secs_f64(wait_s));
+        }
+        self.last_s = now_s;
+        self.kept = wanted;
+        self.order(match wanted {
+            Some(_) => Job::Keep { path: document.path().map(Path::to_owned), plan: document.plan().clone() },
+            None => Job::TakeAway,
+        });
+        None
+    }
+
+    /// The window is closed, and what it had is saved or not wanted.
+    pub fn close(&mut self) {
+        if self.left_behind.is_none() {
+            self.order(Job::TakeAway);
+        }
+    }
+
+    /// Why the last copy could not be kept.
+    pub fn failure(&self) -> Option<String> {
+        let why = self.failures.try_iter().last()?;
+        Some(format!("No copy of unsaved changes can be kept: {why}. Save the plan often."))
+    }
+
+    fn order(&self, job: Job) {
+        if let Some(jobs) = &self.jobs {
+            // the worker ends after this does
+            let _ = jobs.send(job);
+        }
+    }
+}
+
+impl Drop for Keeper {
+    /// Waits for the last copy.
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(worker) = self.worker.take() {
+            // a worker that panicked has said so
+            let _ = worker.join();
+        }
+    }
+}
+
+fn copy_in(folder: &Path, place: usize) -> PathBuf {
+    folder.join(format!("{place}.json"))
+}
+
+fn carry_out(job: &Job, copy: &Path) -> std::io::Result<()> {
+    match job {
+        Job::Keep { path, plan } => {
+            let kept = Kept { path: path.clone(), text: flight_plan::write(plan) };
+            write_whole(copy, &serde_json::to_vec(&kept)?)
+        }
+        Job::TakeAway => match std::fs::remove_file(copy) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+            _ => Ok(()),
+        },
+    }
+}
+
+/// `None`: nothing was left there, or nothing that can be read.
+fn read(copy: &Path) -> Option<LeftBehind> {
+    let age = copy.metadata().and_then(|meta| meta.modified()).ok()?.elapsed().unwrap_or_default();
+    let kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
+    Some(LeftBehind { path: kept.path, text: kept.text, age })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flight_plan::{Edit, Fix, Thing};
+    use geometry::LatLon;
+
+    fn edited() -> Document {
+        let mut document = Document::new(FlightPlan::default(), Some("/plans/a.xml".into()), Vec::new());
+        let fix = Fix {
+            id: "A".into(),
+            position: LatLon::new(1.0, 1.0),
+            name: String::new(),
+            description: String::new(),
+        };
+        document.edit(&Edit::Add(Box::new(Thing::Fix(fix)))).unwrap();
+        document
+    }
+
+    #[test]
+    fn killed_window_leaves_its_work_to_the_next_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let document = edited();
+        let mut killed = Keeper::open(folder.path()).unwrap();
+        assert_eq!(killed.left_behind(), None);
+        assert_eq!(killed.tend(&document, 0.0), None);
+        drop(killed);
+        let mut next = Keeper::open(folder.path()).unwrap();
+        let found = next.take_left_behind().unwrap();
+        assert_eq!(found.path.as_deref(), document.path());
+        assert_eq!(flight_plan::read(found.text.as_bytes()).plan, **document.plan());
+        assert_eq!(next.tend(&Document::default(), 0.0), None);
+        drop(next);
+        assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None, "it was decided");
+    }
+
+    #[test]
+    fn what_was_left_behind_stays_until_it_is_decided() {
+        let folder = tempfile::tempdir().unwrap();
+        Keeper::open(folder.path()).unwrap().tend(&edited(), 0.0);
+        for _ in 0..2 {
+            let mut window = Keeper::open(folder.path()).unwrap();
+            assert!(window.left_behind().is_some());
+            window.tend(&Document::default(), 0.0);
+            window.close();
+        }
+    }
+
+    #[test]
+    fn windows_at_the_same_time_have_places_of_their_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut first = Keeper::open(folder.path()).unwrap();
+        first.tend(&edited(), 0.0);
+        let second = Keeper::open(folder.path()).unwrap();
+        assert_eq!(second.left_behind(), None);
+        drop((first, second));
+        assert!(Keeper::open(folder.path()).unwrap().left_behind().is_some());
+    }
+
+    #[test]
+    fn closed_window_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut window = Keeper::open(folder.path()).unwrap();
+        window.tend(&edited(), 0.0);
+        window.close();
+        drop(window);
+        assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
+    }
+
+    #[test]
+    fn changes_in_quick_succession_are_kept_every_two_seconds() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut document = edited();
+        let mut keeper = Keeper::open(folder.path()).unwrap();
+        assert_eq!(keeper.tend(&document, 10.0), None);
+        document.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
+        assert_eq!(keeper.tend(&document, 10.5), Some(Duration::from_millis(1500)));
+        assert_eq!(keeper.tend(&document, 12.0), None);
+        document.saved_as("/plans/a.xml".into());
+        assert_eq!(keeper.tend(&document, 12.1), None, "taken away at once");
+        drop(keeper);
+        assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
+    }
+
+    #[test]
+    fn torn_copy_is_nothing_and_a_folder_that_cannot_be_made_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("0.json"), "{\"path\":").unwrap();
+        assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(Keeper::open(&file.join("below")).is_err());
+    }
+}

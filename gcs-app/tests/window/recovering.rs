@@ -1,0 +1,58 @@
+//! A window that is killed, and the next one.
+
+use super::{SQUARE, Window};
+use flight_plan::FlightPlan;
+use std::path::Path;
+
+fn window_in(folder: &Path, text: &str) -> Window {
+    let mut window = Window::open(text);
+    window.harness.state_mut().keep_copies(folder);
+    window.steps(3);
+    window
+}
+
+/// Deletes a leg; the window is gone without being closed.
+fn edit_and_kill(folder: &Path) -> FlightPlan {
+    let mut window = window_in(folder, SQUARE);
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    let plan = window.plan();
+    assert!(plan.leg(&"side2".into()).is_none());
+    plan
+}
+
+#[test]
+fn killed_window_loses_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = edit_and_kill(folder.path());
+    let mut window = window_in(folder.path(), "");
+    assert!(window.shows("ended without saving"));
+    window.click("Recover the changes");
+    assert_eq!(window.plan(), lost);
+    assert!(window.app().document().is_dirty() && !window.shows("ended without saving"));
+    drop(window);
+    // killed again, before it was saved
+    assert!(window_in(folder.path(), "").shows("ended without saving"));
+}
+
+#[test]
+fn what_is_not_wanted_is_not_offered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    edit_and_kill(folder.path());
+    let mut window = window_in(folder.path(), SQUARE);
+    window.click("Delete them");
+    assert!(!window.app().document().is_dirty());
+    drop(window);
+    assert!(!window_in(folder.path(), "").shows("ended without saving"));
+}
+
+#[test]
+fn copies_that_cannot_be_kept_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let mut window = window_in(&file, SQUARE);
+    assert!(window.shows("No copy of unsaved changes"));
+    window.click("TF side2");
+    assert_eq!(window.selected(), "side2");
+}
