@@ -52,6 +52,8 @@ pub enum DocumentCommand {
     Save,
     /// Ask where to save.
     AskSaveAs,
+    /// Show a folder in the window's own file dialog, with a name to begin with.
+    Browse(PathBuf, String),
     /// Save here.
     SaveTo(PathBuf),
     /// Apply an edit as an undo step of its own.
@@ -106,6 +108,10 @@ pub enum ViewCommand {
     Notice(String),
     /// Take a message away.
     DismissNotice,
+    /// The name of a file as it is typed.
+    NameFile(String),
+    /// No file is asked for any more.
+    StopBrowsing,
     /// The unsaved plan stays.
     KeepUnsaved,
 }

@@ -23,10 +23,39 @@ pub enum FileEvent {
         /// Which version.
         version: u64,
     },
+    /// The desktop has no dialog to ask with.
+    NoDialog(Purpose),
+    /// What is in a folder, or why that can't be said.
+    Listed {
+        /// The folder.
+        folder: PathBuf,
+        /// Folders first, each by name.
+        entries: Result<Vec<Entry>, String>,
+    },
     /// It didn't work; the sentence says what to do.
     Failed(String),
 }
 
+/// What a file is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To open it.
+    Open,
+    /// To save the document in it.
+    Save,
+}
+
+/// Something in a folder: another folder, or a plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// It is a folder.
+    pub is_folder: bool,
+}
+
+/// So many entries of a folder are listed.
+const MOST_ENTRIES: usize = 10_000;
 /// Largest file that is opened, bytes; the reader's own limit is a little lower than this.
 const LARGEST: u64 = 80 * 1024 * 1024;
 /// A dialog that is closed sooner than this was never seen.
@@ -37,6 +66,8 @@ pub struct Files {
     outbox: Sender<FileEvent>,
     inbox: Receiver<FileEvent>,
     wake: Arc<dyn Fn() + Send + Sync>,
+    /// The desktop is asked for a dialog; false as soon as it turned out to have none.
+    pub desktop: bool,
 }
 
 impl std::fmt::Debug for Files {
@@ -49,7 +80,7 @@ impl Files {
     /// `wake` is called when an event is ready.
     pub fn new(wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (outbox, inbox) = channel();
-        Self { outbox, inbox, wake }
+        Self { outbox, inbox, wake, desktop: true }
     }
 
     /// The next event, if there is one.
@@ -59,34 +90,45 @@ impl Files {
 
     /// Asks for a file and reads it.
     pub fn ask_open(&self) {
-        self.work(|| {
+        let desktop = self.desktop;
+        self.work(move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]);
-            seen(|| dialog.pick_file()).map(|path| path.map(|path| open(&path)))
+            asked(desktop, Purpose::Open, || dialog.pick_file(), |path| open(&path))
+        });
+    }
+
+    /// Reads what is in a folder.
+    pub fn list(&self, folder: PathBuf) {
+        self.work(move || {
+            let folder = std::fs::canonicalize(&folder).unwrap_or(folder);
+            let entries = list(&folder).map_err(|why| format!("{} can't be read: {why}", folder.display()));
+            Some(FileEvent::Listed { folder, entries })
         });
     }
 
     /// Reads a file.
     pub fn open(&self, path: PathBuf) {
-        self.work(move || Ok(Some(open(&path))));
+        self.work(move || Some(open(&path)));
     }
 
     /// Asks where to save, and saves.
     pub fn ask_save(&self, suggestion: String, text: String, version: u64) {
+        let desktop = self.desktop;
         self.work(move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
-            seen(|| dialog.save_file()).map(|path| path.map(|path| save(path, &text, version)))
+            asked(desktop, Purpose::Save, || dialog.save_file(), |path| save(path, &text, version))
         });
     }
 
     /// Saves.
     pub fn save(&self, path: PathBuf, text: String, version: u64) {
-        self.work(move || Ok(Some(save(path, &text, version))));
+        self.work(move || Some(save(path, &text, version)));
     }
 
-    fn work(&self, job: impl FnOnce() -> Result<Option<FileEvent>, String> + Send + 'static) {
+    fn work(&self, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) {
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
-            if let Some(event) = job().unwrap_or_else(|why| Some(FileEvent::Failed(why))) {
+            if let Some(event) = job() {
                 // the window may be gone: nobody receives it
                 let _ = outbox.send(event);
                 wake();
@@ -98,14 +140,34 @@ impl Files {
     }
 }
 
-/// A dialog's answer. Without a desktop portal it "cancels" at once, before anybody saw it.
-fn seen(dialog: impl FnOnce() -> Option<PathBuf>) -> Result<Option<PathBuf>, String> {
+/// What came of a dialog of the desktop. Without a desktop portal it "cancels" at once, before anybody saw it.
+fn asked(
+    desktop: bool,
+    purpose: Purpose,
+    dialog: impl FnOnce() -> Option<PathBuf>,
+    chosen: impl FnOnce(PathBuf) -> FileEvent,
+) -> Option<FileEvent> {
     let begin = Instant::now();
-    let answer = dialog();
-    if answer.is_none() && begin.elapsed() < UNSEEN {
-        return Err("This desktop offers no file dialog (xdg-desktop-portal is missing). Drop the file on the window, or give it on the command line: legwork fly FILE".into());
+    match desktop.then(dialog) {
+        None => Some(FileEvent::NoDialog(purpose)),
+        Some(None) if begin.elapsed() < UNSEEN => Some(FileEvent::NoDialog(purpose)),
+        Some(path) => path.map(chosen),
     }
-    Ok(answer)
+}
+
+/// Folders, then plans, by name; nothing hidden.
+fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
+    let entry = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.ok()?.path();
+        let name = path.file_name()?.to_str()?.to_owned();
+        let is_plan = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
+        // a link to a folder is one
+        let is_folder = !is_plan && path.is_dir();
+        ((is_folder || is_plan) && !name.starts_with('.')).then_some(Entry { name, is_folder })
+    };
+    let mut entries: Vec<Entry> = std::fs::read_dir(folder)?.filter_map(entry).take(MOST_ENTRIES).collect();
+    entries.sort_by_key(|e| (!e.is_folder, e.name.to_lowercase()));
+    Ok(entries)
 }
 
 fn open(path: &Path) -> FileEvent {

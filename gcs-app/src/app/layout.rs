@@ -6,7 +6,7 @@ use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
 use crate::map::furniture::NARROW;
 use crate::panels::bar::PanelEntry;
-use crate::panels::{self, Scene, bar, decision, flight, push, recover, start, unsaved};
+use crate::panels::{self, Scene, bar, browse, decision, flight, push, recover, start, unsaved};
 use crate::recovery::Keeper;
 use crate::theme;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
@@ -54,6 +54,7 @@ impl App {
         });
         push::show(ui, &scene, queue);
         unsaved::show(ui, &scene, queue);
+        browse::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);
         dropped_files(ui, queue);
     }

@@ -139,6 +139,11 @@ impl App {
         }
     }
 
+    /// Asks for files in the window, as on a desktop without dialogs.
+    pub fn ask_for_files_here(&mut self) {
+        self.files.desktop = false;
+    }
+
     fn tend_copy(&mut self, ctx: &egui::Context) {
         let Some(keeper) = &mut self.keeper else { return };
         if let Some(wait) = keeper.tend(&self.document, ctx.input(|i| i.time)) {
@@ -277,6 +282,8 @@ impl App {
                 self.view.notice =
                     Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
             }
+            FileEvent::NoDialog(purpose) => self.ask_here(purpose),
+            FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
             FileEvent::Failed(why) => self.view.notice = Some(why),
         }
     }
@@ -338,8 +345,10 @@ impl eframe::App for App {
         let now = Now::read(&ctx);
         self.play(&ctx);
         let mut queue = std::mem::take(&mut self.queue);
-        self.map.keys(&ctx);
-        keys::read(&ctx, &self.scene(now), &mut queue);
+        if !self.scene(now).is_asking() {
+            self.map.keys(&ctx);
+            keys::read(&ctx, &self.scene(now), &mut queue);
+        }
         self.lay_out(ui, now, &mut queue);
         // what was asked for was meant for the vehicle that was drawn
         let drawn = self.vehicles.shown_name().cloned();

@@ -5,8 +5,10 @@ use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::document::Document;
+use crate::files::{Entry, Purpose};
 use crate::link::Call;
 use crate::panels::bar::PUSH;
+use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
@@ -14,6 +16,7 @@ use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
 use flight_plan::{Edit, Id, Thing, create};
 use geometry::LatLon;
+use std::path::{Path, PathBuf};
 use usal::contract::{GatewayRequest, Propose};
 
 impl App {
@@ -56,6 +59,7 @@ impl App {
             DocumentCommand::ForgetLeftBehind => drop(self.take_left_behind()),
             DocumentCommand::Save => self.save(),
             DocumentCommand::AskSaveAs => self.ask_save(),
+            DocumentCommand::Browse(folder, name) => self.browse(folder, name),
             DocumentCommand::SaveTo(path) => self.save_to(path),
             DocumentCommand::EndGesture => self.document.end_gesture(),
             DocumentCommand::Undo => self.document.undo(),
@@ -159,9 +163,37 @@ impl App {
     }
 
     fn ask_save(&mut self) {
-        let name = self.document.path().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
         let text = flight_plan::write(self.document.plan());
-        self.files.ask_save(name.unwrap_or_else(|| "plan.xml".into()), text, self.document.version());
+        self.files.ask_save(self.suggested_name(), text, self.document.version());
+    }
+
+    fn suggested_name(&self) -> String {
+        let name = self.document.path().and_then(Path::file_name);
+        name.map_or_else(|| "plan.xml".into(), |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Asks in the window, beginning where the document's file is.
+    pub(super) fn ask_here(&mut self, purpose: Purpose) {
+        self.files.desktop = false;
+        let beside = self.document.path().and_then(Path::parent).map(Path::to_owned);
+        let folder = beside.filter(|f| !f.as_os_str().is_empty()).or_else(std::env::home_dir);
+        let name = if purpose == Purpose::Save { self.suggested_name() } else { String::new() };
+        let folder = folder.unwrap_or_else(|| ".".into());
+        self.view.browsing = Some(Browsing::new(purpose, folder.clone(), name));
+        self.files.list(folder);
+    }
+
+    fn browse(&mut self, folder: PathBuf, name: String) {
+        let Some(browsing) = &mut self.view.browsing else { return };
+        *browsing = Browsing::new(browsing.purpose, folder.clone(), name);
+        self.files.list(folder);
+    }
+
+    pub(super) fn show_folder(&mut self, folder: PathBuf, entries: Result<Vec<Entry>, String>) {
+        if let Some(browsing) = &mut self.view.browsing {
+            browsing.folder = folder;
+            browsing.entries = Some(entries);
+        }
     }
 
     fn change_view(&mut self, command: ViewCommand) {
@@ -200,6 +232,12 @@ impl App {
             }
             ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::DismissNotice => self.view.notice = None,
+            ViewCommand::NameFile(name) => {
+                if let Some(browsing) = &mut self.view.browsing {
+                    browsing.name = name;
+                }
+            }
+            ViewCommand::StopBrowsing => self.view.browsing = None,
             ViewCommand::KeepUnsaved => self.view.unsaved = None,
         }
     }

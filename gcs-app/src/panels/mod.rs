@@ -4,6 +4,7 @@
 
 pub mod alarms;
 pub mod bar;
+pub mod browse;
 pub mod decision;
 pub mod field;
 pub mod flight;
@@ -29,6 +30,7 @@ use crate::recovery::LeftBehind;
 use crate::state::{Aged, Vehicle, Vehicles};
 use crate::theme;
 use crate::units::{self, Units};
+use browse::Browsing;
 use egui::{RichText, Ui};
 use flight_plan::Problem;
 
@@ -109,6 +111,8 @@ pub struct ViewState {
     pub playing: bool,
     /// What would replace a plan with unsaved changes, until the operator has decided.
     pub unsaved: Option<Replacement>,
+    /// A file is being chosen in the window.
+    pub browsing: Option<Browsing>,
     /// Something the operator should read: a file that can't be opened, and the like.
     pub notice: Option<String>,
 }
@@ -146,6 +150,10 @@ impl<'a> Scene<'a> {
     /// What is wrong with the plan: first what reading it found, then what checking it found.
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {
         self.document.reading_problems().iter().chain(&self.analysis.problems)
+    }
+    /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
+    pub fn is_asking(&self) -> bool {
+        self.left_behind.is_some() || self.view.unsaved.is_some() || self.view.browsing.is_some()
     }
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {

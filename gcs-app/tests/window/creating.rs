@@ -1,7 +1,7 @@
 //! From an empty document to a plan that flies, and nothing lost on the way.
 
 use super::Window;
-use egui::{Key, Modifiers, vec2};
+use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::template::Template;
 use flight_plan::{LegKind, Pattern};
@@ -10,11 +10,6 @@ const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New pla
 
 fn stages(window: &Window) -> usize {
     window.app().document().plan().stages.len()
-}
-
-fn press(window: &mut Window, key: Key) {
-    window.harness.key_press_modifiers(Modifiers::COMMAND, key);
-    window.steps(3);
 }
 
 #[test]
@@ -85,14 +80,14 @@ fn plan_with_unsaved_changes_gives_way_only_when_told_to() {
     window.steps(3);
     window.click("Create");
     let made = stages(&window);
-    press(&mut window, Key::N);
+    window.press_ctrl(Key::N);
     assert!(window.shows("has unsaved changes") && stages(&window) == made);
     window.click("Cancel");
     assert!(!window.shows("has unsaved changes") && stages(&window) == made);
-    press(&mut window, Key::N);
+    window.press_ctrl(Key::N);
     window.click("Discard the changes");
     assert!(stages(&window) == 0 && !window.shows("has unsaved changes"));
-    press(&mut window, Key::N);
+    window.press_ctrl(Key::N);
     assert!(!window.shows("has unsaved changes"), "there is nothing to be lost");
 }
 

@@ -5,6 +5,7 @@
 mod creating;
 mod dock;
 mod drawing;
+mod filing;
 mod fleet;
 mod flying;
 mod planning;
@@ -99,6 +100,12 @@ impl Window {
 
     fn press(&mut self, key: egui::Key) {
         self.harness.key_press(key);
+        self.steps(3);
+    }
+
+    /// Presses a key with Ctrl, or Command on a Mac.
+    fn press_ctrl(&mut self, key: egui::Key) {
+        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, key);
         self.steps(3);
     }
 

@@ -1,0 +1,246 @@
+//! A file dialog in the window, for desktops that offer none.
+
+use super::{Scene, primary_button};
+use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
+use crate::files::{Entry, Purpose};
+use crate::theme;
+use egui::{Id, Key, Modal, RichText, ScrollArea, Ui};
+use std::path::{Path, PathBuf};
+
+/// A folder in which a file is chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Browsing {
+    /// What the file is for.
+    pub purpose: Purpose,
+    /// The folder.
+    pub folder: PathBuf,
+    /// What is in it, or why that is not known; `None`: it is being read.
+    pub entries: Option<Result<Vec<Entry>, String>>,
+    /// The name as it is typed: of the folder's files, or a path.
+    pub name: String,
+}
+
+impl Browsing {
+    /// A folder whose entries are still to be read.
+    pub fn new(purpose: Purpose, folder: PathBuf, name: String) -> Self {
+        Self { purpose, folder, entries: None, name }
+    }
+
+    /// A file of this name is there.
+    fn has(&self, name: &str) -> bool {
+        let entries = self.entries.iter().flatten().flatten();
+        entries.into_iter().any(|entry| !entry.is_folder && entry.name == name)
+    }
+
+    /// What is typed, as a path: `~` is the user's own folder, and a plan that is saved ends in `.xml`.
+    fn target(&self) -> PathBuf {
+        let name = self.name.trim();
+        let mut path = match (name.strip_prefix("~/"), std::env::home_dir()) {
+            (Some(rest), Some(home)) => home.join(rest),
+            _ => self.folder.join(name),
+        };
+        if self.purpose == Purpose::Save && path.extension().is_none() && !names_folder(name) {
+            path.set_extension("xml");
+        }
+        path
+    }
+
+    /// What the typed name asks for.
+    fn wish(&self) -> Wish {
+        let name = self.name.trim();
+        if name.is_empty() {
+            return Wish::Nothing;
+        }
+        let path = self.target();
+        let elsewhere = path.parent() != Some(&self.folder);
+        match (self.purpose, path.file_name()) {
+            _ if names_folder(name) => Wish::Folder(path, String::new()),
+            (_, None) => Wish::Folder(path, String::new()),
+            (Purpose::Open, Some(_)) => Wish::Open(path),
+            // first look at what is there: nothing is to be overwritten unseen
+            (Purpose::Save, Some(file)) if elsewhere => {
+                Wish::Folder(path.parent().unwrap_or(Path::new("/")).into(), file.to_string_lossy().into())
+            }
+            (Purpose::Save, Some(file)) if self.has(&file.to_string_lossy()) => Wish::Overwrite(path),
+            (Purpose::Save, Some(_)) => Wish::Save(path),
+        }
+    }
+}
+
+fn names_folder(name: &str) -> bool {
+    name.ends_with(std::path::is_separator) || matches!(name, "~" | "." | "..")
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Wish {
+    Nothing,
+    /// Go there, with this name.
+    Folder(PathBuf, String),
+    Open(PathBuf),
+    Save(PathBuf),
+    Overwrite(PathBuf),
+}
+
+/// Draws it, while a file is asked for.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(browsing) = &scene.view.browsing else { return };
+    let modal = Modal::new(Id::unique("browse")).show(ui.ctx(), |ui| {
+        ui.set_width(480.0);
+        ui.strong(match browsing.purpose {
+            Purpose::Open => "Open a plan",
+            Purpose::Save => "Save the plan as",
+        });
+        folder_row(ui, browsing, queue);
+        entries(ui, browsing, queue);
+        let typed = name_row(ui, browsing, queue);
+        ui.add_space(6.0);
+        buttons(ui, browsing, typed, queue);
+    });
+    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
+        queue.view(ViewCommand::StopBrowsing);
+    }
+}
+
+fn folder_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) {
+    ui.horizontal(|ui| {
+        let above = browsing.folder.parent();
+        let up = ui.add_enabled(above.is_some(), egui::Button::new("⬆ Up"));
+        if let Some(above) = above.filter(|_| up.clicked()) {
+            queue.document(DocumentCommand::Browse(above.to_owned(), browsing.name.clone()));
+        }
+        if let Some(home) = std::env::home_dir()
+            && ui.button("Home").clicked()
+        {
+            queue.document(DocumentCommand::Browse(home, browsing.name.clone()));
+        }
+        let path = browsing.folder.display().to_string();
+        ui.add(egui::Label::new(RichText::new(&path).color(theme::of(ui).weak)).truncate())
+            .on_hover_text(path);
+    });
+}
+
+fn entries(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) {
+    const ROWS_HEIGHT: f32 = 260.0;
+    const ROW: f32 = 20.0;
+    ui.separator();
+    let area = ScrollArea::vertical().id_salt(&browsing.folder).auto_shrink(false).max_height(ROWS_HEIGHT);
+    match &browsing.entries {
+        None => drop(area.show(ui, |ui| ui.spinner())),
+        Some(Err(why)) => drop(area.show(ui, |ui| ui.colored_label(theme::of(ui).warning, why))),
+        Some(Ok(entries)) if entries.is_empty() => {
+            area.show(ui, |ui| ui.weak("There is no folder and no plan (*.xml) in here."));
+        }
+        Some(Ok(entries)) => {
+            area.show_rows(ui, ROW, entries.len(), |ui, shown| {
+                for entry in entries.get(shown).unwrap_or_default() {
+                    entry_row(ui, browsing, entry, queue);
+                }
+            });
+        }
+    }
+    ui.separator();
+}
+
+fn entry_row(ui: &mut Ui, browsing: &Browsing, entry: &Entry, queue: &mut Queue) {
+    let text = if entry.is_folder { format!("🗀 {}", entry.name) } else { entry.name.clone() };
+    let is_chosen = !entry.is_folder && entry.name == browsing.name;
+    let row = ui.selectable_label(is_chosen, text);
+    if entry.is_folder && row.clicked() {
+        queue.document(DocumentCommand::Browse(browsing.folder.join(&entry.name), browsing.name.clone()));
+    } else if row.double_clicked() && browsing.purpose == Purpose::Open {
+        open(browsing.folder.join(&entry.name), queue);
+    } else if row.clicked() {
+        queue.view(ViewCommand::NameFile(entry.name.clone()));
+    }
+}
+
+/// True when Enter was pressed in it.
+fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> bool {
+    let mut name = browsing.name.clone();
+    let label = ui.label("File name");
+    let field = egui::TextEdit::singleline(&mut name)
+        .id(Id::unique("browse name"))
+        .hint_text("name, or a whole path")
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field).labelled_by(label.id);
+    if response.changed() {
+        queue.view(ViewCommand::NameFile(name));
+    }
+    response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
+}
+
+fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let wish = browsing.wish();
+    let (text, needs_click) = match (&wish, browsing.purpose) {
+        (Wish::Folder(..), _) => ("Go there", false),
+        (Wish::Overwrite(_), _) => ("Replace the file", true),
+        (_, Purpose::Open) => ("Open", false),
+        (_, Purpose::Save) => ("Save here", false),
+    };
+    if let Wish::Overwrite(path) = &wish {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        ui.colored_label(p.caution, format!("{name} is there already. What is in it would be lost."));
+    }
+    ui.horizontal(|ui| {
+        let button = ui.add_enabled(wish != Wish::Nothing, primary_button(text, p));
+        if button.clicked() || (typed && !needs_click) {
+            carry_out(wish, queue);
+        }
+        if ui.button("Cancel").clicked() {
+            queue.view(ViewCommand::StopBrowsing);
+        }
+    });
+}
+
+fn carry_out(wish: Wish, queue: &mut Queue) {
+    match wish {
+        Wish::Nothing => {}
+        Wish::Folder(folder, name) => queue.document(DocumentCommand::Browse(folder, name)),
+        Wish::Open(path) => open(path, queue),
+        Wish::Save(path) | Wish::Overwrite(path) => {
+            queue.view(ViewCommand::StopBrowsing);
+            queue.document(DocumentCommand::SaveTo(path));
+        }
+    }
+}
+
+/// It was asked already what becomes of unsaved changes.
+fn open(path: PathBuf, queue: &mut Queue) {
+    queue.view(ViewCommand::StopBrowsing);
+    queue.document(DocumentCommand::Discard(Replacement::Open(path)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wish(purpose: Purpose, name: &str) -> Wish {
+        let here = |name: &str, is_folder| Entry { name: name.into(), is_folder };
+        Browsing {
+            entries: Some(Ok(vec![here("below", true), here("old.xml", false)])),
+            ..Browsing::new(purpose, "/plans".into(), name.into())
+        }
+        .wish()
+    }
+
+    #[test]
+    fn typed_names_are_understood_and_nothing_is_overwritten_unseen() {
+        use Purpose::{Open, Save};
+        let folder = |path: &str, name: &str| Wish::Folder(path.into(), name.into());
+        for (purpose, name, expected) in [
+            (Open, " ", Wish::Nothing),
+            (Open, "old.xml", Wish::Open("/plans/old.xml".into())),
+            (Open, "/else/a.xml", Wish::Open("/else/a.xml".into())),
+            (Open, "below/", folder("/plans/below/", "")),
+            (Save, "new", Wish::Save("/plans/new.xml".into())),
+            (Save, "new.v2.xml", Wish::Save("/plans/new.v2.xml".into())),
+            (Save, "old", Wish::Overwrite("/plans/old.xml".into())),
+            (Save, "below/new", folder("/plans/below", "new.xml")),
+            (Save, "/else/old.xml", folder("/else", "old.xml")),
+            (Save, "..", folder("/plans/..", "")),
+        ] {
+            assert_eq!(wish(purpose, name), expected, "{purpose:?} {name}");
+        }
+    }
+}
