@@ -1,5 +1,6 @@
 //! The plan being edited: immutable states, undo and redo over all of them, and its file.
 
+use crate::files::Stamp;
 use flight_plan::{Edit, FlightPlan, History, Id, Leg, Problem, Procedure};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,8 @@ pub struct Document {
     history: History,
     gesture: u64,
     path: Option<PathBuf>,
+    /// The file as it was last read or written.
+    stamp: Option<Stamp>,
     reading_problems: Vec<Problem>,
     kinds: BTreeMap<Id, &'static str>,
     version: u64,
@@ -36,6 +39,7 @@ impl Document {
             history: History::new(plan),
             gesture: 0,
             path,
+            stamp: None,
             reading_problems,
             kinds: BTreeMap::new(),
             version: 0,
@@ -156,10 +160,26 @@ impl Document {
         }
     }
 
-    /// It was written to `path`.
-    pub fn saved_as(&mut self, path: PathBuf) {
-        self.path = Some(path);
+    /// The present version was written to `path`.
+    pub fn saved_as(&mut self, path: PathBuf, stamp: Option<Stamp>) {
+        self.written_to(path, stamp);
         self.history.mark_saved();
+    }
+
+    /// Some version of it was written to `path`, which is its file now.
+    pub fn written_to(&mut self, path: PathBuf, stamp: Option<Stamp>) {
+        self.path = Some(path);
+        self.stamp = stamp;
+    }
+
+    /// The file's state as it was last read or written; `None`: not known, or of no importance.
+    pub fn stamp(&self) -> Option<Stamp> {
+        self.stamp
+    }
+
+    /// Remembers the state of the file that it was read from; `None`: it may be overwritten whatever it is now.
+    pub fn set_stamp(&mut self, stamp: Option<Stamp>) {
+        self.stamp = stamp;
     }
 
     fn changed(&mut self) {

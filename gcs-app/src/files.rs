@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// What came of it.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub enum FileEvent {
         path: PathBuf,
         /// What is in it.
         bytes: Vec<u8>,
+        /// Its state at that time.
+        stamp: Option<Stamp>,
     },
     /// The document was saved; `version` of it.
     Saved {
@@ -22,7 +24,11 @@ pub enum FileEvent {
         path: PathBuf,
         /// Which version.
         version: u64,
+        /// The file's state since then.
+        stamp: Option<Stamp>,
     },
+    /// Another program has written the file since; it was left as it is.
+    ChangedMeanwhile(PathBuf),
     /// The desktop has no dialog to ask with.
     NoDialog(Purpose),
     /// What is in a folder, or why that can't be said.
@@ -34,6 +40,32 @@ pub enum FileEvent {
     },
     /// It didn't work; the sentence says what to do.
     Failed(String),
+}
+
+/// A file's state on disk; it differs after another program has written it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stamp {
+    modified: SystemTime,
+    bytes: u64,
+}
+
+impl Stamp {
+    /// Of a file as it is now; `None`: it can't be looked at.
+    pub fn of(path: &Path) -> Option<Self> {
+        let meta = path.metadata().ok()?;
+        Some(Self { modified: meta.modified().ok()?, bytes: meta.len() })
+    }
+}
+
+/// A plan that is to be written.
+#[derive(Debug, Clone)]
+pub struct Writing {
+    /// The text of the document.
+    pub text: String,
+    /// Which version of the document it is.
+    pub version: u64,
+    /// The state in which the file must be, if it is there at all; `None`: any.
+    pub expected: Option<Stamp>,
 }
 
 /// What a file is asked for.
@@ -112,17 +144,17 @@ impl Files {
     }
 
     /// Asks where to save, and saves.
-    pub fn ask_save(&self, suggestion: String, text: String, version: u64) {
+    pub fn ask_save(&self, suggestion: String, writing: Writing) {
         let desktop = self.desktop;
         self.work(move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
-            asked(desktop, Purpose::Save, || dialog.save_file(), |path| save(path, &text, version))
+            asked(desktop, Purpose::Save, || dialog.save_file(), |path| save(path, &writing))
         });
     }
 
     /// Saves.
-    pub fn save(&self, path: PathBuf, text: String, version: u64) {
-        self.work(move || Some(save(path, &text, version)));
+    pub fn save(&self, path: PathBuf, writing: Writing) {
+        self.work(move || Some(save(path, &writing)));
     }
 
     fn work(&self, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) {
@@ -171,6 +203,7 @@ fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
 }
 
 fn open(path: &Path) -> FileEvent {
+    let stamp = Stamp::of(path);
     let read = std::fs::metadata(path).and_then(|meta| {
         if meta.len() > LARGEST {
             Err(std::io::Error::other("it is larger than 80 MiB"))
@@ -179,14 +212,21 @@ fn open(path: &Path) -> FileEvent {
         }
     });
     match read {
-        Ok(bytes) => FileEvent::Opened { path: path.to_owned(), bytes },
+        Ok(bytes) => FileEvent::Opened { path: path.to_owned(), bytes, stamp },
         Err(error) => FileEvent::Failed(format!("{} can't be opened: {error}", path.display())),
     }
 }
 
-fn save(path: PathBuf, text: &str, version: u64) -> FileEvent {
-    match write_whole(&path, text.as_bytes()) {
-        Ok(()) => FileEvent::Saved { path, version },
+fn save(path: PathBuf, writing: &Writing) -> FileEvent {
+    let is_other = |expected| Stamp::of(&path).is_some_and(|now| now != expected);
+    if writing.expected.is_some_and(is_other) {
+        return FileEvent::ChangedMeanwhile(path);
+    }
+    match write_whole(&path, writing.text.as_bytes()) {
+        Ok(()) => {
+            let stamp = Stamp::of(&path);
+            FileEvent::Saved { path, version: writing.version, stamp }
+        }
         Err(error) => {
             FileEvent::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
         }
@@ -221,16 +261,44 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 mod tests {
     use super::*;
 
+    fn writing(text: &str, version: u64) -> Writing {
+        Writing { text: text.into(), version, expected: None }
+    }
+
     #[test]
     fn saving_is_all_or_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        assert!(matches!(save(path.clone(), "one", 1), FileEvent::Saved { version: 1, .. }));
-        assert!(matches!(save(path.clone(), "two", 2), FileEvent::Saved { .. }));
+        assert!(matches!(save(path.clone(), &writing("one", 1)), FileEvent::Saved { version: 1, .. }));
+        assert!(matches!(save(path.clone(), &writing("two", 2)), FileEvent::Saved { .. }));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
         let nowhere = folder.path().join("missing").join("plan.xml");
-        assert!(matches!(save(nowhere, "x", 3), FileEvent::Failed(_)));
+        assert!(matches!(save(nowhere, &writing("x", 3)), FileEvent::Failed(_)));
         assert!(matches!(open(&folder.path().join("none.xml")), FileEvent::Failed(_)));
+    }
+
+    #[test]
+    fn what_another_program_wrote_is_not_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.xml");
+        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1)) else { panic!() };
+        let next = Writing { expected: stamp, ..writing("ours again", 2) };
+        std::fs::write(&path, "their words").unwrap();
+        assert!(matches!(save(path.clone(), &next), FileEvent::ChangedMeanwhile(_)));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(save(path, &next), FileEvent::Saved { .. }), "nothing is lost");
+    }
+
+    #[test]
+    fn folder_lists_folders_then_plans_and_nothing_hidden() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.xml", "A.XML", "notes.txt", ".hidden.xml"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        std::fs::create_dir(folder.path().join("z")).unwrap();
+        let names: Vec<String> = list(folder.path()).unwrap().into_iter().map(|e| e.name).collect();
+        assert_eq!(names, ["z", "A.XML", "b.xml"]);
     }
 }

@@ -19,6 +19,7 @@ pub mod headless;
 pub mod link;
 pub mod map;
 pub mod panels;
+pub mod recent;
 pub mod recovery;
 pub mod report;
 pub mod state;

@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use gcs_app::app::{self, Options, Screenshot};
 use gcs_app::document::Document;
+use gcs_app::files::Stamp;
 use gcs_app::{demo, headless};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -87,9 +88,12 @@ fn open(window: Window) -> anyhow::Result<ExitCode> {
 }
 
 fn read(path: PathBuf) -> anyhow::Result<Document> {
+    let stamp = Stamp::of(&path);
     let bytes = std::fs::read(&path)
         .map_err(|error| anyhow::anyhow!("{} can't be opened: {error}", path.display()))?;
-    Ok(Document::read(&bytes, Some(path)))
+    let mut document = Document::read(&bytes, Some(path));
+    document.set_stamp(stamp);
+    Ok(document)
 }
 
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {

@@ -14,7 +14,7 @@ use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
-        let Self { document, vehicles, view, analysis, map, panels, dock, keeper, .. } = self;
+        let Self { document, vehicles, view, analysis, map, panels, dock, keeper, recent, .. } = self;
         let vehicle = vehicles.shown();
         let new_runway = map.new_runway();
         let scene = Scene {
@@ -23,6 +23,7 @@ impl App {
             vehicle,
             vehicles,
             view,
+            recent,
             left_behind: keeper.as_ref().and_then(Keeper::left_behind),
             now_s: now.window_s,
             utc: now.utc,

@@ -13,17 +13,18 @@ pub use window::{Options, WindowError, has_display, run};
 use crate::command::{Queue, Replacement};
 use crate::dock::Dock;
 use crate::document::Document;
-use crate::files::{FileEvent, Files};
+use crate::files::{FileEvent, Files, Stamp};
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
 use crate::panels::{self, Panel, Scene, ViewState};
+use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
@@ -42,6 +43,7 @@ pub struct App {
     worker: Worker,
     terrain: Arc<dyn Terrain>,
     files: Files,
+    recent: Recent,
     /// `None`: no copy of unsaved changes is kept.
     keeper: Option<Keeper>,
     /// The vehicle whose plan aboard the document is, and the document's version.
@@ -61,6 +63,8 @@ impl std::fmt::Debug for App {
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Remembered {
     units: Units,
+    #[serde(default)]
+    recent: Recent,
 }
 
 const STORAGE_KEY: &str = "legwork";
@@ -117,6 +121,7 @@ impl App {
             worker: Worker::spawn(terrain.clone(), wake.clone())?,
             terrain,
             files: Files::new(wake),
+            recent: remembered.recent,
             keeper: None,
             mirrored: None,
             leaving: false,
@@ -189,6 +194,7 @@ impl App {
             vehicle: self.vehicles.shown(),
             vehicles: &self.vehicles,
             view: &self.view,
+            recent: &self.recent,
             left_behind: self.keeper.as_ref().and_then(Keeper::left_behind),
             now_s: now.window_s,
             utc: now.utc,
@@ -268,23 +274,41 @@ impl App {
 
     fn file_event(&mut self, event: FileEvent) {
         match event {
-            FileEvent::Opened { path, bytes } => {
+            FileEvent::Opened { path, bytes, stamp } => {
+                self.recent.add(&path);
                 self.document = Document::read(&bytes, Some(path));
+                self.document.set_stamp(stamp);
                 self.view.selection = None;
                 self.view.cursor_s = None;
                 self.view.notice = None;
                 self.map.fit();
             }
-            FileEvent::Saved { path, version } if version == self.document.version() => {
-                self.document.saved_as(path)
-            }
-            FileEvent::Saved { path, .. } => {
-                self.view.notice =
-                    Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
+            FileEvent::Saved { path, version, stamp } => self.saved(path, version, stamp),
+            FileEvent::ChangedMeanwhile(path) => {
+                // who saves again has been told
+                self.document.set_stamp(None);
+                self.view.notice = Some(format!(
+                    "{} was changed by another program and is not overwritten. “Save as…” keeps both; save again to replace it.",
+                    path.display()
+                ));
             }
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),
             FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
             FileEvent::Failed(why) => self.view.notice = Some(why),
+        }
+    }
+
+    fn saved(&mut self, path: PathBuf, version: u64, stamp: Option<Stamp>) {
+        self.recent.add(&path);
+        if version == self.document.version() {
+            self.document.saved_as(path, stamp);
+            return;
+        }
+        self.view.notice =
+            Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
+        // it may have been another document's
+        if version >= self.document.id() {
+            self.document.written_to(path, stamp);
         }
     }
 
@@ -368,7 +392,11 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, STORAGE_KEY, &Remembered { units: self.view.units });
+        eframe::set_value(
+            storage,
+            STORAGE_KEY,
+            &Remembered { units: self.view.units, recent: self.recent.clone() },
+        );
         self.dock.save(storage);
     }
 }

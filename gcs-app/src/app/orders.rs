@@ -5,7 +5,7 @@ use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::document::Document;
-use crate::files::{Entry, Purpose};
+use crate::files::{Entry, Purpose, Writing};
 use crate::link::Call;
 use crate::panels::bar::PUSH;
 use crate::panels::browse::Browsing;
@@ -159,12 +159,19 @@ impl App {
     }
 
     fn save_to(&mut self, path: std::path::PathBuf) {
-        self.files.save(path, flight_plan::write(self.document.plan()), self.document.version());
+        // only its own file is known as it was
+        let expected = self.document.stamp().filter(|_| self.document.path() == Some(&path));
+        self.files.save(path, Writing { expected, ..self.writing() });
     }
 
     fn ask_save(&mut self) {
+        self.files.ask_save(self.suggested_name(), self.writing());
+    }
+
+    /// The document for any file: who chose that one knows what is in it.
+    fn writing(&self) -> Writing {
         let text = flight_plan::write(self.document.plan());
-        self.files.ask_save(self.suggested_name(), text, self.document.version());
+        Writing { text, version: self.document.version(), expected: None }
     }
 
     fn suggested_name(&self) -> String {

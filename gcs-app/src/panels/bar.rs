@@ -82,6 +82,7 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queu
                 ui.close();
             }
         }
+        recent_menu(ui, scene, queue);
         ui.separator();
         view_menu(ui, scene, queue);
         ui.separator();
@@ -97,6 +98,22 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queu
     if redo.on_hover_text("Redo (Ctrl+Y)").clicked() {
         queue.document(DocumentCommand::Redo);
     }
+}
+
+/// The files that were open last, where there are any.
+fn recent_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    if scene.recent.paths().is_empty() {
+        return;
+    }
+    ui.menu_button("Open recent", |ui| {
+        for path in scene.recent.paths() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                queue.document(DocumentCommand::Replace(Replacement::Open(path.clone())));
+                ui.close();
+            }
+        }
+    });
 }
 
 /// A name for those who can't see the symbol.

@@ -26,6 +26,7 @@ pub mod unsaved;
 use crate::command::{Queue, Replacement, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
+use crate::recent::Recent;
 use crate::recovery::LeftBehind;
 use crate::state::{Aged, Vehicle, Vehicles};
 use crate::theme;
@@ -130,6 +131,8 @@ pub struct Scene<'a> {
     pub vehicles: &'a Vehicles,
     /// What the operator looks at.
     pub view: &'a ViewState,
+    /// The files that were open last.
+    pub recent: &'a Recent,
     /// What a window left behind that crashed, until the operator has decided.
     pub left_behind: Option<&'a LeftBehind>,
     /// The window's clock, seconds.

@@ -153,12 +153,14 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             fly(&mut window);
         }
         let app = window.app();
+        let recent = gcs_app::recent::Recent::default();
         let scene = Scene {
             document: app.document(),
             analysis: app.analysis(),
             vehicle: app.vehicle(),
             vehicles: app.vehicles(),
             view: app.view(),
+            recent: &recent,
             left_behind: None,
             now_s: 1.0,
             utc: Default::default(),

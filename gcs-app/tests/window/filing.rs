@@ -97,3 +97,43 @@ fn keys_do_nothing_behind_a_dialog() {
     window.press(egui::Key::Delete);
     assert_ne!(window.plan(), before);
 }
+
+#[test]
+fn file_that_another_program_changed_is_not_overwritten_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plan.xml");
+    let mut window = window(SQUARE);
+    window.press_ctrl(egui::Key::S);
+    until_listed(&mut window);
+    name(&mut window, &path);
+    window.click("Go there");
+    until_listed(&mut window);
+    window.click("Save here");
+    window.until("saved", |app| app.document().path().is_some());
+    std::fs::write(&path, "theirs").unwrap();
+    window.press_ctrl(egui::Key::S);
+    window.until("notice", |app| app.view().notice.is_some());
+    assert!(window.shows("was changed by another program"));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "theirs");
+    window.press_ctrl(egui::Key::S);
+    window.until("saved", |_| std::fs::read_to_string(&path).unwrap() != "theirs");
+}
+
+#[test]
+fn file_that_was_open_is_offered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("square.xml");
+    std::fs::write(&path, SQUARE).unwrap();
+    let mut window = window("");
+    window.press_ctrl(egui::Key::O);
+    until_listed(&mut window);
+    name(&mut window, &path);
+    window.click("Open");
+    window.until("opened", |app| app.document().path().is_some());
+    window.press_ctrl(egui::Key::N);
+    assert!(window.app().document().path().is_none());
+    window.click("Legwork");
+    window.click("Open recent");
+    window.click("square.xml");
+    window.until("opened", |app| app.document().path().is_some());
+}
