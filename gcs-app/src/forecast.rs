@@ -10,6 +10,7 @@ pub use worker::{Analysis, Question, Worker};
 
 use flight_exec::Waypoint;
 use flight_plan::Id;
+use flight_plan::create::Approach;
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -73,6 +74,24 @@ impl Forecast {
     pub fn at(&self, time_s: f64) -> Option<&Point> {
         let after = self.points.partition_point(|p| p.time_s < time_s);
         self.points.get(after).or(self.points.last())
+    }
+    /// Where the path is before the first passage of a leg, and which way it goes there.
+    pub fn start_of(&self, leg: &Id) -> Option<Approach> {
+        let passage = self.passages.iter().find(|passage| passage.leg == *leg)?;
+        self.towards(passage.first)
+    }
+    /// Where the path is after the last passage of a leg, and which way it goes there.
+    pub fn end_of(&self, leg: &Id) -> Option<Approach> {
+        let passage = self.passages.iter().rfind(|passage| passage.leg == *leg)?;
+        self.towards(passage.end)
+    }
+    /// At a point, coming from the point before it.
+    fn towards(&self, index: usize) -> Option<Approach> {
+        let at = |i: usize| self.points.get(i).map(|point| point.position);
+        let index = index.min(self.points.len().checked_sub(1)?);
+        let from = at(index)?;
+        let before = index.checked_sub(1).and_then(at).filter(|before| before.distance_m(from) > 0.5);
+        Some(Approach { from, course_deg: before.map(|before| before.inverse(from).bearing_end_deg) })
     }
     /// Points of the passages of a leg, part by part.
     pub fn passages_of<'a>(&'a self, leg: &'a Id) -> impl Iterator<Item = &'a [Point]> {

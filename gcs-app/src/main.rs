@@ -56,8 +56,8 @@ struct Window {
 }
 
 /// What is logged unless RUST_LOG says otherwise. Zenoh reports each connection that is tried in vain or torn down, winit
-/// each setting the desktop lacks; what matters of it reaches the user as a link's state or as an error.
-const LOG: &str = "warn,zenoh=off,winit=error";
+/// each setting the desktop lacks, rfd a desktop without dialogs; what matters of it reaches the user as a link's state or as an error.
+const LOG: &str = "warn,zenoh=off,winit=error,rfd=off";
 
 fn main() -> ExitCode {
     tracing_subscriber::fmt()

@@ -369,7 +369,8 @@ impl eframe::App for App {
         let now = Now::read(&ctx);
         self.play(&ctx);
         let mut queue = std::mem::take(&mut self.queue);
-        if !self.scene(now).is_asking() {
+        // a menu takes Escape for itself
+        if !self.scene(now).is_asking() && !egui::Popup::is_any_open(&ctx) {
             self.map.keys(&ctx);
             keys::read(&ctx, &self.scene(now), &mut queue);
         }

@@ -28,7 +28,7 @@ use walkers::{Map, MapMemory, lat_lon};
 use wire::Convert;
 
 /// What is shown where nothing else asks for a place: where the shipped elevations are.
-const HOME: LatLon = LatLon::new(36.319, -84.173);
+pub(crate) const HOME: LatLon = LatLon::new(36.319, -84.173);
 
 /// Zoom level of a map without a plan, as long as it is not fitted to one.
 const EMPTY_ZOOM: f64 = 12.0;

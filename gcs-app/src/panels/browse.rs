@@ -4,7 +4,7 @@ use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::files::{Entry, Purpose};
 use crate::theme;
-use egui::{Id, Key, Modal, RichText, ScrollArea, Ui};
+use egui::{Align, Id, Key, Layout, Modal, RichText, ScrollArea, Ui};
 use std::path::{Path, PathBuf};
 
 /// A folder in which a file is chosen.
@@ -132,9 +132,11 @@ fn entries(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) {
         }
         Some(Ok(entries)) => {
             area.show_rows(ui, ROW, entries.len(), |ui, shown| {
-                for entry in entries.get(shown).unwrap_or_default() {
-                    entry_row(ui, browsing, entry, queue);
-                }
+                ui.with_layout(Layout::top_down_justified(Align::LEFT), |ui| {
+                    for entry in entries.get(shown).unwrap_or_default() {
+                        entry_row(ui, browsing, entry, queue);
+                    }
+                });
             });
         }
     }
@@ -163,6 +165,9 @@ fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> bool {
         .hint_text("name, or a whole path")
         .desired_width(f32::INFINITY);
     let response = ui.add(field).labelled_by(label.id);
+    if ui.memory(|m| m.focused().is_none()) && !response.lost_focus() {
+        response.request_focus();
+    }
     if response.changed() {
         queue.view(ViewCommand::NameFile(name));
     }

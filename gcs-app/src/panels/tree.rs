@@ -1,5 +1,6 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
+mod make;
 mod menu;
 
 use super::{Panel, PanelId, Place, Scene};
@@ -7,6 +8,7 @@ use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind, ZoneKind};
+use make::Group;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ struct Row {
     text: String,
     detail: String,
     selection: Option<Selection>,
+    /// What can be made in it, for a heading.
+    group: Option<Group>,
     /// What is hidden when it is folded.
     folds: Option<String>,
 }
@@ -84,28 +88,16 @@ fn worst(scene: &Scene<'_>) -> BTreeMap<String, bool> {
 
 fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
     let mut builder = Builder { rows: Vec::new(), folded };
-    builder.group("Main plan", 0, |b| {
-        for stage in &plan.stages {
-            b.stage(stage, 1);
-        }
-    });
-    if !plan.emergency_plans.is_empty() {
-        builder.group("Emergency plans", 0, |b| b.emergency_plans(plan));
-    }
-    if !plan.procedures.is_empty() {
-        builder.group("Procedures", 0, |b| b.procedures(plan));
-    }
-    if !plan.zones.is_empty() {
-        builder.group("Zones", 0, |b| b.zones(plan));
-    }
-    if !plan.variables.is_empty() {
-        builder.group("Variables", 0, |b| b.variables(plan));
-    }
-    if !plan.fixes.is_empty() {
-        builder.group("Fixes", 0, |b| b.fixes(plan));
-    }
-    if !plan.runways.is_empty() {
-        builder.group("Runways", 0, |b| b.runways(plan));
+    for group in Group::ALL.into_iter().filter(|group| group.is_shown(plan)) {
+        builder.group(group, |b| match group {
+            Group::Stages => plan.stages.iter().for_each(|stage| b.stage(stage, 1)),
+            Group::EmergencyPlans => b.emergency_plans(plan),
+            Group::Procedures => b.procedures(plan),
+            Group::Zones => b.zones(plan),
+            Group::Variables => b.variables(plan),
+            Group::Fixes => b.fixes(plan),
+            Group::Runways => b.runways(plan),
+        });
     }
     builder.rows
 }
@@ -116,13 +108,15 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn group(&mut self, name: &str, depth: usize, children: impl FnOnce(&mut Self)) {
+    fn group(&mut self, group: Group, children: impl FnOnce(&mut Self)) {
+        let name = group.name();
         self.push(Row {
-            depth,
+            depth: 0,
             tag: "",
             text: name.into(),
             detail: String::new(),
             selection: None,
+            group: Some(group),
             folds: Some(name.into()),
         });
         if !self.folded.contains(name) {
@@ -135,7 +129,15 @@ impl Builder<'_> {
     }
 
     fn item(&mut self, depth: usize, tag: &'static str, text: &str, detail: String, selection: Selection) {
-        self.push(Row { depth, tag, text: text.into(), detail, selection: Some(selection), folds: None });
+        self.push(Row {
+            depth,
+            tag,
+            text: text.into(),
+            detail,
+            selection: Some(selection),
+            group: None,
+            folds: None,
+        });
     }
 
     fn stage(&mut self, stage: &Stage, depth: usize) {
@@ -147,6 +149,7 @@ impl Builder<'_> {
             text: title(&stage.name, stage.id.as_str()),
             detail: emergency(&stage.emergency),
             selection: Some(Selection::Stage(stage.id.clone())),
+            group: None,
             folds: (!stage.legs.is_empty()).then_some(fold),
         });
         if !hidden {
@@ -169,6 +172,7 @@ impl Builder<'_> {
             text: title(&leg.name, leg.id.as_str()),
             detail: [leg_detail(&leg.kind), emergency(&leg.emergency)].join(" ").trim().to_owned(),
             selection: Some(Selection::Leg(leg.id.clone())),
+            group: None,
             folds: (!leg.body().is_empty()).then_some(fold),
         });
         if hidden {
@@ -201,6 +205,7 @@ impl Builder<'_> {
                 text: title(&emergency.name, emergency.id.as_str()),
                 detail: format!("→ {}", emergency.runway),
                 selection: Some(Selection::Emergency(emergency.id.clone())),
+                group: None,
                 folds: Some(fold),
             });
             for stage in emergency.stages.iter().filter(|_| !hidden) {
@@ -220,6 +225,7 @@ impl Builder<'_> {
                 text: title(&procedure.name, procedure.id.as_str()),
                 detail: parameters.join(", "),
                 selection: Some(Selection::Procedure(procedure.id.clone())),
+                group: None,
                 folds: (!procedure.legs.is_empty()).then_some(fold),
             });
             if !hidden {
@@ -348,7 +354,11 @@ fn draw(
         contents(ui, rect, row, active, folded, problems, p);
     }
     if let Some(selection) = &row.selection {
-        response.context_menu(|ui| menu::show(ui, scene.document.plan(), selection, queue));
+        response.context_menu(|ui| menu::show(ui, scene, selection, queue));
+    }
+    if let Some(group) = row.group {
+        response.context_menu(|ui| make::show(ui, scene, group, queue));
+        add_button(ui, rect, group, scene, queue);
     }
     let on_triangle = response.interact_pointer_pos().is_some_and(|at| at.x < indent(rect, row) + 14.0);
     if response.clicked() && row.selection.is_some() && !(row.folds.is_some() && on_triangle) {
@@ -361,6 +371,17 @@ fn draw(
         queue.view(ViewCommand::JumpTo(selection));
     }
     response.clicked() && row.folds.is_some()
+}
+
+/// At the end of a heading: what can be made there.
+fn add_button(ui: &mut Ui, row: Rect, group: Group, scene: &Scene<'_>, queue: &mut Queue) {
+    let rect = Rect::from_min_max(pos2(row.right() - 26.0, row.top()), row.right_bottom());
+    let button = ui.put(rect, egui::Button::new("+").frame(false));
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(Role::Button, true, format!("Add to {}", group.name().to_lowercase()))
+    });
+    egui::Popup::menu(&button).show(|ui| make::show(ui, scene, group, queue));
+    button.on_hover_text(group.hint());
 }
 
 fn indent(rect: Rect, row: &Row) -> f32 {

@@ -2,6 +2,7 @@
 
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
+use flight_plan::create::{LegChoice, Shape};
 use flight_plan::{FlightPlan, LegKind};
 
 /// Right click on a row, click on an entry.
@@ -52,7 +53,8 @@ fn a_leg_is_duplicated_moved_looped_and_deleted_from_its_menu() {
 
 #[test]
 fn a_runway_gets_an_emergency_plan_and_a_fix_is_deleted_without_breaking_its_legs() {
-    let mut window = Window::open(SQUARE);
+    // all rows of the tree fit
+    let mut window = Window::open_with(SQUARE, egui::vec2(1280.0, 1000.0), None);
     window.until_analysed();
     let had = window.plan().emergency_plans.len();
     choose(&mut window, "RWY R05", "Emergency plan that lands here");
@@ -63,4 +65,74 @@ fn a_runway_gets_an_emergency_plan_and_a_fix_is_deleted_without_breaking_its_leg
     window.until_analysed();
     let worst = window.app().analysis().problems.iter().map(|p| p.severity).max();
     assert!(worst < Some(flight_plan::Severity::Error), "{:?}", window.app().analysis().problems);
+}
+
+/// The `+` of a heading, and an entry of its menu.
+fn add(window: &mut Window, to: &str, entry: &str) {
+    window.click(&format!("Add to {to}"));
+    let at = window.harness.get_by_label(entry).rect().center();
+    window.click_at(at);
+}
+
+#[test]
+fn stages_variables_and_emergency_plans_are_made_from_the_headings() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = window.plan();
+    add(&mut window, "main plan", "Mission stage");
+    let made = window.selected();
+    let plan = window.plan();
+    let ids: Vec<&str> = plan.stages.iter().map(|stage| stage.id.as_str()).collect();
+    assert_eq!(ids.iter().position(|id| *id == made), Some(ids.len() - 2), "before the landing: {ids:?}");
+    window.click("Undo");
+    assert_eq!(window.plan(), before);
+    for kind in ["Number", "Yes or no", "Text", "Position", "Area"] {
+        add(&mut window, "variables", kind);
+        assert!(window.plan().variable(&window.selected().as_str().into()).is_some(), "{kind}");
+    }
+    add(&mut window, "emergency plans", "Land on R05");
+    assert_eq!(window.plan().emergency_plans.len(), before.emergency_plans.len() + 1);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn stage_is_moved_from_its_menu() {
+    let mut window = Window::open(SQUARE);
+    choose(&mut window, "ENR circuit", "Move up");
+    let plan = window.plan();
+    let ids: Vec<&str> = plan.stages.iter().map(|stage| stage.id.as_str()).collect();
+    assert_eq!(ids, ["circuit", "take-off", "land"]);
+}
+
+#[test]
+fn leg_becomes_every_kind_that_its_menu_offers() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = window.plan();
+    let mut changed = 0;
+    for choice in LegChoice::ALL.into_iter().filter(|choice| choice.shape() != Shape::Nothing) {
+        window.harness.get_by_label("TF side2").click_secondary();
+        window.steps(3);
+        let kinds = window.harness.get_by_label_contains("Change its kind").rect().center();
+        window.click_at(kinds);
+        let offered = choice != LegChoice::Tf && window.is_enabled(choice.name());
+        if offered {
+            let at = window.harness.get_by_label(choice.name()).rect().center();
+            window.click_at(at);
+            assert_eq!(LegChoice::of(&window.plan().leg(&"side2".into()).unwrap().leg.kind), choice);
+            window.until_analysed();
+            // an arc between straight tracks is never smooth at both ends, and that is said
+            if choice != LegChoice::Rf {
+                assert_eq!(window.errors(), Vec::<String>::new(), "{}", choice.name());
+            }
+            window.click("Undo");
+            assert_eq!(window.plan(), before, "{}", choice.name());
+            changed += 1;
+        } else {
+            window.press(egui::Key::Escape);
+            assert!(!window.shows("Change its kind"), "Escape closes the menu");
+        }
+    }
+    assert!(changed >= 12, "{changed} kinds");
 }

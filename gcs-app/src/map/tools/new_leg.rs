@@ -2,7 +2,6 @@
 
 use super::Canvas;
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::forecast::{Forecast, Passage};
 use crate::map::sketch::{Handle, Handled};
 use crate::panels::Scene;
 use aircraft::Profile;
@@ -170,7 +169,7 @@ pub fn approach(canvas: &Canvas<'_>, at: &Spot) -> Option<Approach> {
             let context = plan.leg(id)?;
             match context.index.checked_sub(1).and_then(|i| context.siblings.get(i)) {
                 Some(before) => end_of(canvas, last_flown(before)),
-                None => start_of(canvas.scene.forecast(), context.leg.first_flown()),
+                None => canvas.scene.forecast().start_of(&context.leg.first_flown().id),
             }
         }
         Spot::EndOf(id) => {
@@ -201,7 +200,7 @@ pub fn place_of(canvas: &Canvas<'_>, leg: &Leg) -> Option<LatLon> {
 
 /// The end of a leg: by its place and course where it has them, else as it was flown ahead last.
 fn end_of(canvas: &Canvas<'_>, leg: &Leg) -> Option<Approach> {
-    let flown = end_of_flown(canvas.scene.forecast(), leg);
+    let flown = canvas.scene.forecast().end_of(&leg.id);
     let is_track = LegChoice::of(&leg.kind).shape() == Shape::Place && !matches!(leg.kind, LegKind::Call(_));
     let Some(from) = place_of(canvas, leg).filter(|_| is_track) else { return flown };
     let constant = |value: &Value<f64>| match value {
@@ -233,23 +232,4 @@ fn start_of_track(canvas: &Canvas<'_>, id: &Id) -> Option<LatLon> {
 
 fn last_flown(leg: &Leg) -> &Leg {
     leg.body().last().map_or(leg, |last| last_flown(last))
-}
-
-fn end_of_flown(forecast: &Forecast, leg: &Leg) -> Option<Approach> {
-    let passage = forecast.passages.iter().rfind(|passage| passage.leg == leg.id)?;
-    towards(forecast, passage.end)
-}
-
-fn start_of(forecast: &Forecast, leg: &Leg) -> Option<Approach> {
-    let Passage { first, .. } = forecast.passages.iter().find(|passage| passage.leg == leg.id)?;
-    towards(forecast, *first)
-}
-
-/// From the point before that index to it.
-fn towards(forecast: &Forecast, end: usize) -> Option<Approach> {
-    let at = |i: usize| forecast.points.get(i).map(|point| point.position);
-    let index = end.min(forecast.points.len().checked_sub(1)?);
-    let from = at(index)?;
-    let before = index.checked_sub(1).and_then(at).filter(|before| before.distance_m(from) > 0.5);
-    Some(Approach { from, course_deg: before.map(|before| before.inverse(from).bearing_end_deg) })
 }

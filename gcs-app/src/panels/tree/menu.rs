@@ -1,8 +1,11 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::panels::Scene;
+use aircraft::Profile;
 use egui::{Button, Ui};
-use flight_plan::{Edit, FlightPlan, Id, LegKind, create};
+use flight_plan::create::{self, LegChoice, Shape};
+use flight_plan::{Edit, FlightPlan, Id, Leg, LegKind};
 
 /// One row of the menu; `edit` is `None` where it cannot be done.
 struct Entry {
@@ -26,7 +29,8 @@ impl Entry {
 }
 
 /// The menu of what a row stands for.
-pub fn show(ui: &mut Ui, plan: &FlightPlan, of: &Selection, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
+    let plan = scene.document.plan();
     if let Selection::Runway(runway) = of
         && ui.button("Emergency plan that lands here").clicked()
     {
@@ -39,11 +43,44 @@ pub fn show(ui: &mut Ui, plan: &FlightPlan, of: &Selection, queue: &mut Queue) {
             entry.selects.into_iter().for_each(|made| queue.view(ViewCommand::Select(Some(made))));
         }
     }
+    if let Selection::Leg(id) = of
+        && let Some(context) = plan.leg(id)
+        && is_flown_itself(LegChoice::of(&context.leg.kind))
+    {
+        ui.menu_button("Change its kind", |ui| kinds(ui, scene, context.leg, queue));
+    }
+}
+
+/// It is neither a loop nor a fork, which are put around or before other legs.
+fn is_flown_itself(choice: LegChoice) -> bool {
+    choice.shape() != Shape::Nothing
+}
+
+/// The kinds that a leg can become; it keeps its place, as far as that can be.
+fn kinds(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
+    let plan = scene.document.plan();
+    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+    let at = scene.forecast().start_of(&leg.first_flown().id);
+    let now = LegChoice::of(&leg.kind);
+    for choice in LegChoice::ALL.into_iter().filter(|choice| *choice != now && is_flown_itself(*choice)) {
+        let changed = create::convert(plan, &profile, leg, choice, at);
+        let button = ui.add_enabled(changed.is_some(), Button::new(choice.name()));
+        let button = button.on_hover_text(choice.about());
+        if let Some(with) = changed.filter(|_| button.clicked()) {
+            queue.edit(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(with) });
+            ui.close();
+        }
+    }
 }
 
 fn entries(plan: &FlightPlan, of: &Selection) -> Vec<Entry> {
     match of {
         Selection::Leg(leg) => of_leg(plan, leg),
+        Selection::Stage(stage) => vec![
+            Entry::new("Move up", "", create::shift_stage(plan, stage, -1)),
+            Entry::new("Move down", "", create::shift_stage(plan, stage, 1)),
+            Entry::new("Delete", "", Some(create::remove(plan, stage))),
+        ],
         other => vec![Entry::new("Delete", "", Some(create::remove(plan, other.id())))],
     }
 }

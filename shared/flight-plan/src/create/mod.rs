@@ -11,7 +11,9 @@ pub use arrange::{duplicate, fork, loop_around, procedure_of, shift, unloop};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, convert, leg};
-pub use thing::{emergency_plan, fix, move_fix_into_legs, remove, runway, stage, variable, zone};
+pub use thing::{
+    add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
+};
 
 use crate::edit::lists;
 use crate::{FlightPlan, Id};

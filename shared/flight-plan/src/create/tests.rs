@@ -128,8 +128,7 @@ fn things_get_names_of_their_own() {
         let circle = ZoneShape::Circle { centre: HOME.destination(0.0, 9000.0), radius_m: 300.0 };
         plan = add(&plan, Thing::Zone(zone(&plan, ZoneKind::KeepOut, circle)));
         plan = add(&plan, Thing::Variable(variable(&plan, VariableValue::Number(1.0))));
-        let en_route = Box::new(stage(&plan, StageKind::EnRoute));
-        plan = Edit::InsertStage { stage: en_route, before: "arrival".into() }.apply(&plan).unwrap();
+        plan = add_stage(&plan, StageKind::EnRoute).1.apply(&plan).unwrap();
     }
     assert_eq!((plan.runways.len(), plan.runways[1].elevation_amsl_m), (4, 201.0));
     assert_eq!(plan.runways.iter().map(|r| r.priority).collect::<Vec<_>>(), [1, 2, 3, 4]);
@@ -137,6 +136,21 @@ fn things_get_names_of_their_own() {
     let ids: Vec<&str> = plan.stages.iter().map(|s| s.id.as_str()).collect();
     assert!(ids.contains(&"en-route") && ids.contains(&"en-route3"), "{ids:?}");
     assert_eq!(plan.unique_id("number1"), Id::new("number4"), "a variable has that name");
+}
+
+#[test]
+fn stages_are_added_in_the_order_of_a_flight_and_moved() {
+    let mut plan = FlightPlan::default();
+    for kind in [StageKind::Land, StageKind::Mission, StageKind::TakeOff, StageKind::Arrival] {
+        plan = add_stage(&plan, kind).1.apply(&plan).unwrap();
+    }
+    let ids = |plan: &FlightPlan| plan.stages.iter().map(|s| s.id.to_string()).collect::<Vec<_>>();
+    assert_eq!(ids(&plan), ["take-off", "mission", "arrival", "land"]);
+    let moved = |by| shift_stage(&plan, &"mission".into(), by).unwrap().apply(&plan).unwrap();
+    assert_eq!(ids(&moved(-1)), ["mission", "take-off", "arrival", "land"]);
+    assert_eq!(ids(&moved(1)), ["take-off", "arrival", "mission", "land"]);
+    assert_eq!(shift_stage(&plan, &"land".into(), 1), None);
+    assert_eq!(shift_stage(&plan, &"none".into(), 1), None);
 }
 
 #[test]

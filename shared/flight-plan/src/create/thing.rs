@@ -65,7 +65,7 @@ pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Variable {
 }
 
 /// An empty stage; one to take off or land gets the plan's first runway.
-pub fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
+fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
     let (stem, name) = match kind {
         StageKind::TakeOff => ("take-off", "Take-off"),
         StageKind::Departure => ("departure", "Departure"),
@@ -86,6 +86,41 @@ pub fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
         speed_mps: None,
         legs: Vec::new(),
     }
+}
+
+/// A new stage of the main plan, before the first one that comes later in a flight.
+pub fn add_stage(plan: &FlightPlan, kind: StageKind) -> (Id, Edit) {
+    let stage = stage(plan, kind);
+    let id = stage.id.clone();
+    let stage = Box::new(stage);
+    let edit = match plan.stages.iter().find(|other| order(other.kind) > order(kind)) {
+        Some(later) => Edit::InsertStage { stage, before: later.id.clone() },
+        None => Edit::AppendStage { to: None, stage },
+    };
+    (id, edit)
+}
+
+/// When a kind of stage comes in a flight; en-route and mission stages alternate.
+fn order(kind: StageKind) -> usize {
+    match kind {
+        StageKind::TakeOff => 0,
+        StageKind::Departure => 1,
+        StageKind::EnRoute | StageKind::Mission => 2,
+        StageKind::Arrival => 3,
+        StageKind::Approach => 4,
+        StageKind::Land => 5,
+    }
+}
+
+/// Takes a stage one place up (-1) or down (1) among its neighbours; `None`: it is at the end.
+pub fn shift_stage(plan: &FlightPlan, stage: &Id, by: isize) -> Option<Edit> {
+    let mut lists = std::iter::once(&plan.stages).chain(plan.emergency_plans.iter().map(|e| &e.stages));
+    let (list, index) = lists.find_map(|list| Some((list, list.iter().position(|s| s.id == *stage)?)))?;
+    let other = list.get(index.checked_add_signed(by)?)?.id.clone();
+    Some(match by < 0 {
+        true => Edit::MoveStage { stage: stage.clone(), before: other },
+        false => Edit::MoveStage { stage: other, before: stage.clone() },
+    })
 }
 
 /// An emergency plan that brings the aircraft to a runway from anywhere, with the fixes that it needs; the first of a plan

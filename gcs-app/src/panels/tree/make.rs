@@ -1,0 +1,153 @@
+//! What is made from a heading of the tree: by its `+`, or a right click on it.
+
+use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::panels::Scene;
+use egui::Ui;
+use flight_plan::{Edit, FlightPlan, StageKind, Thing, VariableValue, create};
+use geometry::LatLon;
+
+/// A heading of the tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// The main plan's.
+    Stages,
+    /// And what follows.
+    EmergencyPlans,
+    Procedures,
+    Zones,
+    Variables,
+    Fixes,
+    Runways,
+}
+
+impl Group {
+    /// From top to bottom.
+    pub const ALL: [Self; 7] = [
+        Self::Stages,
+        Self::EmergencyPlans,
+        Self::Procedures,
+        Self::Zones,
+        Self::Variables,
+        Self::Fixes,
+        Self::Runways,
+    ];
+
+    /// What the heading says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stages => "Main plan",
+            Self::EmergencyPlans => "Emergency plans",
+            Self::Procedures => "Procedures",
+            Self::Zones => "Zones",
+            Self::Variables => "Variables",
+            Self::Fixes => "Fixes",
+            Self::Runways => "Runways",
+        }
+    }
+
+    /// What its `+` does.
+    pub fn hint(self) -> &'static str {
+        match self {
+            Self::Stages => "Add a stage",
+            Self::EmergencyPlans => "Add an emergency plan",
+            Self::Procedures => "How procedures are made",
+            Self::Zones => "Draw a zone",
+            Self::Variables => "Add a variable",
+            Self::Fixes => "Place a fix",
+            Self::Runways => "Draw a runway",
+        }
+    }
+
+    /// An empty plan shows where to begin; a plan with procedures shows them.
+    pub fn is_shown(self, plan: &FlightPlan) -> bool {
+        match self {
+            Self::Stages => true,
+            Self::Procedures => !plan.procedures.is_empty(),
+            _ => !plan.stages.is_empty() || !plan.runways.is_empty(),
+        }
+    }
+}
+
+/// The menu of a heading.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, group: Group, queue: &mut Queue) {
+    match group {
+        Group::Stages => stages(ui, scene.document.plan(), queue),
+        Group::EmergencyPlans => emergency_plans(ui, scene.document.plan(), queue),
+        Group::Procedures => {
+            ui.label("Right-click a leg and make a procedure of it,\nthen draw calls of it on the map.");
+        }
+        Group::Variables => variables(ui, scene, queue),
+        Group::Zones => tool(ui, group.hint(), "zone", queue),
+        Group::Fixes => tool(ui, group.hint(), "fix", queue),
+        Group::Runways => tool(ui, group.hint(), "runway", queue),
+    }
+}
+
+fn tool(ui: &mut Ui, name: &str, id: &'static str, queue: &mut Queue) {
+    if ui.button(format!("{name} on the map")).clicked() {
+        queue.view(ViewCommand::Tool(id));
+    }
+}
+
+fn stages(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
+    const KINDS: [(StageKind, &str); 7] = [
+        (StageKind::TakeOff, "Take-off stage"),
+        (StageKind::Departure, "Departure stage"),
+        (StageKind::EnRoute, "En-route stage"),
+        (StageKind::Mission, "Mission stage"),
+        (StageKind::Arrival, "Arrival stage"),
+        (StageKind::Approach, "Approach stage"),
+        (StageKind::Land, "Landing stage"),
+    ];
+    for (kind, name) in KINDS {
+        if ui.button(name).clicked() {
+            let (id, edit) = create::add_stage(plan, kind);
+            queue.edit(edit);
+            queue.view(ViewCommand::Select(Some(Selection::Stage(id))));
+        }
+    }
+}
+
+fn emergency_plans(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
+    if plan.runways.is_empty() {
+        ui.label("Draw a runway first: an emergency plan lands on one.");
+    }
+    for runway in &plan.runways {
+        if ui.button(format!("Land on {}", runway.id)).clicked() {
+            queue.document(DocumentCommand::BringHome(runway.id.clone()));
+        }
+    }
+}
+
+fn variables(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let plan = scene.document.plan();
+    let here = middle(scene);
+    let kinds = [
+        ("Number", VariableValue::Number(0.0)),
+        ("Yes or no", VariableValue::Bool(false)),
+        ("Text", VariableValue::Text(String::new())),
+        ("Position", VariableValue::Position(here)),
+        ("Area", VariableValue::Polygon(square(here))),
+    ];
+    for (name, initial) in kinds {
+        if ui.button(name).clicked() {
+            let variable = create::variable(plan, initial);
+            queue.view(ViewCommand::Select(Some(Selection::Variable(variable.name.clone()))));
+            queue.edit(Edit::Add(Box::new(Thing::Variable(variable))));
+        }
+    }
+}
+
+/// Where something new is seen: halfway along the path, else at the runway.
+fn middle(scene: &Scene<'_>) -> LatLon {
+    let forecast = scene.forecast();
+    let halfway = forecast.at(forecast.duration_s() / 2.0).map(|point| point.position);
+    let home = || scene.document.plan().home().map(|runway| runway.threshold);
+    halfway.or_else(home).unwrap_or(crate::map::HOME)
+}
+
+/// 400 m wide.
+fn square(middle: LatLon) -> Vec<LatLon> {
+    const TO_CORNER_M: f64 = 283.0;
+    [45.0, 135.0, 225.0, 315.0].map(|bearing_deg| middle.destination(bearing_deg, TO_CORNER_M)).to_vec()
+}
