@@ -374,12 +374,17 @@ fn draw(
 }
 
 /// At the end of a heading: what can be made there.
-fn add_button(ui: &mut Ui, row: Rect, group: Group, scene: &Scene<'_>, queue: &mut Queue) {
-    let rect = Rect::from_min_max(pos2(row.right() - 26.0, row.top()), row.right_bottom());
-    let button = ui.put(rect, egui::Button::new("+").frame(false));
+fn add_button(ui: &Ui, row: Rect, group: Group, scene: &Scene<'_>, queue: &mut Queue) {
+    // clear of the scroll bar
+    let rect =
+        Rect::from_min_max(pos2(row.right() - 42.0, row.top()), pos2(row.right() - 12.0, row.bottom()));
+    let button = ui.interact(rect, ui.scope_id().with(group.name()), Sense::click());
     button.widget_info(|| {
         egui::WidgetInfo::labeled(Role::Button, true, format!("Add to {}", group.name().to_lowercase()))
     });
+    let p = theme::of(ui);
+    let colour = if button.hovered() || button.has_focus() { p.text } else { p.weak };
+    ui.painter().text(rect.center(), Align2::CENTER_CENTER, "+", FontId::proportional(16.0), colour);
     egui::Popup::menu(&button).show(|ui| make::show(ui, scene, group, queue));
     button.on_hover_text(group.hint());
 }

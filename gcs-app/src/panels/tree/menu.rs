@@ -36,18 +36,18 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     {
         queue.document(DocumentCommand::BringHome(runway.clone()));
     }
+    if let Selection::Leg(id) = of
+        && let Some(context) = plan.leg(id)
+        && is_flown_itself(LegChoice::of(&context.leg.kind))
+    {
+        ui.menu_button("Change its kind", |ui| kinds(ui, scene, context.leg, queue));
+    }
     for entry in entries(plan, of) {
         let button = Button::new(entry.name).shortcut_text(entry.keys);
         if ui.add_enabled(entry.edit.is_some(), button).clicked() {
             entry.edit.into_iter().for_each(|edit| queue.edit(edit));
             entry.selects.into_iter().for_each(|made| queue.view(ViewCommand::Select(Some(made))));
         }
-    }
-    if let Selection::Leg(id) = of
-        && let Some(context) = plan.leg(id)
-        && is_flown_itself(LegChoice::of(&context.leg.kind))
-    {
-        ui.menu_button("Change its kind", |ui| kinds(ui, scene, context.leg, queue));
     }
 }
 
