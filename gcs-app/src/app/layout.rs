@@ -40,6 +40,7 @@ impl App {
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &entries, queue));
         notice(ui, &scene, queue);
+        push::show(ui, &scene, queue);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
@@ -53,7 +54,6 @@ impl App {
             }
             over_map(ui, floor, &scene, queue);
         });
-        push::show(ui, &scene, queue);
         unsaved::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);

@@ -14,7 +14,7 @@ use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
-use flight_plan::{Edit, Id, Thing, create};
+use flight_plan::{Edit, Id, Thing, create, diff};
 use geometry::LatLon;
 use std::path::{Path, PathBuf};
 use usal::contract::{GatewayRequest, Propose};
@@ -292,6 +292,11 @@ impl App {
 
     fn propose(&mut self, vehicle: &VehicleName, now_s: f64) {
         self.take_proposal(vehicle);
+        if let Some(asked) = self.vehicles.get_mut(vehicle) {
+            let aboard = asked.aboard.as_ref();
+            asked.put_forward =
+                aboard.map_or_else(Vec::new, |aboard| diff::changes(&aboard.plan, self.document.plan()));
+        }
         let status = self.vehicles.get(vehicle).and_then(|v| v.status.as_ref());
         let seen_revision = status.map(|s| s.value.revision);
         let xml = flight_plan::write(self.document.plan());

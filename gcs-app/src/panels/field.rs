@@ -168,8 +168,29 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     if response.has_focus() {
         painter.rect_stroke(rect.expand(2.0), 6.0, Stroke::new(1.0, p.text), egui::StrokeKind::Outside);
     }
-    response.on_hover_text(format!("Hold for {HOLD_S:.0} s"));
+    if was_let_go(ui, response.id) {
+        response.show_tooltip_text(format!("Nothing was done. Keep it pressed for {HOLD_S:.0} s."));
+    } else {
+        response.on_hover_text(format!("Hold for {HOLD_S:.0} s"));
+    }
     (1.0..f64::INFINITY).contains(&progress)
+}
+
+/// Seconds for which it is said that a hold was too short.
+const TOO_SHORT_S: f64 = 3.0;
+
+fn too_short(id: Id) -> Id {
+    id.with("too short")
+}
+
+/// It was let go too early, a moment ago.
+fn was_let_go(ui: &Ui, id: Id) -> bool {
+    let Some(since) = ui.data(|d| d.get_temp::<f64>(too_short(id))) else { return false };
+    let left_s = since + TOO_SHORT_S - ui.input(|i| i.time);
+    if left_s > 0.0 {
+        ui.ctx().request_repaint_after_secs(left_s as f32);
+    }
+    left_s > 0.0
 }
 
 /// How far a hold has come, 0..1, reaching at least 1 in exactly one frame; 0 after that until it is let go.
@@ -177,8 +198,15 @@ fn progress(ui: &Ui, id: Id, held: bool) -> f64 {
     let now = ui.input(|i| i.time);
     let started = ui.data(|d| d.get_temp::<f64>(id));
     match (held, started) {
-        (false, _) => {
-            ui.data_mut(|d| d.remove::<f64>(id));
+        (false, None) => 0.0,
+        (false, Some(start)) => {
+            ui.data_mut(|d| {
+                d.remove::<f64>(id);
+                if start.is_finite() {
+                    d.insert_temp(too_short(id), now);
+                }
+            });
+            ui.request_repaint();
             0.0
         }
         (true, None) => {

@@ -1,32 +1,47 @@
-//! What a proposed plan would do, before it is committed.
+//! What a proposed plan would do, before it is committed. It stands beside map and panels: the commands of the flight
+//! stay in reach while the operator reads.
 
 use super::Scene;
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
-use egui::{Color32, RichText, ScrollArea, Ui};
-use flight_plan::Id;
+use egui::{Color32, Panel, RichText, ScrollArea, Ui};
+use flight_plan::{Change, Id};
 
-/// Draws the window with the proposal's answer, while there is one.
+/// Screen points.
+const WIDTH: f32 = 260.0;
+/// So many changes are written out.
+const MOST_CHANGES: usize = 200;
+
+/// Draws the proposal's answer, while there is one.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(proposal) = &scene.vehicle.proposal else { return };
-    egui::Window::new("Push plan")
-        .id(egui::Id::unique("push"))
-        .collapsible(false)
+    Panel::right("push")
+        .exact_size(WIDTH)
         .resizable(false)
-        .default_width(380.0)
-        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(ui.ctx(), |ui| body(ui, scene, proposal, queue));
+        .frame(theme::panel(ui).inner_margin(12.0))
+        .show(ui, |ui| body(ui, scene, proposal, queue));
 }
 
 fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
     let report = &proposal.report;
     let p = theme::of(ui);
-    ui.set_width(380.0);
+    ui.label(RichText::new("Push plan").strong().size(16.0));
     verdict(ui, proposal, p);
-    ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
-        ui.set_width(ui.available_width());
+    if scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash != *report.hash) {
+        let text = "⚠ The draft was edited since. What was checked is committed, without these edits.";
+        ui.label(RichText::new(text).color(p.caution));
+    }
+    // the decision first: it is never scrolled away
+    if report.entry_needed {
+        entry(ui, scene, proposal, queue);
+    }
+    ui.horizontal(|ui| buttons(ui, proposal, queue));
+    ui.separator();
+    next(ui, proposal, scene.units(), p);
+    ui.separator();
+    ScrollArea::vertical().id_salt("push").auto_shrink(false).show(ui, |ui| {
         for problem in &report.problems {
             ui.label(RichText::new(format!("⚠ {problem}")).color(p.caution));
         }
@@ -36,14 +51,23 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         if report.added.is_empty() && report.changed.is_empty() && report.removed.is_empty() {
             ui.label(RichText::new("No leg differs from the plan aboard.").color(p.weak));
         }
+        changes(ui, &proposal.changes, p);
     });
-    ui.separator();
-    next(ui, proposal, scene.units(), p);
-    if report.entry_needed {
-        entry(ui, scene, proposal, queue);
+}
+
+/// Each change in words: `leg patrol changed: count 2 → 3`.
+fn changes(ui: &mut Ui, changes: &[Change], p: &Palette) {
+    if changes.is_empty() {
+        return;
     }
-    ui.add_space(4.0);
-    ui.horizontal(|ui| buttons(ui, proposal, queue));
+    ui.add_space(6.0);
+    super::group_title(ui, "In the document");
+    for change in changes.iter().take(MOST_CHANGES) {
+        ui.label(change.to_string());
+    }
+    if let Some(more) = changes.len().checked_sub(MOST_CHANGES).filter(|more| *more > 0) {
+        ui.label(RichText::new(format!("and {more} more")).color(p.weak));
+    }
 }
 
 fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
@@ -96,7 +120,7 @@ fn in_so_far(way: Option<(f64, f64)>, units: Units) -> String {
 }
 
 fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
-    ui.horizontal(|ui| {
+    ui.vertical(|ui| {
         ui.label("The leg it is on is gone. Enter at:");
         let current = proposal.entry.as_ref().map_or("choose a leg", Id::as_str);
         egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {

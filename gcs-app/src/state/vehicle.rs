@@ -77,6 +77,8 @@ pub struct Vehicle {
     pub plain_events: BTreeMap<(&'static str, &'static str), RecentEvents>,
     /// The active plan.
     pub aboard: Option<ActivePlan>,
+    /// How the plan that was put forward last differs from the one aboard then.
+    pub put_forward: Vec<flight_plan::Change>,
     /// What the last proposal would do, until committed or dropped.
     pub proposal: Option<Proposal>,
     /// Where it has been.
@@ -106,6 +108,8 @@ pub struct ActivePlan {
 pub struct Proposal {
     /// What it would do.
     pub report: ProposalReport,
+    /// What is different in the plan, as it was when it was put forward.
+    pub changes: Vec<flight_plan::Change>,
     /// The leg at which it will be entered, if one must be named.
     pub entry: Option<Id>,
 }
@@ -243,7 +247,8 @@ impl Vehicle {
         match result {
             Ok(Reply::Proposal(report)) => {
                 let entry = report.entry_needed.then(|| report.next_leg.clone()).flatten();
-                self.proposal = Some(Proposal { report: *report, entry });
+                let changes = std::mem::take(&mut self.put_forward);
+                self.proposal = Some(Proposal { report: *report, changes, entry });
             }
             Ok(Reply::Plan(aboard)) => self.aboard = aboard,
             Ok(Reply::Done) | Err(_) => {}

@@ -97,6 +97,54 @@ fn push_shows_the_difference_and_commits_by_hash() {
 }
 
 #[test]
+fn proposal_leaves_the_commands_of_the_flight_in_reach() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0), egui::vec2(1920.0, 1080.0)] {
+        let (mut window, mut value) = flying();
+        value.plan = Some("another".into());
+        window.receive_status(value);
+        while window.asked().is_some() {}
+        window.harness.set_size(size);
+        window.click("Push");
+        let (ticket, _) = window.asked().unwrap();
+        let hash = window.app().analysis().hash.clone();
+        window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+        window.steps(3);
+        let commit = window.centre("Commit");
+        assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, size).contains(commit));
+        let hold = window.centre("⏸ Hold");
+        window.click_at(hold);
+        assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Hold)), "{size}");
+        window.click_at(commit);
+        assert!(matches!(window.asked(), Some((_, Call::Plan(Command::Commit { .. })))), "{size}");
+    }
+}
+
+#[test]
+fn proposal_says_in_words_what_is_different_and_what_was_edited_since() {
+    let (mut window, hash) = connected();
+    let plan = std::sync::Arc::new(window.plan());
+    let aboard = gcs_app::state::ActivePlan { plan, hash: hash.as_str().into() };
+    let mut value = status(Phase::Flying);
+    value.plan = Some(hash.clone().into());
+    window.receive_position(false);
+    window.receive_status(value);
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Plan(Some(aboard))));
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    window.until_analysed();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let drafted = window.app().analysis().hash_of(window.app().document().version()).unwrap().to_string();
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&drafted, true)))));
+    assert!(window.shows("leg side2 removed") && !window.shows("edited since"));
+    window.click("TF side3");
+    window.press(egui::Key::Delete);
+    window.until_analysed();
+    assert!(window.shows("The draft was edited since"));
+}
+
+#[test]
 fn a_refused_proposal_stays_a_draft_and_says_why() {
     let (mut window, hash) = connected();
     window.click("Push");
@@ -154,6 +202,7 @@ fn taking_off_needs_a_held_button() {
     window.click("Start and take off (hold)");
     window.hold("Start and take off (hold)", 30);
     assert!(window.asked().is_none(), "half a second is not enough");
+    assert!(window.shows("Keep it pressed for 1 s"), "a short click is answered");
     window.hold("Start and take off (hold)", 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Start)));
     assert!(window.asked().is_none(), "once");
