@@ -1,7 +1,7 @@
 //! Keys that work wherever the pointer is, as long as nothing is being typed.
 
 use crate::command::{DocumentCommand, Queue, Replacement, Selection, ViewCommand};
-use crate::panels::Scene;
+use crate::panels::{Scene, tree};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use flight_plan::{Edit, edit::Spot};
 
@@ -21,6 +21,10 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
         if pressed(&shortcut) {
             queue.document(command);
         }
+    }
+    if pressed(&ctrl(Key::F)) {
+        queue.view(ViewCommand::ShowPanel(tree::ID, true));
+        tree::focus_search(ctx);
     }
     if ctx.text_edit_focused() {
         return;
@@ -49,7 +53,8 @@ fn view_keys(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
     if nothing_focused && pressed(Key::Space) {
         queue.view(ViewCommand::Play(!scene.view.playing));
     }
-    if pressed(Key::Escape) {
+    // not consumed: the field that it ends needs it, too
+    if ctx.input(|i| i.key_pressed(Key::Escape)) {
         queue.view(ViewCommand::Select(None));
     }
 }

@@ -1,5 +1,6 @@
 //! What is selected, and what can be changed about it. Every change is an edit of the document.
 
+mod inherited;
 mod leg;
 
 use super::field::{self, Change};
@@ -7,7 +8,7 @@ use super::{Panel, PanelId, Place, Scene};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Selection};
 use crate::document::procedure_leg;
 use crate::theme;
-use crate::units::{self, Units};
+use crate::units;
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::Command;
 use flight_plan::{
@@ -132,16 +133,39 @@ fn reference_text(reference: AltitudeReference) -> &'static str {
     }
 }
 
+/// A number with its unit, or a formula.
+fn value_text(value: &Value<f64>, unit: units::Unit) -> String {
+    match value {
+        Value::Constant(number) => unit.show(*number),
+        Value::Expression(formula) => formula.to_string(),
+    }
+}
+
+/// A value that comes from elsewhere; true when it becomes one of its own, to be changed.
+fn inherited_button(ui: &mut Ui, text: &str, from: &str, what: &str) -> bool {
+    let hover =
+        format!("Inherited from {from}. Click to give it {what} of its own, beginning with this one.");
+    let clicked = ui.button(text).on_hover_text(hover).clicked();
+    let from = RichText::new(format!("from {from}")).size(12.0).color(theme::of(ui).weak);
+    ui.add(egui::Label::new(from).truncate());
+    clicked
+}
+
 /// The altitude of a leg or stage: number, unit and datum, or inherited.
-fn altitude_row(ui: &mut Ui, units: Units, of: &Id, altitude: Option<&Altitude>, queue: &mut Queue) {
+fn altitude_row(ui: &mut Ui, scene: &Scene<'_>, of: &Id, altitude: Option<&Altitude>, queue: &mut Queue) {
+    let units = scene.units();
     let set = |altitude| Edit::SetAltitude { of: of.clone(), altitude };
     field::row(ui, "Altitude", |ui| {
         let Some(current) = altitude else {
-            if ui.button("inherited").on_hover_text("Give it an altitude of its own").clicked() {
-                queue.edit(set(Some(Altitude {
-                    metres: Value::Constant(1000.0),
-                    reference: AltitudeReference::Amsl,
-                })));
+            let inherited = inherited::altitude(scene, of);
+            let metres = value_text(&inherited.value.metres, units.altitude());
+            let datum = match inherited.value.reference {
+                AltitudeReference::Home => "above home",
+                other => reference_text(other),
+            };
+            let text = format!("{metres} {datum}");
+            if inherited_button(ui, &text, &inherited.from, "an altitude") {
+                queue.edit(set(Some(inherited.value)));
             }
             return;
         };
@@ -166,16 +190,18 @@ fn altitude_row(ui: &mut Ui, units: Units, of: &Id, altitude: Option<&Altitude>,
     });
 }
 
-fn speed_row(ui: &mut Ui, units: Units, of: &Id, speed: Option<&Value<f64>>, queue: &mut Queue) {
+fn speed_row(ui: &mut Ui, scene: &Scene<'_>, of: &Id, speed: Option<&Value<f64>>, queue: &mut Queue) {
     let set = |speed_mps| Edit::SetSpeed { of: of.clone(), speed_mps };
     field::row(ui, "Airspeed", |ui| match speed {
         None => {
-            if ui.button("inherited").on_hover_text("Give it an airspeed of its own").clicked() {
-                queue.edit(set(Some(Value::Constant(25.0))));
+            let inherited = inherited::speed_mps(scene, of);
+            let text = value_text(&inherited.value, scene.units().speed());
+            if inherited_button(ui, &text, &inherited.from, "an airspeed") {
+                queue.edit(set(Some(inherited.value)));
             }
         }
         Some(current) => {
-            let change = field::number_value(ui, "Airspeed", current, units.speed(), 1.0);
+            let change = field::number_value(ui, "Airspeed", current, scene.units().speed(), 1.0);
             send(change.map(|v| set(Some(v))), queue);
             if ui.small_button("✖").on_hover_text("Inherit the airspeed").clicked() {
                 queue.edit(set(None));
@@ -216,8 +242,8 @@ fn show_stage(ui: &mut Ui, scene: &Scene<'_>, stage: &Stage, queue: &mut Queue) 
     if let Some(runway) = &stage.runway {
         field::row(ui, "Runway", |ui| ui.label(runway.as_str()));
     }
-    altitude_row(ui, scene.units(), &stage.id, stage.altitude.as_ref(), queue);
-    speed_row(ui, scene.units(), &stage.id, stage.speed_mps.as_ref(), queue);
+    altitude_row(ui, scene, &stage.id, stage.altitude.as_ref(), queue);
+    speed_row(ui, scene, &stage.id, stage.speed_mps.as_ref(), queue);
     emergency_row(ui, scene.document.plan(), &stage.id, &stage.emergency, queue);
 }
 

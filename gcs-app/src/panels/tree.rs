@@ -2,6 +2,7 @@
 
 mod make;
 mod menu;
+mod search;
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
@@ -9,6 +10,7 @@ use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Problem, Stage, StageKind, ZoneKind};
 use make::Group;
+pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -32,13 +34,18 @@ pub struct Tree {
     rows: Vec<Row>,
     version: Option<u64>,
     folded: BTreeSet<String>,
+    /// What is searched for, as it was typed.
+    sought: String,
 }
+
+/// Of the panel.
+pub const ID: PanelId = "plan";
 
 const HEIGHT: f32 = 23.0;
 
 impl Panel for Tree {
     fn id(&self) -> PanelId {
-        "plan"
+        ID
     }
     fn name(&self) -> &'static str {
         "Plan"
@@ -47,10 +54,15 @@ impl Panel for Tree {
         Place::Left { height: 570.0 }
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let typed = search::field(ui, &mut self.sought);
+        if typed.changed {
+            self.version = None;
+        }
         if self.version != Some(scene.document.version()) {
-            self.rows = rows(scene.document.plan(), &self.folded);
+            self.rows = self.rows_of(scene.document.plan());
             self.version = Some(scene.document.version());
         }
+        search::outcome(ui, &self.sought, typed.entered, &self.rows, queue);
         let problems = worst(scene);
         let mut toggled = None;
         ui.spacing_mut().item_spacing.y = 1.0;
@@ -71,6 +83,16 @@ impl Panel for Tree {
                 self.folded.insert(fold);
             }
             self.version = None;
+        }
+    }
+}
+
+impl Tree {
+    /// All rows but the folded ones, or those that match what is searched for.
+    fn rows_of(&self, plan: &FlightPlan) -> Vec<Row> {
+        match self.sought.trim() {
+            "" => rows(plan, &self.folded),
+            sought => search::matching(rows(plan, &BTreeSet::new()), sought),
         }
     }
 }
@@ -183,6 +205,7 @@ impl Builder<'_> {
             for branch in branches {
                 let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
                 let is_default = default.as_ref() == Some(&branch.id);
+                let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
                 let detail = if is_default { format!("{to}, default") } else { to };
                 self.item(
                     depth + 1,

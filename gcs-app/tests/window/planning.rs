@@ -198,3 +198,20 @@ fn a_leg_inside_a_procedure_can_be_selected_in_the_tree() {
     assert_eq!(window.app().view().selection, Some(Selection::Leg("inner".into())));
     assert!(!window.shows("It is no longer in the plan."));
 }
+
+#[test]
+fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = window.plan();
+    let stage = before.stage(&"circuit".into()).unwrap().clone();
+    assert!(before.leg(&"side3".into()).unwrap().leg.altitude.is_none() && stage.altitude.is_some());
+    window.click("TF side3");
+    assert!(window.shows("from circuit") && window.shows("from the aircraft's cruise"));
+    window.click("150 m above home");
+    let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone();
+    assert_eq!(own, stage.altitude, "nothing jumps");
+    window.until_analysed();
+    window.click("Undo");
+    assert_eq!(window.plan(), before);
+}

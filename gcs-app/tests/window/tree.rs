@@ -136,3 +136,40 @@ fn leg_becomes_every_kind_that_its_menu_offers() {
     }
     assert!(changed >= 12, "{changed} kinds");
 }
+
+#[test]
+fn search_shows_what_matches_and_where_it_is_and_enter_goes_there() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.press_ctrl(egui::Key::F);
+    window.harness.event(egui::Event::Text("SIDE3".into()));
+    window.steps(3);
+    assert!(window.shows("TF side3") && window.shows("ENR circuit") && window.shows("Main plan"));
+    assert!(!window.shows("TF side2") && !window.shows("FIX A") && !window.shows("LND land"));
+    window.press(egui::Key::Enter);
+    assert_eq!(window.selected(), "side3");
+    window.press_ctrl(egui::Key::F);
+    window.harness.event(egui::Event::Text("-and-more".into()));
+    window.steps(3);
+    assert!(window.shows("Nothing in the plan has"));
+    window.press(egui::Key::Escape);
+    assert!(window.shows("TF side2") && window.shows("FIX A"), "all of it again");
+    assert!(window.plan().leg(&"side3".into()).is_some());
+}
+
+#[test]
+fn conditions_are_found_by_what_is_in_them() {
+    let mut window = Window::open(include_str!("../../../assets/plans/fire-watch.xml"));
+    window.until_analysed();
+    let plan = window.plan();
+    let until = plan.all_legs().iter().find_map(|c| match &c.leg.kind {
+        LegKind::Iterative { until: Some(until), .. } => Some((until.to_string(), c.leg.id.clone())),
+        _ => None,
+    });
+    let (until, id) = until.unwrap();
+    window.press_ctrl(egui::Key::F);
+    window.harness.event(egui::Event::Text(until));
+    window.steps(3);
+    window.press(egui::Key::Enter);
+    assert_eq!(window.selected(), id.as_str());
+}

@@ -24,8 +24,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, context: &LegContext<'_>, queue: &mu
     heading(ui, leg.kind_name(), &leg.id);
     fly_row(ui, scene, context, queue);
     name_row(ui, &leg.id, &leg.name, queue);
-    altitude_row(ui, scene.units(), &leg.id, leg.altitude.as_ref(), queue);
-    speed_row(ui, scene.units(), &leg.id, leg.speed_mps.as_ref(), queue);
+    altitude_row(ui, scene, &leg.id, leg.altitude.as_ref(), queue);
+    speed_row(ui, scene, &leg.id, leg.speed_mps.as_ref(), queue);
     kind_rows(ui, scene, leg, queue);
     number_rows(ui, scene.units(), leg, queue);
     action_rows(ui, leg);
@@ -42,8 +42,8 @@ pub fn show_in_procedure(ui: &mut Ui, scene: &Scene<'_>, procedure: &Procedure, 
     field::row(ui, "Procedure", |ui| ui.label(procedure.id.as_str()));
     let mut nothing = Queue::default();
     ui.add_enabled_ui(false, |ui| {
-        altitude_row(ui, scene.units(), &leg.id, leg.altitude.as_ref(), &mut nothing);
-        speed_row(ui, scene.units(), &leg.id, leg.speed_mps.as_ref(), &mut nothing);
+        altitude_row(ui, scene, &leg.id, leg.altitude.as_ref(), &mut nothing);
+        speed_row(ui, scene, &leg.id, leg.speed_mps.as_ref(), &mut nothing);
         kind_rows(ui, scene, leg, &mut nothing);
         number_rows(ui, scene.units(), leg, &mut nothing);
     });
