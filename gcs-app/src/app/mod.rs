@@ -1,6 +1,7 @@
 //! The window. `logic` drains what the workers found out, `ui` draws and then carries out what was
 //! asked for. Nothing here waits for file, network or computation.
 
+mod filing;
 mod keys;
 mod layout;
 mod orders;
@@ -13,7 +14,7 @@ pub use window::{Options, WindowError, has_display, run};
 use crate::command::{Queue, Replacement};
 use crate::dock::Dock;
 use crate::document::Document;
-use crate::files::{FileEvent, Files, Stamp};
+use crate::files::Files;
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
@@ -24,7 +25,6 @@ use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
@@ -129,32 +129,6 @@ impl App {
         };
         app.map.fit();
         Ok(app)
-    }
-
-    /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
-    pub fn keep_copies(&mut self, folder: &Path) {
-        match Keeper::open(folder) {
-            Ok(keeper) => self.keeper = Some(keeper),
-            Err(error) => {
-                self.view.notice = Some(format!(
-                    "No copy of unsaved changes can be kept in {}: {error}. Save the plan often.",
-                    folder.display()
-                ));
-            }
-        }
-    }
-
-    /// Asks for files in the window, as on a desktop without dialogs.
-    pub fn ask_for_files_here(&mut self) {
-        self.files.desktop = false;
-    }
-
-    fn tend_copy(&mut self, ctx: &egui::Context) {
-        let Some(keeper) = &mut self.keeper else { return };
-        if let Some(wait) = keeper.tend(&self.document, ctx.input(|i| i.time)) {
-            ctx.request_repaint_after(wait);
-        }
-        self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
     }
 
     /// Paints the ground in the background, and shows it on the map when it is ready.
@@ -269,46 +243,6 @@ impl App {
             self.document = Document::default();
             self.view.selection = None;
             self.view.cursor_s = None;
-        }
-    }
-
-    fn file_event(&mut self, event: FileEvent) {
-        match event {
-            FileEvent::Opened { path, bytes, stamp } => {
-                self.recent.add(&path);
-                self.document = Document::read(&bytes, Some(path));
-                self.document.set_stamp(stamp);
-                self.view.selection = None;
-                self.view.cursor_s = None;
-                self.view.notice = None;
-                self.map.fit();
-            }
-            FileEvent::Saved { path, version, stamp } => self.saved(path, version, stamp),
-            FileEvent::ChangedMeanwhile(path) => {
-                // who saves again has been told
-                self.document.set_stamp(None);
-                self.view.notice = Some(format!(
-                    "{} was changed by another program and is not overwritten. “Save as…” keeps both; save again to replace it.",
-                    path.display()
-                ));
-            }
-            FileEvent::NoDialog(purpose) => self.ask_here(purpose),
-            FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
-            FileEvent::Failed(why) => self.view.notice = Some(why),
-        }
-    }
-
-    fn saved(&mut self, path: PathBuf, version: u64, stamp: Option<Stamp>) {
-        self.recent.add(&path);
-        if version == self.document.version() {
-            self.document.saved_as(path, stamp);
-            return;
-        }
-        self.view.notice =
-            Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
-        // it may have been another document's
-        if version >= self.document.id() {
-            self.document.written_to(path, stamp);
         }
     }
 

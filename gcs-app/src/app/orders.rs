@@ -5,18 +5,14 @@ use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::document::Document;
-use crate::files::{Entry, Purpose, Writing};
 use crate::link::Call;
 use crate::panels::bar::PUSH;
-use crate::panels::browse::Browsing;
-use crate::recovery::{Keeper, LeftBehind};
 use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
 use flight_plan::{Edit, Id, Thing, create, diff};
 use geometry::LatLon;
-use std::path::{Path, PathBuf};
 use usal::contract::{GatewayRequest, Propose};
 
 impl App {
@@ -82,24 +78,6 @@ impl App {
         }
     }
 
-    fn save(&mut self) {
-        match self.document.path() {
-            Some(path) => self.save_to(path.to_owned()),
-            None => self.ask_save(),
-        }
-    }
-
-    fn recover(&mut self) {
-        let Some(found) = self.take_left_behind() else { return };
-        self.document = Document::recovered(found.text.as_bytes(), found.path);
-        self.view.selection = None;
-        self.map.fit();
-    }
-
-    fn take_left_behind(&mut self) -> Option<LeftBehind> {
-        self.keeper.as_mut().and_then(Keeper::take_left_behind)
-    }
-
     fn replace(&mut self, with: Replacement) {
         self.view.unsaved = None;
         match with {
@@ -156,51 +134,6 @@ impl App {
         self.document.edit(&edit)?;
         self.view.selection = Some(Selection::Emergency(id));
         Ok(())
-    }
-
-    fn save_to(&mut self, path: std::path::PathBuf) {
-        // only its own file is known as it was
-        let expected = self.document.stamp().filter(|_| self.document.path() == Some(&path));
-        self.files.save(path, Writing { expected, ..self.writing() });
-    }
-
-    fn ask_save(&mut self) {
-        self.files.ask_save(self.suggested_name(), self.writing());
-    }
-
-    /// The document for any file: who chose that one knows what is in it.
-    fn writing(&self) -> Writing {
-        let text = flight_plan::write(self.document.plan());
-        Writing { text, version: self.document.version(), expected: None }
-    }
-
-    fn suggested_name(&self) -> String {
-        let name = self.document.path().and_then(Path::file_name);
-        name.map_or_else(|| "plan.xml".into(), |n| n.to_string_lossy().into_owned())
-    }
-
-    /// Asks in the window, beginning where the document's file is.
-    pub(super) fn ask_here(&mut self, purpose: Purpose) {
-        self.files.desktop = false;
-        let beside = self.document.path().and_then(Path::parent).map(Path::to_owned);
-        let folder = beside.filter(|f| !f.as_os_str().is_empty()).or_else(std::env::home_dir);
-        let name = if purpose == Purpose::Save { self.suggested_name() } else { String::new() };
-        let folder = folder.unwrap_or_else(|| ".".into());
-        self.view.browsing = Some(Browsing::new(purpose, folder.clone(), name));
-        self.files.list(folder);
-    }
-
-    fn browse(&mut self, folder: PathBuf, name: String) {
-        let Some(browsing) = &mut self.view.browsing else { return };
-        *browsing = Browsing::new(browsing.purpose, folder.clone(), name);
-        self.files.list(folder);
-    }
-
-    pub(super) fn show_folder(&mut self, folder: PathBuf, entries: Result<Vec<Entry>, String>) {
-        if let Some(browsing) = &mut self.view.browsing {
-            browsing.folder = folder;
-            browsing.entries = Some(entries);
-        }
     }
 
     fn change_view(&mut self, command: ViewCommand) {

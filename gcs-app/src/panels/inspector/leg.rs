@@ -2,7 +2,8 @@
 
 use super::super::Scene;
 use super::super::field;
-use super::{altitude_row, emergency_row, heading, name_row, position_row, send, speed_row};
+use super::level::{altitude_row, speed_row};
+use super::{emergency_row, heading, name_row, position_row, send};
 use crate::command::Queue;
 use crate::theme;
 use crate::units::{Unit, Units};

@@ -1,6 +1,6 @@
 //! Searching the plan: names, identifiers, kinds and what stands beside them, conditions of loops and forks among it.
 
-use super::Row;
+use super::rows::Row;
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
 use egui::{Context, Id, Key, TextEdit, Ui};

@@ -1,0 +1,139 @@
+//! The document and its files: opening, saving, asking where, and what was never saved.
+
+use super::App;
+use crate::document::Document;
+use crate::files::{Entry, FileEvent, Purpose, Stamp, Writing};
+use crate::panels::browse::Browsing;
+use crate::recovery::{Keeper, LeftBehind};
+use std::path::{Path, PathBuf};
+
+impl App {
+    /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
+    pub fn keep_copies(&mut self, folder: &Path) {
+        match Keeper::open(folder) {
+            Ok(keeper) => self.keeper = Some(keeper),
+            Err(error) => {
+                self.view.notice = Some(format!(
+                    "No copy of unsaved changes can be kept in {}: {error}. Save the plan often.",
+                    folder.display()
+                ));
+            }
+        }
+    }
+
+    /// Asks for files in the window, as on a desktop without dialogs.
+    pub fn ask_for_files_here(&mut self) {
+        self.files.desktop = false;
+    }
+
+    pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {
+        let Some(keeper) = &mut self.keeper else { return };
+        if let Some(wait) = keeper.tend(&self.document, ctx.input(|i| i.time)) {
+            ctx.request_repaint_after(wait);
+        }
+        self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
+    }
+
+    pub(super) fn file_event(&mut self, event: FileEvent) {
+        match event {
+            FileEvent::Opened { path, bytes, stamp } => {
+                self.recent.add(&path);
+                self.document = Document::read(&bytes, Some(path));
+                self.document.set_stamp(stamp);
+                self.view.selection = None;
+                self.view.cursor_s = None;
+                self.view.notice = None;
+                self.map.fit();
+            }
+            FileEvent::Saved { path, version, stamp } => self.saved(path, version, stamp),
+            FileEvent::ChangedMeanwhile(path) => {
+                // who saves again has been told
+                self.document.set_stamp(None);
+                self.view.notice = Some(format!(
+                    "{} was changed by another program and is not overwritten. “Save as…” keeps both; save again to replace it.",
+                    path.display()
+                ));
+            }
+            FileEvent::NoDialog(purpose) => self.ask_here(purpose),
+            FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
+            FileEvent::Failed(why) => self.view.notice = Some(why),
+        }
+    }
+
+    fn saved(&mut self, path: PathBuf, version: u64, stamp: Option<Stamp>) {
+        self.recent.add(&path);
+        if version == self.document.version() {
+            self.document.saved_as(path, stamp);
+            return;
+        }
+        self.view.notice =
+            Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
+        // it may have been another document's
+        if version >= self.document.id() {
+            self.document.written_to(path, stamp);
+        }
+    }
+
+    pub(super) fn save(&mut self) {
+        match self.document.path() {
+            Some(path) => self.save_to(path.to_owned()),
+            None => self.ask_save(),
+        }
+    }
+
+    pub(super) fn recover(&mut self) {
+        let Some(found) = self.take_left_behind() else { return };
+        self.document = Document::recovered(found.text.as_bytes(), found.path);
+        self.view.selection = None;
+        self.map.fit();
+    }
+
+    pub(super) fn take_left_behind(&mut self) -> Option<LeftBehind> {
+        self.keeper.as_mut().and_then(Keeper::take_left_behind)
+    }
+
+    pub(super) fn save_to(&mut self, path: std::path::PathBuf) {
+        // only its own file is known as it was
+        let expected = self.document.stamp().filter(|_| self.document.path() == Some(&path));
+        self.files.save(path, Writing { expected, ..self.writing() });
+    }
+
+    pub(super) fn ask_save(&mut self) {
+        self.files.ask_save(self.suggested_name(), self.writing());
+    }
+
+    /// The document for any file: who chose that one knows what is in it.
+    fn writing(&self) -> Writing {
+        let text = flight_plan::write(self.document.plan());
+        Writing { text, version: self.document.version(), expected: None }
+    }
+
+    fn suggested_name(&self) -> String {
+        let name = self.document.path().and_then(Path::file_name);
+        name.map_or_else(|| "plan.xml".into(), |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Asks in the window, beginning where the document's file is.
+    pub(super) fn ask_here(&mut self, purpose: Purpose) {
+        self.files.desktop = false;
+        let beside = self.document.path().and_then(Path::parent).map(Path::to_owned);
+        let folder = beside.filter(|f| !f.as_os_str().is_empty()).or_else(std::env::home_dir);
+        let name = if purpose == Purpose::Save { self.suggested_name() } else { String::new() };
+        let folder = folder.unwrap_or_else(|| ".".into());
+        self.view.browsing = Some(Browsing::new(purpose, folder.clone(), name));
+        self.files.list(folder);
+    }
+
+    pub(super) fn browse(&mut self, folder: PathBuf, name: String) {
+        let Some(browsing) = &mut self.view.browsing else { return };
+        *browsing = Browsing::new(browsing.purpose, folder.clone(), name);
+        self.files.list(folder);
+    }
+
+    pub(super) fn show_folder(&mut self, folder: PathBuf, entries: Result<Vec<Entry>, String>) {
+        if let Some(browsing) = &mut self.view.browsing {
+            browsing.folder = folder;
+            browsing.entries = Some(entries);
+        }
+    }
+}
