@@ -47,6 +47,17 @@ fn every_template_can_be_flown_among_hills() {
     }
 }
 
+#[test]
+fn low_mission_beside_the_final_needs_no_climb_to_land() {
+    let threshold = LatLon::new(5.0, 0.0);
+    let centre = threshold.destination(290.52, 1825.0);
+    let ours = outline(Template::Patrol, threshold, 0.0, 177.72);
+    for template in Template::ALL {
+        let outline = Outline { template, centre, radius_m: 2485.0, height_m: 60.0, ..ours.clone() };
+        assert_eq!(problems(&outline, Arc::new(Flat(0.0))), Vec::<String>::new(), "{template:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]

@@ -360,11 +360,12 @@ impl<'a> Frame<'a> {
     }
 
     fn gate_height_m(&self) -> f64 {
-        (self.gate_m * GLIDE_SLOPE).max(self.hill_m + LOWEST_M).round()
+        (self.gate_m * GLIDE_SLOPE).min(self.final_height_m()).max(self.hill_m + LOWEST_M).round()
     }
 
+    /// Not above the mission: a mission that ends beside the final would leave no room to climb there.
     fn final_height_m(&self) -> f64 {
-        (self.final_m * GLIDE_SLOPE).max(self.hill_m + 2.0 * LOWEST_M).round()
+        (self.final_m * GLIDE_SLOPE).min(self.height_m).max(self.hill_m + 2.0 * LOWEST_M).round()
     }
 
     fn fixes(&self) -> Vec<Fix> {
@@ -413,10 +414,7 @@ impl<'a> Frame<'a> {
         let line_up = if height_m > final_m { LegKind::Ha(holding) } else { LegKind::Hf(holding) };
         let direct = LegKind::Df { to: to(self.final_fix.as_str()), turn: None };
         let arrival = vec![
-            Leg {
-                altitude: Some(above_home(height_m.max(final_m))),
-                ..leg(&id("a1"), "Direct to the final", direct)
-            },
+            Leg { altitude: Some(above_home(height_m)), ..leg(&id("a1"), "Direct to the final", direct) },
             Leg { altitude: Some(above_home(final_m)), ..leg(&id("a2"), "Descend in the hold", line_up) },
         ];
         let approach = Leg {
