@@ -86,6 +86,10 @@ pub enum Replacement {
 pub enum ViewCommand {
     /// Select something, or nothing.
     Select(Option<Selection>),
+    /// Add a leg to those that are selected, or take it out.
+    Toggle(Id),
+    /// Select every leg from the selected one to this one.
+    Extend(Id),
     /// Select it and bring it into the map's middle.
     JumpTo(Selection),
     /// Show the whole plan.

@@ -40,7 +40,7 @@ impl App {
                 self.recent.add(&path);
                 self.document = Document::read(&bytes, Some(path));
                 self.document.set_stamp(stamp);
-                self.view.selection = None;
+                self.view.select(None);
                 self.view.cursor_s = None;
                 self.view.notice = None;
                 self.map.fit();
@@ -84,7 +84,7 @@ impl App {
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
         self.document = Document::recovered(found.text.as_bytes(), found.path);
-        self.view.selection = None;
+        self.view.select(None);
         self.map.fit();
     }
 

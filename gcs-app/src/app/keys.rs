@@ -59,12 +59,13 @@ fn view_keys(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-/// Del removes the selected leg, Ctrl-Up and Ctrl-Down move it among its neighbours.
+/// Del removes the selected legs, Ctrl-Up and Ctrl-Down move it among its neighbours.
 fn leg_keys(ctx: &Context, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(Selection::Leg(id)) = &scene.view.selection else { return };
     let leg = || id.clone();
     if ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Delete)) {
-        queue.edit(Edit::DeleteLeg { leg: leg() });
+        let legs = scene.selected_legs().into_iter();
+        queue.edit(Edit::All(legs.map(|leg| Edit::DeleteLeg { leg }).collect()));
     }
     let Some(context) = scene.document.plan().leg(id) else { return };
     let neighbour =

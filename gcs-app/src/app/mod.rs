@@ -241,7 +241,7 @@ impl App {
             self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
         if belongs_to_another && self.document.is_nobodys() {
             self.document = Document::default();
-            self.view.selection = None;
+            self.view.select(None);
             self.view.cursor_s = None;
         }
     }

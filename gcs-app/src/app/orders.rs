@@ -83,7 +83,7 @@ impl App {
         match with {
             Replacement::New => {
                 self.document = Document::default();
-                self.view.selection = None;
+                self.view.select(None);
             }
             Replacement::AskOpen => self.files.ask_open(),
             Replacement::Open(path) => self.files.open(path),
@@ -122,7 +122,7 @@ impl App {
             edits.push(Edit::Add(Box::new(Thing::Runway(runway))));
         }
         self.document.edit(&Edit::All(edits))?;
-        self.view.selection = made.map(Selection::Runway);
+        self.view.select(made.map(Selection::Runway));
         Ok(())
     }
 
@@ -132,19 +132,21 @@ impl App {
         let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
         let (id, edit) = create::emergency_plan(&plan, runway, &profile, self.terrain.as_ref());
         self.document.edit(&edit)?;
-        self.view.selection = Some(Selection::Emergency(id));
+        self.view.select(Some(Selection::Emergency(id)));
         Ok(())
     }
 
     fn change_view(&mut self, command: ViewCommand) {
         match command {
-            ViewCommand::Select(selection) => self.view.selection = selection,
+            ViewCommand::Select(selection) => self.view.select(selection),
+            ViewCommand::Toggle(leg) => self.view.toggle(leg),
+            ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
             ViewCommand::JumpTo(selection) => {
                 if let Some(at) = self.map.place_of(&selection, self.document.plan()) {
                     self.view.follow = false;
                     self.map.jump_to(at);
                 }
-                self.view.selection = Some(selection);
+                self.view.select(Some(selection));
             }
             ViewCommand::Fit => {
                 self.view.follow = false;

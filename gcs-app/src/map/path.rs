@@ -50,7 +50,7 @@ fn draft(painter: &Painter, view: &View, sketch: &Sketch, p: &Palette) {
 
 fn highlight_selection(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     let selected = |leg: &Id, stage: &Id| match &scene.view.selection {
-        Some(Selection::Leg(id)) => id == leg,
+        Some(Selection::Leg(id)) => id == leg || scene.view.also.contains(leg),
         Some(Selection::Stage(id)) => id == stage,
         _ => false,
     };

@@ -26,7 +26,7 @@ pub fn draw_areas(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene
 }
 
 fn is_selected(scene: &Scene<'_>, leg: &Id) -> bool {
-    matches!(&scene.view.selection, Some(Selection::Leg(id)) if id == leg)
+    scene.is_selected(&Selection::Leg(leg.clone()))
 }
 
 fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, p: &Palette) {

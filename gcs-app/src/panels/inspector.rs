@@ -3,6 +3,7 @@
 mod inherited;
 mod leg;
 mod level;
+mod several;
 
 use super::field::{self, Change};
 use super::{Panel, PanelId, Place, Scene};
@@ -43,6 +44,11 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.spacing_mut().item_spacing.y = 5.0;
         ui.set_width(ui.available_width());
         let plan = scene.document.plan();
+        let together = scene.selected_legs();
+        if together.len() > 1 {
+            several::show(ui, scene, &together, queue);
+            return;
+        }
         match &scene.view.selection {
             None => summary(ui, scene),
             Some(Selection::Leg(id)) => match plan.leg(id) {

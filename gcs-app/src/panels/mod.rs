@@ -33,7 +33,8 @@ use crate::theme;
 use crate::units::{self, Units};
 use browse::Browsing;
 use egui::{RichText, Ui};
-use flight_plan::Problem;
+use flight_plan::{FlightPlan, Id, Problem};
+use std::collections::BTreeSet;
 
 /// A panel's identifier; never changes, for layouts are stored with it.
 pub type PanelId = &'static str;
@@ -104,6 +105,8 @@ pub struct ViewState {
     pub units: Units,
     /// What is selected.
     pub selection: Option<Selection>,
+    /// Legs that are selected besides a leg.
+    pub also: BTreeSet<Id>,
     /// The map follows the aircraft.
     pub follow: bool,
     /// Cursor in the preview, seconds from its start.
@@ -116,6 +119,43 @@ pub struct ViewState {
     pub browsing: Option<Browsing>,
     /// Something the operator should read: a file that can't be opened, and the like.
     pub notice: Option<String>,
+}
+
+impl ViewState {
+    /// Selects this, and nothing else.
+    pub fn select(&mut self, selection: Option<Selection>) {
+        self.selection = selection;
+        self.also.clear();
+    }
+    /// Adds a leg to those that are selected, or takes it out.
+    pub fn toggle(&mut self, leg: Id) {
+        match &self.selection {
+            Some(Selection::Leg(first)) if *first == leg => {
+                self.selection = self.also.pop_first().map(Selection::Leg);
+            }
+            Some(Selection::Leg(_)) => {
+                if !self.also.remove(&leg) {
+                    self.also.insert(leg);
+                }
+            }
+            _ => self.select(Some(Selection::Leg(leg))),
+        }
+    }
+    /// Selects every leg from the selected one to this one, where they are neighbours; else adds it.
+    pub fn extend(&mut self, leg: Id, plan: &FlightPlan) {
+        match self.between(&leg, plan) {
+            Some(legs) => self.also.extend(legs),
+            None => self.toggle(leg),
+        }
+    }
+    fn between(&self, leg: &Id, plan: &FlightPlan) -> Option<Vec<Id>> {
+        let Some(Selection::Leg(first)) = &self.selection else { return None };
+        let context = plan.leg(first)?;
+        let other = context.siblings.iter().position(|sibling| sibling.id == *leg)?;
+        let range = context.index.min(other)..=context.index.max(other);
+        let legs = context.siblings.get(range)?.iter().map(|sibling| sibling.id.clone());
+        Some(legs.filter(|id| id != first).collect())
+    }
 }
 
 /// Everything there is to draw, borrowed for a frame.
@@ -161,6 +201,16 @@ impl<'a> Scene<'a> {
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {
         self.view.selection.as_ref() == Some(selection)
+            || matches!(selection, Selection::Leg(id) if self.view.also.contains(id))
+    }
+    /// The legs that are selected and still in the plan.
+    pub fn selected_legs(&self) -> Vec<Id> {
+        let first = match &self.view.selection {
+            Some(Selection::Leg(id)) => Some(id),
+            _ => None,
+        };
+        let plan = self.document.plan();
+        first.into_iter().chain(&self.view.also).filter(|id| plan.leg(id).is_some()).cloned().collect()
     }
 }
 

@@ -125,7 +125,7 @@ fn draw(
     }
     let on_triangle = response.interact_pointer_pos().is_some_and(|at| at.x < indent(rect, row) + 14.0);
     if response.clicked() && row.selection.is_some() && !(row.folds.is_some() && on_triangle) {
-        queue.view(ViewCommand::Select(row.selection.clone()));
+        queue.view(chosen(ui, row));
         return false;
     }
     if response.double_clicked()
@@ -134,6 +134,16 @@ fn draw(
         queue.view(ViewCommand::JumpTo(selection));
     }
     response.clicked() && row.folds.is_some()
+}
+
+/// What a click does: with Ctrl or Shift, legs are selected together.
+fn chosen(ui: &Ui, row: &Row) -> ViewCommand {
+    let modifiers = ui.input(|i| i.modifiers);
+    match &row.selection {
+        Some(Selection::Leg(id)) if modifiers.command => ViewCommand::Toggle(id.clone()),
+        Some(Selection::Leg(id)) if modifiers.shift => ViewCommand::Extend(id.clone()),
+        other => ViewCommand::Select(other.clone()),
+    }
 }
 
 /// At the end of a heading: what can be made there.

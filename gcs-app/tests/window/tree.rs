@@ -173,3 +173,65 @@ fn conditions_are_found_by_what_is_in_them() {
     window.press(egui::Key::Enter);
     assert_eq!(window.selected(), id.as_str());
 }
+
+/// A click on a row with a key held down.
+fn click_with(window: &mut Window, row: &str, modifiers: egui::Modifiers) {
+    let at = window.centre(row);
+    window.harness.event(egui::Event::PointerMoved(at));
+    for pressed in [true, false] {
+        let button = egui::PointerButton::Primary;
+        window
+            .harness
+            .event_modifiers(egui::Event::PointerButton { pos: at, button, pressed, modifiers }, modifiers);
+        window.steps(1);
+    }
+    window.steps(3);
+}
+
+#[test]
+fn several_legs_are_looped_raised_and_deleted_together() {
+    let mut window = Window::open_with(SQUARE, egui::vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    let before = window.plan();
+    window.click("TF side1");
+    click_with(&mut window, "TF side3", egui::Modifiers::SHIFT);
+    assert!(window.shows("3 legs"));
+    choose(&mut window, "TF side2", "Put them into a loop");
+    let plan = window.plan();
+    let body: Vec<String> = plan
+        .leg(&window.selected().as_str().into())
+        .unwrap()
+        .leg
+        .body()
+        .iter()
+        .map(|l| l.id.to_string())
+        .collect();
+    assert_eq!(body, ["side1", "side2", "side3"]);
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+
+    window.click("TF side1");
+    click_with(&mut window, "TF side3", egui::Modifiers::COMMAND);
+    assert!(window.shows("2 legs"));
+    window.click("Raise them");
+    let altitude = |window: &Window, leg: &str| match &window.plan().leg(&leg.into()).unwrap().leg.altitude {
+        Some(altitude) => altitude.metres.clone(),
+        None => panic!("{leg} has none of its own"),
+    };
+    assert_eq!(altitude(&window, "side1"), flight_plan::Value::Constant(130.0));
+    assert_eq!(
+        altitude(&window, "side3"),
+        flight_plan::Value::Constant(180.0),
+        "30 m above what it inherited"
+    );
+    assert!(window.plan().leg(&"side2".into()).unwrap().leg.altitude.is_none());
+    window.click("Undo");
+    window.press(egui::Key::Delete);
+    assert_eq!(legs(&window.plan()), ["side2", "side4", "r1"]);
+    window.click("Undo");
+    assert_eq!(window.plan(), before);
+    click_with(&mut window, "TF side1", egui::Modifiers::COMMAND);
+    assert_eq!(window.selected(), "side3", "it is taken out");
+    window.click("TF side2");
+    assert!(!window.shows("2 legs"), "a click alone selects one");
+}

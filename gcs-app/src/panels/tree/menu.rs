@@ -39,10 +39,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     if let Selection::Leg(id) = of
         && let Some(context) = plan.leg(id)
         && is_flown_itself(LegChoice::of(&context.leg.kind))
+        && scene.selected_legs().len() < 2
     {
         ui.menu_button("Change its kind", |ui| kinds(ui, scene, context.leg, queue));
     }
-    for entry in entries(plan, of) {
+    for entry in entries(scene, of) {
         let button = Button::new(entry.name).shortcut_text(entry.keys);
         if ui.add_enabled(entry.edit.is_some(), button).clicked() {
             entry.edit.into_iter().for_each(|edit| queue.edit(edit));
@@ -73,8 +74,11 @@ fn kinds(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
     }
 }
 
-fn entries(plan: &FlightPlan, of: &Selection) -> Vec<Entry> {
+fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
+    let plan = scene.document.plan();
+    let together = scene.selected_legs();
     match of {
+        Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
         Selection::Leg(leg) => of_leg(plan, leg),
         Selection::Stage(stage) => vec![
             Entry::new("Move up", "", create::shift_stage(plan, stage, -1)),
@@ -83,6 +87,16 @@ fn entries(plan: &FlightPlan, of: &Selection) -> Vec<Entry> {
         ],
         other => vec![Entry::new("Delete", "", Some(create::remove(plan, other.id())))],
     }
+}
+
+/// Of several legs that are selected together.
+fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
+    let delete = legs.iter().map(|leg| Edit::DeleteLeg { leg: leg.clone() }).collect();
+    vec![
+        Entry::making("Put them into a loop", create::loop_around(plan, legs), Selection::Leg),
+        Entry::making("Make a procedure of them", create::procedure_of(plan, legs), Selection::Procedure),
+        Entry::new("Delete them", "Del", Some(Edit::All(delete))),
+    ]
 }
 
 fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
