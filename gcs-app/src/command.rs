@@ -55,7 +55,12 @@ pub enum DocumentCommand {
     /// Show a folder in the window's own file dialog, with a name to begin with.
     Browse(PathBuf, String),
     /// Save here.
-    SaveTo(PathBuf),
+    SaveTo {
+        /// The file.
+        path: PathBuf,
+        /// It may be there already.
+        over: bool,
+    },
     /// Apply an edit as an undo step of its own.
     Edit(Edit),
     /// Apply an edit as part of a gesture; the steps of a gesture are undone together.

@@ -1,5 +1,6 @@
 //! Files: dialogs, reading and saving, each on a thread of its own; the window gets the result later.
 
+use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -43,7 +44,7 @@ pub enum FileEvent {
 }
 
 /// A file's state on disk; it differs after another program has written it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     modified: SystemTime,
     bytes: u64,
@@ -57,6 +58,17 @@ impl Stamp {
     }
 }
 
+/// What a plan may be written over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    /// Whatever is there.
+    Anything,
+    /// Nothing: there must be no such file.
+    Nothing,
+    /// A file in this state, or none.
+    As(Stamp),
+}
+
 /// A plan that is to be written.
 #[derive(Debug, Clone)]
 pub struct Writing {
@@ -64,8 +76,8 @@ pub struct Writing {
     pub text: String,
     /// Which version of the document it is.
     pub version: u64,
-    /// The state in which the file must be, if it is there at all; `None`: any.
-    pub expected: Option<Stamp>,
+    /// What may be overwritten.
+    pub over: Over,
 }
 
 /// What a file is asked for.
@@ -218,9 +230,15 @@ fn open(path: &Path) -> FileEvent {
 }
 
 fn save(path: PathBuf, writing: &Writing) -> FileEvent {
-    let is_other = |expected| Stamp::of(&path).is_some_and(|now| now != expected);
-    if writing.expected.is_some_and(is_other) {
-        return FileEvent::ChangedMeanwhile(path);
+    match writing.over {
+        Over::As(expected) if Stamp::of(&path).is_some_and(|now| now != expected) => {
+            return FileEvent::ChangedMeanwhile(path);
+        }
+        Over::Nothing if path.exists() => {
+            let why = "is there already and was not overwritten. Save under another name.";
+            return FileEvent::Failed(format!("{} {why}", path.display()));
+        }
+        _ => {}
     }
     match write_whole(&path, writing.text.as_bytes()) {
         Ok(()) => {
@@ -262,7 +280,7 @@ mod tests {
     use super::*;
 
     fn writing(text: &str, version: u64) -> Writing {
-        Writing { text: text.into(), version, expected: None }
+        Writing { text: text.into(), version, over: Over::Anything }
     }
 
     #[test]
@@ -283,10 +301,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
         let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1)) else { panic!() };
-        let next = Writing { expected: stamp, ..writing("ours again", 2) };
+        let next = Writing { over: Over::As(stamp.unwrap()), ..writing("ours again", 2) };
         std::fs::write(&path, "their words").unwrap();
         assert!(matches!(save(path.clone(), &next), FileEvent::ChangedMeanwhile(_)));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
+        let new = Writing { over: Over::Nothing, ..next.clone() };
+        assert!(matches!(save(path.clone(), &new), FileEvent::Failed(_)));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(save(path.clone(), &new), FileEvent::Saved { .. }));
         std::fs::remove_file(&path).unwrap();
         assert!(matches!(save(path, &next), FileEvent::Saved { .. }), "nothing is lost");
     }

@@ -2,7 +2,7 @@
 //! the program's own. It is taken away when the changes are saved or discarded; the next window offers one that is left.
 
 use crate::document::Document;
-use crate::files::write_whole;
+use crate::files::{Stamp, write_whole};
 use flight_plan::FlightPlan;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -23,6 +23,9 @@ const PLACES: usize = 16;
 struct Kept {
     /// The document's file.
     path: Option<PathBuf>,
+    /// That file as the window knew it.
+    #[serde(default)]
+    stamp: Option<Stamp>,
     /// The plan as it would be saved.
     text: String,
 }
@@ -32,6 +35,8 @@ struct Kept {
 pub struct LeftBehind {
     /// The document's file, if it had one.
     pub path: Option<PathBuf>,
+    /// That file as the window knew it.
+    pub stamp: Option<Stamp>,
     /// The plan as it would have been saved.
     pub text: String,
     /// How long ago it was written.
@@ -40,7 +45,7 @@ pub struct LeftBehind {
 
 /// What the worker is to do.
 enum Job {
-    Keep { path: Option<PathBuf>, plan: Arc<FlightPlan> },
+    Keep { path: Option<PathBuf>, stamp: Option<Stamp>, plan: Arc<FlightPlan> },
     TakeAway,
 }
 
@@ -134,7 +139,11 @@ impl Keeper {
         self.last_s = now_s;
         self.kept = wanted;
         self.order(match wanted {
-            Some(_) => Job::Keep { path: document.path().map(Path::to_owned), plan: document.plan().clone() },
+            Some(_) => Job::Keep {
+                path: document.path().map(Path::to_owned),
+                stamp: document.stamp(),
+                plan: document.plan().clone(),
+            },
             None => Job::TakeAway,
         });
         None
@@ -178,8 +187,8 @@ fn copy_in(folder: &Path, place: usize) -> PathBuf {
 
 fn carry_out(job: &Job, copy: &Path) -> std::io::Result<()> {
     match job {
-        Job::Keep { path, plan } => {
-            let kept = Kept { path: path.clone(), text: flight_plan::write(plan) };
+        Job::Keep { path, stamp, plan } => {
+            let kept = Kept { path: path.clone(), stamp: *stamp, text: flight_plan::write(plan) };
             write_whole(copy, &serde_json::to_vec(&kept)?)
         }
         Job::TakeAway => match std::fs::remove_file(copy) {
@@ -193,7 +202,7 @@ fn carry_out(job: &Job, copy: &Path) -> std::io::Result<()> {
 fn read(copy: &Path) -> Option<LeftBehind> {
     let age = copy.metadata().and_then(|meta| meta.modified()).ok()?.elapsed().unwrap_or_default();
     let kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
-    Some(LeftBehind { path: kept.path, text: kept.text, age })
+    Some(LeftBehind { path: kept.path, stamp: kept.stamp, text: kept.text, age })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::document::Document;
-use crate::files::{Entry, FileEvent, Purpose, Stamp, Writing};
+use crate::files::{Entry, FileEvent, Over, Purpose, Stamp, Writing};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use std::path::{Path, PathBuf};
@@ -76,7 +76,10 @@ impl App {
 
     pub(super) fn save(&mut self) {
         match self.document.path() {
-            Some(path) => self.save_to(path.to_owned()),
+            Some(path) => {
+                let over = self.document.stamp().map_or(Over::Anything, Over::As);
+                self.files.save(path.to_owned(), Writing { over, ..self.writing() });
+            }
             None => self.ask_save(),
         }
     }
@@ -84,6 +87,7 @@ impl App {
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
         self.document = Document::recovered(found.text.as_bytes(), found.path);
+        self.document.set_stamp(found.stamp);
         self.view.select(None);
         self.map.fit();
     }
@@ -92,10 +96,10 @@ impl App {
         self.keeper.as_mut().and_then(Keeper::take_left_behind)
     }
 
-    pub(super) fn save_to(&mut self, path: std::path::PathBuf) {
-        // only its own file is known as it was
-        let expected = self.document.stamp().filter(|_| self.document.path() == Some(&path));
-        self.files.save(path, Writing { expected, ..self.writing() });
+    /// Saves in a file that was chosen; over another one only if that was chosen, too.
+    pub(super) fn save_to(&mut self, path: PathBuf, over: bool) {
+        let over = if over { Over::Anything } else { Over::Nothing };
+        self.files.save(path, Writing { over, ..self.writing() });
     }
 
     pub(super) fn ask_save(&mut self) {
@@ -105,7 +109,7 @@ impl App {
     /// The document for any file: who chose that one knows what is in it.
     fn writing(&self) -> Writing {
         let text = flight_plan::write(self.document.plan());
-        Writing { text, version: self.document.version(), expected: None }
+        Writing { text, version: self.document.version(), over: Over::Anything }
     }
 
     fn suggested_name(&self) -> String {

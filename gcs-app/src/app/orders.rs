@@ -56,7 +56,7 @@ impl App {
             DocumentCommand::Save => self.save(),
             DocumentCommand::AskSaveAs => self.ask_save(),
             DocumentCommand::Browse(folder, name) => self.browse(folder, name),
-            DocumentCommand::SaveTo(path) => self.save_to(path),
+            DocumentCommand::SaveTo { path, over } => self.save_to(path, over),
             DocumentCommand::EndGesture => self.document.end_gesture(),
             DocumentCommand::Undo => self.document.undo(),
             DocumentCommand::Redo => self.document.redo(),

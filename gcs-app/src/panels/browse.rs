@@ -203,11 +203,14 @@ fn carry_out(wish: Wish, queue: &mut Queue) {
         Wish::Nothing => {}
         Wish::Folder(folder, name) => queue.document(DocumentCommand::Browse(folder, name)),
         Wish::Open(path) => open(path, queue),
-        Wish::Save(path) | Wish::Overwrite(path) => {
-            queue.view(ViewCommand::StopBrowsing);
-            queue.document(DocumentCommand::SaveTo(path));
-        }
+        Wish::Save(path) => save(path, false, queue),
+        Wish::Overwrite(path) => save(path, true, queue),
     }
+}
+
+fn save(path: PathBuf, over: bool, queue: &mut Queue) {
+    queue.view(ViewCommand::StopBrowsing);
+    queue.document(DocumentCommand::SaveTo { path, over });
 }
 
 /// It was asked already what becomes of unsaved changes.

@@ -203,14 +203,15 @@ impl<'a> Scene<'a> {
         self.view.selection.as_ref() == Some(selection)
             || matches!(selection, Selection::Leg(id) if self.view.also.contains(id))
     }
-    /// The legs that are selected and still in the plan.
+    /// The legs that are selected and still in the plan, in its order.
     pub fn selected_legs(&self) -> Vec<Id> {
-        let first = match &self.view.selection {
-            Some(Selection::Leg(id)) => Some(id),
-            _ => None,
-        };
-        let plan = self.document.plan();
-        first.into_iter().chain(&self.view.also).filter(|id| plan.leg(id).is_some()).cloned().collect()
+        let Some(Selection::Leg(first)) = &self.view.selection else { return Vec::new() };
+        if self.view.also.is_empty() {
+            return self.document.plan().leg(first).map(|_| first.clone()).into_iter().collect();
+        }
+        let legs = self.document.plan().all_legs();
+        let ids = legs.iter().map(|context| &context.leg.id);
+        ids.filter(|&id| id == first || self.view.also.contains(id)).cloned().collect()
     }
 }
 

@@ -71,6 +71,23 @@ fn file_that_is_there_is_replaced_only_when_told_to() {
 }
 
 #[test]
+fn file_that_the_list_does_not_show_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("notes.txt");
+    std::fs::write(&path, "old").unwrap();
+    let mut window = window(SQUARE);
+    window.press_ctrl(egui::Key::S);
+    until_listed(&mut window);
+    name(&mut window, &path);
+    window.click("Go there");
+    until_listed(&mut window);
+    window.click("Save here");
+    window.until("refusal", |app| app.view().notice.is_some());
+    assert!(window.shows("is there already and was not overwritten"));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+}
+
+#[test]
 fn folder_that_cannot_be_read_is_said_and_the_dialog_can_be_left() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(SQUARE);
