@@ -41,7 +41,8 @@ pub struct ScanParameters {
     pub spacing_m: f64,
     /// For a scan that replaces another one and keeps its lines: a place on the border between two of the old strips
     /// ([`Scan::grid`]). Lines are then `spacing_m` apart, counted from there. The outermost ones lie in the middle of what is
-    /// left of their strips, so they may be nearer to their neighbours, down to half the spacing.
+    /// left of their strips, so they may be nearer to their neighbours, down to half the spacing. An area that one line covers
+    /// has one, in its middle.
     pub grid: Option<Vec2>,
     /// Direction of the lines, degrees true; `None`: the one with the fewest lines.
     pub heading_deg: Option<f64>,
@@ -180,13 +181,19 @@ impl Lines {
         let count = strips(right_m - left_m, most_m)?;
         Ok(Self::strips_of((right_m - left_m) / count as f64, left_m, count, (left_m, right_m)))
     }
-    /// Lines of strips of one width, one of which begins at `grid_m`. The outer strips end at the edges.
+    /// Lines of strips of one width, one of which begins at `grid_m`. The outer strips end at the edges. What one strip covers
+    /// has one line, even where a border between two strips divides it.
     fn on_grid((left_m, right_m): (f64, f64), spacing_m: f64, grid_m: f64) -> Result<Self, ScanError> {
         // tolerates rounding: a strip that ends at the edge is not in the area
         let first = ((left_m - grid_m) / spacing_m + 1e-9).floor();
         let begin_m = grid_m + first * spacing_m;
         let count = strips(right_m - begin_m, spacing_m)?;
-        Ok(Self::strips_of(spacing_m, begin_m, count, (left_m, right_m)))
+        let lines = Self::strips_of(spacing_m, begin_m, count, (left_m, right_m));
+        if strips(right_m - left_m, spacing_m)? > 1 {
+            return Ok(lines);
+        }
+        let middle_m = (left_m + right_m) / 2.0;
+        Ok(Self { count: 1, first_m: middle_m, last_m: middle_m, ..lines })
     }
     fn strips_of(spacing_m: f64, begin_m: f64, count: u64, (left_m, right_m): (f64, f64)) -> Self {
         let middle_m = |strip: u64| {

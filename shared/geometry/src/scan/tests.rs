@@ -102,6 +102,18 @@ fn lines_of_a_grid_stay_where_they_are_and_the_outer_ones_are_in_the_middle_of_w
     assert_near(&on_grid(2.0), &[1.0, 77.0, 227.0, 351.0]);
 }
 
+/// Of two lines at the middles of what is left of two strips, one would nearly repeat the other.
+#[test]
+fn an_area_on_the_border_of_two_strips_that_one_line_covers_has_one() {
+    for (grid_m, spacing_m) in [(200.0, 400.0), (399.0, 401.0), (1.0, 5000.0)] {
+        let grid = Some(Vec2::new(0.0, 400.0 - grid_m));
+        let p = ScanParameters { grid, heading_deg: Some(90.0), ..parameters(spacing_m) };
+        assert_near(&lines_m(&p), &[200.0]);
+        let borders = (Scan::new(&rectangle(), &p).unwrap().grid().n - (400.0 - grid_m)) / spacing_m;
+        assert!((borders - borders.round()).abs() < 1e-9, "the next area is scanned on the same grid");
+    }
+}
+
 #[test]
 fn the_four_corners() {
     for (corner, e, n) in [
