@@ -55,6 +55,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     ("system-tests", &["geometry", "usal"]),
+    ("pictures", &[]),
     (
         "fuzz-targets",
         &[
@@ -75,7 +76,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("zenoh", &["usal"]),
     ("zenoh-ext", &["usal"]),
     ("mavlink", &["autopilot-link", "onboard-agent", "sim"]),
-    ("egui", &["gcs-app"]),
+    ("egui", &["gcs-app", "pictures"]),
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
     ("quick-xml", &["flight-plan", "interchange"]),

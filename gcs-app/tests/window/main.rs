@@ -8,6 +8,7 @@ mod drawing;
 mod filing;
 mod fleet;
 mod flying;
+mod looks;
 mod planning;
 mod recovering;
 mod store;
@@ -22,6 +23,7 @@ use gcs_app::app::App;
 use gcs_app::assets;
 use gcs_app::document::Document;
 use gcs_app::link::{Endpoint, Links};
+use pictures::Raster;
 use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
@@ -41,12 +43,19 @@ impl Window {
     fn open_with(text: &str, size: Vec2, storage: Option<&'static dyn eframe::Storage>) -> Self {
         let (links, far) = Links::pair();
         let document = Document::read(text.as_bytes(), None);
-        let harness =
-            Harness::builder().with_size(size).with_step_dt(1.0 / 60.0).build_eframe(move |creation| {
-                creation.storage = storage;
-                App::new(creation, document, links, assets::demo_terrain()).unwrap()
-            });
+        let builder = Harness::builder().with_size(size).with_step_dt(1.0 / 60.0);
+        let harness = builder.renderer(Raster::default()).build_eframe(move |creation| {
+            creation.storage = storage;
+            App::new(creation, document, links, assets::demo_terrain()).unwrap()
+        });
         Self { harness, far }
+    }
+
+    /// What the window looks like now, compared with the kept picture of that name; `LEGWORK_BLESS=1` keeps this one.
+    fn picture(&mut self, name: &str) {
+        let picture = pictures::halved(&self.harness.render().unwrap());
+        let path = format!("{}/tests/pictures/{name}.png", env!("CARGO_MANIFEST_DIR"));
+        pictures::check(&picture, path.as_ref(), env!("CARGO_TARGET_TMPDIR").as_ref()).unwrap();
     }
 
     fn app(&self) -> &App {
