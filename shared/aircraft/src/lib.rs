@@ -40,7 +40,7 @@ pub use autopilot::{Action, Guidance, Guided, Target};
 pub use dynamics::{Aircraft, Demand, State};
 pub use power::{Battery, Engine};
 pub use profile::{DESIGN_WIND_MPS, Profile, ProfileError};
-pub use wind::Wind;
+pub use wind::{Wind, Winds};
 
 /// Standard gravity, m/s² (ISO 80000-3).
 pub const GRAVITY_MPS2: f64 = 9.80665;

@@ -50,6 +50,40 @@ impl Wind {
     }
 }
 
+/// The wind by height: one at a lower altitude, one at a higher; in between in proportion, beyond them as there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Winds {
+    /// Altitude, metres AMSL, and the wind there.
+    low: (f64, Wind),
+    high: (f64, Wind),
+}
+
+impl Winds {
+    /// Two winds, each at its altitude, metres AMSL, in either order.
+    pub fn between(one: (f64, Wind), other: (f64, Wind)) -> Self {
+        if one.0 <= other.0 { Self { low: one, high: other } } else { Self { low: other, high: one } }
+    }
+
+    /// The wind at an altitude, metres AMSL.
+    pub fn at(&self, altitude_amsl_m: f64) -> Wind {
+        let (low, high) = (self.low.1, self.high.1);
+        let depth_m = self.high.0 - self.low.0;
+        let share = if depth_m > 0.0 { (altitude_amsl_m - self.low.0) / depth_m } else { 0.0 };
+        let share = share.clamp(0.0, 1.0);
+        Wind {
+            east_mps: low.east_mps + share * (high.east_mps - low.east_mps),
+            north_mps: low.north_mps + share * (high.north_mps - low.north_mps),
+        }
+    }
+}
+
+impl From<Wind> for Winds {
+    /// The same at every height.
+    fn from(wind: Wind) -> Self {
+        Self { low: (0.0, wind), high: (0.0, wind) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,6 +97,23 @@ mod tests {
             assert!((wind.east_mps - east).abs() < 1e-3 && (wind.north_mps - north).abs() < 1e-3);
             assert!((wind.direction_from_deg() - from).abs() < 1e-9);
             assert!((wind.speed_mps() - speed).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn between_two_heights_the_wind_is_in_between() {
+        let (calm, west) = (Wind::CALM, Wind::from_direction(270.0, 8.0));
+        for winds in
+            [Winds::between((300.0, calm), (700.0, west)), Winds::between((700.0, west), (300.0, calm))]
+        {
+            for (altitude_amsl_m, mps) in
+                [(-100.0, 0.0), (300.0, 0.0), (400.0, 2.0), (600.0, 6.0), (700.0, 8.0), (1e6, 8.0)]
+            {
+                assert!((winds.at(altitude_amsl_m).speed_mps() - mps).abs() < 1e-9, "{altitude_amsl_m}");
+            }
+        }
+        for winds in [Winds::from(west), Winds::between((300.0, west), (300.0, calm))] {
+            assert_eq!((winds.at(0.0), winds.at(300.0), winds.at(5e3)), (west, west, west));
         }
     }
 

@@ -17,7 +17,7 @@ use crate::api::{
     Token, Waypoint,
 };
 use crate::executor::Executor;
-use aircraft::{Guided, Profile, Target, Wind};
+use aircraft::{Guided, Profile, Target, Wind, Winds};
 use flight_plan::{Id, Program};
 use std::sync::Arc;
 use terrain::Terrain;
@@ -35,7 +35,7 @@ pub(super) type Progress<'a> = &'a mut dyn FnMut(&Advance) -> bool;
 /// What doesn't change in flight.
 #[derive(Clone, Copy)]
 pub(super) struct Circumstances<'a> {
-    pub wind: Wind,
+    pub winds: Winds,
     pub scenario: &'a Scenario,
     pub options: &'a Options,
 }
@@ -115,6 +115,20 @@ impl<'a> Flight<'a> {
         Ok(false)
     }
 
+    /// Flies to the end, or until a command of the scenario is refused. Unlike with [`Self::flown`] a flight that ends too early
+    /// is there up to its end.
+    pub(super) fn flown_as_far_as_possible(mut self) -> (Preview, Option<PreviewError>) {
+        let error = loop {
+            match self.on_to_the_next_leg(&mut |_| true) {
+                Ok(true) if self.result.refusals.is_empty() => {}
+                Ok(_) => break None,
+                Err(error) => break Some(error),
+            }
+        };
+        self.close();
+        (self.result, error)
+    }
+
     pub(super) fn flown(mut self, progress: Progress) -> Result<Preview, PreviewError> {
         while self.on_to_the_next_leg(progress)? {}
         self.close();
@@ -161,10 +175,16 @@ impl<'a> Flight<'a> {
         result.not_fired = fired.filter(|(_, fired)| !**fired).map(|(i, _)| i).collect();
     }
 
+    /// Where the aircraft is.
+    fn wind(&self) -> Wind {
+        self.given.winds.at(self.at.aircraft.state().altitude_amsl_m)
+    }
+
     /// One step of dynamics.
     fn move_on(&mut self, step_us: u64, guided: &Guided) {
         let step_s = seconds(step_us);
-        self.at.aircraft.step(step_s, &guided.demand, &self.given.wind);
+        let wind = self.wind();
+        self.at.aircraft.step(step_s, &guided.demand, &wind);
         self.at.distance_m += self.at.aircraft.state().ground_speed_mps() * step_s;
         self.pass(self.at.now_us + step_us);
     }
@@ -180,7 +200,8 @@ impl<'a> Flight<'a> {
         let late_us = microseconds(guided.late_s).min(since_us);
         self.at.distance_m -= self.at.aircraft.state().ground_speed_mps() * seconds(late_us);
         self.pass(self.at.now_us - late_us);
-        self.at.aircraft.settle(seconds(late_us), &self.given.wind);
+        let wind = self.wind();
+        self.at.aircraft.settle(seconds(late_us), &wind);
         self.report();
         self.at.buffer.pop_front();
         self.at.moment.waypoints += 1;
@@ -219,15 +240,15 @@ impl<'a> Flight<'a> {
     }
 
     fn report(&mut self) {
-        let state = self.at.aircraft.state();
+        let (state, wind) = (self.at.aircraft.state(), self.wind());
         let state = AircraftState {
             position: state.position,
             altitude_amsl_m: state.altitude_amsl_m,
             track_deg: state.track_deg(),
             ground_speed_mps: state.ground_speed_mps(),
             airspeed_mps: state.airspeed_mps,
-            wind_east_mps: self.given.wind.east_mps,
-            wind_north_mps: self.given.wind.north_mps,
+            wind_east_mps: wind.east_mps,
+            wind_north_mps: wind.north_mps,
             battery: self.at.aircraft.battery().share(),
             fuel: None,
             on_ground: state.on_ground,

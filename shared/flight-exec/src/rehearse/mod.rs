@@ -6,18 +6,23 @@
 mod changes;
 mod equivalence;
 mod flight;
+mod glide;
 mod rehearsal;
 mod scenario;
 mod shift;
 mod situation;
+mod what_if;
 
-pub use rehearsal::{Kept, Rehearsal};
+pub use glide::GlidePoint;
+pub(crate) use glide::{GlideStart, glide, names_engine, route, turn_rad};
+pub use rehearsal::{Diversion, Glide, Kept, Powered, Reach, Rehearsal};
 pub use scenario::{Act, Scenario, Trigger, When};
+pub use what_if::WhatIf;
 
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::executor::Executor;
 use crate::value::Config;
-use aircraft::{Profile, Wind};
+use aircraft::{Profile, Winds};
 use flight::{Circumstances, Flight};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
@@ -54,6 +59,8 @@ pub struct Options {
     pub track_every_s: f64,
     /// Time step of the dynamics, seconds (0.02..=0.2).
     pub step_s: f64,
+    /// Share of the energy that is there at the start, 0..=1.
+    pub energy_share: f64,
 }
 
 impl Default for Options {
@@ -64,6 +71,7 @@ impl Default for Options {
             most_waypoints: 200_000,
             track_every_s: 1.0,
             step_s: 0.1,
+            energy_share: 1.0,
         }
     }
 }
@@ -215,12 +223,12 @@ pub fn preview(
     program: &Arc<Program>,
     profile: &Profile,
     terrain: &Arc<dyn Terrain>,
-    wind: Wind,
+    winds: impl Into<Winds>,
     start: Start,
     scenario: &Scenario,
     options: &Options,
 ) -> Result<Preview, PreviewError> {
-    preview_with(program, profile, terrain, wind, start, scenario, options, &mut |_| true)
+    preview_with(program, profile, terrain, winds, start, scenario, options, &mut |_| true)
 }
 
 /// As [`preview`], reporting about every ten simulated seconds; the callback returns false to cancel.
@@ -235,13 +243,13 @@ pub fn preview_with(
     program: &Arc<Program>,
     profile: &Profile,
     terrain: &Arc<dyn Terrain>,
-    wind: Wind,
+    winds: impl Into<Winds>,
     start: Start,
     scenario: &Scenario,
     options: &Options,
     progress: &mut dyn FnMut(&Advance) -> bool,
 ) -> Result<Preview, PreviewError> {
-    let given = Circumstances { wind, scenario, options };
+    let given = Circumstances { winds: winds.into(), scenario, options };
     Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
 }
 
@@ -251,10 +259,10 @@ pub fn preview_with(
 /// As [`preview`]; `NoStart`: nothing is being flown.
 pub(crate) fn preview_on(
     flight: Executor,
-    wind: Wind,
+    winds: impl Into<Winds>,
     scenario: &Scenario,
     options: &Options,
 ) -> Result<Preview, PreviewError> {
-    let given = Circumstances { wind, scenario, options };
+    let given = Circumstances { winds: winds.into(), scenario, options };
     Flight::under_way(flight, given).ok_or(PreviewError::NoStart)?.flown(&mut |_| true)
 }

@@ -11,13 +11,17 @@
 //! runway, a variable or the order of stages has changed, the plan is flown as a whole. The window works like this at each frame of
 //! a drag; hash and review follow when the plan is left alone.
 
+mod diversion;
+
+pub use diversion::{Diversion, Glide, Powered, Reach};
+
 use super::changes::{Changes, reads_flight};
 use super::equivalence::are_equivalent;
 use super::flight::{Circumstances, Flight, Progress, empty};
 use super::shift::{Marks, Shift};
 use super::situation::Situation;
 use super::{Options, Preview, PreviewError, Scenario, Start};
-use aircraft::{Profile, Wind};
+use aircraft::{Profile, Winds};
 use flight_plan::{Id, Program};
 use foldhash::{HashMap, HashMapExt};
 use std::sync::Arc;
@@ -28,13 +32,12 @@ const WAYPOINTS: usize = 8;
 /// Most stretches remembered, some tens of kilobytes each: beyond, they become longer.
 const MAX_STRETCHES: usize = 1536;
 
-/// A preview for plan after plan, of one aircraft in one wind.
+/// A preview for plan after plan, of one aircraft in the same winds, with the same scenario.
 pub struct Rehearsal {
     profile: Profile,
     terrain: Arc<dyn Terrain>,
-    wind: Wind,
+    winds: Winds,
     options: Options,
-    /// Nobody does anything in these flights.
     scenario: Scenario,
     flown: Option<Flown>,
 }
@@ -74,9 +77,21 @@ struct Stretch {
 }
 
 impl Rehearsal {
-    /// Nothing flown yet.
-    pub fn new(profile: Profile, terrain: Arc<dyn Terrain>, wind: Wind, options: Options) -> Self {
-        Self { profile, terrain, wind, options, scenario: Scenario::default(), flown: None }
+    /// Nothing flown yet; nobody does anything in these flights.
+    pub fn new(
+        profile: Profile,
+        terrain: Arc<dyn Terrain>,
+        winds: impl Into<Winds>,
+        options: Options,
+    ) -> Self {
+        let (winds, scenario) = (winds.into(), Scenario::default());
+        Self { profile, terrain, winds, options, scenario, flown: None }
+    }
+
+    /// The same, with things done in each flight.
+    #[must_use]
+    pub fn with(self, scenario: Scenario) -> Self {
+        Self { scenario, flown: None, ..self }
     }
 
     /// Flies a plan. As much of it as was flown before is kept.
@@ -90,7 +105,7 @@ impl Rehearsal {
         start: Start,
         progress: Progress,
     ) -> Result<(), PreviewError> {
-        let given = Circumstances { wind: self.wind, scenario: &self.scenario, options: &self.options };
+        let given = Circumstances { winds: self.winds, scenario: &self.scenario, options: &self.options };
         let known = self.flown.take().filter(|flown| flown.start == start);
         let mut flown = match known.and_then(|flown| flown.revised(program)) {
             Some((mut flown, changes)) => {

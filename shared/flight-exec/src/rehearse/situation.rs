@@ -78,7 +78,9 @@ impl Situation {
         options: &Options,
     ) -> Result<Self, PreviewError> {
         let executor = Executor::new(options.config.clone(), terrain.clone(), profile.clone());
-        Ok(Self::at_first(executor, placed(program, profile, start)?, triggers))
+        let mut aircraft = placed(program, profile, start)?;
+        aircraft.set_battery_share(options.energy_share);
+        Ok(Self::at_first(executor, aircraft, triggers))
     }
 
     /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.

@@ -2,13 +2,10 @@
 
 use super::View;
 use super::flown::Flown;
+use crate::rehearse::route;
 use aircraft::{Profile, Wind};
-use flight_plan::{EmergencyPlan, Env, FlightState, Id, Runway};
+use flight_plan::{EmergencyPlan, Id, Runway};
 use geometry::LatLon;
-use geometry::geodesy::normalise_180;
-
-/// Most places of a way out that a glide is led through.
-const MAX_PLACES: usize = 200;
 
 /// An emergency plan.
 pub(super) struct Alternate<'a> {
@@ -64,28 +61,13 @@ fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternat
         runway,
         entry: entry.waypoint.position,
         entry_amsl_m: entry.wanted_amsl_m,
-        route: route(view, plan, runway),
+        route: route(view.program, plan, runway, &view.variables),
         energy_j: landed.used_j - entered.used_j,
     })
-}
-
-/// The places of a plan's legs in document order, and the threshold.
-fn route(view: &View, plan: &EmergencyPlan, runway: &Runway) -> Vec<LatLon> {
-    let env = Env { variables: &view.variables, flight: FlightState::on_ground(runway.threshold) };
-    let legs = plan.stages.iter().flat_map(|s| &s.legs);
-    let places = legs.filter_map(|leg| view.program.eval_place(leg.place()?, &env).ok());
-    let mut route: Vec<LatLon> = places.take(MAX_PLACES).chain([runway.threshold]).collect();
-    route.dedup_by(|a, b| crate::layout::path::distance_m(*a, *b) < 1.0);
-    route
 }
 
 /// Seconds on the straight way from one place to another at the cruise speed; `None` if the wind doesn't let it.
 pub(super) fn flying_s(profile: &Profile, from: LatLon, to: LatLon, wind: Wind) -> Option<f64> {
     let (distance_m, course_deg) = crate::layout::path::distance_and_course(from, to);
     Some(distance_m / wind.ground_speed_mps(profile.cruise_airspeed_mps, course_deg)?)
-}
-
-/// Angle between two courses, radians in 0..=π.
-pub(super) fn turn_rad(from_deg: f64, to_deg: f64) -> f64 {
-    normalise_180(to_deg - from_deg).abs().to_radians()
 }

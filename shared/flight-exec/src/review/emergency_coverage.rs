@@ -1,5 +1,6 @@
 //! Which emergency plan answers where.
 
+use crate::rehearse::names_engine;
 use flight_plan::{Cause, Id, Program};
 use std::collections::HashMap;
 
@@ -62,10 +63,4 @@ impl EmergencyCoverage {
     pub fn plans(&self, leg: &Id) -> impl Iterator<Item = usize> + '_ {
         self.powered(leg).iter().copied().chain(self.engine(leg).map(|engine| engine.plan))
     }
-}
-
-/// The association that answers an engine failure on a leg names that cause.
-fn names_engine(program: &Program, leg: &Id) -> bool {
-    let choice = program.emergency_choice(leg, Cause::Engine);
-    choice.is_some_and(|choice| choice.by_cause.iter().any(|(cause, _)| *cause == Some(Cause::Engine)))
 }

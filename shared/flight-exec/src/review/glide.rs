@@ -5,13 +5,13 @@
 //! its runway is so far away that even a glide straight there ends before it (the operator may leave out the rest of the plan),
 //! and on how much of the flight.
 //!
-//! The glide: at the cruise speed with the best glide ratio, in the wind, with more sink in the turns from track to track, through
-//! the places of the emergency plan without the laps of its holdings. Legs of take-off, approach and landing are left out: there the
-//! runway is ahead, or not yet out of sight. So are, for the fallback, those of departure and arrival: they climb and descend near it.
+//! The glide is that of `rehearse::glide`. Legs of take-off, approach and landing are left out: there the runway is ahead, or not
+//! yet out of sight. So are, for the fallback, those of departure and arrival: they climb and descend near it.
 
 use super::View;
-use super::alternates::{Alternate, Origin, alternates, turn_rad};
+use super::alternates::{Alternate, Origin, alternates};
 use super::emergency_coverage::Engine;
+use crate::rehearse::{GlideStart, glide};
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
 use geometry::{LatLon, PathElement};
@@ -78,25 +78,11 @@ fn missing_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) 
 
 /// Height that the glide takes.
 fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -> Option<f64> {
-    let profile = view.profile;
-    let speed_mps = profile.cruise_airspeed_mps;
-    let sink_mps = glide_sink_mps(profile, speed_mps, 1.0);
-    let load_factor = 1.0 / profile.planning_bank_deg.to_radians().cos();
-    let turning_mps = glide_sink_mps(profile, speed_mps, load_factor);
-    let turn_s_per_rad = profile.turn_radius_m(speed_mps) / speed_mps;
-    let (mut here, mut course_deg, mut height_m) = (from.position, from.course_deg, 0.0);
-    for place in way {
-        let (distance_m, arrives_deg) = crate::layout::path::distance_and_course(here, *place);
-        if distance_m < 1.0 {
-            continue;
-        }
-        let ground_mps = view.conditions.wind.ground_speed_mps(speed_mps, arrives_deg)?;
-        height_m += distance_m / ground_mps * sink_mps;
-        height_m += turn_rad(course_deg, arrives_deg) * turn_s_per_rad * turning_mps;
-        (here, course_deg) = (*place, arrives_deg);
-    }
-    let line_up_rad = turn_rad(course_deg, alternate.runway.heading_deg);
-    Some(height_m + line_up_rad * turn_s_per_rad * turning_mps)
+    let Origin { position, altitude_amsl_m, course_deg, .. } = *from;
+    let from = GlideStart { position, altitude_amsl_m, course_deg };
+    let heading_deg = alternate.runway.heading_deg;
+    let path = glide(view.profile, view.conditions.wind.into(), from, way, heading_deg)?;
+    Some(altitude_amsl_m - path.last()?.altitude_amsl_m)
 }
 
 /// `share`: of the points where the plan answers as the fallback, how many are out of its reach.

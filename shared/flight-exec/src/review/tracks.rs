@@ -5,11 +5,11 @@
 //! concave one, a narrow corridor) it swings wide, and an overshoot gives it room to come back. Whether it does is seen as it is flown.
 
 use super::View;
-use super::alternates::turn_rad;
 use super::flown::{Flown, Point};
 use super::layout::LaidOut;
 use crate::layout::path::distance_and_course;
 use crate::layout::world::turn_radius_m;
+use crate::rehearse::turn_rad;
 use aircraft::DESIGN_WIND_MPS;
 use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
 use geometry::LatLon;

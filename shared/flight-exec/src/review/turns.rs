@@ -5,11 +5,11 @@
 //! are laid out for the wind that is measured, so they are no matter of this.
 
 use super::View;
-use super::alternates::turn_rad;
 use super::flown::Flown;
 use super::layout::LaidOut;
 use crate::api::Action;
 use crate::layout::path::distance_and_course;
+use crate::rehearse::turn_rad;
 use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
 use geometry::LatLon;
 use geometry::turn::radius_m;

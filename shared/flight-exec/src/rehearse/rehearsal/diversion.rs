@@ -1,0 +1,235 @@
+//! "What happens here": what would become of a flight if an alarm were raised at some point of it.
+//!
+//! The flight is resumed at the nearest place before that point that was kept, and the alarm is given to the executor as it is given
+//! aboard. Where the engine fails, or might, the glide is worked out beside it.
+
+use super::super::flight::{Circumstances, Flight};
+use super::super::scenario::{Act, Trigger, When};
+use super::super::situation::Situation;
+use super::super::{GlidePoint, GlideStart, Preview, PreviewError, TrackPoint, glide, names_engine, route};
+use super::{Flown, Rehearsal};
+use crate::api::Command;
+use crate::layout::path::distance_and_course;
+use flight_plan::{Cause, EmergencyPlan, Id, Program, Runway, Variables};
+use geometry::{LatLon, PathElement};
+use terrain::Terrain;
+
+/// Distance between points of a glide, metres, and the most of them between two places.
+const SPACING_M: f64 = 150.0;
+const MAX_SAMPLES: f64 = 500.0;
+/// So near to the threshold the ground is the runway's.
+const AT_RUNWAY_M: f64 = 400.0;
+
+/// What would happen after an alarm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diversion {
+    /// When it is raised, seconds since the start.
+    pub time_s: f64,
+    /// Why.
+    pub cause: Cause,
+    /// The leg on which it is raised.
+    pub leg: Id,
+    /// The emergency plan that answers, and its runway; `None`: there is none, the gateway's Safe mode decides.
+    pub plan: Option<(Id, Id)>,
+    /// The plan as it would be flown with an engine; or why it would not be.
+    pub powered: Result<Powered, String>,
+    /// The glide to its runway.
+    pub glide: Option<Glide>,
+}
+
+/// An emergency plan, flown with an engine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Powered {
+    /// From the alarm on; times are seconds since the start of the flight.
+    pub track: Vec<TrackPoint>,
+    /// From the alarm to the end, seconds.
+    pub time_s: f64,
+    /// Share of the energy left at the end, 0..1.
+    pub battery_left: f64,
+    /// It ends on the ground.
+    pub landed: bool,
+    /// Why it ends early.
+    pub cut_short: Option<PreviewError>,
+}
+
+/// A glide to a runway.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Glide {
+    /// Along the emergency plan, which names the cause `engine`; else straight, for that plan was made for a flight with an engine.
+    pub along_plan: bool,
+    /// To the threshold, or to where it ends in the ground; empty, if the wind does not let it get there.
+    pub path: Vec<GlidePoint>,
+    /// From the failure to the threshold, seconds; infinite, if the wind does not let it get there.
+    pub time_s: f64,
+    /// Height above the threshold with which it arrives, metres; what is lacking, if it is negative.
+    pub margin_m: f64,
+    /// Where it runs into a hill.
+    pub hill: Option<LatLon>,
+}
+
+/// How a way out ends, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Reach {
+    /// Not on the runway.
+    Out,
+    /// On the runway, but less than the reserve is left.
+    Tight,
+    /// On the runway with the reserve.
+    Good,
+}
+
+impl Rehearsal {
+    /// What would become of the last flight if an alarm were raised so many seconds after its start; `None`: nothing was flown.
+    ///
+    /// Only what follows the nearest place before that was kept is flown again.
+    pub fn divert(&self, time_s: f64, cause: Cause) -> Option<Diversion> {
+        let flown = self.flown.as_ref()?;
+        let (from, leg) = origin(&flown.preview, time_s)?;
+        let program = &flown.program;
+        let answer = answer(program, &leg, cause);
+        let mut scenario = self.scenario.clone();
+        let alarm = Act::Command(Command::Emergency { cause, plan: None });
+        scenario.triggers.push(Trigger { at: When::After { seconds: time_s }, then: vec![alarm] });
+        let given = Circumstances { winds: self.winds, scenario: &scenario, options: &self.options };
+        let powered = match answer {
+            Some(_) => powered(flown.resumed_before(time_s, given)?, time_s),
+            None => Err("no emergency plan answers here: the gateway's Safe mode decides".into()),
+        };
+        let glide = answer.filter(|_| powered.is_ok()).map(|(plan, runway)| {
+            let named = names_engine(program, &leg);
+            let variables = Variables::initial(program.flown());
+            let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
+            let points = glide(&self.profile, self.winds, from, &way, runway.heading_deg);
+            Glide::of(named, points, runway, self.terrain.as_ref())
+        });
+        let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
+        Some(Diversion { time_s, cause, leg, plan, powered, glide })
+    }
+}
+
+impl Flown {
+    /// The flight at the last place kept that is not later than this. What is yet to be done is the scenario's last trigger.
+    fn resumed_before<'a>(&self, time_s: f64, given: Circumstances<'a>) -> Option<Flight<'a>> {
+        let is_behind = |begin: &Situation| begin.time_s() > time_s;
+        let first = self.stretches.partition_point(|s| !s.begin.as_deref().is_some_and(is_behind));
+        let begin = first.checked_sub(1).and_then(|index| self.stretches.get(index)?.begin.as_ref());
+        let Some(begin) = begin else {
+            let executor = &self.end.executor;
+            let (profile, terrain) = (executor.profile(), executor.terrain());
+            return Flight::new(&self.program, profile, terrain, self.start, given, false).ok();
+        };
+        let mut at = begin.as_ref().clone();
+        at.executor.swap_program(self.program.clone());
+        at.executor.watch(false);
+        at.fired.push(false);
+        Some(Flight::resumed(given, at))
+    }
+}
+
+impl Diversion {
+    /// How it ends: after an engine failure the glide, else the flight with an engine. The reserves: height of a glide above the
+    /// threshold, metres, and share of the energy when landed.
+    pub fn reach(&self, glide_m: f64, energy_share: f64) -> Reach {
+        if self.cause == Cause::Engine {
+            return self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
+        }
+        match &self.powered {
+            Ok(flown) if flown.landed && flown.battery_left >= energy_share => Reach::Good,
+            Ok(flown) if flown.landed => Reach::Tight,
+            _ => Reach::Out,
+        }
+    }
+}
+
+impl Glide {
+    fn of(along_plan: bool, points: Option<Vec<GlidePoint>>, runway: &Runway, terrain: &dyn Terrain) -> Self {
+        let arrives = points.as_ref().and_then(|points| points.last().copied());
+        let (path, hill) = until_ground(points.unwrap_or_default(), runway, terrain);
+        Self {
+            along_plan,
+            path,
+            hill,
+            time_s: arrives.map_or(f64::INFINITY, |last| last.time_s),
+            margin_m: arrives
+                .map_or(f64::NEG_INFINITY, |last| last.altitude_amsl_m - runway.elevation_amsl_m),
+        }
+    }
+
+    /// How it ends; the reserve is a height above the threshold, metres.
+    pub fn reach(&self, reserve_m: f64) -> Reach {
+        match self.margin_m {
+            _ if self.hill.is_some() => Reach::Out,
+            margin_m if margin_m >= reserve_m => Reach::Good,
+            margin_m if margin_m >= 0.0 => Reach::Tight,
+            _ => Reach::Out,
+        }
+    }
+}
+
+/// Where the flight is at a time, and on which leg.
+fn origin(preview: &Preview, time_s: f64) -> Option<(GlideStart, Id)> {
+    let track = &preview.track;
+    let index = track.partition_point(|point| point.time_s < time_s).min(track.len().checked_sub(1)?);
+    let at = track.get(index)?;
+    let leg = preview.legs.get(at.passage?)?.place.leg.clone();
+    let before = track.get(index.saturating_sub(1)).filter(|before| before.position != at.position);
+    let (from, to) = match before {
+        Some(before) => (before.position, at.position),
+        None => (at.position, track.get(index + 1).map_or(at.position, |next| next.position)),
+    };
+    let course_deg = distance_and_course(from, to).1;
+    Some((GlideStart { position: at.position, altitude_amsl_m: at.altitude_amsl_m, course_deg }, leg))
+}
+
+/// The emergency plan that answers on a leg, with its runway.
+fn answer<'a>(program: &'a Program, leg: &Id, cause: Cause) -> Option<(&'a EmergencyPlan, &'a Runway)> {
+    let id = program.emergency_choice(leg, cause)?.plan_for(cause)?;
+    let plan = program.flown().emergency_plans.iter().find(|plan| plan.id == *id)?;
+    Some((plan, program.plan.runway(&plan.runway)?))
+}
+
+fn powered(flight: Flight, since_s: f64) -> Result<Powered, String> {
+    let (flown, cut_short) = flight.flown_as_far_as_possible();
+    if let Some((_, refusal)) = flown.refusals.last() {
+        return Err(refusal.reason.clone());
+    }
+    let first = flown.track.partition_point(|point| point.time_s < since_s);
+    Ok(Powered {
+        track: flown.track.get(first..).unwrap_or_default().to_vec(),
+        time_s: (flown.time_s - since_s).max(0.0),
+        battery_left: flown.battery_left,
+        landed: flown.landed,
+        cut_short,
+    })
+}
+
+/// A glide in small steps, up to where it is in the ground: short of the runway, or in a hill, which is given.
+fn until_ground(
+    places: Vec<GlidePoint>,
+    runway: &Runway,
+    terrain: &dyn Terrain,
+) -> (Vec<GlidePoint>, Option<LatLon>) {
+    let mut path: Vec<GlidePoint> = places.first().copied().into_iter().collect();
+    for (from, to) in places.iter().zip(places.iter().skip(1)) {
+        let way = PathElement::Line { from: from.position, to: to.position };
+        let (length_m, _) = distance_and_course(from.position, to.position);
+        let samples = (length_m / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
+        for sample in 1..=samples as u32 {
+            let share = f64::from(sample) / samples;
+            let point = GlidePoint {
+                time_s: from.time_s + share * (to.time_s - from.time_s),
+                position: way.point_at(length_m * share),
+                altitude_amsl_m: from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m),
+            };
+            path.push(point);
+            let near = distance_and_course(point.position, runway.threshold).0 < AT_RUNWAY_M;
+            let ground_m = terrain.elevation_m(point.position).filter(|_| !near);
+            if point.altitude_amsl_m < ground_m.unwrap_or(runway.elevation_amsl_m) {
+                // below the runway it would have ended in any ground
+                let is_hill = !near && point.altitude_amsl_m > runway.elevation_amsl_m;
+                return (path, is_hill.then_some(point.position));
+            }
+        }
+    }
+    (path, None)
+}

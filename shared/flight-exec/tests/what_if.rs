@@ -1,0 +1,164 @@
+//! A plan in another world: wind by height, values, decisions, energy; and an alarm at some point of it.
+#![cfg(test)]
+
+use aircraft::{Profile, Wind};
+use flight_exec::rehearse::{
+    Act, Diversion, Options, Reach, Rehearsal, Scenario, Start, Trigger, WhatIf, When,
+};
+use flight_exec::{Command, Preview, preview};
+use flight_plan::{Cause, FlightPlan, Program, VariableValue, compile};
+use std::path::Path;
+use std::sync::Arc;
+use terrain::{Flat, Terrain, Tile, Tiles};
+
+fn asset(path: &str) -> Vec<u8> {
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(path)).unwrap()
+}
+
+fn ground() -> Arc<dyn Terrain> {
+    let mut tiles = Tiles::new();
+    tiles.add(Tile::from_hgt("N36W085.hgt", &asset("terrain/N36W085.hgt")).unwrap());
+    Arc::new(tiles)
+}
+
+fn plan(name: &str) -> Arc<FlightPlan> {
+    Arc::new(flight_plan::read(asset(&format!("plans/{name}.xml"))).plan)
+}
+
+fn program(plan: &Arc<FlightPlan>) -> Arc<Program> {
+    Arc::new(compile(plan.clone(), &Profile::default(), ground().as_ref()).unwrap())
+}
+
+fn rehearsed(plan: &Arc<FlightPlan>, what_if: &WhatIf) -> Rehearsal {
+    let what_if = what_if.for_plan(plan);
+    let (winds, options) = (what_if.winds(plan), what_if.options(Options::default()));
+    let mut rehearsal = Rehearsal::new(Profile::default(), ground(), winds, options).with(what_if.scenario());
+    let program = program(&what_if.with_values(plan));
+    // one that ends too early is there up to its end
+    let _ = rehearsal.fly(&program, Start::Runway, &mut |_| true);
+    rehearsal
+}
+
+fn flown(plan: &Arc<FlightPlan>, what_if: &WhatIf) -> Preview {
+    rehearsed(plan, what_if).preview().unwrap().clone()
+}
+
+#[test]
+fn wind_energy_values_and_decisions_change_the_flight_and_not_the_plan() {
+    let plan = plan("fire-watch");
+    let nothing = WhatIf::default();
+    let standard = flown(&plan, &nothing);
+    assert!(nothing.is_nothing() && standard.landed);
+    let low = WhatIf { wind: Wind::from_direction(240.0, 8.0), ..WhatIf::default() };
+    let aloft = WhatIf { aloft: Some((1300.0, Wind::from_direction(240.0, 8.0))), ..WhatIf::default() };
+    let (all, high) = (flown(&plan, &low), flown(&plan, &aloft));
+    assert!(all.time_s > standard.time_s + 10.0 && high.time_s > standard.time_s + 10.0);
+    assert!((all.time_s - high.time_s).abs() > 1.0, "calm at the runway is another wind");
+    let half = flown(&plan, &WhatIf { energy_share: 0.5, ..WhatIf::default() });
+    assert!(half.battery_left < standard.battery_left - 0.2, "{}", half.battery_left);
+    let radius = |metres| WhatIf {
+        variables: [("fire_radius".into(), VariableValue::Number(metres))].into(),
+        ..WhatIf::default()
+    };
+    assert!(flown(&plan, &radius(600.0)).distance_m > standard.distance_m + 500.0);
+    assert_eq!(radius(350.0).for_plan(&plan), nothing, "that is the plan's own");
+    assert_eq!(radius(1e9).for_plan(&plan), nothing, "out of its bounds");
+    let close = WhatIf { decisions: [("ask".into(), "close".into())].into(), ..WhatIf::default() };
+    let looks = |preview: &Preview| preview.legs.iter().filter(|l| l.place.leg.as_str() == "look").count();
+    assert_eq!((looks(&standard), looks(&flown(&plan, &close))), (0, 1));
+    let unknown = WhatIf { decisions: [("ask".into(), "round".into())].into(), ..WhatIf::default() };
+    assert_eq!(unknown.for_plan(&plan), nothing);
+}
+
+#[test]
+fn what_is_taken_into_the_plan_is_then_its_own() {
+    let plan = plan("fire-watch");
+    let what_if = WhatIf {
+        variables: [("fire_radius".into(), VariableValue::Number(500.0))].into(),
+        decisions: [("ask".into(), "close".into())].into(),
+        wind: Wind::from_direction(240.0, 8.0),
+        ..WhatIf::default()
+    };
+    let taken = Arc::new(what_if.taken_into_the_plan().unwrap().apply(&plan).unwrap());
+    assert_eq!(taken.variable(&"fire_radius".into()).unwrap().initial, VariableValue::Number(500.0));
+    let left = what_if.for_plan(&taken);
+    assert!(left.variables.is_empty() && left.wind == what_if.wind);
+    assert_eq!(WhatIf { wind: what_if.wind, ..WhatIf::default() }.taken_into_the_plan(), None);
+}
+
+/// The same by a whole preview.
+fn with_alarm(program: &Arc<Program>, what_if: &WhatIf, seconds: f64, cause: Cause) -> Preview {
+    let alarm = Act::Command(Command::Emergency { cause, plan: None });
+    let mut scenario: Scenario = what_if.scenario();
+    scenario.triggers.push(Trigger { at: When::After { seconds }, then: vec![alarm] });
+    let winds = what_if.winds(&program.plan);
+    let options = what_if.options(Options::default());
+    preview(program, &Profile::default(), &ground(), winds, Start::Runway, &scenario, &options).unwrap()
+}
+
+#[test]
+fn an_alarm_leads_where_a_whole_flight_with_that_alarm_leads() {
+    let plan = plan("fire-watch");
+    let what_if = WhatIf {
+        wind: Wind::from_direction(200.0, 6.0),
+        decisions: [("ask".into(), "close".into())].into(),
+        ..WhatIf::default()
+    };
+    let rehearsal = rehearsed(&plan, &what_if);
+    let duration_s = rehearsal.preview().unwrap().time_s;
+    for (share, cause) in
+        [(0.02, Cause::Link), (0.3, Cause::Operator), (0.55, Cause::Engine), (0.8, Cause::Gps)]
+    {
+        let at_s = (duration_s * share).round();
+        let found = rehearsal.divert(at_s, cause).unwrap();
+        let whole = with_alarm(&program(&plan), &what_if, at_s, cause);
+        let Ok(powered) = &found.powered else {
+            assert!(!whole.refusals.is_empty(), "{share}");
+            continue;
+        };
+        assert!(whole.refusals.is_empty() && powered.landed == whole.landed);
+        assert_eq!(powered.track.last().map(|p| p.position), whole.track.last().map(|p| p.position));
+        assert!((powered.time_s - (whole.time_s - at_s)).abs() < 1e-6);
+        assert!((powered.battery_left - whole.battery_left).abs() < 1e-9);
+    }
+}
+
+fn reach(diversion: &Diversion) -> Reach {
+    diversion.reach(15.0, 0.05)
+}
+
+#[test]
+fn a_glide_reaches_the_runway_from_near_and_high_and_not_from_afar() {
+    let plan = plan("fire-watch");
+    let rehearsal = rehearsed(&plan, &WhatIf::default());
+    let engine_at =
+        |share: f64| rehearsal.divert(rehearsal.preview().unwrap().time_s * share, Cause::Engine).unwrap();
+    let all: Vec<Diversion> = (1..20).map(|n| engine_at(f64::from(n) / 20.0)).collect();
+    let reached = all.iter().filter(|d| reach(d) == Reach::Good).count();
+    let out = all.iter().filter(|d| reach(d) == Reach::Out).count();
+    assert!(reached > 0 && out > 0, "{reached} {out}");
+    for diversion in &all {
+        let Some(glide) = &diversion.glide else { continue };
+        assert!(glide.path.windows(2).all(|w| w[1].altitude_amsl_m < w[0].altitude_amsl_m));
+        if reach(diversion) == Reach::Good {
+            let runway = plan.runway(&diversion.plan.as_ref().unwrap().1).unwrap();
+            let end = glide.path.last().unwrap();
+            assert!(end.position.distance_m(runway.threshold) < 1.0);
+            assert!((end.altitude_amsl_m - runway.elevation_amsl_m - glide.margin_m).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn where_no_plan_answers_it_says_so() {
+    let text = String::from_utf8(asset("plans/square.xml")).unwrap().replace(r#" emergency="return""#, "");
+    let plan = Arc::new(flight_plan::read(text.as_bytes()).plan);
+    let terrain: Arc<dyn Terrain> = Arc::new(Flat(349.0));
+    let program = Arc::new(compile(plan, &Profile::default(), terrain.as_ref()).unwrap());
+    let mut rehearsal = Rehearsal::new(Profile::default(), terrain, Wind::CALM, Options::default());
+    assert!(rehearsal.divert(60.0, Cause::Link).is_none(), "nothing was flown");
+    rehearsal.fly(&program, Start::Runway, &mut |_| true).unwrap();
+    let found = rehearsal.divert(100.0, Cause::Link).unwrap();
+    assert_eq!((found.plan.as_ref(), reach(&found)), (None, Reach::Out));
+    assert!(found.powered.unwrap_err().contains("Safe mode"));
+}
