@@ -1,6 +1,7 @@
 //! What the window may ask for. Panels and map borrow the state and push commands; the app carries
 //! them out between two frames.
 
+use crate::guide::Answer;
 use crate::panels::PanelId;
 use crate::state::VehicleName;
 use crate::units::Units;
@@ -101,6 +102,8 @@ pub enum ViewCommand {
     Fit,
     /// Keep the aircraft in the map's middle, or stop that.
     Follow(bool),
+    /// An answer to the guide to a new plan.
+    Guide(Answer),
     /// Put a map tool to use, by its identifier.
     Tool(&'static str),
     /// Other units.

@@ -15,6 +15,7 @@ pub mod dock;
 pub mod document;
 pub mod files;
 pub mod forecast;
+pub mod guide;
 pub mod headless;
 pub mod link;
 pub mod map;

@@ -16,7 +16,6 @@ impl App {
         // fields apart, so that the panels borrow the rest
         let Self { document, vehicles, view, analysis, map, panels, dock, keeper, recent, .. } = self;
         let vehicle = vehicles.shown();
-        let new_runway = map.new_runway();
         let scene = Scene {
             document,
             analysis,
@@ -49,7 +48,7 @@ impl App {
                 let (room, width) = room_of_start(floor, whole);
                 floating(ui, "new mission", room, Align2::LEFT_TOP, |ui| {
                     ui.set_width(width);
-                    start::show(ui, new_runway, &scene, queue);
+                    start::show(ui, &scene, queue);
                 });
             }
             over_map(ui, floor, &scene, queue);

@@ -5,6 +5,7 @@ use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::document::Document;
+use crate::guide::Answer;
 use crate::link::Call;
 use crate::panels::bar::PUSH;
 use crate::state::{Proposal, VehicleName};
@@ -158,7 +159,11 @@ impl App {
                     self.map.follow();
                 }
             }
-            ViewCommand::Tool(id) => self.map.choose_tool(id),
+            ViewCommand::Guide(answer) => self.answer(answer),
+            ViewCommand::Tool(id) => {
+                self.view.guide.take(Answer::Draw(None));
+                self.map.choose_tool(id);
+            }
             ViewCommand::Units(units) => self.view.units = units,
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
@@ -182,6 +187,13 @@ impl App {
             ViewCommand::StopBrowsing => self.view.browsing = None,
             ViewCommand::KeepUnsaved => self.view.unsaved = None,
         }
+    }
+
+    fn answer(&mut self, answer: Answer) {
+        if let Answer::Place(at) = answer {
+            self.map.begin_at(at);
+        }
+        self.view.guide.take(answer);
     }
 
     fn change_link(&mut self, command: LinkCommand, now_s: f64) {

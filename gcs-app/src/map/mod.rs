@@ -30,8 +30,12 @@ use wire::Convert;
 /// What is shown where nothing else asks for a place: where the shipped elevations are.
 pub(crate) const HOME: LatLon = LatLon::new(36.319, -84.173);
 
-/// Zoom level of a map without a plan, as long as it is not fitted to one.
-const EMPTY_ZOOM: f64 = 12.0;
+/// Zoom level of a map without a plan: the world.
+const WORLD_ZOOM: f64 = 2.0;
+/// Its middle.
+const WORLD: LatLon = LatLon::new(25.0, 0.0);
+/// Zoom level at which a runway and what is around it are seen.
+const NEAR_ZOOM: f64 = 12.5;
 
 /// What the map remembers from frame to frame.
 #[derive(Debug, Default)]
@@ -39,6 +43,8 @@ pub struct MapState {
     memory: MapMemory,
     /// Show everything as soon as the size of the map is known.
     fit: bool,
+    /// Show where a new plan begins, likewise.
+    begin: Option<LatLon>,
     basemap: basemap::Layer,
     /// The shaded terrain.
     pub hillshade: hillshade::Layer,
@@ -47,8 +53,6 @@ pub struct MapState {
     tools: Toolbox,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
-    /// Where a new runway would be, when it was drawn last.
-    runway: Option<LatLon>,
 }
 
 impl MapState {
@@ -66,9 +70,9 @@ impl MapState {
         }
     }
 
-    /// Where a new runway would be: in the middle of what is free.
-    pub fn new_runway(&self) -> LatLon {
-        self.runway.unwrap_or(HOME)
+    /// Shows where a new plan begins, some kilometres around it.
+    pub fn begin_at(&mut self, at: LatLon) {
+        self.begin = Some(at);
     }
 
     /// Keeps the aircraft in the middle from now on.
@@ -114,6 +118,9 @@ impl MapState {
         if self.fit {
             self.fit_now(ui.available_size());
         }
+        if let Some(at) = self.begin.take() {
+            self.begin_now(at, ui.available_width());
+        }
         let here = scene.vehicle.position.as_ref().map(|p| p.value.position);
         let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(HOME);
         let mut memory = std::mem::take(&mut self.memory);
@@ -123,7 +130,6 @@ impl MapState {
             .double_click_to_zoom(false)
             .show(ui, |ui, response, projector, _| {
                 let view = View::of(projector);
-                self.runway = Some(view.geo(start::runway_on_screen(view.rect)));
                 self.draw(ui, response, &view, scene, queue)
             });
         if followed && scene.view.follow && memory.detached().is_some() {
@@ -181,11 +187,20 @@ impl MapState {
         self.sketched = Some((version, live.cloned()));
     }
 
+    /// In the middle of what the card for a new mission leaves free.
+    fn begin_now(&mut self, at: LatLon, width: f32) {
+        // within the map's range
+        let _ = self.memory.set_zoom(NEAR_ZOOM);
+        let aside = if width < furniture::NARROW { 0.0 } else { start::WIDTH / 2.0 };
+        let degrees_per_point = 360.0 / (256.0 * NEAR_ZOOM.exp2());
+        self.memory.center_at(lat_lon(at.lat_deg, at.lon_deg - f64::from(aside) * degrees_per_point));
+    }
+
     fn fit_now(&mut self, size: egui::Vec2) {
         self.fit = false;
         let Some((centre, zoom)) = View::fit(&self.sketch.places(), size) else {
-            // nothing to be shown: some kilometres, so that a runway can be placed
-            let _ = self.memory.set_zoom(EMPTY_ZOOM);
+            self.memory.center_at(lat_lon(WORLD.lat_deg, WORLD.lon_deg));
+            let _ = self.memory.set_zoom(WORLD_ZOOM);
             return;
         };
         self.memory.center_at(centre);

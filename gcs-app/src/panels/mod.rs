@@ -26,6 +26,7 @@ pub mod unsaved;
 use crate::command::{Queue, Replacement, Selection};
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
+use crate::guide::Guide;
 use crate::recent::Recent;
 use crate::recovery::LeftBehind;
 use crate::state::{Aged, Vehicle, Vehicles};
@@ -113,6 +114,8 @@ pub struct ViewState {
     pub cursor_s: Option<f64>,
     /// The cursor runs by itself.
     pub playing: bool,
+    /// What was answered of a new plan.
+    pub guide: Guide,
     /// What would replace a plan with unsaved changes, until the operator has decided.
     pub unsaved: Option<Replacement>,
     /// A file is being chosen in the window.

@@ -3,14 +3,14 @@
 use super::inspector::parse_position;
 use super::{Scene, field, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
-use crate::map::furniture::NARROW;
+use crate::guide::{Answer, Drawing, Guide, MissionFigure};
 use crate::map::text;
 use crate::map::view::View;
 use crate::theme::{self, Palette};
-use crate::units::{self, Unit};
-use egui::{Align2, DragValue, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
-use flight_plan::Runway;
-use flight_plan::template::{Outline, Template};
+use crate::units::{self, Unit, Units};
+use aircraft::Profile;
+use egui::{Align2, ComboBox, DragValue, Painter, Pos2, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2};
+use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
 use std::ops::RangeInclusive;
 
@@ -19,151 +19,165 @@ pub const WIDTH: f32 = 280.0;
 /// Its width where it is not to reach over the panels on the left.
 pub const NARROW_WIDTH: f32 = 252.0;
 /// See [`WIDTH`].
-pub const HEIGHT: f32 = 470.0;
-
-/// The mission lies so far beside the runway, metres from its nearer edge.
-const ASIDE_M: f64 = 2000.0;
-
-/// What is filled in.
-#[derive(Debug, Clone)]
-struct Form {
-    template: Template,
-    /// `None`: in the middle of what the card leaves free of the map.
-    runway_at: Option<LatLon>,
-    /// `None`: beside the runway.
-    mission_at: Option<LatLon>,
-    heading_deg: f64,
-    length_m: f64,
-    radius_m: f64,
-    height_m: f64,
-}
-
-impl Default for Form {
-    fn default() -> Self {
-        Self {
-            template: Template::Survey,
-            runway_at: None,
-            mission_at: None,
-            heading_deg: 52.0,
-            length_m: 600.0,
-            radius_m: 800.0,
-            height_m: 150.0,
-        }
-    }
-}
+pub const HEIGHT: f32 = 500.0;
 
 /// The document has nothing in it yet.
 pub fn is_wanted(scene: &Scene<'_>) -> bool {
     scene.document.plan().stages.is_empty() && scene.vehicle.aboard.is_none()
 }
 
-/// Draws the card. `here`: where the runway is unless it is placed.
-pub fn show(ui: &mut Ui, here: LatLon, scene: &Scene<'_>, queue: &mut Queue) {
-    let id = form_id();
-    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+/// Draws the card.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.label(RichText::new("New mission").strong().size(16.0));
-    ui.label(
-        RichText::new("Make a plan that can be flown as it is, then change it on the map.").color(p.weak),
-    );
-    ui.add_space(4.0);
-    templates(ui, &mut form);
-    ui.add_space(4.0);
-    answers(ui, &mut form, here, scene, queue);
+    let mut guide = scene.view.guide.clone();
+    match guide.threshold {
+        None => ask_place(ui, scene, queue),
+        Some(threshold) => {
+            let hint = "Make a plan that can be flown as it is, then change it on the map.";
+            ui.label(RichText::new(hint).color(p.weak));
+            ui.add_space(4.0);
+            templates(ui, &mut guide);
+            ui.add_space(4.0);
+            answers(ui, threshold, &mut guide, scene.units(), queue);
+        }
+    }
     ui.add_space(6.0);
     ui.horizontal(|ui| {
-        if ui.add(primary_button("Create", p)).clicked() {
-            queue.document(DocumentCommand::Create(Box::new(form.outline(here))));
+        let create = ui.add_enabled(guide.threshold.is_some(), primary_button("Create", p));
+        let create =
+            create.on_disabled_hover_text("Say first where you fly: click the map, or type it above.");
+        if let Some(outline) = guide.outline().filter(|_| create.clicked()) {
+            queue.document(DocumentCommand::Create(Box::new(outline)));
         }
         if ui.button("Open a plan…").clicked() {
             queue.document(DocumentCommand::Replace(Replacement::AskOpen));
         }
     });
-    ui.data_mut(|d| d.insert_temp(id, form));
-}
-
-/// Draws on the map where runway and mission would be.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-    if !is_wanted(scene) {
-        return;
-    }
-    let form: Form = painter.ctx().data(|d| d.get_temp(form_id())).unwrap_or_default();
-    let outline = form.outline(view.geo(runway_on_screen(view.rect)));
-    let runway = &outline.runway;
-    let ends = [runway.threshold, runway.threshold.destination(runway.heading_deg, runway.length_m)];
-    let [threshold, end] = ends.map(|at| view.place(at));
-    for (width, colour) in [(6.0, p.halo), (3.0, p.text)] {
-        painter.line_segment([threshold, end], Stroke::new(width, colour));
-    }
-    let below = vec2(0.0, 8.0);
-    text::haloed(painter, threshold + below, Align2::CENTER_TOP, runway.id.as_str(), 12.0, p.text, p);
-    if outline.template != Template::Circuit {
-        let (at, radius) = (view.place(outline.centre), outline.radius_m * view.points_per_metre());
-        painter.circle_stroke(at, radius as f32, Stroke::new(1.5, p.accent));
-        text::haloed(painter, at, Align2::CENTER_CENTER, outline.template.name(), 12.0, p.accent, p);
+    if guide != scene.view.guide {
+        queue.view(ViewCommand::Guide(Answer::Form(Box::new(guide))));
     }
 }
 
-/// Where on the screen the runway is unless it is placed: beside the card, where there is room.
-pub fn runway_on_screen(map: Rect) -> Pos2 {
-    let aside = if map.width() < NARROW { 0.0 } else { WIDTH / 2.0 };
-    map.center() + vec2(aside, 0.0)
+/// The first question: everything else lies around the answer.
+fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    ui.label("Where do you fly?");
+    ui.label(RichText::new("Zoom in and click the map, or type it:").color(p.weak));
+    let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", "", false));
+    if let Some(typed) = typed {
+        match parse_position(&typed) {
+            Some(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
+            None => refuse(&typed, queue),
+        }
+    }
+    if let Some(position) = &scene.vehicle.position
+        && ui.button("Where the vehicle is").clicked()
+    {
+        queue.view(ViewCommand::Guide(Answer::Place(position.value.position)));
+    }
+    if ui.button("Among the example's hills").on_hover_text("Elevations of these come with Legwork").clicked()
+    {
+        queue.view(ViewCommand::Guide(Answer::Place(crate::map::HOME)));
+    }
 }
 
-fn form_id() -> egui::Id {
-    egui::Id::unique("new mission")
+fn refuse(typed: &str, queue: &mut Queue) {
+    let text = format!("“{typed}” is no position: write it like 36.31900, -84.17300.");
+    queue.view(ViewCommand::Notice(text));
 }
 
-fn templates(ui: &mut Ui, form: &mut Form) {
+fn templates(ui: &mut Ui, guide: &mut Guide) {
     ui.horizontal_wrapped(|ui| {
         for template in Template::ALL {
-            let chosen = form.template == template;
+            let chosen = guide.template == template;
             if ui.selectable_label(chosen, template.name()).on_hover_text(template.about()).clicked() {
-                form.template = template;
+                guide.choose(template);
             }
         }
     });
-    ui.label(RichText::new(form.template.about()).color(theme::of(ui).weak));
+    ui.label(RichText::new(guide.template.about()).color(theme::of(ui).weak));
 }
 
-fn answers(ui: &mut Ui, form: &mut Form, here: LatLon, scene: &Scene<'_>, queue: &mut Queue) {
-    let u = scene.units();
-    let hint = "Its landing threshold; until then it moves with the map";
-    let mut refused = place(ui, ("Runway at", hint), &mut form.runway_at, here);
-    number(ui, "Heading", &mut form.heading_deg, DEGREES, 0.0..=359.9);
-    number(ui, "Length", &mut form.length_m, u.length(), 50.0..=5000.0);
-    if form.template != Template::Circuit {
-        let beside = form.beside(here);
-        let hint = "Its middle; until then beside the runway";
-        refused = refused.or(place(ui, ("Mission at", hint), &mut form.mission_at, beside));
-        number(ui, "Reaches", &mut form.radius_m, u.length(), 200.0..=20_000.0);
+fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, u: Units, queue: &mut Queue) {
+    let hint = "Its landing threshold";
+    place(ui, ("Runway at", hint), threshold, queue, |at| guide.threshold = Some(at));
+    draw_button(ui, "Draw the runway", Drawing::Runway, guide);
+    number(ui, "Heading", &mut guide.heading_deg, DEGREES, 0.0..=359.9);
+    number(ui, "Length", &mut guide.length_m, u.length(), 50.0..=5000.0);
+    if let Some(figure) = MissionFigure::of(guide.template) {
+        mission(ui, figure, guide, u, queue);
     }
-    number(ui, "Height", &mut form.height_m, u.altitude(), 30.0..=4000.0);
+    number(ui, "Height", &mut guide.height_m, u.altitude(), 30.0..=4000.0);
     ui.label(RichText::new("above the runway; more where the ground asks for it").color(theme::of(ui).weak));
-    if let Some(typed) = refused {
-        let text = format!("“{typed}” is no position: write it like 36.31900, -84.17300.");
-        queue.view(ViewCommand::Notice(text));
+    aircraft(ui, guide);
+}
+
+/// Where the mission is: drawn, or around a place.
+fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queue: &mut Queue) {
+    let extent = guide.extent();
+    if let Some(Extent::Drawn(places)) = &extent {
+        let size = u.distance().show(2.0 * extent.as_ref().map_or(0.0, Extent::radius_m));
+        let text = format!("{} of {} points, {size} across", figure.name(), places.len());
+        field::row(ui, "Mission", |ui| ui.add(egui::Label::new(text).truncate()));
+        draw_button(ui, &format!("Draw the {} again", figure.name()), Drawing::Mission, guide);
+        return;
     }
+    let Some(centre) = extent.map(|extent| extent.centre()) else { return };
+    let mut radius_m = match &guide.extent {
+        Some(Extent::Around { radius_m, .. }) => *radius_m,
+        _ => guide.radius_m,
+    };
+    let before_m = radius_m;
+    let mut moved = None;
+    place(ui, ("Mission at", "Its middle"), centre, queue, |at| moved = Some(at));
+    draw_button(ui, &format!("Draw the {}", figure.name()), Drawing::Mission, guide);
+    number(ui, "Reaches", &mut radius_m, u.length(), 200.0..=20_000.0);
+    if moved.is_some() || (guide.extent.is_some() && radius_m != before_m) {
+        guide.extent = Some(Extent::Around { centre: moved.unwrap_or(centre), radius_m });
+    }
+    guide.radius_m = radius_m;
+}
+
+/// A button that has the next clicks on the map answer.
+fn draw_button(ui: &mut Ui, name: &str, drawing: Drawing, guide: &mut Guide) {
+    field::row(ui, "", |ui| {
+        let on = guide.drawing == Some(drawing);
+        if ui.selectable_label(on, format!("✏ {name}")).on_hover_text("On the map").clicked() {
+            guide.drawing = (!on).then_some(drawing);
+        }
+    });
+}
+
+fn aircraft(ui: &mut Ui, guide: &mut Guide) {
+    field::row(ui, "Aircraft", |ui| {
+        let shown = guide.aircraft.clone();
+        let list = ComboBox::from_id_salt("aircraft").selected_text(&shown).show_ui(ui, |ui| {
+            for name in Profile::names() {
+                ui.selectable_value(&mut guide.aircraft, name.to_owned(), name);
+            }
+        });
+        let name = format!("Aircraft: {shown}");
+        list.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &name));
+    });
 }
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
 
-/// A position, typed; gives what was typed if it is none.
+/// A position that can be typed anew.
 fn place(
     ui: &mut Ui,
     (name, hint): (&str, &str),
-    at: &mut Option<LatLon>,
-    otherwise: LatLon,
-) -> Option<String> {
-    let shown = units::position(at.unwrap_or(otherwise));
+    at: LatLon,
+    queue: &mut Queue,
+    mut set: impl FnMut(LatLon),
+) {
+    let shown = units::position(at);
     let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown, false)));
     row.response.on_hover_text(hint);
-    let typed = row.inner?;
-    *at = Some(match parse_position(&typed) {
-        Some(position) => position,
-        None => return Some(typed),
-    });
-    None
+    if let Some(typed) = row.inner {
+        parse_position(&typed).map_or_else(|| refuse(&typed, queue), &mut set);
+    }
 }
 
 fn number(ui: &mut Ui, name: &str, si: &mut f64, unit: Unit, range_si: RangeInclusive<f64>) {
@@ -172,73 +186,50 @@ fn number(ui: &mut Ui, name: &str, si: &mut f64, unit: Unit, range_si: RangeIncl
         let range = unit.from_si(*range_si.start())..=unit.from_si(*range_si.end());
         let value = DragValue::new(&mut shown).range(range).suffix(format!(" {}", unit.symbol));
         let response = ui.add(value.max_decimals(0));
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
+        response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
         if response.changed() {
             *si = unit.to_si(shown);
         }
     });
 }
 
-impl Form {
-    fn runway(&self, here: LatLon) -> LatLon {
-        self.runway_at.unwrap_or(here)
-    }
-
-    /// Abeam of the runway, clear of it.
-    fn beside(&self, here: LatLon) -> LatLon {
-        let half_way = self.runway(here).destination(self.heading_deg, self.length_m / 2.0);
-        half_way.destination(self.heading_deg + 90.0, self.radius_m + ASIDE_M)
-    }
-
-    /// The elevation is looked up when the plan is made.
-    fn outline(&self, here: LatLon) -> Outline {
-        let runway = Runway {
-            id: runway_name(self.heading_deg).as_str().into(),
-            threshold: self.runway(here),
-            elevation_amsl_m: 0.0,
-            heading_deg: self.heading_deg,
-            length_m: self.length_m,
-            priority: 1,
-            approach_entry: None,
-        };
-        Outline {
-            template: self.template,
-            aircraft: "trainer".into(),
-            runway,
-            centre: self.mission_at.unwrap_or_else(|| self.beside(here)),
-            radius_m: self.radius_m,
-            height_m: self.height_m,
-        }
+/// Draws on the map where runway and mission would be.
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let Some(outline) = scene.view.guide.outline().filter(|_| is_wanted(scene)) else { return };
+    draw_runway(painter, view, &outline, p);
+    let drawing_it = scene.view.guide.drawing == Some(Drawing::Mission);
+    if let Some(figure) = MissionFigure::of(outline.template).filter(|_| !drawing_it) {
+        draw_mission(painter, view, &outline, figure, p);
     }
 }
 
-/// As runways are called: a tenth of the heading, 01 to 36.
-fn runway_name(heading_deg: f64) -> String {
-    let tenth = (heading_deg / 10.0).round().rem_euclid(36.0);
-    format!("R{:02}", if tenth < 1.0 { 36.0 } else { tenth })
+fn draw_runway(painter: &Painter, view: &View, outline: &Outline, p: &Palette) {
+    let runway = &outline.runway;
+    let ends = [runway.threshold, runway.threshold.destination(runway.heading_deg, runway.length_m)];
+    let [threshold, end] = ends.map(|at| view.place(at));
+    for (width, colour) in [(6.0, p.halo), (3.0, p.text)] {
+        painter.line_segment([threshold, end], Stroke::new(width, colour));
+    }
+    let below = vec2(0.0, 8.0);
+    text::haloed(painter, threshold + below, Align2::CENTER_TOP, runway.id.as_str(), 12.0, p.text, p);
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn runways_are_called_by_their_heading() {
-        for (heading_deg, name) in [(0.0, "R36"), (4.0, "R36"), (52.0, "R05"), (90.0, "R09"), (358.0, "R36")]
-        {
-            assert_eq!(runway_name(heading_deg), name, "{heading_deg}");
+fn draw_mission(painter: &Painter, view: &View, outline: &Outline, figure: MissionFigure, p: &Palette) {
+    let stroke = Stroke::new(1.5, p.accent);
+    let middle = view.place(outline.extent.centre());
+    match &outline.extent {
+        Extent::Around { radius_m, .. } => {
+            painter.circle_stroke(middle, (radius_m * view.points_per_metre()) as f32, stroke);
+        }
+        Extent::Drawn(places) => {
+            let points: Vec<Pos2> = places.iter().map(|at| view.place(*at)).collect();
+            let closed = figure == MissionFigure::Area;
+            painter.add(if closed {
+                Shape::closed_line(points, stroke)
+            } else {
+                Shape::line(points, stroke)
+            });
         }
     }
-
-    #[test]
-    fn mission_lies_beside_the_runway_until_it_is_placed() {
-        let here = LatLon::new(36.3, -84.2);
-        let mut form = Form::default();
-        let outline = form.outline(here);
-        assert_eq!(outline.runway.threshold, here);
-        let away_m = outline.centre.distance_m(here);
-        assert!((2700.0..3000.0).contains(&away_m), "{away_m}");
-        form.mission_at = Some(LatLon::new(36.4, -84.1));
-        assert_eq!(form.outline(here).centre, LatLon::new(36.4, -84.1));
-    }
+    text::haloed(painter, middle, Align2::CENTER_CENTER, outline.template.name(), 12.0, p.accent, p);
 }

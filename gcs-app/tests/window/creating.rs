@@ -8,6 +8,28 @@ use flight_plan::{LegKind, Pattern};
 
 const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
 
+/// A window without a plan, at the example's hills.
+fn begun(size: egui::Vec2) -> Window {
+    let mut window = Window::open_with(EMPTY, size, None);
+    window.steps(3);
+    window.click("Among the example's hills");
+    window
+}
+
+const SIZE: egui::Vec2 = vec2(1280.0, 800.0);
+
+/// Clicks these places of the map, from the middle of what the card leaves free.
+fn draw(window: &mut Window, offsets: &[egui::Vec2]) {
+    let middle = window.centre("Map") + vec2(140.0, 0.0);
+    for offset in offsets {
+        window.click_at(middle + *offset);
+    }
+}
+
+fn guide(window: &Window) -> &gcs_app::guide::Guide {
+    &window.app().view().guide
+}
+
 fn stages(window: &Window) -> usize {
     window.app().document().plan().stages.len()
 }
@@ -15,8 +37,7 @@ fn stages(window: &Window) -> usize {
 #[test]
 fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
     for template in Template::ALL {
-        let mut window = Window::open(EMPTY);
-        window.steps(3);
+        let mut window = begun(SIZE);
         assert!(window.shows("New mission"));
         window.click(template.name());
         window.click("Create");
@@ -31,9 +52,93 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
 }
 
 #[test]
-fn point_of_a_new_corridor_is_dragged_by_itself() {
+fn window_without_a_plan_shows_the_world_and_asks_where() {
     let mut window = Window::open(EMPTY);
     window.steps(3);
+    assert!(window.shows("Where do you fly?") && !window.is_enabled("Create"));
+    draw(&mut window, &[vec2(20.0, 40.0)]);
+    let at = guide(&window).threshold.unwrap();
+    assert!(at.lat_deg.abs() < 60.0 && at.lon_deg > 5.0, "a place right of the world's middle: {at:?}");
+    assert!(window.is_enabled("Create") && guide(&window).drawing.is_none());
+}
+
+#[test]
+fn place_is_typed_and_what_is_none_is_refused() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    for (typed, expected) in [("nowhere", false), ("47.1, 8.2", true)] {
+        window.harness.get_by_role_and_label(egui::accesskit::Role::TextInput, "Place").focus();
+        window.steps(2);
+        window.harness.get_by_role_and_label(egui::accesskit::Role::TextInput, "Place").type_text(typed);
+        window.press(Key::Enter);
+        assert_eq!(guide(&window).threshold.is_some(), expected, "{typed}");
+    }
+    assert_eq!(guide(&window).threshold, Some(geometry::LatLon::new(47.1, 8.2)));
+}
+
+#[test]
+fn runway_and_area_are_drawn_and_the_plan_flies_there() {
+    let mut window = begun(SIZE);
+    window.click("✏ Draw the runway");
+    assert!(window.shows("click the landing threshold"));
+    draw(&mut window, &[vec2(0.0, 60.0), vec2(40.0, 60.0)]);
+    assert!((guide(&window).heading_deg - 90.0).abs() < 1.0 && guide(&window).drawing.is_none());
+    window.click("✏ Draw the area");
+    draw(&mut window, &[vec2(0.0, -60.0), vec2(90.0, -70.0), vec2(100.0, -150.0), vec2(10.0, -140.0)]);
+    window.press(Key::Enter);
+    assert!(window.shows("area of 4 points"));
+    window.click("Create");
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    let LegKind::Scan(scan) = window.plan().leg(&"scan".into()).unwrap().leg.kind.clone() else {
+        panic!("no scan")
+    };
+    assert!(matches!(scan.area, flight_plan::Area::Polygon { corners, .. } if corners.len() == 4));
+    assert!((window.plan().runways[0].heading_deg - 90.0).abs() < 1.0);
+}
+
+#[test]
+fn each_template_asks_on_the_map_for_what_it_is_about() {
+    for (template, button, clicks) in [
+        (Template::Corridor, "✏ Draw the line", 3),
+        (Template::Patrol, "✏ Draw the line", 3),
+        (Template::Search, "✏ Draw the circle", 2),
+        (Template::FireWatch, "✏ Draw the circle", 2),
+    ] {
+        let mut window = begun(SIZE);
+        window.click(template.name());
+        window.click(button);
+        let line = [vec2(0.0, -90.0), vec2(110.0, -90.0), vec2(200.0, -110.0)];
+        draw(&mut window, &line[..clicks]);
+        if clicks == 3 {
+            window.press(Key::Enter);
+        }
+        assert!(guide(&window).extent.is_some() && guide(&window).drawing.is_none(), "{template:?}");
+        window.click("Create");
+        window.until_analysed();
+        assert_eq!(window.errors(), Vec::<String>::new(), "{template:?}");
+    }
+}
+
+#[test]
+fn escape_or_another_tool_ends_what_the_guide_asks_for() {
+    let mut window = begun(SIZE);
+    window.click("✏ Draw the runway");
+    draw(&mut window, &[vec2(0.0, 60.0)]);
+    window.press(Key::Escape);
+    assert!(window.shows("click the landing threshold"), "the gesture first");
+    window.press(Key::Escape);
+    assert!(guide(&window).drawing.is_none());
+    window.click("✏ Draw the area");
+    window.click("Place a fix (X)");
+    assert!(guide(&window).drawing.is_none());
+    draw(&mut window, &[vec2(0.0, 60.0)]);
+    assert_eq!(window.plan().fixes.len(), 1);
+}
+
+#[test]
+fn point_of_a_new_corridor_is_dragged_by_itself() {
+    let mut window = begun(SIZE);
     window.click("Corridor");
     window.click("Create");
     window.until_analysed();
@@ -53,7 +158,7 @@ fn point_of_a_new_corridor_is_dragged_by_itself() {
 
 #[test]
 fn card_fits_the_smallest_window() {
-    let mut window = Window::open_with(EMPTY, vec2(960.0, 600.0), None);
+    let mut window = begun(vec2(960.0, 600.0));
     window.steps(5);
     for label in ["Create", "Open a plan…", "Survey", "Height"] {
         let rect = window.harness.get_all_by_label(label).next().unwrap().rect();
@@ -76,8 +181,7 @@ fn card_fits_the_smallest_window() {
 
 #[test]
 fn plan_with_unsaved_changes_gives_way_only_when_told_to() {
-    let mut window = Window::open(EMPTY);
-    window.steps(3);
+    let mut window = begun(SIZE);
     window.click("Create");
     let made = stages(&window);
     window.press_ctrl(Key::N);
@@ -93,8 +197,7 @@ fn plan_with_unsaved_changes_gives_way_only_when_told_to() {
 
 #[test]
 fn window_with_unsaved_changes_asks_before_it_closes() {
-    let mut window = Window::open(EMPTY);
-    window.steps(3);
+    let mut window = begun(SIZE);
     window.click("Create");
     let viewport = window.harness.ctx.viewport_id();
     let input = window.harness.input_mut();

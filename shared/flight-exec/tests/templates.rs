@@ -4,7 +4,7 @@
 use aircraft::Profile;
 use flight_exec::{Conditions, compile_and_review};
 use flight_plan::Runway;
-use flight_plan::template::{Outline, Template};
+use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -24,7 +24,8 @@ fn outline(template: Template, threshold: LatLon, elevation_amsl_m: f64, heading
         approach_entry: None,
     };
     let centre = threshold.destination(heading_deg + 90.0, 3500.0);
-    Outline { template, aircraft: "trainer".into(), runway, centre, radius_m: 800.0, height_m: 150.0 }
+    let extent = Extent::Around { centre, radius_m: 800.0 };
+    Outline { template, aircraft: "trainer".into(), runway, extent, height_m: 150.0 }
 }
 
 fn problems(outline: &Outline, terrain: Arc<dyn Terrain>) -> Vec<String> {
@@ -50,10 +51,10 @@ fn every_template_can_be_flown_among_hills() {
 #[test]
 fn low_mission_beside_the_final_needs_no_climb_to_land() {
     let threshold = LatLon::new(5.0, 0.0);
-    let centre = threshold.destination(290.52, 1825.0);
+    let extent = Extent::Around { centre: threshold.destination(290.52, 1825.0), radius_m: 2485.0 };
     let ours = outline(Template::Patrol, threshold, 0.0, 177.72);
     for template in Template::ALL {
-        let outline = Outline { template, centre, radius_m: 2485.0, height_m: 60.0, ..ours.clone() };
+        let outline = Outline { template, extent: extent.clone(), height_m: 60.0, ..ours.clone() };
         assert_eq!(problems(&outline, Arc::new(Flat(0.0))), Vec::<String>::new(), "{template:?}");
     }
 }
@@ -71,11 +72,35 @@ proptest! {
         let threshold = LatLon { lat_deg, lon_deg };
         let centre = threshold.destination(bearing_deg, away_m);
         let outline = Outline {
-            centre,
-            radius_m,
+            extent: Extent::Around { centre, radius_m },
             height_m,
             ..outline(Template::ALL[which], threshold, elevation_amsl_m, heading_deg)
         };
         prop_assert_eq!(problems(&outline, Arc::new(Flat(elevation_amsl_m))), Vec::<String>::new());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    /// Areas and lines with gentle bends, as they are drawn.
+    #[test]
+    fn what_was_drawn_can_be_flown(
+        (which, count) in (0..2usize, 3..7usize),
+        (heading_deg, bearing_deg) in (0.0..360.0, 0.0..360.0),
+        (away_m, radius_m, height_m) in (2500.0..6000.0, 800.0..2500.0, 80.0..500.0),
+        reach in prop::collection::vec(0.7..1.0, 7),
+    ) {
+        let threshold = LatLon::new(47.0, 8.0);
+        let centre = threshold.destination(bearing_deg, away_m);
+        let corner = |i: usize| centre.destination(360.0 * i as f64 / count as f64, radius_m * reach[i]);
+        // a line turns by no more than 40 degrees at each point
+        let point = |i: usize| centre.destination(90.0, radius_m * i as f64).destination(0.0, 360.0 * reach[i]);
+        let (template, drawn) = match which {
+            0 => (Template::Survey, (0..count).map(corner).collect()),
+            _ => (Template::Patrol, (0..count).map(point).collect()),
+        };
+        let ours = outline(template, threshold, 400.0, heading_deg);
+        let outline = Outline { extent: Extent::Drawn(drawn), height_m, ..ours };
+        prop_assert_eq!(problems(&outline, Arc::new(Flat(400.0))), Vec::<String>::new());
     }
 }

@@ -5,6 +5,7 @@
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
 mod draw_leg;
+mod guided;
 mod measure;
 pub mod new_leg;
 mod pen;
@@ -177,23 +178,42 @@ pub struct Toolbox {
     offset: Vec2,
     /// Keys that the tool in use has not seen yet.
     pressed: Vec<Key>,
+    /// Draws the answers to the guide to a new plan.
+    guided: guided::Guided,
+    /// The guide asks for something: its tool is in use, whichever was chosen.
+    is_guided: bool,
 }
 
 impl Default for Toolbox {
     fn default() -> Self {
-        Self { tools: all(), current: 0, offset: Vec2::ZERO, pressed: Vec::new() }
+        Self {
+            tools: all(),
+            current: 0,
+            offset: Vec2::ZERO,
+            pressed: Vec::new(),
+            guided: guided::Guided::default(),
+            is_guided: false,
+        }
     }
 }
 
 impl Toolbox {
     /// Each tool's card, and whether it is in use.
     pub fn cards(&self) -> impl Iterator<Item = (&'static Card, bool)> {
-        self.tools.iter().enumerate().map(|(i, tool)| (tool.card(), i == self.current))
+        let current = (!self.is_guided).then_some(self.current);
+        self.tools.iter().enumerate().map(move |(i, tool)| (tool.card(), Some(i) == current))
+    }
+
+    fn in_use(&self) -> Option<&dyn Tool> {
+        if self.is_guided {
+            return Some(&self.guided);
+        }
+        self.tools.get(self.current).map(AsRef::as_ref)
     }
 
     /// What the tool in use says.
     pub fn status(&self, scene: &Scene<'_>) -> Option<String> {
-        self.tools.get(self.current)?.status(scene)
+        self.in_use()?.status(scene)
     }
 
     /// Draws the choices that the tool in use offers.
@@ -221,12 +241,12 @@ impl Toolbox {
         let pressed = |key: Key| ctx.input(|i| i.modifiers.is_none() && i.key_pressed(key));
         let consume = |key: Key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
         let chosen = self.tools.iter().map(|tool| tool.card()).find(|card| pressed(card.key));
-        if let Some(card) = chosen {
+        if let Some(card) = chosen.filter(|_| !self.is_guided) {
             consume(card.key);
             self.choose(card.id);
         }
         for key in KEYS.into_iter().filter(|key| pressed(*key)) {
-            let wanted = self.tools.get(self.current).is_some_and(|tool| tool.wants(key));
+            let wanted = self.in_use().is_some_and(|tool| tool.wants(key));
             if wanted || (key == Key::Escape && self.current != 0) {
                 consume(key);
             }
@@ -240,7 +260,12 @@ impl Toolbox {
 
     /// Passes what happened on the map to the tool in use, and lets it paint.
     pub fn run(&mut self, ui: &Ui, map: &Response, canvas: &Canvas<'_>, queue: &mut Queue, p: &Palette) {
-        let Some(tool) = self.tools.get_mut(self.current) else { return };
+        self.is_guided = guided::Guided::is_wanted(canvas.scene);
+        let chosen = self.tools.get_mut(self.current).map(AsMut::as_mut);
+        let Some(tool) = (if self.is_guided { Some(&mut self.guided as &mut dyn Tool) } else { chosen })
+        else {
+            return;
+        };
         tool.hover(map.hover_pos(), canvas);
         for key in std::mem::take(&mut self.pressed) {
             tool.key(key, canvas, queue);
@@ -258,7 +283,7 @@ impl Toolbox {
             if response.dragged() {
                 touch.dragged = Some(grip.key);
             }
-            react(tool.as_mut(), &mut self.offset, &response, &grip, canvas, queue);
+            react(tool, &mut self.offset, &response, &grip, canvas, queue);
         }
         if map.double_clicked() || map.triple_clicked() {
             tool.finish(canvas, queue);

@@ -1,7 +1,7 @@
 //! Whatever is drawn gives a plan without errors.
 
 use super::*;
-use crate::template::{Outline, Template};
+use crate::template::{Extent, Outline, Template};
 use crate::{
     Edit, FlightPlan, Id, LegKind, Place, Runway, Spot, StageKind, Thing, Value, VariableValue, ZoneKind,
     ZoneShape, check,
@@ -23,9 +23,8 @@ fn made(template: Template) -> FlightPlan {
         priority: 1,
         approach_entry: None,
     };
-    let centre = HOME.destination(180.0, 3500.0);
-    let outline =
-        Outline { template, aircraft: "trainer".into(), runway, centre, radius_m: 1000.0, height_m: 150.0 };
+    let extent = Extent::Around { centre: HOME.destination(180.0, 3500.0), radius_m: 1000.0 };
+    let outline = Outline { template, aircraft: "trainer".into(), runway, extent, height_m: 150.0 };
     outline.plan(&Profile::default(), &Flat(200.0))
 }
 

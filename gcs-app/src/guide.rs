@@ -1,0 +1,228 @@
+//! The guide to a new plan: what was answered so far, and what of it is being drawn on the map.
+//!
+//! Answers come from the card (`panels/start.rs`) and from the map (`map/tools/guided.rs`); both see the same state.
+
+use flight_plan::Runway;
+use flight_plan::template::{Extent, Outline, Template};
+use geometry::LatLon;
+
+/// The mission lies so far beside the runway, metres from its nearer edge.
+const ASIDE_M: f64 = 2000.0;
+/// Shortest and longest runway that is taken from a drawing, metres.
+const LENGTH_M: (f64, f64) = (50.0, 5000.0);
+
+/// What was answered so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guide {
+    /// What the flight is for.
+    pub template: Template,
+    /// Name of the aircraft's profile.
+    pub aircraft: String,
+    /// The runway's landing threshold; nothing else can be answered before.
+    pub threshold: Option<LatLon>,
+    /// The runway's direction, degrees true.
+    pub heading_deg: f64,
+    /// The runway's length, metres.
+    pub length_m: f64,
+    /// `None`: beside the runway.
+    pub extent: Option<Extent>,
+    /// From the mission's middle to its edge where it is not drawn, metres.
+    pub radius_m: f64,
+    /// Of the mission above the runway, metres.
+    pub height_m: f64,
+    /// What the next clicks on the map answer.
+    pub drawing: Option<Drawing>,
+}
+
+/// An answer that is given on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawing {
+    /// Where to fly: a click.
+    Place,
+    /// The runway: its threshold and its other end.
+    Runway,
+    /// The mission: what its template asks for.
+    Mission,
+}
+
+/// What a template asks for on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MissionFigure {
+    /// The outline of an area.
+    Area,
+    /// A line of two points or more.
+    Line,
+    /// A middle and a rim.
+    Circle,
+}
+
+impl MissionFigure {
+    /// `None`: it asks for nothing.
+    pub fn of(template: Template) -> Option<Self> {
+        match template {
+            Template::Survey => Some(Self::Area),
+            Template::Corridor | Template::Patrol => Some(Self::Line),
+            Template::Search | Template::FireWatch => Some(Self::Circle),
+            Template::Circuit => None,
+        }
+    }
+
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Area => "area",
+            Self::Line => "line",
+            Self::Circle => "circle",
+        }
+    }
+}
+
+/// An answer.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// Where to fly: the runway's threshold, until it is drawn.
+    Place(LatLon),
+    /// A runway from its landing threshold to its other end.
+    Runway(LatLon, LatLon),
+    /// Where the mission is.
+    Mission(Extent),
+    /// Whatever the card's fields say.
+    Form(Box<Guide>),
+    /// The next clicks on the map answer this, or nothing.
+    Draw(Option<Drawing>),
+}
+
+impl Default for Guide {
+    fn default() -> Self {
+        Self {
+            template: Template::Survey,
+            aircraft: "trainer".into(),
+            threshold: None,
+            heading_deg: 52.0,
+            length_m: 600.0,
+            extent: None,
+            radius_m: 800.0,
+            height_m: 150.0,
+            drawing: Some(Drawing::Place),
+        }
+    }
+}
+
+impl Guide {
+    /// Takes an answer.
+    pub fn take(&mut self, answer: Answer) {
+        match answer {
+            Answer::Place(at) => (self.threshold, self.drawing) = (Some(at), None),
+            Answer::Runway(threshold, end) => self.take_runway(threshold, end),
+            Answer::Mission(extent) => (self.extent, self.drawing) = (Some(extent), None),
+            Answer::Form(form) => *self = *form,
+            Answer::Draw(drawing) => self.drawing = drawing,
+        }
+    }
+
+    fn take_runway(&mut self, threshold: LatLon, end: LatLon) {
+        let way = threshold.inverse(end);
+        self.threshold = Some(threshold);
+        self.heading_deg = way.bearing_start_deg.rem_euclid(360.0);
+        self.length_m = way.distance_m.clamp(LENGTH_M.0, LENGTH_M.1).round();
+        self.drawing = None;
+    }
+
+    /// Another template; a drawing that it doesn't ask for is forgotten.
+    pub fn choose(&mut self, template: Template) {
+        if MissionFigure::of(template) != MissionFigure::of(self.template) {
+            self.extent = None;
+            self.drawing = self.drawing.filter(|drawing| *drawing != Drawing::Mission);
+        }
+        self.template = template;
+    }
+
+    /// Where the mission is; `None` as long as no place is known.
+    pub fn extent(&self) -> Option<Extent> {
+        self.extent.clone().or_else(|| {
+            Some(Extent::Around { centre: self.beside(self.threshold?), radius_m: self.radius_m })
+        })
+    }
+
+    /// Abeam of the runway, clear of it.
+    fn beside(&self, threshold: LatLon) -> LatLon {
+        let half_way = threshold.destination(self.heading_deg, self.length_m / 2.0);
+        half_way.destination(self.heading_deg + 90.0, self.radius_m + ASIDE_M)
+    }
+
+    /// What the plan is made of; `None` as long as no place is known. The runway's elevation is looked up when the plan is made.
+    pub fn outline(&self) -> Option<Outline> {
+        let runway = Runway {
+            id: runway_name(self.heading_deg).as_str().into(),
+            threshold: self.threshold?,
+            elevation_amsl_m: 0.0,
+            heading_deg: self.heading_deg,
+            length_m: self.length_m,
+            priority: 1,
+            approach_entry: None,
+        };
+        Some(Outline {
+            template: self.template,
+            aircraft: self.aircraft.clone(),
+            runway,
+            extent: self.extent()?,
+            height_m: self.height_m,
+        })
+    }
+}
+
+/// As runways are called: a tenth of the heading, 01 to 36.
+fn runway_name(heading_deg: f64) -> String {
+    let tenth = (heading_deg / 10.0).round().rem_euclid(36.0);
+    format!("R{:02}", if tenth < 1.0 { 36.0 } else { tenth })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: LatLon = LatLon::new(36.3, -84.2);
+
+    #[test]
+    fn runways_are_called_by_their_heading() {
+        for (heading_deg, name) in [(0.0, "R36"), (4.0, "R36"), (52.0, "R05"), (90.0, "R09"), (358.0, "R36")]
+        {
+            assert_eq!(runway_name(heading_deg), name, "{heading_deg}");
+        }
+    }
+
+    #[test]
+    fn mission_lies_beside_the_runway_until_it_is_drawn() {
+        let mut guide = Guide::default();
+        assert_eq!(guide.outline(), None);
+        guide.take(Answer::Place(HERE));
+        let away_m = guide.outline().unwrap().extent.centre().distance_m(HERE);
+        assert!((2700.0..3000.0).contains(&away_m), "{away_m}");
+        let drawn = Extent::Drawn(vec![HERE, HERE.destination(0.0, 900.0), HERE.destination(90.0, 900.0)]);
+        guide.take(Answer::Mission(drawn.clone()));
+        assert_eq!(guide.outline().unwrap().extent, drawn);
+    }
+
+    #[test]
+    fn runway_is_drawn_by_its_two_ends() {
+        let mut guide = Guide::default();
+        guide.take(Answer::Draw(Some(Drawing::Runway)));
+        guide.take(Answer::Runway(HERE, HERE.destination(130.0, 712.0)));
+        let runway = guide.outline().unwrap().runway;
+        assert_eq!((runway.threshold, runway.length_m, runway.id.as_str()), (HERE, 712.0, "R13"));
+        assert!((runway.heading_deg - 130.0).abs() < 0.01 && guide.drawing.is_none());
+    }
+
+    #[test]
+    fn drawing_is_forgotten_with_the_template_that_asked_for_it() {
+        let mut guide = Guide::default();
+        guide.take(Answer::Place(HERE));
+        let line = Extent::Drawn(vec![HERE, HERE.destination(0.0, 900.0)]);
+        guide.choose(Template::Corridor);
+        guide.take(Answer::Mission(line.clone()));
+        guide.choose(Template::Patrol);
+        assert_eq!(guide.extent, Some(line), "a patrol flies along a line, too");
+        guide.choose(Template::Survey);
+        assert_eq!(guide.extent, None);
+    }
+}

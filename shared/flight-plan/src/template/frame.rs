@@ -1,0 +1,184 @@
+//! What all templates have in common: places around the runway, heights above it, the way out and the way home.
+
+use super::{Outline, above_home, fix, hold, leg, stage, to};
+use crate::{Altitude, Fix, Id, Leg, LegKind, Runway, Stage, StageKind, TurnDirection};
+use aircraft::Profile;
+use geometry::LatLon;
+use std::sync::Arc;
+use terrain::Terrain;
+
+/// Height above the runway at which a take-off ends, metres.
+const CLIMB_OUT_M: f64 = 80.0;
+/// Above the highest ground on the way, metres.
+const CLEARANCE_M: f64 = 150.0;
+/// Of the final above the ground under it, metres.
+const LOWEST_M: f64 = 60.0;
+/// Descent on the final, metres down per metre forward.
+const GLIDE_SLOPE: f64 = 0.075;
+/// The ground is looked at in a grid of so many by so many places.
+const GRID: u32 = 24;
+
+/// Climb-out altitude of a take-off.
+pub(crate) fn climb_out() -> Altitude {
+    above_home(CLIMB_OUT_M)
+}
+
+/// What all templates have in common: places around the runway, and heights above it.
+pub(super) struct Frame<'a> {
+    pub(super) runway: &'a Runway,
+    pub(super) turn_radius_m: f64,
+    /// From the threshold to the departure's fix, metres.
+    ahead_m: f64,
+    /// From the threshold back to the beginning and to the gate of the final, metres.
+    pub(super) final_m: f64,
+    pub(super) gate_m: f64,
+    /// Of the mission, metres above the runway.
+    pub(super) height_m: f64,
+    /// Of the highest ground under the final, metres above the runway.
+    hill_m: f64,
+    /// The fixes where the final begins, and lower on it.
+    pub(super) final_fix: Id,
+    pub(super) gate_fix: Id,
+}
+
+impl<'a> Frame<'a> {
+    pub(super) fn new(outline: &'a Outline, profile: &Profile, terrain: &dyn Terrain) -> Self {
+        let turn_radius_m = profile.turn_radius_m(profile.cruise_airspeed_mps);
+        let mut frame = Self {
+            runway: &outline.runway,
+            turn_radius_m,
+            ahead_m: outline.runway.length_m + (8.0 * turn_radius_m).max(1000.0),
+            final_m: (20.0 * turn_radius_m).max(2600.0),
+            gate_m: (9.0 * turn_radius_m).max(1200.0),
+            height_m: outline.height_m,
+            hill_m: 0.0,
+            final_fix: "FINAL".into(),
+            gate_fix: "GATE".into(),
+        };
+        frame.hill_m = frame.hill_on_final(terrain);
+        let hilltop_m = frame.highest_ground(outline, terrain) - outline.runway.elevation_amsl_m;
+        frame.height_m = (outline.height_m.max(hilltop_m + CLEARANCE_M) / 10.0).ceil() * 10.0;
+        frame
+    }
+
+    /// The highest known ground around runway and mission, metres AMSL; the runway's own where none is known.
+    fn highest_ground(&self, outline: &Outline, terrain: &dyn Terrain) -> f64 {
+        let margin_m = outline.extent.radius_m() * 1.5 + 6.0 * self.turn_radius_m;
+        let centre = outline.extent.centre();
+        let around = [0.0, 90.0, 180.0, 270.0].map(|bearing| centre.destination(bearing, margin_m));
+        let places = [self.at(self.ahead_m, 0.0), self.at(-self.final_m, 0.0), self.at(0.0, self.side_m())];
+        let (south_west, north_east) = bounds(around.into_iter().chain(places));
+        let share = |i: u32, from: f64, to: f64| from + (to - from) * f64::from(i) / f64::from(GRID);
+        let grid = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j)));
+        grid.filter_map(|(i, j)| {
+            let lat_deg = share(i, south_west.lat_deg, north_east.lat_deg);
+            terrain.elevation_m(LatLon { lat_deg, lon_deg: share(j, south_west.lon_deg, north_east.lon_deg) })
+        })
+        .fold(self.runway.elevation_amsl_m, f64::max)
+    }
+
+    /// The highest known ground between the final's beginning and its gate, metres above the runway.
+    fn hill_on_final(&self, terrain: &dyn Terrain) -> f64 {
+        let share = |i: u32| self.gate_m + (self.final_m - self.gate_m) * f64::from(i) / f64::from(GRID);
+        let ground = (0..=GRID).filter_map(|i| terrain.elevation_m(self.at(-share(i), 0.0)));
+        ground.fold(0.0, |hill_m: f64, at_m| hill_m.max(at_m - self.runway.elevation_amsl_m))
+    }
+
+    /// So many metres in the runway's direction from its threshold, and to its right.
+    pub(super) fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
+        let heading_deg = self.runway.heading_deg;
+        self.runway.threshold.destination(heading_deg, ahead_m).destination(heading_deg + 90.0, right_m)
+    }
+
+    /// From the runway's line to the downwind of a circuit, metres.
+    fn side_m(&self) -> f64 {
+        (5.0 * self.turn_radius_m).max(900.0)
+    }
+
+    fn gate_height_m(&self) -> f64 {
+        (self.gate_m * GLIDE_SLOPE).min(self.final_height_m()).max(self.hill_m + LOWEST_M).round()
+    }
+
+    /// Not above the mission: a mission that ends beside the final would leave no room to climb there.
+    fn final_height_m(&self) -> f64 {
+        (self.final_m * GLIDE_SLOPE).min(self.height_m).max(self.hill_m + 2.0 * LOWEST_M).round()
+    }
+
+    pub(super) fn fixes(&self) -> Vec<Fix> {
+        vec![
+            fix("DEP", self.at(self.ahead_m, 0.0)),
+            fix(self.final_fix.as_str(), self.at(-self.final_m, 0.0)),
+            fix(self.gate_fix.as_str(), self.at(-self.gate_m, 0.0)),
+        ]
+    }
+
+    pub(super) fn take_off(&self) -> Stage {
+        let (runway, altitude) = (Some(self.runway.id.clone()), Some(above_home(CLIMB_OUT_M)));
+        Stage { runway, altitude, ..stage("take-off", "Take-off", StageKind::TakeOff) }
+    }
+
+    /// Ahead of the runway, and up in a hold to the mission's height.
+    pub(super) fn departure(&self) -> Stage {
+        let heading_deg = self.runway.heading_deg;
+        let climb = LegKind::Ha(hold("DEP", heading_deg, TurnDirection::Right));
+        let legs = vec![
+            Leg {
+                altitude: Some(above_home(CLIMB_OUT_M + 20.0)),
+                ..leg("d1", "Runway track", LegKind::Tf(to("DEP")))
+            },
+            Leg { altitude: Some(above_home(self.height_m)), ..leg("d2", "Climb in the hold", climb) },
+        ];
+        let legs = legs.into_iter().map(Arc::new).collect();
+        Stage { legs, ..stage("departure", "Departure", StageKind::Departure) }
+    }
+
+    /// Downwind, beside the runway.
+    pub(super) fn circuit(&self, fixes: &mut Vec<Fix>) -> Vec<Leg> {
+        fixes.push(fix("CROSS", self.at(self.ahead_m, self.side_m())));
+        fixes.push(fix("DOWN", self.at(-self.gate_m, self.side_m())));
+        vec![
+            leg("crosswind", "Crosswind", LegKind::Tf(to("CROSS"))),
+            leg("downwind", "Downwind", LegKind::Tf(to("DOWN"))),
+        ]
+    }
+
+    /// From anywhere to the runway. `prefix`: of the identifiers.
+    pub(super) fn way_home(&self, prefix: &str) -> Vec<Stage> {
+        let id = |text: &str| format!("{prefix}{text}");
+        let holding = hold(self.final_fix.as_str(), self.runway.heading_deg, TurnDirection::Right);
+        let (height_m, final_m) = (self.height_m, self.final_height_m());
+        let line_up = if height_m > final_m { LegKind::Ha(holding) } else { LegKind::Hf(holding) };
+        let direct = LegKind::Df { to: to(self.final_fix.as_str()), turn: None };
+        let arrival = vec![
+            Leg { altitude: Some(above_home(height_m)), ..leg(&id("a1"), "Direct to the final", direct) },
+            Leg { altitude: Some(above_home(final_m)), ..leg(&id("a2"), "Descend in the hold", line_up) },
+        ];
+        let approach = Leg {
+            altitude: Some(above_home(self.gate_height_m())),
+            ..leg(&id("ap1"), "Final approach", LegKind::Tf(to(self.gate_fix.as_str())))
+        };
+        let runway = Some(self.runway.id.clone());
+        vec![
+            Stage {
+                legs: arrival.into_iter().map(Arc::new).collect(),
+                ..stage(&id("arrival"), "Arrival", StageKind::Arrival)
+            },
+            Stage {
+                legs: vec![Arc::new(approach)],
+                ..stage(&id("approach"), "Approach", StageKind::Approach)
+            },
+            Stage { runway, ..stage(&id("land"), "Landing", StageKind::Land) },
+        ]
+    }
+}
+
+/// The box around places, none of them near the antimeridian.
+fn bounds(places: impl Iterator<Item = LatLon>) -> (LatLon, LatLon) {
+    let nothing = (LatLon::new(90.0, 180.0), LatLon::new(-90.0, -180.0));
+    places.fold(nothing, |(low, high), at| {
+        (
+            LatLon { lat_deg: low.lat_deg.min(at.lat_deg), lon_deg: low.lon_deg.min(at.lon_deg) },
+            LatLon { lat_deg: high.lat_deg.max(at.lat_deg), lon_deg: high.lon_deg.max(at.lon_deg) },
+        )
+    })
+}

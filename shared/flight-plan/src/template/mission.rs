@@ -1,0 +1,130 @@
+//! What is flown between the way out and the way home.
+
+use super::frame::Frame;
+use super::{Extent, Outline, Template, fix, leg, to};
+use crate::{
+    Area, Fix, IterativeForm, Leg, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing,
+    TurnDirection, Value, Variable, VariableValue,
+};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// Width of the strip along a line that was drawn, metres.
+const STRIP_M: f64 = 200.0;
+
+impl Outline {
+    /// The mission's legs; the fixes that they need are added.
+    pub(super) fn mission(&self, frame: &Frame<'_>, fixes: &mut Vec<Fix>) -> Vec<Leg> {
+        // neighbouring tracks are a turn apart
+        let least_m = 2.2 * frame.turn_radius_m;
+        let half_m = self.extent.half_width_m();
+        let spacing = Spacing::Metres(Value::Constant((half_m / 5.0).max(least_m).ceil()));
+        let heading_deg = self.runway.heading_deg;
+        match self.template {
+            Template::Circuit => frame.circuit(fixes),
+            Template::Survey => {
+                let area = Area::Polygon { corners: self.extent.corners(heading_deg), holes: Vec::new() };
+                vec![leg("scan", "Scan the area", LegKind::Scan(scan(area, spacing)))]
+            }
+            Template::Corridor => vec![leg("strip", "Along the line", self.corridor(spacing))],
+            Template::Search => {
+                fixes.push(fix("DATUM", self.extent.centre()));
+                vec![leg("search", "Search around the datum", self.search(spacing))]
+            }
+            Template::Patrol => {
+                let points = self.extent.line(heading_deg);
+                let ids: Vec<String> = (1..=points.len()).map(|n| format!("P{n}")).collect();
+                fixes.extend(ids.iter().zip(points).map(|(id, at)| fix(id, at)));
+                patrol(&ids)
+            }
+            Template::FireWatch => fire_watch(spacing),
+        }
+    }
+
+    fn corridor(&self, spacing: Spacing) -> LegKind {
+        let route = self.extent.line(self.runway.heading_deg);
+        let width_m = match &self.extent {
+            Extent::Around { radius_m, .. } => (radius_m / 2.0).clamp(100.0, 1000.0).round(),
+            Extent::Drawn(_) => STRIP_M,
+        };
+        let route = route.into_iter().map(|at: LatLon| Place::Position(Value::Constant(at))).collect();
+        LegKind::Pattern(Pattern::Corridor { route, width_m: Value::Constant(width_m), spacing })
+    }
+
+    fn search(&self, spacing: Spacing) -> LegKind {
+        LegKind::Pattern(Pattern::ExpandingSquare {
+            centre: Place::Fix("DATUM".into()),
+            spacing,
+            heading_deg: Value::Constant(self.runway.heading_deg),
+            radius_m: Value::Constant(self.extent.radius_m().round()),
+            turn: TurnDirection::Right,
+        })
+    }
+
+    /// What the mission's legs read.
+    pub(super) fn variables(&self) -> Vec<Variable> {
+        if self.template != Template::FireWatch {
+            return Vec::new();
+        }
+        let radius_m = self.extent.radius_m();
+        let radius = Variable::new("fire_radius".into(), VariableValue::Number(radius_m.round()));
+        vec![
+            Variable::new("fire_centre".into(), VariableValue::Position(self.extent.centre())),
+            Variable {
+                unit: "m".into(),
+                min: Some((radius_m / 2.0).max(200.0).round()),
+                max: Some((radius_m * 1.2).round()),
+                ..radius
+            },
+        ]
+    }
+}
+
+/// Scan the fire, then look at it from its rim; twice.
+fn fire_watch(spacing: Spacing) -> Vec<Leg> {
+    let centre = || Place::Position(Value::Expression("fire_centre".into()));
+    let radius_m = || Value::Expression("fire_radius".into());
+    let area = Area::Circle { centre: centre(), radius_m: radius_m() };
+    let (turns, turn) = (Value::Constant(1.0), TurnDirection::Left);
+    let look = LegKind::Orbit { centre: centre(), radius_m: radius_m(), turns, turn };
+    let body = vec![
+        leg("sweep", "Scan the fire", LegKind::Scan(scan(area, spacing))),
+        leg("look", "Around the fire", look),
+    ];
+    let watch = LegKind::Iterative {
+        form: IterativeForm::Forward,
+        count: Some(Value::Constant(2.0)),
+        until: None,
+        turn,
+        body: body.into_iter().map(Arc::new).collect(),
+    };
+    vec![leg("watch", "Watch", watch)]
+}
+
+/// To the first point, and twice forth and back between all of them.
+fn patrol(ids: &[String]) -> Vec<Leg> {
+    let body = ids.iter().enumerate().map(|(i, id)| {
+        let kind = if i == 0 { LegKind::If(to(id)) } else { LegKind::Tf(to(id)) };
+        Arc::new(leg(&id.to_lowercase(), "", kind))
+    });
+    let patrol = LegKind::Iterative {
+        form: IterativeForm::Reverse,
+        count: Some(Value::Constant(2.0)),
+        until: None,
+        turn: TurnDirection::Left,
+        body: body.collect(),
+    };
+    let first = ids.first().map(|id| leg("to-patrol", "To the patrol", LegKind::Tf(to(id))));
+    first.into_iter().chain([leg("patrol", "Patrol", patrol)]).collect()
+}
+
+fn scan(area: Area, spacing: Spacing) -> Scan {
+    Scan {
+        area,
+        style: ScanStyle::Parallel,
+        spacing,
+        heading_deg: None,
+        overshoot_m: Value::Constant(50.0),
+        entry: ScanEntry::Nearest,
+    }
+}
