@@ -5,7 +5,7 @@ use super::tools::Toolbox;
 use super::view::View;
 use crate::assets;
 use crate::command::{Queue, ViewCommand};
-use crate::panels::Scene;
+use crate::panels::{Scene, start};
 use crate::theme::{self, Palette};
 use crate::units::Units;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
@@ -110,7 +110,10 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         }
     }
     let Some(status) = tools.status(scene) else { return };
-    let beside = Rect::from_min_max(map.left_top() + vec2(52.0, 12.0), map.right_bottom() - vec2(52.0, 0.0));
+    // beside the card for a new mission, where that lies on the map
+    let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
+    let beside =
+        Rect::from_min_max(map.left_top() + vec2(52.0 + card, 12.0), map.right_bottom() - vec2(52.0, 0.0));
     let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
     theme::card(&chip).show(&mut chip, |ui| {
         ui.add(egui::Label::new(status).wrap());

@@ -4,12 +4,15 @@ use super::inspector::parse_position;
 use super::{Scene, field, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
+use crate::map::furniture::NARROW;
 use crate::map::text;
 use crate::map::view::View;
 use crate::theme::{self, Palette};
 use crate::units::{self, Unit, Units};
 use aircraft::Profile;
-use egui::{Align2, ComboBox, DragValue, Painter, Pos2, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2};
+use egui::{
+    Align2, ComboBox, DragValue, Painter, Pos2, Rect, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2,
+};
 use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
 use std::ops::RangeInclusive;
@@ -24,6 +27,11 @@ pub const HEIGHT: f32 = 500.0;
 /// The document has nothing in it yet.
 pub fn is_wanted(scene: &Scene<'_>) -> bool {
     scene.document.plan().stages.is_empty() && scene.vehicle.aboard.is_none()
+}
+
+/// There is room for the card on a map.
+pub fn is_on(map: Rect) -> bool {
+    map.width() >= NARROW && map.height() >= HEIGHT
 }
 
 /// Draws the card.
