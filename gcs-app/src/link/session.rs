@@ -10,7 +10,7 @@ use flight_exec::Command;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use usal::contract::{Empty, OPERATOR, OTHER_VERSION, Stamped};
 use usal::topics::{self, Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
@@ -19,6 +19,8 @@ use wire::Convert;
 
 /// A command is answered within this time, or the operator learns that it was not.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(5);
+/// A command that nobody took within this time of being given is dropped: what comes later comes by surprise.
+const DELIVERY: Duration = Duration::from_secs(10);
 /// A service says within this time what it is.
 const DESCRIBE_TIMEOUT: Duration = Duration::from_secs(1);
 /// A plan is checked aboard, and what changes the flight is flown ahead; a big one takes its time.
@@ -34,7 +36,14 @@ pub fn serve(endpoint: Endpoint, wake: Wake) {
 }
 
 /// Questions on their way to a session.
-type Calls = mpsc::UnboundedSender<(Ticket, Call)>;
+type Calls = mpsc::UnboundedSender<Question>;
+
+/// A question, and when it was asked: it may have to wait for the link.
+struct Question {
+    ticket: Ticket,
+    call: Call,
+    asked: Instant,
+}
 
 /// Where a link's messages go.
 #[derive(Clone)]
@@ -116,7 +125,7 @@ async fn orders(mut endpoint: Endpoint, wake: Wake) {
             Order::Call { link, ticket, call } => {
                 if let Some(calls) = links.get(&link) {
                     // the task ends only after its last question
-                    let _ = calls.send((ticket, call));
+                    let _ = calls.send(Question { ticket, call, asked: Instant::now() });
                 }
             }
         }
@@ -124,19 +133,19 @@ async fn orders(mut endpoint: Endpoint, wake: Wake) {
 }
 
 /// A link from its beginning to its end.
-async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<(Ticket, Call)>, outlet: Outlet) {
+async fn run(endpoint: String, mut questions: mpsc::UnboundedReceiver<Question>, outlet: Outlet) {
     outlet.send(LinkEvent::Link(LinkState::Connecting(endpoint.clone()))).await;
     match connect(&endpoint, &outlet).await {
         Ok(mut open) => {
-            while let Some((ticket, call)) = questions.recv().await {
-                open.ask(ticket, call, &outlet);
+            while let Some(question) = questions.recv().await {
+                open.ask(question, &outlet);
             }
             // not before every listener has fallen silent: what it receives would come from a closed link
             open.tasks.shutdown().await;
         }
         Err(error) => {
             outlet.send(LinkEvent::Link(LinkState::Failed(error.to_string()))).await;
-            while let Some((ticket, _)) = questions.recv().await {
+            while let Some(Question { ticket, .. }) = questions.recv().await {
                 let result = Err("there is no link: connect first".to_owned());
                 outlet.send(LinkEvent::Answer { ticket, result }).await;
             }
@@ -233,9 +242,9 @@ impl Open {
     }
 
     /// Asks, and passes the answer on when it comes.
-    fn ask(&mut self, ticket: Ticket, call: Call, outlet: &Outlet) {
+    fn ask(&mut self, question: Question, outlet: &Outlet) {
         let (session, outlet) = (self.session.clone(), outlet.clone());
-        self.tasks.spawn(async move { answer(&session, ticket, call, &outlet).await });
+        self.tasks.spawn(async move { answer(&session, question, &outlet).await });
         // tasks that are done are let go
         while self.tasks.try_join_next().is_some() {}
     }
@@ -264,12 +273,25 @@ async fn link_state(session: &Session, alive: &BTreeSet<String>, endpoint: &str)
     state
 }
 
-async fn answer(session: &Session, ticket: Ticket, call: Call, outlet: &Outlet) {
-    let result = ask(session, call).await.map_err(|error| match error {
-        CallError::Refused(refusal) => refusal.reason,
-        other => other.to_string(),
-    });
+async fn answer(session: &Session, question: Question, outlet: &Outlet) {
+    let Question { ticket, call, asked } = question;
+    let left = DELIVERY.saturating_sub(asked.elapsed());
+    let result = match left.is_zero() {
+        true => Err(dropped(asked)),
+        false => ask(session, call, left).await.map_err(|error| match error {
+            CallError::Refused(refusal) => refusal.reason,
+            CallError::Unreachable { .. } => dropped(asked),
+            other => other.to_string(),
+        }),
+    };
     outlet.send(LinkEvent::Answer { ticket, result }).await;
+}
+
+fn dropped(asked: Instant) -> String {
+    let seconds = asked.elapsed().as_secs_f64();
+    format!(
+        "nobody took it for {seconds:.0} s, so it was dropped and will not be done: check the link, then give it again"
+    )
 }
 
 /// What may have to be reviewed first is not answered at once.
@@ -280,18 +302,21 @@ fn timeout(command: &Command) -> Duration {
     }
 }
 
-async fn ask(session: &Session, call: Call) -> Result<Reply, CallError> {
+/// Asks; who doesn't take it within `delivery` does not do it.
+async fn ask(session: &Session, call: Call, delivery: Duration) -> Result<Reply, CallError> {
     match call {
         Call::Propose(proposal) => {
-            let report = session.call(fp_manager::PROPOSE, &proposal, PLAN_TIMEOUT).await?;
+            let report = session.call_within(fp_manager::PROPOSE, &proposal, delivery, PLAN_TIMEOUT).await?;
             Ok(Reply::Proposal(Box::new(report.convert())))
         }
         Call::Plan(command) => {
             let timeout = timeout(&command);
-            session.call(fp_manager::COMMAND, &command.convert(), timeout).await.map(|_| Reply::Done)
+            let answer = session.call_within(fp_manager::COMMAND, &command.convert(), delivery, timeout);
+            answer.await.map(|_| Reply::Done)
         }
         Call::Gateway(request) => {
-            session.call(gateway::REQUEST, &request, COMMAND_TIMEOUT).await.map(|_| Reply::Done)
+            let answer = session.call_within(gateway::REQUEST, &request, delivery, COMMAND_TIMEOUT);
+            answer.await.map(|_| Reply::Done)
         }
         Call::PlanAboard => {
             let document = session.call(fp_manager::PLAN_DOCUMENT, &Empty {}, PLAN_TIMEOUT).await?;
@@ -333,11 +358,93 @@ mod tests {
         agent.await.unwrap();
     }
 
+    /// A command with the far end absent is told to be dropped after ten seconds, and is never done when it comes after all; nor is one
+    /// that waited so long for its link.
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_command_that_nobody_took_is_dropped_and_never_done_later() {
+        let endpoint = free_endpoint();
+        let (orders, mut window, _thread) = served();
+        let link = LinkId(1);
+        orders.send(Order::Connect { link, endpoint: endpoint.clone(), vehicle: "uav1".into() }).unwrap();
+        let commit = Command::Commit { hash: "0badc0de".into(), entry: None };
+        orders.send(Order::Call { link, ticket: Ticket(1), call: Call::Plan(commit) }).unwrap();
+        let begun = Instant::now();
+        let told = answer_to(Ticket(1), &mut window).await.unwrap_err();
+        assert!(told.contains("dropped") && begun.elapsed() < DELIVERY + Duration::from_secs(1), "{told}");
+
+        let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let mut commands = hub.serve(fp_manager::COMMAND).unwrap();
+        let taken = tokio::spawn(async move {
+            let incoming = commands.recv().await.unwrap();
+            let taken = incoming.request.clone();
+            incoming.answer(Ok(Empty {}));
+            taken
+        });
+        let mut ticket = 2;
+        loop {
+            // the link finds its hub when it tries again
+            orders
+                .send(Order::Call { link, ticket: Ticket(ticket), call: Call::Plan(Command::Hold) })
+                .unwrap();
+            if answer_to(Ticket(ticket), &mut window).await.is_ok() {
+                break;
+            }
+            ticket += 1;
+        }
+        assert_eq!(taken.await.unwrap(), usal::contract::Command::Hold, "the commit is not done by surprise");
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_command_that_waited_too_long_for_its_link_is_not_sent() {
+        let (hub, endpoint) = hub().await;
+        let mut commands = hub.serve(fp_manager::COMMAND).unwrap();
+        let (outlet, mut window) = outlet();
+        let open = connect(&endpoint, &outlet).await.unwrap();
+        let Some(asked) = Instant::now().checked_sub(DELIVERY) else { return };
+        let question = Question { ticket: Ticket(1), call: Call::Plan(Command::Hold), asked };
+        answer(&open.session, question, &outlet).await;
+        assert!(answer_to(Ticket(1), &mut window).await.unwrap_err().contains("dropped"));
+        assert!(commands.try_recv().is_none());
+    }
+
+    /// The thread of the links, and the window's end of its channels.
+    fn served() -> (mpsc::UnboundedSender<Order>, mpsc::Receiver<LinkMessage>, std::thread::JoinHandle<()>) {
+        let (sender, orders) = mpsc::unbounded_channel();
+        let (messages, window) = mpsc::channel(1000);
+        let endpoint = Endpoint { orders, messages };
+        (sender, window, std::thread::spawn(move || serve(endpoint, Arc::new(|| {}))))
+    }
+
+    async fn answer_to(ticket: Ticket, window: &mut mpsc::Receiver<LinkMessage>) -> Result<Reply, String> {
+        loop {
+            match window.recv().await.unwrap().event {
+                LinkEvent::Answer { ticket: of, result } if of == ticket => return result,
+                _ => {}
+            }
+        }
+    }
+
+    fn outlet() -> (Outlet, mpsc::Receiver<LinkMessage>) {
+        let (messages, window) = mpsc::channel(100);
+        let outlet = Outlet {
+            link: LinkId(1),
+            vehicle: VehicleName::from("uav1"),
+            messages,
+            left_out: Arc::default(),
+            is_foreign: Arc::default(),
+            wake: Arc::new(|| {}),
+        };
+        (outlet, window)
+    }
+
+    fn free_endpoint() -> String {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        format!("tcp/{}", listener.local_addr().unwrap())
+    }
+
     /// A session of the vehicle's, and where it listens.
     async fn hub() -> (Session, String) {
-        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-        let endpoint = format!("tcp/{}", listener.local_addr().unwrap());
-        drop(listener);
+        let endpoint = free_endpoint();
         (Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap(), endpoint)
     }
 
@@ -347,15 +454,7 @@ mod tests {
         let plan =
             hub.publish(Variable::<serde_json::Value>::new(FP_MANAGER, fp_manager::PLAN.name)).unwrap();
         plan.set(1.0, 3.0, &serde_json::json!({"name": "Fire watch"}));
-        let (messages, mut window) = mpsc::channel(100);
-        let outlet = Outlet {
-            link: LinkId(1),
-            vehicle: VehicleName::from("uav1"),
-            messages,
-            left_out: Arc::default(),
-            is_foreign: Arc::default(),
-            wake: Arc::new(|| {}),
-        };
+        let (outlet, mut window) = outlet();
         let _open = connect(&endpoint, &outlet).await.unwrap();
         let told = tokio::time::timeout(Duration::from_secs(10), async {
             loop {

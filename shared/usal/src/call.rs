@@ -67,6 +67,23 @@ impl Session {
         self.call_named(invocation.service, invocation.name, request, timeout)
     }
 
+    /// As [`Session::call`], for what takes long to be answered: it is given up if nobody has taken it within `delivery`,
+    /// and not executed if it was taken later.
+    pub fn call_within<Q, A>(
+        &self,
+        invocation: Invocation<Q, A>,
+        request: &Q,
+        delivery: Duration,
+        timeout: Duration,
+    ) -> PendingCall<A>
+    where
+        Q: Serialize,
+        A: DeserializeOwned + Send + 'static,
+    {
+        let request = self.request(invocation.service, invocation.name, request, timeout);
+        self.sent(invocation.name, request.map(|request| request.taken_within(delivery)))
+    }
+
     /// As [`Session::call`], of an invocation that is only known by its names.
     pub fn call_named<Q, A>(
         &self,
@@ -79,15 +96,22 @@ impl Session {
         Q: Serialize,
         A: DeserializeOwned + Send + 'static,
     {
+        self.sent(name, self.request(service, name, request, timeout))
+    }
+
+    fn sent<A>(&self, name: &str, request: Result<Request, String>) -> PendingCall<A>
+    where
+        A: DeserializeOwned + Send + 'static,
+    {
         let (sender, answer) = oneshot::channel();
-        match self.request(service, name, request, timeout) {
+        match request {
             Err(reason) => {
                 let name = name.to_owned();
                 // the receiver is in our hands
                 let _ = sender.send(Err(CallError::Undecodable { name, reason }));
             }
             Ok(request) => {
-                let first = request.attempt(timeout);
+                let first = request.attempt();
                 let wake = self.inner.wake.clone();
                 self.inner.runtime.spawn(async move {
                     // nobody waits any more: no matter
@@ -115,6 +139,7 @@ impl Session {
             payload: payload.into(),
             timeout,
             deadline: Instant::now() + timeout,
+            delivery: timeout,
         })
     }
 }
@@ -126,15 +151,29 @@ struct Request {
     payload: ZBytes,
     timeout: Duration,
     deadline: Instant,
+    /// It has to be taken within this time of its beginning.
+    delivery: Duration,
 }
 
 impl Request {
+    fn taken_within(self, delivery: Duration) -> Self {
+        Self { delivery: delivery.min(self.timeout), ..self }
+    }
+
+    /// Until when it may be taken.
+    fn delivery_until(&self) -> Instant {
+        self.deadline - (self.timeout - self.delivery)
+    }
+
     /// Sends it once. The channel ends without a reply when the network knows that none will come.
-    fn attempt(&self, left: Duration) -> Result<mpsc::Receiver<Reply>, CallError> {
+    fn attempt(&self) -> Result<mpsc::Receiver<Reply>, CallError> {
         let inner = self.inner.upgrade().ok_or(CallError::Closed)?;
         let (sender, receiver) = mpsc::channel(1);
         // what is executed should still be answered in time
-        let execute_within = left - (left / 10).min(ANSWER_TIME);
+        let now = Instant::now();
+        let left = self.deadline.saturating_duration_since(now);
+        let taken_within = self.delivery_until().saturating_duration_since(now);
+        let execute_within = taken_within - (taken_within / 10).min(ANSWER_TIME);
         let from = inner.name.as_ref().map(|name| format!(";from={name}")).unwrap_or_default();
         inner
             .zenoh
@@ -165,7 +204,7 @@ impl Request {
         first: Result<mpsc::Receiver<Reply>, CallError>,
     ) -> Result<A, CallError> {
         let mut attempt = first?;
-        let last_attempt = self.deadline - self.timeout / LAST_ATTEMPT;
+        let last_attempt = self.delivery_until() - self.delivery / LAST_ATTEMPT;
         loop {
             match tokio::time::timeout_at(self.deadline, attempt.recv()).await {
                 Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
@@ -175,7 +214,7 @@ impl Request {
                         return Err(CallError::Unreachable { name: self.name });
                     }
                     tokio::time::sleep(RETRY).await;
-                    attempt = self.attempt(self.deadline.saturating_duration_since(Instant::now()))?;
+                    attempt = self.attempt()?;
                 }
             }
         }
