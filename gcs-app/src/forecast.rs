@@ -8,7 +8,7 @@ mod worker;
 
 pub use worker::{Analysis, Question, Worker};
 
-use flight_exec::Waypoint;
+use flight_exec::{PlacePointer, Waypoint};
 use flight_plan::Id;
 use flight_plan::create::Approach;
 use geometry::LatLon;
@@ -38,8 +38,8 @@ pub struct Passage {
     pub leg: Id,
     /// Its stage.
     pub stage: Id,
-    /// Pass of the innermost loop around it, from 1; 0 outside loops.
-    pub iteration: u64,
+    /// Pass of each loop around it, from 1, outermost first.
+    pub passes: Vec<u64>,
     /// Index of its first point.
     pub first: usize,
     /// Index after its last point.
@@ -101,14 +101,19 @@ impl Forecast {
     pub fn part(&self, passage: &Passage) -> Option<&[Point]> {
         self.points.get(passage.first..(passage.end + 1).min(self.points.len()))
     }
-    /// The point that is nearest to `position` on passages of `leg` (all, if it is `None`).
-    pub fn nearest(&self, position: LatLon, leg: Option<&Id>) -> Option<&Point> {
+    /// The point that is nearest to `position` on the leg that is being flown, in the same pass of the loops around it; if there is no
+    /// such pass, in any.
+    pub fn nearest(&self, position: LatLon, place: &PlacePointer) -> Option<&Point> {
         let frame = geometry::LocalFrame::new(position);
         let far = |p: &Point| frame.to_local(p.position).length();
-        let belongs = |p: &&Point| {
-            leg.is_none_or(|leg| self.passages.get(p.passage).is_some_and(|passage| passage.leg == *leg))
+        let nearest = |passages: &mut dyn Iterator<Item = &Passage>| {
+            let points = passages.filter_map(|passage| self.part(passage)).flatten();
+            points.min_by(|a, b| far(a).total_cmp(&far(b)))
         };
-        self.points.iter().filter(belongs).min_by(|a, b| far(a).total_cmp(&far(b)))
+        let passes = place.iterations.iter().map(|pass| pass.iteration);
+        let of_leg = || self.passages.iter().filter(|passage| passage.leg == place.leg);
+        let of_pass = |passage: &&Passage| passage.passes.iter().copied().eq(passes.clone());
+        nearest(&mut of_leg().filter(of_pass)).or_else(|| nearest(&mut of_leg()))
     }
 }
 
@@ -118,6 +123,7 @@ pub type Shared = Arc<Forecast>;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use flight_exec::{Branching, IterationPlace};
 
     fn forecast() -> Forecast {
         let point = |i: usize, passage| Point {
@@ -128,10 +134,10 @@ mod tests {
             ground_amsl_m: None,
             passage,
         };
-        let passage = |leg: &str, iteration, first, end| Passage {
+        let passage = |leg: &str, pass, first, end| Passage {
             leg: leg.into(),
             stage: "s".into(),
-            iteration,
+            passes: vec![pass],
             first,
             end,
         };
@@ -149,14 +155,17 @@ mod tests {
         for (time, expected) in [(-1.0, 0.0), (3.0, 4.0), (4.0, 4.0), (99.0, 8.0)] {
             assert_eq!(f.at(time).map(|p| p.time_s), Some(expected), "{time}");
         }
-        let here = LatLon::new(0.0, 2.1e-3);
-        assert_eq!(f.nearest(here, None).map(|p| p.time_s), Some(4.0));
-        assert_eq!(
-            f.nearest(here, Some(&"a".into())).map(|p| p.time_s),
-            Some(6.0),
-            "the other leg is nearer"
-        );
-        assert_eq!(f.nearest(here, Some(&"c".into())), None);
+        let at = |leg: &str, pass| {
+            let iterations =
+                vec![IterationPlace { leg: "l".into(), iteration: pass, of: None, reverse: false }];
+            let (plan, stage, leg) = (Branching::Main, "s".into(), leg.into());
+            let place = PlacePointer { plan, stage, leg, iterations, reverse: false, distance_m: 0.0 };
+            f.nearest(LatLon::new(0.0, 2.6e-3), &place).map(|p| p.time_s)
+        };
+        assert_eq!(at("a", 1), Some(4.0), "the second pass is nearer");
+        assert_eq!(at("a", 2), Some(6.0));
+        assert_eq!(at("a", 9), Some(6.0), "a pass that was not foreseen");
+        assert_eq!(at("c", 1), None);
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);
     }

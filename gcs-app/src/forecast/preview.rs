@@ -110,7 +110,7 @@ fn passages(preview: &Preview) -> Vec<Passage> {
     let passages = preview.legs.iter().enumerate().map(|(i, leg)| Passage {
         leg: leg.place.leg.clone(),
         stage: leg.place.stage.clone(),
-        iteration: leg.place.iterations.last().map_or(0, |place| place.iteration),
+        passes: leg.place.iterations.iter().map(|place| place.iteration).collect(),
         first: if i == 0 { 0 } else { at(leg.start_s) },
         end: at(leg.end_s),
     });

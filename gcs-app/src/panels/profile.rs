@@ -8,8 +8,11 @@ use crate::units;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 /// The panel.
-#[derive(Debug)]
-pub struct Profile;
+#[derive(Debug, Default)]
+pub struct Profile {
+    /// Show what was flown already, too.
+    whole: bool,
+}
 
 impl Panel for Profile {
     fn id(&self) -> PanelId {
@@ -22,22 +25,35 @@ impl Panel for Profile {
         Place::Below
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        if where_it_is(scene).is_some() {
+            ui.checkbox(&mut self.whole, "Whole flight").on_hover_text("Else from now to landing");
+        }
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        plot(ui, scene, queue);
+        plot(ui, scene, self.whole, queue);
     }
 }
 
+/// The point of the path where the aircraft is, while that path is being flown.
+fn where_it_is<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
+    let position = scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground)?;
+    let status = scene.vehicle.status.as_ref()?;
+    scene.forecast().nearest(position.value.position, status.value.place.as_ref()?)
+}
+
 /// The profile; dragging on it moves the cursor.
-fn plot(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let forecast = scene.forecast();
+    let from = where_it_is(scene).filter(|_| !whole);
+    let (from_m, from_s) = from.map_or((0.0, 0.0), |point| (point.distance_m, point.time_s));
     let description = format!(
-        "Vertical profile: {} in {}",
-        scene.units().distance().show(forecast.length_m()),
-        units::duration(forecast.duration_s())
+        "Vertical profile{}: {} in {}",
+        if from.is_some() { " from now" } else { "" },
+        scene.units().distance().show(forecast.length_m() - from_m),
+        units::duration(forecast.duration_s() - from_s)
     );
     response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, &description));
     let painter = ui.painter_at(rect);
@@ -47,8 +63,11 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.weak);
         return;
     }
-    let axes = Axes::new(rect, forecast);
+    let axes = Axes::new(rect, forecast, from_s);
     draw_axes(&painter, &axes, scene, p);
+    // what was flown before is left of the plot
+    let shown = Rect::everything_right_of(axes.plot.left() - 8.0);
+    let painter = painter.with_clip_rect(shown.intersect(rect));
     draw_stages(&painter, &axes, forecast, p);
     draw_ground(&painter, &axes, forecast, p);
     draw_path(&painter, &axes, scene, p);
@@ -62,24 +81,27 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 struct Axes {
     plot: Rect,
+    /// What is before is not shown.
+    from_s: f64,
     duration_s: f64,
     low_m: f64,
     high_m: f64,
 }
 
 impl Axes {
-    fn new(rect: Rect, forecast: &Forecast) -> Self {
+    fn new(rect: Rect, forecast: &Forecast, from_s: f64) -> Self {
         let plot = Rect::from_min_max(rect.min + vec2(48.0, 20.0), rect.max - vec2(10.0, 20.0));
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in &forecast.points {
+        for point in forecast.points.iter().filter(|point| point.time_s >= from_s) {
             low = low.min(point.ground_amsl_m.unwrap_or(point.altitude_amsl_m));
             high = high.max(point.altitude_amsl_m).max(point.ground_amsl_m.unwrap_or(high));
         }
         let margin = ((high - low) * 0.08).max(20.0);
-        Self { plot, duration_s: forecast.duration_s().max(1.0), low_m: low - margin, high_m: high + margin }
+        let duration_s = (forecast.duration_s() - from_s).max(1.0);
+        Self { plot, from_s, duration_s, low_m: low - margin, high_m: high + margin }
     }
     fn x(&self, time_s: f64) -> f32 {
-        self.plot.left() + (time_s / self.duration_s) as f32 * self.plot.width()
+        self.plot.left() + ((time_s - self.from_s) / self.duration_s) as f32 * self.plot.width()
     }
     fn y(&self, altitude_m: f64) -> f32 {
         self.plot.bottom()
@@ -90,7 +112,7 @@ impl Axes {
     }
     fn time_at(&self, at: Pos2) -> f64 {
         let share = (at.x - self.plot.left()) / self.plot.width().max(1.0);
-        f64::from(share.clamp(0.0, 1.0)) * self.duration_s
+        self.from_s + f64::from(share.clamp(0.0, 1.0)) * self.duration_s
     }
 }
 
@@ -130,7 +152,7 @@ fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
         round_step(axes.duration_s, marks, &[10., 30., 60., 120., 300., 600., 1200., 1800., 3600., 7200.]);
     for mark in 0..=(axes.duration_s / step) as usize {
         let time = mark as f64 * step;
-        let at = pos2(axes.x(time), axes.plot.bottom() + 3.0);
+        let at = pos2(axes.x(axes.from_s + time), axes.plot.bottom() + 3.0);
         painter.text(at, Align2::CENTER_TOP, units::duration(time), font.clone(), p.weak);
     }
 }
@@ -153,6 +175,10 @@ fn draw_stages(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette)
 }
 
 fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: &Palette) {
+    let from = from.max(axes.plot.left());
+    if to < from {
+        return;
+    }
     let rect =
         Rect::from_min_max(pos2(from + 1.0, axes.plot.top() - 17.0), pos2(to - 1.0, axes.plot.top() - 3.0));
     painter.rect_filled(rect, 2.0, p.line);
@@ -215,10 +241,7 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
 }
 
 fn draw_aircraft(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
-    let Some(position) = scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground) else { return };
-    let Some(near) = scene.forecast().nearest(position.value.position, scene.vehicle.current_leg()) else {
-        return;
-    };
+    let (Some(position), Some(near)) = (&scene.vehicle.position, where_it_is(scene)) else { return };
     let at = pos2(axes.x(near.time_s), axes.y(position.value.altitude_amsl_m));
     let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
     painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));

@@ -80,7 +80,7 @@ fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn cells(scene: &Scene<'_>, passage: &Passage) -> [String; 9] {
     let forecast = scene.forecast();
     let kind = scene.document.kind_name(&passage.leg);
-    let pass = if passage.iteration > 0 { passage.iteration.to_string() } else { String::new() };
+    let pass = passage.passes.last().map_or_else(String::new, u64::to_string);
     let points = forecast.part(passage).unwrap_or_default();
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         let none = || "–".to_owned();
