@@ -142,6 +142,8 @@ pub enum LinkCommand {
     Disconnect(VehicleName),
     /// Show another vehicle.
     Show(VehicleName),
+    /// What a vehicle announced has been read.
+    PutAside(VehicleName),
 }
 
 /// Commands to the vehicle.

@@ -10,6 +10,7 @@ pub mod app;
 pub mod assets;
 pub mod chart;
 pub mod command;
+pub mod connections;
 pub mod demo;
 pub mod dock;
 pub mod document;

@@ -2,11 +2,10 @@
 //! floats over it.
 
 use super::{App, Now};
-use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
+use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
-use crate::map::furniture::NARROW;
 use crate::panels::bar::PanelEntry;
-use crate::panels::{self, Scene, bar, browse, decision, flight, push, recover, start, unsaved};
+use crate::panels::{self, Scene, bar, browse, decision, emergency, flight, push, recover, start, unsaved};
 use crate::recovery::Keeper;
 use crate::theme;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
@@ -14,7 +13,9 @@ use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
-        let Self { document, vehicles, view, analysis, map, panels, dock, keeper, recent, .. } = self;
+        let Self {
+            document, vehicles, view, analysis, map, panels, dock, keeper, recent, connections, ..
+        } = self;
         let vehicle = vehicles.shown();
         let scene = Scene {
             document,
@@ -23,6 +24,7 @@ impl App {
             vehicles,
             view,
             recent,
+            connections,
             left_behind: keeper.as_ref().and_then(Keeper::left_behind),
             now_s: now.window_s,
             utc: now.utc,
@@ -38,7 +40,11 @@ impl App {
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &entries, queue));
+        // before all that may take its place
+        commands(ui, &scene, queue);
+        emergency::show(ui, &scene, queue);
         notice(ui, &scene, queue);
+        announcements(ui, &scene, queue);
         push::show(ui, &scene, queue);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
@@ -60,6 +66,46 @@ impl App {
     }
 }
 
+/// The commands of the flight have a bar of their own: it hides nothing, and nothing hides it.
+fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    if scene.vehicle.status.is_none() {
+        return;
+    }
+    let frame = theme::panel(ui);
+    Panel::bottom("commands").frame(frame).show(ui, |ui| {
+        // a button held for one vehicle is not held for another
+        ui.push_id(scene.vehicles.shown_name(), |ui| {
+            ui.horizontal_wrapped(|ui| {
+                flight::commands(ui, scene, queue);
+                flight::last_command(ui, scene);
+            });
+        });
+    });
+}
+
+/// What happened to a vehicle, shown or not, that nobody must miss; until it is put aside.
+fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    for (name, vehicle) in scene.vehicles.choices().filter(|(_, vehicle)| !vehicle.unread.is_empty()) {
+        let id = egui::Id::unique("announcements").with(name);
+        Panel::top(id).frame(theme::panel(ui)).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let close = ui.small_button("✖").on_hover_text("Put these aside");
+                let label = format!("Put aside what {name} announced");
+                close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+                if close.clicked() {
+                    queue.link(LinkCommand::PutAside(name.clone()));
+                }
+                ui.vertical(|ui| {
+                    for text in &vehicle.unread {
+                        let text = RichText::new(format!("⚠ {name}: {text}")).color(theme::of(ui).caution);
+                        ui.add(egui::Label::new(text).truncate());
+                    }
+                });
+            });
+        });
+    }
+}
+
 fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
     let frame = theme::panel(ui);
@@ -73,10 +119,10 @@ fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
-/// Smallest map that the commands fit on, screen points.
+/// Smallest map that a card fits on, screen points.
 const MIN_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);
 
-/// Where the decision and the commands float: over the map, or over everything where there is no room on it.
+/// Where cards float: over the map, or over everything where there is no room on it.
 fn floor(map: Option<Rect>, whole: Rect) -> Rect {
     map.filter(|m| m.width() >= MIN_MAP.x && m.height() >= MIN_MAP.y).unwrap_or(whole)
 }
@@ -93,29 +139,12 @@ fn room_of_start(floor: Rect, whole: Rect) -> (Rect, f32) {
     }
 }
 
-/// The decision above and the commands below; nothing hides them.
+/// The decision that is asked for.
 fn over_map(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if let Some((request, left_s)) = decision::open(scene) {
         floating(ui, "decision", map, Align2::CENTER_TOP, |ui| {
             ui.set_width(300.0);
             decision::show(ui, &request, left_s, scene, queue);
-        });
-    }
-    if scene.vehicle.status.is_some() && flight::has_commands(scene) {
-        // clear of legend, scale and sources
-        let aside = if map.width() < NARROW { 0.0 } else { 96.0 };
-        let clear = Rect::from_min_max(map.min + egui::vec2(aside, 0.0), map.max - egui::vec2(0.0, 8.0));
-        floating(ui, "commands", clear, Align2::CENTER_BOTTOM, |ui| {
-            flight::last_command(ui, scene);
-            // a button held for one vehicle is not held for another
-            ui.push_id(scene.vehicles.shown_name(), |ui| {
-                let mut row = |ui: &mut Ui| flight::commands(ui, scene, queue);
-                if map.width() < NARROW {
-                    ui.horizontal_wrapped(&mut row)
-                } else {
-                    ui.horizontal(&mut row)
-                };
-            });
         });
     }
 }
@@ -142,7 +171,7 @@ mod tests {
     use egui::{pos2, vec2};
 
     #[test]
-    fn commands_float_over_everything_where_the_map_has_no_room() {
+    fn cards_float_over_everything_where_the_map_has_no_room() {
         let whole = Rect::from_min_size(pos2(0.0, 42.0), vec2(960.0, 558.0));
         let large = Rect::from_min_size(pos2(270.0, 42.0), vec2(400.0, 300.0));
         let small = Rect::from_min_size(pos2(270.0, 42.0), vec2(100.0, 300.0));

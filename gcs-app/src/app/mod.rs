@@ -12,6 +12,7 @@ pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
 use crate::command::{Queue, Replacement};
+use crate::connections::Connections;
 use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
@@ -44,6 +45,7 @@ pub struct App {
     terrain: Arc<dyn Terrain>,
     files: Files,
     recent: Recent,
+    connections: Connections,
     /// `None`: no copy of unsaved changes is kept.
     keeper: Option<Keeper>,
     /// The vehicle whose plan aboard the document is, and the document's version.
@@ -65,6 +67,8 @@ struct Remembered {
     units: Units,
     #[serde(default)]
     recent: Recent,
+    #[serde(default)]
+    connections: Connections,
 }
 
 const STORAGE_KEY: &str = "legwork";
@@ -122,6 +126,7 @@ impl App {
             terrain,
             files: Files::new(wake),
             recent: remembered.recent,
+            connections: remembered.connections,
             keeper: None,
             mirrored: None,
             leaving: false,
@@ -169,6 +174,7 @@ impl App {
             vehicles: &self.vehicles,
             view: &self.view,
             recent: &self.recent,
+            connections: &self.connections,
             left_behind: self.keeper.as_ref().and_then(Keeper::left_behind),
             now_s: now.window_s,
             utc: now.utc,
@@ -178,6 +184,7 @@ impl App {
     /// Opens a link to a vehicle and shows that one; an older link to the same vehicle is closed.
     fn connect(&mut self, endpoint: &str, vehicle: &VehicleName, now_s: f64) {
         self.disconnect(vehicle);
+        self.connections.add(endpoint, vehicle.as_str());
         let link = self.links.connect(endpoint, vehicle);
         self.vehicles.open(vehicle, link, endpoint, now_s);
     }
@@ -330,7 +337,11 @@ impl eframe::App for App {
         eframe::set_value(
             storage,
             STORAGE_KEY,
-            &Remembered { units: self.view.units, recent: self.recent.clone() },
+            &Remembered {
+                units: self.view.units,
+                recent: self.recent.clone(),
+                connections: self.connections.clone(),
+            },
         );
         self.dock.save(storage);
     }

@@ -201,6 +201,11 @@ impl App {
             LinkCommand::Connect { endpoint, vehicle } => self.connect(&endpoint, &vehicle, now_s),
             LinkCommand::Disconnect(vehicle) => self.disconnect(&vehicle),
             LinkCommand::Show(vehicle) => self.vehicles.show(&vehicle),
+            LinkCommand::PutAside(vehicle) => {
+                if let Some(vehicle) = self.vehicles.get_mut(&vehicle) {
+                    vehicle.unread.clear();
+                }
+            }
         }
     }
 

@@ -184,6 +184,9 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
         return ("draft", Standing::Draft);
     };
     if status.plan.as_deref() == Some(hash) {
+        if scene.vehicle.open_link().is_none() {
+            return ("was aboard", Standing::Past);
+        }
         return match status.phase {
             Phase::Idle => ("aboard", Standing::Aboard),
             Phase::Finished => ("flown", Standing::Aboard),
@@ -207,6 +210,8 @@ pub enum Standing {
     Aboard,
     /// Being flown.
     Active,
+    /// Aboard or being flown when the link was closed.
+    Past,
 }
 
 fn badge(ui: &mut Ui, scene: &Scene<'_>) {
@@ -226,6 +231,7 @@ fn standing_style(standing: Standing, p: &Palette) -> (&'static str, Color32) {
         Standing::Proposed => ("◈", p.accent),
         Standing::Aboard => ("◆", p.accent),
         Standing::Active => ("◆", p.good),
+        Standing::Past => ("◇", p.weak),
     }
 }
 

@@ -139,10 +139,14 @@ fn systems_rows(ui: &mut Ui, scene: &Scene<'_>) {
     value_with_age(ui, "GPS", &gps.unwrap_or_default(), age_of(&v.gps, scene.now_s));
 }
 
-/// The strip of commands; each is there when it makes sense.
+/// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
+    if scene.vehicle.open_link().is_none() {
+        ui.label(RichText::new("Not connected: no command reaches the aircraft").color(p.caution));
+        ui.disable();
+    }
     let phase = scene.vehicle.phase();
     if can_launch(scene) && field::hold_button(ui, "Start and take off", p.accent, 150.0) {
         queue.fly(FlyCommand::Launch);
@@ -161,15 +165,21 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         emergency(ui, scene, queue);
     }
     recover(ui, scene, queue);
+    if let Some(text) = nothing_to_do(scene) {
+        ui.label(RichText::new(text).color(p.weak));
+    }
 }
 
-/// There is a command to give, or the answer to one to be read.
-pub fn has_commands(scene: &Scene<'_>) -> bool {
-    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
-    matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision | Phase::Holding)
-        || can_launch(scene)
-        || matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn))
-        || last_request(scene).is_some()
+/// Why there is nothing to command.
+fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
+    if scene.vehicle.active_hash().is_none() {
+        return Some("No plan aboard: push one");
+    }
+    match scene.vehicle.phase() {
+        Phase::Finished => Some("The plan was flown"),
+        Phase::Idle if !can_launch(scene) => Some("The plan aboard was not started"),
+        _ => None,
+    }
 }
 
 fn can_launch(scene: &Scene<'_>) -> bool {

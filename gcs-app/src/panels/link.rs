@@ -3,6 +3,7 @@
 
 use super::Scene;
 use crate::command::{LinkCommand, Queue};
+use crate::connections::{self, Connection};
 use crate::link::LinkState;
 use crate::state::{LINK_CAUTION_S, Vehicle, VehicleName};
 use crate::theme::{self, Palette};
@@ -85,33 +86,78 @@ fn chooser(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 struct Form {
     endpoint: String,
     vehicle: String,
+    /// The form closes by itself when the vehicle answers.
+    waits: bool,
 }
 
 impl Form {
-    /// As the vehicle is connected that is shown; else as an agent on this machine is.
+    /// As the vehicle is connected that is shown, or was before; else as an agent on this machine is.
     fn of(scene: &Scene<'_>) -> Self {
-        let endpoint = scene.vehicle.link.endpoint().unwrap_or("tcp/127.0.0.1:7447");
-        let vehicle = scene.vehicles.shown_name().map_or("uav1", VehicleName::as_str);
-        Self { endpoint: endpoint.into(), vehicle: vehicle.into() }
+        let shown = scene.vehicles.shown_name().map(VehicleName::as_str);
+        let last = scene.connections.last(shown);
+        let open = scene.vehicle.link.endpoint();
+        let endpoint = open.or(last.map(|made| made.endpoint.as_str())).unwrap_or("tcp/127.0.0.1:7447");
+        let vehicle = shown.or(last.map(|made| made.vehicle.as_str())).unwrap_or("uav1");
+        Self { endpoint: endpoint.into(), vehicle: vehicle.into(), waits: false }
+    }
+
+    fn connect(&mut self, endpoint: String, queue: &mut Queue) {
+        self.waits = true;
+        queue.link(LinkCommand::Connect { endpoint, vehicle: self.vehicle.as_str().into() });
     }
 }
 
 fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     // what was typed for one vehicle is not for another
-    let id = egui::Id::unique("connection form").with(scene.vehicles.shown_name());
-    let mut form: Form = ui.data(|d| d.get_temp(id)).unwrap_or_else(|| Form::of(scene));
+    let id = |name: Option<&str>| egui::Id::unique("connection form").with(name.map(str::to_owned));
+    let shown = id(scene.vehicles.shown_name().map(VehicleName::as_str));
+    let mut form: Form = ui.data(|d| d.get_temp(shown)).unwrap_or_else(|| Form::of(scene));
+    if form.waits && matches!(scene.vehicle.link, LinkState::Connected(_)) {
+        form.waits = false;
+        ui.close();
+    }
     ui.label(scene.vehicle.link.text());
     super::field::row(ui, "Gateway at", |ui| ui.add(text(&mut form.endpoint)));
     super::field::row(ui, "Vehicle", |ui| ui.add(text(&mut form.vehicle)));
+    let endpoint = connections::endpoint(&form.endpoint);
+    let wrong = endpoint.as_ref().err().cloned().or_else(|| connections::name_problem(&form.vehicle));
+    let p = theme::of(ui);
+    if let Some(wrong) = &wrong {
+        ui.label(RichText::new(format!("⚠ {wrong}")).color(p.caution));
+    }
     ui.horizontal(|ui| {
-        if ui.add(super::primary_button("Connect", theme::of(ui))).clicked() {
-            let (endpoint, vehicle) = (form.endpoint.clone(), form.vehicle.as_str().into());
-            queue.link(LinkCommand::Connect { endpoint, vehicle });
-            ui.close();
+        let may = wrong.is_none();
+        if ui.add_enabled(may, super::primary_button("Connect", p)).clicked()
+            && let Ok(endpoint) = endpoint
+        {
+            form.connect(endpoint, queue);
         }
         disconnect(ui, scene, queue);
     });
-    ui.data_mut(|d| d.insert_temp(id, form));
+    made_before(ui, scene, &mut form, queue);
+    let now = if form.waits { id(Some(&form.vehicle)) } else { shown };
+    ui.data_mut(|d| d.insert_temp(now, form));
+}
+
+/// The other connections that were made: a click makes one again.
+fn made_before(ui: &mut Ui, scene: &Scene<'_>, form: &mut Form, queue: &mut Queue) {
+    let open = scene.vehicle.link.endpoint();
+    let is_open = |made: &Connection| {
+        open == Some(&made.endpoint)
+            && scene.vehicles.shown_name().is_some_and(|name| name.as_str() == made.vehicle)
+    };
+    let others: Vec<&Connection> = scene.connections.list().iter().filter(|made| !is_open(made)).collect();
+    if others.is_empty() {
+        return;
+    }
+    ui.separator();
+    super::group_title(ui, "Connected before");
+    for made in others {
+        if ui.button(format!("{} at {}", made.vehicle, made.endpoint)).clicked() {
+            *form = Form { endpoint: made.endpoint.clone(), vehicle: made.vehicle.clone(), waits: false };
+            form.connect(made.endpoint.clone(), queue);
+        }
+    }
 }
 
 fn text(typed: &mut String) -> egui::TextEdit<'_> {

@@ -6,6 +6,7 @@ pub mod alarms;
 pub mod bar;
 pub mod browse;
 pub mod decision;
+pub mod emergency;
 pub mod field;
 pub mod flight;
 pub mod inspector;
@@ -24,6 +25,7 @@ pub mod tree;
 pub mod unsaved;
 
 use crate::command::{Queue, Replacement, Selection};
+use crate::connections::Connections;
 use crate::document::Document;
 use crate::forecast::{Analysis, Forecast};
 use crate::guide::Guide;
@@ -47,7 +49,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(problems::Problems),
         Box::new(inspector::Inspector),
         Box::new(flight::Flight),
-        Box::new(profile::Profile),
+        Box::new(profile::Profile::default()),
         Box::new(table::Table),
         Box::new(log::EventLog),
         Box::new(services::Services),
@@ -176,6 +178,8 @@ pub struct Scene<'a> {
     pub view: &'a ViewState,
     /// The files that were open last.
     pub recent: &'a Recent,
+    /// The connections that were made last.
+    pub connections: &'a Connections,
     /// What a window left behind that crashed, until the operator has decided.
     pub left_behind: Option<&'a LeftBehind>,
     /// The window's clock, seconds.

@@ -1,6 +1,6 @@
 //! What happened, in sentences.
 
-use flight_exec::Event;
+use flight_exec::{Event, Phase};
 use flight_plan::VariableValue;
 use std::collections::VecDeque;
 use usal::contract::{GatewayEvent, Severity};
@@ -80,6 +80,15 @@ impl Log {
     }
 }
 
+/// Who decided, where nobody did.
+const BY_DEFAULT: &str = "default";
+
+/// What nobody must miss, also who looked elsewhere when it happened.
+pub fn is_announced(event: &Event) -> bool {
+    matches!(event, Event::DecisionTaken { by, .. } if by == BY_DEFAULT)
+        || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision })
+}
+
 /// A plan event as a sentence.
 pub fn plan_event(event: &Event) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
@@ -91,6 +100,9 @@ pub fn plan_event(event: &Event) -> (Level, String) {
         )),
         Event::DecisionRequested(d) => {
             (Level::Caution, format!("Decision asked for at {}: {} choices", d.leg, d.options.len()))
+        }
+        Event::DecisionTaken { leg, branch, by } if by == BY_DEFAULT => {
+            (Level::Caution, format!("Nobody decided at {leg} in time: {branch} was taken by default"))
         }
         Event::DecisionTaken { leg, branch, by } => info(format!("{leg}: branch {branch}, decided by {by}")),
         Event::VariableChanged { name, value, by } => {
@@ -114,6 +126,9 @@ pub fn plan_event(event: &Event) -> (Level, String) {
         }
         Event::EmergencyUnanswered { cause } => {
             (Level::Warning, format!("No emergency plan for {cause:?}: Safe mode decides"))
+        }
+        Event::PhaseChanged { phase: Phase::AwaitingDecision } => {
+            (Level::Caution, "Nobody decided in time: the aircraft circles until somebody does".to_owned())
         }
         Event::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
         Event::WaypointsRejected { leg, reason } => {

@@ -18,7 +18,7 @@ pub use losses::Losses;
 pub use recent::RecentEvents;
 pub use requests::{Outcome, READ_ABOARD, Request, Requests, Ticket};
 pub use trail::Trail;
-pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Vehicle, VehicleName};
+pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Raised, Vehicle, VehicleName};
 pub use vehicles::Vehicles;
 
 use repeats::Repeats;

@@ -5,8 +5,8 @@ use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
 };
 use flight_exec::{Event, Phase, ProposalReport, Status};
-use flight_plan::{FlightPlan, Id};
-use std::collections::{BTreeMap, BTreeSet};
+use flight_plan::{Cause, FlightPlan, Id};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use usal::contract::{
     Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanVariables,
@@ -87,6 +87,10 @@ pub struct Vehicle {
     pub requests: Requests,
     /// What happened.
     pub log: Log,
+    /// What happened that nobody must miss and nobody has put aside yet, oldest first.
+    pub unread: VecDeque<String>,
+    /// The emergency that was raised last.
+    pub raised: Option<Raised>,
     /// What was lost of its messages.
     pub losses: Losses,
     plan_events: Repeats,
@@ -101,6 +105,17 @@ pub struct ActivePlan {
     pub hash: Arc<str>,
     /// The plan.
     pub plan: Arc<FlightPlan>,
+}
+
+/// An emergency that was raised.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raised {
+    /// Why.
+    pub cause: Cause,
+    /// The emergency plan that is flown for it.
+    pub plan: Id,
+    /// The leg of the main plan that the aircraft was on.
+    pub from_leg: Option<Id>,
 }
 
 /// A proposal that was answered.
@@ -222,8 +237,19 @@ impl Vehicle {
 
     fn plan_event(&mut self, event: &Numbered<Event>, now_s: f64) {
         let (level, text) = log::plan_event(&event.event.value);
-        if self.plan_events.is_new(event.sequence, event.event.time_s, &text) {
-            self.log.add(now_s, level, "plan", &text);
+        if !self.plan_events.is_new(event.sequence, event.event.time_s, &text) {
+            return;
+        }
+        self.log.add(now_s, level, "plan", &text);
+        let event = &event.event.value;
+        if log::is_announced(event) {
+            self.unread.push_back(text);
+            while self.unread.len() > MOST_UNREAD {
+                self.unread.pop_front();
+            }
+        }
+        if let Event::EmergencyStarted { cause, plan, from_leg } = event {
+            self.raised = Some(Raised { cause: *cause, plan: plan.clone(), from_leg: from_leg.clone() });
         }
     }
 
@@ -317,6 +343,8 @@ impl Vehicle {
     }
 }
 
+/// More announcements than these are read in the log.
+const MOST_UNREAD: usize = 3;
 /// The plan aboard is asked for again at most so often, seconds.
 const ASK_ABOARD_S: f64 = 3.0;
 /// Silence after which the operator should know, seconds.

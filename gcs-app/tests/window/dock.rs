@@ -2,7 +2,7 @@
 
 use super::vehicle::{place, status};
 use super::{SQUARE, Window};
-use egui::{Rect, Vec2, vec2};
+use egui::{Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use flight_exec::Phase;
@@ -74,7 +74,8 @@ fn the_commands_are_in_view_at_every_size() {
         assert!(map.width() >= 300.0 && map.height() >= 200.0, "{size}: the map is {map}");
         for command in ["⏸ Hold", "⏭ Skip leg", "Emergency: fly return (hold)"] {
             let at = rect(&window, command);
-            assert!(map.contains_rect(at), "{size}: {command} at {at}, map {map}");
+            let screen = Rect::from_min_size(Pos2::ZERO, size);
+            assert!(screen.contains_rect(at) && !map.intersects(at), "{size}: {command} at {at}, map {map}");
         }
     }
 }
@@ -154,6 +155,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
         }
         let app = window.app();
         let recent = gcs_app::recent::Recent::default();
+        let connections = gcs_app::connections::Connections::default();
         let scene = Scene {
             document: app.document(),
             analysis: app.analysis(),
@@ -161,6 +163,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             vehicles: app.vehicles(),
             view: app.view(),
             recent: &recent,
+            connections: &connections,
             left_behind: None,
             now_s: 1.0,
             utc: Default::default(),

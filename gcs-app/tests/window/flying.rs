@@ -8,7 +8,7 @@ use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Repl
 use gcs_app::state::Outcome;
 use usal::contract::{Alarm, Severity};
 
-fn report(hash: &str, acceptable: bool) -> ProposalReport {
+pub fn report(hash: &str, acceptable: bool) -> ProposalReport {
     ProposalReport {
         hash: hash.into(),
         acceptable,
@@ -29,7 +29,7 @@ fn report(hash: &str, acceptable: bool) -> ProposalReport {
 }
 
 /// A window with a plan whose hash is known, connected.
-fn connected() -> (Window, String) {
+pub fn connected() -> (Window, String) {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
     window.connect();
@@ -38,7 +38,7 @@ fn connected() -> (Window, String) {
 }
 
 /// Flying the document.
-fn flying() -> (Window, flight_exec::Status) {
+pub fn flying() -> (Window, flight_exec::Status) {
     let (mut window, hash) = connected();
     let mut value = status(Phase::Flying);
     value.plan = Some(hash.into());
@@ -62,8 +62,7 @@ fn connecting_asks_the_link_and_shows_what_came_of_it() {
     assert_eq!(order, Order::Connect { link, endpoint, vehicle: "uav1".into() });
     window.send(LinkEvent::Link(LinkState::Failed("nobody listens there".into())));
     assert!(window.shows("No link"));
-    // it looks for the vehicle on, until it is asked to stop
-    window.click("✖ uav1 · No link");
+    // it looks for the vehicle on, until it is asked to stop; the form stays open until the vehicle answers
     window.click("Disconnect");
     assert_eq!(window.far.orders.try_recv().unwrap(), Order::Disconnect { link });
     window.connect();

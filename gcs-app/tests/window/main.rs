@@ -2,14 +2,18 @@
 //! the link that the test plays.
 #![cfg(test)]
 
+mod announcing;
+mod connecting;
 mod creating;
 mod dock;
 mod drawing;
+mod emergency;
 mod filing;
 mod fleet;
 mod flying;
 mod looks;
 mod planning;
+mod reach;
 mod recovering;
 mod store;
 mod tools;

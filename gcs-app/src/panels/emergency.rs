@@ -1,0 +1,79 @@
+//! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
+
+use super::Scene;
+use crate::command::Queue;
+use crate::theme;
+use egui::{Color32, ComboBox, Frame, Margin, Panel, RichText, Ui};
+use flight_exec::Command;
+use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
+
+/// Draws the banner, while an emergency plan is being flown.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(flown) = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref()) else { return };
+    let fill = theme::of(ui).warning;
+    Panel::top("emergency").frame(Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 6))).show(
+        ui,
+        |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let text = RichText::new(sentence(scene, flown)).strong().color(on(fill));
+                ui.label(text);
+                way_back(ui, scene, queue);
+            });
+        },
+    );
+}
+
+/// What can be read on a warning's colour.
+fn on(fill: Color32) -> Color32 {
+    if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
+}
+
+/// `EMERGENCY: flying Return home, because the engine failed, to runway 27`.
+fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
+    let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
+    let name = plan.map(|plan| plan.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(flown.as_str());
+    let raised = scene.vehicle.raised.as_ref().filter(|raised| raised.plan == *flown);
+    let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
+    let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
+    format!("⛔ EMERGENCY: flying {name}{cause}{runway}")
+}
+
+fn plan_named<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a EmergencyPlan> {
+    plan.emergency_plans.iter().find(|plan| plan.id == *id)
+}
+
+fn because(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Engine => "the engine failed",
+        Cause::Energy => "the energy is low",
+        Cause::Link => "the link was lost",
+        Cause::Gps => "the position was lost",
+        Cause::Traffic => "of traffic",
+        Cause::Payload => "the payload failed",
+        Cause::Operator => "the operator said so",
+    }
+}
+
+/// Which leg, then the command: it goes on where the emergency was raised unless another leg is chosen.
+fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(aboard) = &scene.vehicle.aboard else { return };
+    let legs = aboard.plan.all_legs();
+    let main =
+        || legs.iter().filter(|context| context.section == Section::Main).map(|context| &context.leg.id);
+    let raised = scene.vehicle.raised.as_ref().and_then(|raised| raised.from_leg.as_ref());
+    let id = ui.make_persistent_id("way back");
+    let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
+    let leg = chosen.as_ref().or(raised).filter(|leg| main().any(|id| id == *leg)).or(main().next());
+    let Some(leg) = leg.cloned() else { return };
+    if ui.button(format!("Return to the main plan at {leg}")).clicked() {
+        queue.plan(Command::ReturnToMain { leg: leg.clone() });
+    }
+    let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
+    combo.show_ui(ui, |ui| {
+        for other in main() {
+            if ui.selectable_label(*other == leg, other.as_str()).clicked() {
+                ui.data_mut(|d| d.insert_temp(id, other.clone()));
+            }
+        }
+    });
+}

@@ -1,0 +1,65 @@
+//! What nobody must miss, also who looked elsewhere.
+
+use super::Window;
+use super::flying::flying;
+use egui_kittest::kittest::Queryable;
+use flight_exec::{Event, Phase};
+use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Telemetry};
+use usal::contract::Stamped;
+
+fn event(sequence: u32, value: Event) -> LinkEvent {
+    let event = Stamped { time_s: f64::from(sequence), validity_s: f64::MAX, value };
+    LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence, event }))
+}
+
+fn taken(leg: &str, by: &str) -> Event {
+    Event::DecisionTaken { leg: leg.into(), branch: "again".into(), by: by.into() }
+}
+
+fn is_announced(window: &Window, text: &str) -> bool {
+    // the log says it, too
+    window.harness.query_all_by_label_contains(&format!("uav1: {text}")).next().is_some()
+}
+
+#[test]
+fn a_missed_decision_is_announced_until_it_is_put_aside() {
+    let (mut window, _) = flying();
+    window.send(event(1, taken("ask", "operator")));
+    assert!(!is_announced(&window, ""), "somebody decided");
+    window.send(event(2, taken("ask", "default")));
+    let text = "Nobody decided at ask in time: again was taken by default";
+    assert!(is_announced(&window, text));
+    let log = &window.app().vehicle().log;
+    assert_eq!(log.from_newest(0).map(|line| line.text.as_str()), Some(text));
+    window.steps(60 * 20);
+    assert!(is_announced(&window, text), "it stays until it is read");
+    // received again over another link, it is no news
+    window.click("Put aside what uav1 announced");
+    assert!(!is_announced(&window, text));
+    let two = LinkId(2);
+    window.send_of("uav1", two, LinkEvent::Link(LinkState::Connected("there".into())));
+    window.send_of("uav1", two, event(2, taken("ask", "default")));
+    assert!(!is_announced(&window, text));
+}
+
+#[test]
+fn a_vehicle_that_is_not_shown_announces_as_well() {
+    let (mut window, _) = flying();
+    let other = LinkId(7);
+    window.send_of("uav9", other, LinkEvent::Link(LinkState::Connected("there".into())));
+    window.send_of("uav9", other, event(1, Event::PhaseChanged { phase: Phase::AwaitingDecision }));
+    assert!(window.shows("uav9: Nobody decided in time: the aircraft circles"));
+}
+
+#[test]
+fn of_many_announcements_the_latest_are_shown() {
+    let (mut window, _) = flying();
+    for n in 0..50 {
+        window.send(event(n, taken(&format!("fork{n}"), "default")));
+    }
+    assert!(
+        is_announced(&window, "Nobody decided at fork49")
+            && is_announced(&window, "Nobody decided at fork47")
+    );
+    assert!(!is_announced(&window, "Nobody decided at fork46"), "the rest is in the log");
+}

@@ -1,0 +1,55 @@
+//! An emergency plan that is being flown.
+
+use super::flying::flying;
+use super::vehicle::place;
+use super::{SQUARE, Window};
+use flight_exec::{Branching, Command, Event};
+use flight_plan::Cause;
+use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
+use gcs_app::state::ActivePlan;
+use std::sync::Arc;
+use usal::contract::Stamped;
+
+/// Flying the emergency plan of the square, raised on side3 because of the engine.
+pub fn in_emergency() -> Window {
+    let (mut window, mut value) = flying();
+    let plan = Arc::new(flight_plan::read(SQUARE.as_bytes()).plan);
+    let hash = Arc::<str>::from("the plan that is aboard");
+    value.plan = Some(hash.clone());
+    value.emergency = Some("return".into());
+    value.place = Some(place("r-approach", "r1"));
+    if let Some(place) = &mut value.place {
+        place.plan = Branching::Emergency("return".into());
+    }
+    window.steps(60 * 4);
+    window.receive_position(false);
+    window.receive_status(value);
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::PlanAboard);
+    window.answer(ticket, Ok(Reply::Plan(Some(ActivePlan { hash, plan }))));
+    let started = Event::EmergencyStarted {
+        cause: Cause::Engine,
+        plan: "return".into(),
+        from_leg: Some("side3".into()),
+    };
+    let event = Stamped { time_s: 3.0, validity_s: f64::MAX, value: started };
+    window.send(LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence: 1, event })));
+    window
+}
+
+#[test]
+fn banner_says_which_plan_why_where_to_and_the_way_back() {
+    let mut window = in_emergency();
+    for text in ["EMERGENCY: flying", "because the engine failed", "to runway R05"] {
+        assert!(window.shows(text), "{text}");
+    }
+    window.click("Return to the main plan at side3");
+    let back = Command::ReturnToMain { leg: "side3".into() };
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(back)));
+}
+
+#[test]
+fn there_is_no_banner_without_an_emergency() {
+    let (window, _) = flying();
+    assert!(!window.shows("EMERGENCY: flying"));
+}

@@ -1,0 +1,126 @@
+//! The commands of the flight are in the window and nothing is drawn over them, at every size and whatever is open.
+
+use super::emergency::in_emergency;
+use super::flying::{connected, flying, report};
+use super::vehicle::{decision, status};
+use super::{SQUARE, Window};
+use egui::{Order, Pos2, Rect, Vec2, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use flight_exec::Phase;
+use gcs_app::link::Reply;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 800.0), vec2(1920.0, 1080.0)];
+
+/// Its buttons are all of it on the screen, and a click there meets no other layer.
+fn assert_in_reach(window: &Window, size: Vec2, labels: &[&str], state: &str) {
+    let ctx = window.harness.ctx.clone();
+    for label in labels {
+        let node = window.harness.query_all_by_label_contains(label).find(is_button);
+        let rect = node.unwrap_or_else(|| panic!("{label}: {state} at {size}")).rect();
+        let screen = Rect::from_min_size(Pos2::ZERO, size);
+        assert!(screen.contains_rect(rect) && rect.is_positive(), "{label} at {rect}: {state} at {size}");
+        let inside = rect.shrink(1.0);
+        for at in [
+            inside.center(),
+            inside.left_top(),
+            inside.right_top(),
+            inside.left_bottom(),
+            inside.right_bottom(),
+        ] {
+            let order = ctx.layer_id_at(at).map(|layer| layer.order);
+            assert_eq!(order, Some(Order::Background), "{label} is covered at {at}: {state} at {size}");
+        }
+    }
+}
+
+fn is_button(node: &egui_kittest::Node<'_>) -> bool {
+    node.accesskit_node().role() == egui::accesskit::Role::Button
+}
+
+/// A file that is dropped onto the window and can't be read.
+#[derive(Debug)]
+struct Missing(PathBuf);
+
+impl egui::DroppedFile for Missing {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Err("missing".into())
+    }
+}
+
+/// With a long text above everything.
+fn with_notice(window: &mut Window) {
+    let missing = Missing(PathBuf::from(format!("/{}", "missing/".repeat(40))));
+    window.harness.input_mut().dropped_files.push(Arc::new(missing));
+    window.until("notice", |app| app.view().notice.is_some());
+}
+
+#[test]
+fn commands_in_flight_are_in_reach_whatever_is_open() {
+    let labels = ["⏸ Hold", "Skip leg", "Emergency: fly"];
+    for size in SIZES {
+        let (mut window, mut value) = flying();
+        value.plan = Some("another".into());
+        value.decision = Some(decision(Some("again")));
+        window.harness.set_size(size);
+        window.receive_status(value);
+        window.steps(5);
+        while window.asked().is_some() {}
+        assert_in_reach(&window, size, &labels, "a decision is asked for");
+        window.click("Push");
+        let (ticket, _) = window.asked().unwrap();
+        let mut refused = report(&window.app().analysis().hash.clone(), false);
+        refused.problems = vec!["a rather long sentence that says what is wrong with it".into(); 40];
+        window.answer(ticket, Ok(Reply::Proposal(Box::new(refused))));
+        window.click("TF side2");
+        window.steps(5);
+        assert_in_reach(&window, size, &labels, "a proposal is shown");
+        with_notice(&mut window);
+        assert_in_reach(&window, size, &labels, "a notice is shown");
+        window.click("⏸ Hold");
+        let (ticket, _) = window.asked().unwrap();
+        window.answer(ticket, Err("a long refusal, ".repeat(12)));
+        window.steps(5);
+        assert_in_reach(&window, size, &labels, "a refusal is shown");
+    }
+}
+
+#[test]
+fn commands_in_an_emergency_are_in_reach() {
+    for size in SIZES {
+        let mut window = in_emergency();
+        window.harness.set_size(size);
+        window.steps(5);
+        assert_in_reach(&window, size, &["⏸ Hold", "Emergency: fly", "Return to the main plan"], "emergency");
+    }
+}
+
+#[test]
+fn start_is_in_reach() {
+    for size in SIZES {
+        let (mut window, hash) = connected();
+        window.harness.set_size(size);
+        let mut value = status(Phase::Idle);
+        value.plan = Some(hash.into());
+        window.receive_status(value);
+        window.steps(5);
+        assert_in_reach(&window, size, &["Start and take off"], "on the ground");
+    }
+}
+
+#[test]
+fn commands_stay_clear_of_the_map_and_so_of_the_aircraft() {
+    let mut window = Window::open_with(SQUARE, SIZES[0], None);
+    window.until_analysed();
+    window.connect();
+    window.receive_position(false);
+    window.receive_status(status(Phase::Flying));
+    window.steps(5);
+    let map = window.harness.get_by_label("Map").rect();
+    let hold = window.harness.get_by_label("⏸ Hold").rect();
+    assert!(!map.intersects(hold), "{map} {hold}");
+}
