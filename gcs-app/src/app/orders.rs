@@ -278,6 +278,7 @@ fn plan_label(command: &PlanCommand) -> String {
         PlanCommand::Emergency { plan: Some(plan), .. } => format!("Emergency: fly {plan}"),
         PlanCommand::Emergency { plan: None, .. } => "Emergency: fly the alternate in force".into(),
         PlanCommand::ReturnToMain { leg } => format!("Return to the main plan at {leg}"),
+        PlanCommand::Rewind => "Rewind to the start".into(),
         PlanCommand::AbortToSafe => "Abort: Safe mode".into(),
         PlanCommand::Commit { .. } => "Commit plan".into(),
     }

@@ -165,6 +165,13 @@ impl GatewaySession {
         }
     }
 
+    /// Nothing is wanted any more but that its runways are stored.
+    pub fn forget_wanted(&mut self) {
+        for request in [GatewayRequest::Launch, GatewayRequest::Hold, GatewayRequest::Resume] {
+            self.unwant(request);
+        }
+    }
+
     /// The executor flies on: if the gateway holds, it should too.
     pub fn flies_on(&mut self) {
         if self.state == Some(GatewayState::Hold) || self.wanted() == Some(&GatewayRequest::Hold) {

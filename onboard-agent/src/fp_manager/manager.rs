@@ -185,7 +185,12 @@ impl Manager {
         by: &str,
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
-        let starts = command == Command::Start;
+        let (starts, rewinds) = (command == Command::Start, command == Command::Rewind);
+        if rewinds && self.gateway_session.is_airborne() {
+            let reason =
+                "the gateway does not say that the aircraft stands disarmed on the ground: wait for that";
+            return Err(Refusal { code: "in-the-air".into(), reason: reason.into() });
+        }
         // writes are reviewed one after the other
         self.turns += u64::from(!matches!(command, Command::SetVariable { .. }));
         let in_emergency = self.is_in_emergency();
@@ -196,6 +201,9 @@ impl Manager {
             self.gateway_session.want(GatewayRequest::Launch);
             self.alarms.new_flight();
             self.plan_history.new_flight();
+        } else if rewinds {
+            // nothing of the earlier flight is wanted any more
+            self.gateway_session.forget_wanted();
         } else if in_emergency && !self.is_in_emergency() {
             self.alarms.read_again();
         }

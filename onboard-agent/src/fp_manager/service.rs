@@ -11,7 +11,7 @@ use super::proposals::{
 use super::publish;
 use flight_exec::{Command, Event, Refusal};
 use flight_plan::{Problem, Program};
-use service::{Board, Request, Service, Time, Wiring};
+use service::{Board, Reply, Request, Service, Time, Wiring};
 use std::sync::Arc;
 use std::time::Duration;
 use usal::contract;
@@ -22,6 +22,9 @@ use wire::Convert;
 
 /// The gateway answers at once or not at all, wall-clock.
 const CALL_TIMEOUT: Duration = Duration::from_millis(1500);
+
+/// Looks ahead at a time.
+const MAX_FORESEEING: usize = 2;
 
 /// All that can happen to it.
 pub enum Input {
@@ -51,6 +54,10 @@ pub enum Input {
     Propose(Request<Propose, ProposalReport>),
     /// A command is given.
     Command(Request<contract::Command, Empty>),
+    /// What would follow is asked for.
+    Foresee(Request<Foresee, Foresight>),
+    /// That is known now.
+    Foreseen(Result<Foreseen, String>),
     /// The plan's document is asked for.
     Plan(Request<Empty, PlanDocument>),
     /// The gateway's answer.
@@ -72,6 +79,9 @@ pub enum Input {
     /// The journal wants a new state.
     StateWanted,
 }
+
+/// What would follow, and who wants to know.
+type Foreseen = (Reply<Foresight>, Result<flight_exec::Foresight, Refusal>);
 
 /// What it wants of the journal.
 pub enum Output {
@@ -108,6 +118,8 @@ pub struct FpManager {
     proposal_review: ProposalReview,
     command_review: CommandReview,
     background_review: BackgroundReview,
+    /// Looks ahead that are under way.
+    foreseeing: usize,
     heartbeats: u64,
 }
 
@@ -129,6 +141,7 @@ impl Service for FpManager {
         wiring.listen(gateway::EVENTS, Start::Now, Input::Gateway);
         wiring.serve(fp_manager::COMMAND, Input::Command);
         wiring.serve(fp_manager::PROPOSE, Input::Propose);
+        wiring.serve(fp_manager::FORESEE, Input::Foresee);
         wiring.serve(fp_manager::PLAN_DOCUMENT, Input::Plan);
         wiring.tick(|| Input::Tick);
         wiring.ended(|| Input::Ended);
@@ -140,6 +153,8 @@ impl Service for FpManager {
             Input::Ended | Input::StateWanted => self.save_state(out),
             Input::Propose(asked) => self.proposed(now, asked, out),
             Input::Command(request) => self.asked(now, Asked::from(request), out),
+            Input::Foresee(request) => self.foresee(now, request, out),
+            Input::Foreseen(foreseen) => self.foreseen(foreseen, out),
             Input::Plan(request) => out.answer(request.reply, Ok(self.document())),
             Input::ProposalReviewed(reviewed) => {
                 if let Some(conclusion) = self.proposal_review.reviewed(reviewed, out) {
@@ -176,6 +191,7 @@ impl FpManager {
             proposal_review: ProposalReview::default(),
             command_review: CommandReview::default(),
             background_review: BackgroundReview::default(),
+            foreseeing: 0,
             heartbeats: 0,
         }
     }
@@ -316,6 +332,32 @@ impl FpManager {
         }
         perform(effects, out);
         answer
+    }
+
+    /// Looks ahead on a thread: nothing of the flight waits for it.
+    fn foresee(&mut self, now: Time, request: Request<Foresee, Foresight>, out: &mut Out) {
+        if self.foreseeing >= MAX_FORESEEING {
+            let reason = "others are being looked ahead for: ask again in a moment";
+            return out.answer(
+                request.reply,
+                Err(Refusal { code: "busy".into(), reason: reason.into() }.convert()),
+            );
+        }
+        self.foreseeing += 1;
+        let (flight, conditions) = (self.manager.executor().clone(), self.manager.conditions(now));
+        let command: Option<Command> = request.request.command.convert();
+        let (reply, by) = (request.reply, request.caller.unwrap_or_else(|| ANONYMOUS.to_owned()));
+        let look = move || (reply, flight_exec::foresee(&flight, &by, command.as_ref(), conditions));
+        out.work(look, Input::Foreseen);
+    }
+
+    /// Who asked for one that broke off has his answer: it was dropped.
+    fn foreseen(&mut self, foreseen: Result<Foreseen, String>, out: &mut Out) {
+        self.foreseeing = self.foreseeing.saturating_sub(1);
+        match foreseen {
+            Ok((reply, foresight)) => out.answer(reply, foresight.convert()),
+            Err(error) => tracing::error!("looking ahead: {error} (please report this as a bug)"),
+        }
     }
 
     fn document(&self) -> PlanDocument {

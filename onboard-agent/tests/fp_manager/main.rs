@@ -327,6 +327,53 @@ async fn alarm_raised_while_it_was_dead_is_acted_on_once() {
     assert_eq!(started, 1);
 }
 
+/// The vehicle was carried home and switched on again: what its journal says it was flying is not gone on with.
+#[tokio::test(flavor = "multi_thread")]
+async fn plan_of_an_interrupted_flight_is_rewound_on_the_ground_and_stays_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut flight = Flight::new(Some(directory.path())).await;
+    let status = flight.client.follow(topic::STATUS).unwrap();
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
+    let refused = flight.command(Command::Rewind).await.unwrap_err();
+    assert!(matches!(refused, CallError::Refused(r) if r.code == "in-the-air"));
+    flight.kill_manager().await;
+    flight.gateway.state = GatewayState::Stop;
+    flight.start_manager().await;
+    flight.step(3).await;
+    flight.command(Command::Rewind).await.unwrap();
+    // it is in the journal: another restart does not bring the old flight back
+    flight.kill_manager().await;
+    flight.start_manager().await;
+    flight.step(3).await;
+    until(async || status.latest().is_some_and(|s| s.stamped.value.phase == Phase::Idle)).await;
+    let flown = flight.gateway.flown.len();
+    flight.start().await;
+    flight.step_until(|g| g.finished()).await;
+    let again: Vec<String> = flight.gateway.flown[flown..].iter().map(|w| w.leg.to_string()).collect();
+    assert!(again.contains(&"take-off".to_owned()) && again.contains(&"side1".to_owned()), "{again:?}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_would_follow_is_told_and_not_done() {
+    let mut flight = Flight::new(None).await;
+    let ask = |command| Foresee { command };
+    flight.load(SQUARE).await;
+    let call = flight.client.call(topic::FORESEE, &ask(None), DEADLINE);
+    let refused = flight.gateway.step_until_done(call).await.unwrap_err();
+    assert!(matches!(refused, CallError::Refused(r) if r.code == "not-flying"));
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side1")).await;
+    let go = Command::GoTo { leg: "side4".into() };
+    let call = flight.client.call(topic::FORESEE, &ask(Some(go)), DEADLINE);
+    let told = flight.gateway.step_until_done(call).await.unwrap();
+    assert_eq!(told.next_leg, Some("side4".into()));
+    assert!(told.left_out.contains(&"side3".into()) && told.path.len() > 10, "{told:?}");
+    flight.step_until(|g| g.finished()).await;
+    assert!(legs(&flight.gateway).contains(&"side3".to_owned()), "nothing was done");
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn launch_refused_is_told_once_with_its_reason_and_asked_again() {
     let mut flight = Flight::new(None).await;

@@ -11,6 +11,7 @@ mod basic;
 mod clock;
 mod command;
 mod describe;
+mod foresight;
 mod gateway;
 mod keys;
 mod plan;
@@ -29,6 +30,7 @@ pub use basic::{Empty, FileManifest, Refusal, Stamped};
 pub use clock::{ClockAck, ClockTick};
 pub use command::Command;
 pub use describe::{Description, Primitive};
+pub use foresight::{Foresee, Foresight, PathPoint};
 pub use gateway::{
     GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, SafeParameters, SafeRunway,
     TimedGatewayEvent,

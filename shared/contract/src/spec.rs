@@ -149,6 +149,7 @@ pub const FP_MANAGER: Spec = {
             Said::events(EVENTS),
             Said::invocation(PROPOSE),
             Said::invocation(COMMAND),
+            Said::invocation(FORESEE),
             Said::invocation(PLAN_DOCUMENT),
             Said::file(PLAN_FILE),
         ],

@@ -133,8 +133,8 @@ pub mod storage {
 pub mod fp_manager {
     use super::{Events, FP_MANAGER, Invocation, Variable};
     use crate::{
-        Ahead, Command, Empty, FpManagerEvent, Heartbeat, PlanDocument, PlanInfo, PlanStatus, PlanVariables,
-        ProposalReport, Propose,
+        Ahead, Command, Empty, Foresee, Foresight, FpManagerEvent, Heartbeat, PlanDocument, PlanInfo,
+        PlanStatus, PlanVariables, ProposalReport, Propose,
     };
 
     /// What the executor is doing, and where.
@@ -155,6 +155,8 @@ pub mod fp_manager {
     pub const PROPOSE: Invocation<Propose, ProposalReport> = Invocation::new(FP_MANAGER, "propose");
     /// What people and services may ask of the executor.
     pub const COMMAND: Invocation<Command, Empty> = Invocation::new(FP_MANAGER, "command");
+    /// What would follow a command, or follows without one.
+    pub const FORESEE: Invocation<Foresee, Foresight> = Invocation::reading(FP_MANAGER, "foresee");
     /// The active plan's document.
     pub const PLAN_DOCUMENT: Invocation<Empty, PlanDocument> = Invocation::reading(FP_MANAGER, "plan");
     /// File: the active plan's canonical XML; its hash is the plan's.

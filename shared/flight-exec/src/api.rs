@@ -3,6 +3,7 @@
 mod act;
 mod command;
 mod event;
+mod foresight;
 mod place;
 mod proposal;
 mod waypoint;
@@ -10,6 +11,7 @@ mod waypoint;
 pub use act::ResolvedAct;
 pub use command::{Command, Refusal};
 pub use event::Event;
+pub use foresight::{Foresight, PathPoint};
 pub use place::{BranchOption, Branching, DecisionRequest, IterationPlace, Phase, PlacePointer, Status};
 pub use proposal::{EntryReport, ProposalReport};
 pub use waypoint::{Action, AircraftState, FARTHEST_M, Token, Waypoint};

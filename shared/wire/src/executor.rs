@@ -47,6 +47,7 @@ same_variants!(domain::Command = contract::Command {
     Emergency { cause, plan },
     ReturnToMain { leg },
     AbortToSafe,
+    Rewind,
     Commit { hash, entry },
 });
 
@@ -82,6 +83,24 @@ same_fields!(
         decision,
         proposed,
         wait_left_s,
+    }
+);
+
+same_fields!(domain::PathPoint = contract::PathPoint { time_s, position, altitude_amsl_m });
+
+same_fields!(
+    domain::Foresight = contract::Foresight {
+        path,
+        next_leg,
+        left_out,
+        short_of_altitude_m,
+        clearance_m,
+        problems,
+        time_s,
+        distance_m,
+        battery_left,
+        landed,
+        cut_short,
     }
 );
 

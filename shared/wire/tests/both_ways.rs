@@ -4,8 +4,8 @@
 
 use contract::{LatLon, PlanEvent};
 use flight_exec::{
-    Action, BranchOption, Branching, Command, DecisionRequest, EntryReport, Event, IterationPlace, Phase,
-    PlacePointer, ProposalReport, Refusal, ResolvedAct, Status, Token, Waypoint,
+    Action, BranchOption, Branching, Command, DecisionRequest, EntryReport, Event, Foresight, IterationPlace,
+    PathPoint, Phase, PlacePointer, ProposalReport, Refusal, ResolvedAct, Status, Token, Waypoint,
 };
 use flight_plan::{Cause, Id, VariableValue};
 use schemars::{JsonSchema, schema_for};
@@ -144,6 +144,7 @@ fn commands(s: &mut Source) -> Vec<Command> {
         Command::Emergency { cause: s.one(causes), plan: s.maybe(Source::id) },
         Command::ReturnToMain { leg: s.id() },
         Command::AbortToSafe,
+        Command::Rewind,
         Command::Commit { hash: s.shared(), entry: s.maybe(Source::id) },
     ]
 }
@@ -218,6 +219,24 @@ fn report(s: &mut Source) -> ProposalReport {
         differs_in_s: s.maybe(Source::number),
         entry_needed: s.bool(),
         entries: s.some(entry),
+    }
+}
+
+fn foresight(s: &mut Source) -> Foresight {
+    let point =
+        |s: &mut Source| PathPoint { time_s: s.number(), position: s.at(), altitude_amsl_m: s.number() };
+    Foresight {
+        path: s.some(point),
+        next_leg: s.maybe(Source::id),
+        left_out: s.some(Source::id),
+        short_of_altitude_m: s.maybe(Source::number),
+        clearance_m: s.maybe(Source::number),
+        problems: s.some(Source::text),
+        time_s: s.number(),
+        distance_m: s.number(),
+        battery_left: s.number(),
+        landed: s.bool(),
+        cut_short: s.maybe(Source::text),
     }
 }
 
@@ -339,6 +358,7 @@ fn waypoints_and_reports() {
     check_all::<_, contract::Action>(actions);
     check::<_, contract::Token>(|s| vec![s.token()]);
     check::<_, contract::ProposalReport>(|s| vec![report(s)]);
+    check::<_, contract::Foresight>(|s| vec![foresight(s)]);
 }
 
 #[test]

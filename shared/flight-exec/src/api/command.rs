@@ -58,6 +58,8 @@ pub enum Command {
     /// Have the gateway fly the aircraft to safety, whatever the plan says: its Safe mode, which a command of the gateway ends. A
     /// plan that is being flown holds until it is resumed.
     AbortToSafe,
+    /// Forget the flight that was begun: the plan stands at its start again. On the ground only.
+    Rewind,
     /// Make the proposed plan the active one.
     Commit {
         /// Hash of the proposal.

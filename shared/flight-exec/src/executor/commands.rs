@@ -31,6 +31,7 @@ impl Executor {
                 self.abort_to_safe(out);
                 Ok(())
             }
+            Command::Rewind => self.rewind(out),
             Command::Commit { hash, entry } => self.commit(&hash, entry.as_ref(), out),
         }
     }
@@ -56,6 +57,21 @@ impl Executor {
         let cursor = Cursor::start(None, self.here(), self.life.numbers.passage());
         self.enter_phase(Phase::Flying, out);
         self.jump(cursor, out);
+        Ok(())
+    }
+
+    /// What was flown before is not gone on with: the aircraft was brought down, or carried back.
+    fn rewind(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+        if self.program().is_none() {
+            return Err(refusal("no-plan", "there is no plan to be rewound: propose one and commit it"));
+        }
+        if self.life.aircraft().is_none_or(|aircraft| !aircraft.on_ground) {
+            let reason = "the aircraft is not known to stand on the ground: in flight, go to a leg instead";
+            return Err(refusal("in-the-air", reason));
+        }
+        self.flight = Flight::default();
+        self.life.mode.forget_place();
+        self.enter_phase(Phase::Idle, out);
         Ok(())
     }
 

@@ -253,6 +253,17 @@ pub fn preview_with(
     Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
 }
 
+/// As [`preview_on`]; one that ends too early is there up to its end, with the reason. `None`: nothing is being flown.
+pub(crate) fn preview_on_as_far_as_possible(
+    flight: Executor,
+    winds: impl Into<Winds>,
+    scenario: &Scenario,
+    options: &Options,
+) -> Option<(Preview, Option<PreviewError>)> {
+    let given = Circumstances { winds: winds.into(), scenario, options };
+    Some(Flight::under_way(flight, given)?.flown_as_far_as_possible())
+}
+
 /// Flies on from where a flight under way is, with what is left of its energy; times are seconds from now.
 ///
 /// # Errors

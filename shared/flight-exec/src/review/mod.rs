@@ -26,6 +26,7 @@ mod endurance;
 mod extremes;
 mod flights;
 mod flown;
+mod foresight;
 mod glide;
 mod landings;
 mod layout;
@@ -53,6 +54,7 @@ use flight_plan::{
     Variables,
 };
 use flights::Flights;
+pub use foresight::foresee;
 use prepared::Zones;
 use std::collections::HashSet;
 use std::sync::Arc;

@@ -371,6 +371,52 @@ fn an_abort_asks_for_safe_mode_and_the_plan_holds_until_it_is_resumed() {
     assert_eq!((rig.aborts, rig.executor.status().phase), (2, Phase::Finished), "without a flight as well");
 }
 
+/// After a restart on the ground the plan may be in the middle: it is rewound, and flown from its start.
+#[test]
+fn on_the_ground_the_plan_is_rewound_and_starts_anew() {
+    let mut rig = Rig::new();
+    assert_eq!(rig.command(Command::Rewind).unwrap_err().code, "no-plan");
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    assert_eq!(rig.command(Command::Rewind).unwrap_err().code, "in-the-air");
+    rig.command(Command::Hold).unwrap();
+    let mut state = rig.state();
+    state.on_ground = true;
+    rig.step(Input::Aircraft(state));
+    assert_eq!(rig.command(Command::Start).unwrap_err().code, "already-flying");
+    rig.command(Command::Rewind).unwrap();
+    let status = rig.executor.status();
+    assert_eq!((status.phase, status.place, status.outstanding), (Phase::Idle, None, 0));
+    let last = rig.executor.last_token();
+    rig.command(Command::Start).unwrap();
+    assert!(rig.buffer.iter().all(|w| w.token > last), "no token is used twice");
+    rig.flown.clear();
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a b a b c d");
+}
+
+#[test]
+fn looking_ahead_tells_what_a_command_leaves_out_and_does_nothing() {
+    let mut rig = Rig::started(LEGS);
+    rig.fly_to("b");
+    rig.report();
+    let before = rig.executor.snapshot();
+    let look = |command: Option<&Command>| {
+        flight_exec::foresee(&rig.executor, "operator", command, flight_exec::Conditions::default())
+    };
+    let ids = |ids: &[flight_plan::Id]| ids.iter().map(|id| id.to_string()).collect::<Vec<_>>().join(" ");
+    let as_is = look(None).unwrap();
+    assert!(as_is.left_out.is_empty() && as_is.landed && as_is.time_s > 60.0, "{as_is:?}");
+    assert!(as_is.path.len() <= 401 && as_is.clearance_m.is_some_and(|m| m > 50.0), "{as_is:?}");
+    let skipped = look(Some(&Command::SkipLeg)).unwrap();
+    assert_eq!((ids(&skipped.left_out).as_str(), skipped.next_leg), ("b", Some("c".into())));
+    let gone = look(Some(&Command::GoTo { leg: "d".into() })).unwrap();
+    assert_eq!((ids(&gone.left_out).as_str(), gone.next_leg), ("b c", Some("d".into())));
+    assert!(gone.time_s < as_is.time_s, "{} < {}", gone.time_s, as_is.time_s);
+    assert_eq!(look(Some(&Command::GoTo { leg: "nowhere".into() })).unwrap_err().code, "unknown-leg");
+    assert_eq!(rig.executor.snapshot(), before);
+}
+
 /// The place where a hold was given is as high as the waypoint behind it was then, and holds come one after the other.
 #[test]
 fn a_descent_that_an_update_brings_during_a_hold_begins_where_the_hold_before_was_given() {

@@ -1,0 +1,43 @@
+//! What a flight would do from now on.
+
+use flight_plan::Id;
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+
+/// What a flight under way would do from now on: as it is, or after a command.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Foresight {
+    /// The path from the aircraft on; of a long one, every so-manieth point.
+    pub path: Vec<PathPoint>,
+    /// The leg that would be flown next.
+    pub next_leg: Option<Id>,
+    /// Legs, or passes of them, that the flight as it is would still fly and this one would not.
+    pub left_out: Vec<Id>,
+    /// So many metres below its altitude the first waypoint would be reached: a climb that is not done.
+    pub short_of_altitude_m: Option<f64>,
+    /// Least height above the ground until the approach, metres, where the ground is known.
+    pub clearance_m: Option<f64>,
+    /// What is wrong with the path and was not before, one sentence each.
+    pub problems: Vec<String>,
+    /// Seconds until it ends.
+    pub time_s: f64,
+    /// Metres over the ground until it ends.
+    pub distance_m: f64,
+    /// Share of the energy left then, 0..1.
+    pub battery_left: f64,
+    /// It ends on the ground.
+    pub landed: bool,
+    /// Why it ends too early, if it does.
+    pub cut_short: Option<String>,
+}
+
+/// A point of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PathPoint {
+    /// Seconds from now.
+    pub time_s: f64,
+    /// Where.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+}
