@@ -1,13 +1,22 @@
-//! Pure: elevation tiles (SRTM HGT bytes to metres above sea level).
+//! Pure: elevations from files (SRTM HGT and GeoTIFF bytes to metres above sea level).
 //!
-//! [`Tile`] reads one file, [`Tiles`] combines several, [`along`] gives the ground under a path.
+//! [`Tile`] reads an HGT file, [`Tiles`] combines several, [`Raster`] reads a GeoTIFF, [`Stack`] puts terrains over
+//! each other, [`along`] gives the ground under a path.
 //! The caller reads the files; this crate gets their names and bytes.
 
 pub mod along;
+mod geotiff;
+mod grid;
+mod projection;
+mod raster;
+mod stack;
 pub mod tile;
 pub mod tiles;
 
 pub use along::{Ground, ground_along};
+pub use geotiff::RasterError;
+pub use raster::Raster;
+pub use stack::Stack;
 pub use tile::{Tile, TileError};
 pub use tiles::Tiles;
 

@@ -7,6 +7,7 @@
 // the bytes come from outside
 #![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
+use crate::grid::Grid;
 use geometry::LatLon;
 
 /// What the format calls "not measured".
@@ -15,9 +16,6 @@ const VOID: i16 = i16::MIN;
 const PLAUSIBLE_M: std::ops::RangeInclusive<i16> = -500..=9000;
 /// Samples a side of the two resolutions in use.
 const SIDES: [usize; 2] = [1201, 3601];
-
-/// Samples a side of the blocks whose highest one is kept: 2.8 km at 3″.
-const BLOCK: usize = 30;
 
 /// Why bytes are not an elevation tile.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -42,16 +40,12 @@ pub enum TileError {
 pub struct Tile {
     south_deg: i32,
     west_deg: i32,
-    side: usize,
-    /// Rows from north to south; [`VOID`] where nothing is known.
-    samples_m: Vec<i16>,
-    /// Highest sample of each block, with its edges; rows from north to south.
-    blocks_m: Vec<i16>,
+    grid: Grid<i16>,
 }
 
 impl std::fmt::Debug for Tile {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Tile({}°, {}°, {} samples a side)", self.south_deg, self.west_deg, self.side)
+        write!(f, "Tile({}°, {}°, {} samples a side)", self.south_deg, self.west_deg, self.grid.size().0)
     }
 }
 
@@ -67,12 +61,11 @@ impl Tile {
             .into_iter()
             .find(|side| bytes.len() == side * side * 2)
             .ok_or(TileError::Length(bytes.len()))?;
-        let samples_m: Vec<i16> = bytes.as_chunks::<2>().0.iter().copied().map(sample).collect();
-        if samples_m.iter().all(|s| *s == VOID) {
+        let grid = Grid::new(side, bytes.as_chunks::<2>().0.iter().copied().map(sample).collect());
+        if !grid.knows_something() {
             return Err(TileError::Empty);
         }
-        let blocks_m = blocks(&samples_m, side);
-        Ok(Self { south_deg, west_deg, side, samples_m, blocks_m })
+        Ok(Self { south_deg, west_deg, grid })
     }
 
     /// South-west corner, whole degrees: `(latitude, longitude)`.
@@ -82,66 +75,38 @@ impl Tile {
 
     /// Distance between samples, degrees of latitude and of longitude.
     pub fn spacing_deg(&self) -> f64 {
-        1.0 / (self.side - 1) as f64
+        1.0 / self.last()
     }
 
     /// The box around everything that is known: `(south-west, north-east)`.
     pub fn known_box(&self) -> (LatLon, LatLon) {
-        let (mut top, mut bottom, mut left, mut right) = (self.side, 0, self.side, 0);
-        for (i, _) in self.samples_m.iter().enumerate().filter(|(_, s)| **s != VOID) {
-            let (row, column) = (i / self.side, i % self.side);
-            (top, bottom) = (top.min(row), bottom.max(row));
-            (left, right) = (left.min(column), right.max(column));
-        }
+        let ((left, right), (top, bottom)) = self.grid.known();
         (self.place(bottom, left), self.place(top, right))
     }
 
     /// Metres AMSL at `p`, bilinear between the four samples around it; `None` outside the tile or
     /// where a sample that matters is void.
     pub fn elevation_m(&self, p: LatLon) -> Option<f64> {
-        let last = (self.side - 1) as f64;
-        let down = (f64::from(self.south_deg) + 1.0 - p.lat_deg) * last;
-        let right = (p.lon_deg - f64::from(self.west_deg)) * last;
-        if !(0.0..=last).contains(&down) || !(0.0..=last).contains(&right) {
-            return None;
-        }
-        let (row, column) = (down.floor().min(last - 1.0), right.floor().min(last - 1.0));
-        let (v, u) = (down - row, right - column);
-        let (row, column) = (whole(row), whole(column));
-        let upper = self.blend(row, column, u);
-        let lower = self.blend(row + 1, column, u);
-        mix(upper, lower, v)
+        self.grid.at(self.column(p.lon_deg), self.row(p.lat_deg))
     }
 
     /// Metres that no elevation in a box is above; `None`: nothing is known there.
     pub fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
-        let last = (self.side - 1) as f64;
-        let apart = |corner_deg: i32, from_deg: f64, to_deg: f64| {
-            to_deg < f64::from(corner_deg) || from_deg > f64::from(corner_deg) + 1.0
-        };
-        if apart(self.south_deg, south_west.lat_deg, north_east.lat_deg)
-            || apart(self.west_deg, south_west.lon_deg, north_east.lon_deg)
-        {
-            return None;
-        }
-        let block = |samples: f64| whole(samples.clamp(0.0, last)) / BLOCK;
-        let down = |lat_deg: f64| block((f64::from(self.south_deg) + 1.0 - lat_deg) * last);
-        let right = |lon_deg: f64| block((lon_deg - f64::from(self.west_deg)) * last);
-        let columns = right(south_west.lon_deg)..=right(north_east.lon_deg);
-        let blocks = (down(north_east.lat_deg)..=down(south_west.lat_deg))
-            .flat_map(|row| columns.clone().map(move |column| row * blocks_a_side(self.side) + column));
-        let highest = blocks.filter_map(|i| self.blocks_m.get(i)).max()?;
-        (*highest != VOID).then_some(f64::from(*highest))
+        let columns = (self.column(south_west.lon_deg), self.column(north_east.lon_deg));
+        self.grid.highest(columns, (self.row(north_east.lat_deg), self.row(south_west.lat_deg)))
     }
 
-    /// Between a sample and its eastern neighbour, `u` in 0..=1.
-    fn blend(&self, row: usize, column: usize, u: f64) -> Option<f64> {
-        mix(self.known(row, column), self.known(row, column + 1), u)
+    /// Samples a side, less one.
+    fn last(&self) -> f64 {
+        (self.grid.size().0 - 1) as f64
     }
 
-    fn known(&self, row: usize, column: usize) -> Option<f64> {
-        let sample = *self.samples_m.get(row * self.side + column)?;
-        (sample != VOID).then_some(f64::from(sample))
+    fn column(&self, lon_deg: f64) -> f64 {
+        (lon_deg - f64::from(self.west_deg)) * self.last()
+    }
+
+    fn row(&self, lat_deg: f64) -> f64 {
+        (f64::from(self.south_deg) + 1.0 - lat_deg) * self.last()
     }
 
     fn place(&self, row: usize, column: usize) -> LatLon {
@@ -150,42 +115,6 @@ impl Tile {
             f64::from(self.south_deg) + 1.0 - row as f64 * step,
             f64::from(self.west_deg) + column as f64 * step,
         )
-    }
-}
-
-/// A number of samples, which is nowhere more than a tile has a side.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast of floats saturates")]
-fn whole(samples: f64) -> usize {
-    samples as usize
-}
-
-fn blocks_a_side(side: usize) -> usize {
-    side.div_ceil(BLOCK)
-}
-
-/// The highest sample of each block and of what lies on its edges.
-fn blocks(samples_m: &[i16], side: usize) -> Vec<i16> {
-    let number = blocks_a_side(side);
-    let mut blocks = vec![VOID; number * number];
-    for (row, samples) in samples_m.chunks_exact(side).enumerate() {
-        // the first row of a block is the last of the one before it too
-        for block_row in row.saturating_sub(1) / BLOCK..=row / BLOCK {
-            for (column, block) in blocks.iter_mut().skip(block_row * number).take(number).enumerate() {
-                let inside = samples.iter().skip(column * BLOCK).take(BLOCK + 1);
-                *block = (*block).max(inside.copied().max().unwrap_or(VOID));
-            }
-        }
-    }
-    blocks
-}
-
-/// Linear between two values; a void counts only if it has weight.
-fn mix(a: Option<f64>, b: Option<f64>, share_of_b: f64) -> Option<f64> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a + (b - a) * share_of_b),
-        (Some(a), None) if share_of_b == 0.0 => Some(a),
-        (None, Some(b)) if share_of_b == 1.0 => Some(b),
-        _ => None,
     }
 }
 
