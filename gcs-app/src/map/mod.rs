@@ -5,6 +5,7 @@ pub mod aircraft;
 pub mod basemap;
 pub mod furniture;
 pub mod hillshade;
+pub mod navigate;
 pub mod path;
 pub mod plan;
 pub mod polyline;
@@ -51,6 +52,7 @@ pub struct MapState {
     path: path::Layer,
     aircraft: aircraft::Layer,
     tools: Toolbox,
+    navigation: navigate::Navigation,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
 }
@@ -80,10 +82,11 @@ impl MapState {
         self.memory.follow_my_position();
     }
 
-    /// Takes the keys that choose a tool and those that the tool in use understands.
+    /// Takes the keys that choose a tool, those that the tool in use understands, and those that move the map.
     pub fn keys(&mut self, ctx: &egui::Context) {
         if !ctx.text_edit_focused() {
             self.tools.keys(ctx);
+            self.navigation.keys(ctx);
         }
     }
 
@@ -125,14 +128,18 @@ impl MapState {
         let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(HOME);
         let mut memory = std::mem::take(&mut self.memory);
         let followed = memory.detached().is_none();
-        Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
-            .zoom_with_ctrl(false)
+        let shown = Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
+            .zoom_gesture(false)
+            .panning(false)
             .double_click_to_zoom(false)
             .show(ui, |ui, response, projector, _| {
                 let view = View::of(projector);
-                self.draw(ui, response, &view, scene, queue)
+                self.draw(ui, response, &view, scene, queue);
+                view
             });
-        if followed && scene.view.follow && memory.detached().is_some() {
+        let follows = followed && scene.view.follow;
+        self.navigation.run(&shown.response, &shown.inner, follows, &mut memory);
+        if follows && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
         }
         furniture::buttons(ui, &mut memory, scene, queue);

@@ -86,6 +86,17 @@ impl View {
         .to_geo()
     }
 
+    /// The middle of the view that has another scale (`factor` times this one) and the same position at a point.
+    pub fn middle_after(&self, fixed: Pos2, factor: f64) -> LatLon {
+        let away = fixed - self.rect.center();
+        let share = (1.0 - 1.0 / factor) / self.scale;
+        Mercator {
+            x: self.centre.x + f64::from(away.x) * share,
+            y: (self.centre.y + f64::from(away.y) * share).clamp(0.0, 1.0),
+        }
+        .to_geo()
+    }
+
     /// Screen points per metre in the middle of the view.
     pub fn points_per_metre(&self) -> f64 {
         let latitude = self.centre.to_geo().lat_deg.to_radians();

@@ -12,6 +12,7 @@ mod filing;
 mod fleet;
 mod flying;
 mod looks;
+mod maps;
 mod planning;
 mod reach;
 mod recovering;
