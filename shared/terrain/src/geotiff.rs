@@ -133,11 +133,11 @@ fn numbers(samples: DecodingResult) -> Result<Vec<f64>, RasterError> {
     })
 }
 
+/// East and north, or to the east and to the south.
+type Pair = (f64, f64);
+
 /// Where the middle of the first sample is, and the steps to its neighbours.
-fn place<R: Read + Seek>(
-    tiff: &mut Decoder<R>,
-    points: bool,
-) -> Result<((f64, f64), (f64, f64)), RasterError> {
+fn place<R: Read + Seek>(tiff: &mut Decoder<R>, points: bool) -> Result<(Pair, Pair), RasterError> {
     let mut doubles = |tag| -> Result<Vec<f64>, RasterError> {
         Ok(tiff.find_tag(tag)?.map(tiff::decoder::ifd::Value::into_f64_vec).transpose()?.unwrap_or_default())
     };
