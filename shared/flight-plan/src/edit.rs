@@ -3,7 +3,7 @@
 pub(crate) mod lists;
 mod number;
 mod repair;
-mod shape;
+pub(crate) mod shape;
 mod things;
 
 use crate::{

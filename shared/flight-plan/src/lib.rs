@@ -1,6 +1,7 @@
 //! Pure: the flight plan document: model, XML, problems and checks, edits, compilation to a program.
 
 pub mod checks;
+pub mod clipboard;
 pub mod create;
 pub mod diff;
 pub mod edit;
@@ -12,6 +13,7 @@ pub mod problem;
 pub mod procedure;
 pub mod program;
 pub mod template;
+pub mod transform;
 pub mod uses;
 pub mod variables;
 pub mod walk;

@@ -2,15 +2,18 @@
 //! nothing else has, and values with which it can be flown; whoever drew it goes on with edits.
 
 mod arrange;
+mod bind;
 mod course;
 mod kind;
 mod leg;
 mod thing;
 
 pub use arrange::{duplicate, fork, loop_around, procedure_of, shift, unloop};
+pub use bind::{bind, bound_to, unbind, variable_of_fix, variable_of_leg};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, convert, leg};
+pub(crate) use thing::every_leg;
 pub use thing::{
     add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
 };
@@ -37,4 +40,4 @@ impl FlightPlan {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

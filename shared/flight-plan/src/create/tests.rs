@@ -13,7 +13,7 @@ use terrain::Flat;
 
 const HOME: LatLon = LatLon::new(46.0, 8.0);
 
-fn made(template: Template) -> FlightPlan {
+pub(crate) fn made(template: Template) -> FlightPlan {
     let runway = Runway {
         id: "R09".into(),
         threshold: HOME,
@@ -218,4 +218,49 @@ fn a_leg_is_not_moved_into_itself() {
     }
     let out = Edit::MoveLeg { leg: "p2".into(), at: Spot::After("patrol".into()) }.apply(&plan).unwrap();
     assert_eq!(out.leg(&"patrol".into()).map(|c| c.leg.body().len()), Some(2));
+}
+
+#[test]
+fn a_place_or_area_becomes_a_variable_and_comes_back() {
+    let plan = made(Template::Survey);
+    let scan =
+        plan.all_legs().iter().find(|c| matches!(c.leg.kind, LegKind::Scan(_))).unwrap().leg.id.clone();
+    let (name, edit) = variable_of_leg(&plan, &scan).unwrap();
+    let bound = edit.apply(&plan).unwrap();
+    assert_eq!(bound_to(bound.leg(&scan).unwrap().leg), Some(name.clone()));
+    assert_eq!(errors(&bound), Vec::<String>::new());
+    assert!(variable_of_leg(&bound, &scan).is_none(), "it is one already");
+    let back = unbind(&bound, &scan).unwrap().apply(&bound).unwrap();
+    assert_eq!(back.stages, plan.stages);
+    let again = bind(&back, &scan, &name).unwrap().apply(&back).unwrap();
+    assert_eq!(again, bound);
+    assert!(unbind(&plan, &scan).is_none() && bind(&plan, &scan, &"nothing".into()).is_none());
+}
+
+#[test]
+fn a_fix_becomes_a_variable_with_every_leg_that_goes_there() {
+    let plan = made(Template::Patrol);
+    let fix = fix(&plan, HOME.destination(180.0, 2000.0));
+    let id = fix.id.clone();
+    let leg = plan.all_legs().iter().find(|c| matches!(c.leg.kind, LegKind::Tf(_))).unwrap().leg.id.clone();
+    let plan = Edit::All(vec![
+        Edit::Add(Box::new(Thing::Fix(fix))),
+        Edit::ReplaceLeg {
+            leg: leg.clone(),
+            with: Box::new(crate::Leg {
+                kind: LegKind::Tf(crate::PlanWaypoint { place: Place::Fix(id.clone()), fly_over: false }),
+                ..plan.leg(&leg).unwrap().leg.clone()
+            }),
+        },
+    ])
+    .apply(&plan)
+    .unwrap();
+    let (name, edit) = variable_of_fix(&plan, &id).unwrap();
+    let bound = edit.apply(&plan).unwrap();
+    assert!(bound.fix(&id).is_none());
+    assert_eq!(bound_to(bound.leg(&leg).unwrap().leg), Some(name.clone()));
+    assert!(matches!(bound.variable(&name).unwrap().initial, VariableValue::Position(_)));
+    assert!(
+        !crate::check(&bound, &Profile::default(), &Flat(200.0)).iter().any(|p| p.code == "unknown-variable")
+    );
 }

@@ -158,6 +158,11 @@ pub fn remove(plan: &FlightPlan, id: &Id) -> Edit {
 /// Every leg that goes to a fix goes to its position instead.
 pub fn move_fix_into_legs(plan: &FlightPlan, id: &Id) -> Edit {
     let Some(fix) = plan.fix(id) else { return Edit::All(Vec::new()) };
+    replace_fix(plan, id, &Place::Position(Value::Constant(fix.position)))
+}
+
+/// Every leg that goes to a fix goes elsewhere instead.
+pub(super) fn replace_fix(plan: &FlightPlan, id: &Id, with: &Place) -> Edit {
     let loose = |leg: &Arc<Leg>| {
         let mut leg = leg.as_ref().clone();
         let mut hit = false;
@@ -165,7 +170,7 @@ pub fn move_fix_into_legs(plan: &FlightPlan, id: &Id) -> Edit {
             if let SlotMut::Place(place) = slot
                 && *place == Place::Fix(id.clone())
             {
-                *place = Place::Position(Value::Constant(fix.position));
+                place.clone_from(with);
                 hit = true;
             }
         });
@@ -176,7 +181,7 @@ pub fn move_fix_into_legs(plan: &FlightPlan, id: &Id) -> Edit {
 }
 
 /// Every leg, in emergency plans and procedures too.
-fn every_leg(plan: &FlightPlan) -> Vec<&Arc<Leg>> {
+pub(crate) fn every_leg(plan: &FlightPlan) -> Vec<&Arc<Leg>> {
     fn collect<'a>(legs: &'a [Arc<Leg>], found: &mut Vec<&'a Arc<Leg>>) {
         for leg in legs {
             found.push(leg);

@@ -82,16 +82,21 @@ fn list_inside<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Legs, Ed
 
 /// Inserts a leg under identifiers that the plan does not have; references within the leg follow.
 pub(super) fn paste(plan: &mut FlightPlan, mut leg: Leg, at: &Spot) -> Result<(), EditError> {
-    let mut taken = ids(plan);
+    rename(std::slice::from_mut(&mut leg), ids(plan));
+    insert(plan, Arc::new(leg), at)
+}
+
+/// Gives legs, and those in them, identifiers that are not taken; references among them follow.
+pub(crate) fn rename(legs: &mut [Leg], mut taken: HashSet<Id>) {
     let mut renamed = HashMap::new();
-    for_each(&mut leg, &mut |leg| {
-        let fresh = fresh(&leg.id, &taken);
-        taken.insert(fresh.clone());
-        renamed.insert(std::mem::replace(&mut leg.id, fresh.clone()), fresh);
+    legs.iter_mut().for_each(|leg| {
+        for_each(leg, &mut |leg| {
+            let fresh = fresh(&leg.id, &taken);
+            taken.insert(fresh.clone());
+            renamed.insert(std::mem::replace(&mut leg.id, fresh.clone()), fresh);
+        });
     });
-    // what follows it where it came from does not follow it here
-    leg.next = None;
-    for_each(&mut leg, &mut |leg| {
+    let mut refer = |leg: &mut Leg| {
         let follow = |next: &mut Option<Id>| {
             if let Some(to) = next.as_ref().and_then(|id| renamed.get(id)) {
                 *next = Some(to.clone());
@@ -101,11 +106,16 @@ pub(super) fn paste(plan: &mut FlightPlan, mut leg: Leg, at: &Spot) -> Result<()
         if let LegKind::Intersection { branches, .. } = &mut leg.kind {
             branches.iter_mut().for_each(|b| follow(&mut b.next));
         }
-    });
-    insert(plan, Arc::new(leg), at)
+    };
+    for leg in legs {
+        // what follows it where it came from does not follow it here
+        leg.next.take_if(|next| !renamed.contains_key(next));
+        for_each(leg, &mut refer);
+    }
 }
 
-fn for_each(leg: &mut Leg, visit: &mut dyn FnMut(&mut Leg)) {
+/// A leg and those in it.
+pub(crate) fn for_each(leg: &mut Leg, visit: &mut dyn FnMut(&mut Leg)) {
     visit(leg);
     if let LegKind::Iterative { body, .. } = &mut leg.kind {
         body.iter_mut().for_each(|l| for_each(Arc::make_mut(l), visit));

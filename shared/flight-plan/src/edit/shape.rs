@@ -24,7 +24,8 @@ pub(super) fn set_area(plan: &mut FlightPlan, id: &Id, area: &Area) -> Result<()
     Ok(())
 }
 
-fn area_mut(leg: &mut Leg) -> Option<&mut Area> {
+/// The area that it covers.
+pub(crate) fn area_mut(leg: &mut Leg) -> Option<&mut Area> {
     match &mut leg.kind {
         LegKind::Scan(scan) => Some(&mut scan.area),
         LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
@@ -96,7 +97,8 @@ fn constant_mut(place: &mut Place) -> Option<&mut LatLon> {
     }
 }
 
-fn place_mut(leg: &mut Leg) -> Option<&mut Place> {
+/// As [`Leg::place`], to be changed.
+pub(crate) fn place_mut(leg: &mut Leg) -> Option<&mut Place> {
     match &mut leg.kind {
         LegKind::If(to) | LegKind::Tf(to) | LegKind::Df { to, .. } | LegKind::Rf { to, .. } => {
             Some(&mut to.place)

@@ -1,0 +1,127 @@
+use super::*;
+use crate::create::tests::made;
+use crate::template::Template;
+use crate::{Act, LegAction, Trigger, check};
+use aircraft::Profile;
+use proptest::prelude::*;
+use terrain::Flat;
+
+fn legs(plan: &FlightPlan) -> Vec<Id> {
+    plan.stages.iter().flat_map(|stage| &stage.legs).map(|leg| leg.id.clone()).collect()
+}
+
+fn spot(plan: &FlightPlan) -> Spot {
+    let stage = plan.stages.iter().find(|stage| stage.kind == StageKind::Mission).unwrap();
+    Spot::EndOf(stage.id.clone())
+}
+
+#[test]
+fn what_was_copied_is_pasted_into_another_plan() {
+    let (plan, other) = (made(Template::Patrol), made(Template::Survey));
+    let chosen = legs(&plan);
+    let text = copy(&plan, &chosen).unwrap();
+    let pasted = paste(&other, &text, &spot(&other), None).unwrap();
+    let after = pasted.edit.apply(&other).unwrap();
+    assert_eq!(pasted.legs.len(), chosen.len());
+    for (new, old) in pasted.legs.iter().zip(&chosen) {
+        let (new, old) = (after.leg(new).unwrap().leg.clone(), plan.leg(old).unwrap().leg);
+        assert_eq!(places(&after, &new), places(&plan, old));
+    }
+    let ids = lists::ids(&after);
+    assert_eq!(ids.len(), lists::ids(&other).len() + plan_legs(&plan), "no identifier is there twice");
+    let problems = check(&after, &Profile::default(), &Flat(200.0));
+    assert!(!problems.iter().any(|p| p.code.starts_with("unknown")), "{problems:?}");
+}
+
+fn plan_legs(plan: &FlightPlan) -> usize {
+    plan.all_legs().iter().filter(|c| c.section == crate::Section::Main).count()
+}
+
+#[test]
+fn copies_go_around_the_pointer_and_keep_their_shape() {
+    let plan = made(Template::Patrol);
+    let to = LatLon::new(46.2, 8.3);
+    let pasted = paste(&plan, &copy(&plan, &legs(&plan)).unwrap(), &spot(&plan), Some(to)).unwrap();
+    let after = pasted.edit.apply(&plan).unwrap();
+    let all: Vec<LatLon> =
+        pasted.legs.iter().flat_map(|id| places(&after, after.leg(id).unwrap().leg)).collect();
+    assert!(LocalFrame::around(&all).unwrap().origin().distance_m(to) < 5.0);
+    assert_eq!(after.fixes, plan.fixes, "fixes stay where they are");
+}
+
+#[test]
+fn variables_come_along_and_strange_emergency_plans_do_not() {
+    let mut plan = made(Template::Survey);
+    let leg = legs(&plan)[0].clone();
+    let variable = crate::create::variable(&plan, crate::VariableValue::Number(7.0));
+    let name = variable.name.clone();
+    let act = Act::Set { variable: name.clone(), to: "1.0".into() };
+    let emergency = plan.emergency_plans[0].id.clone();
+    plan = Edit::All(vec![
+        Edit::Add(Box::new(Thing::Variable(variable))),
+        Edit::SetActions { leg: leg.clone(), actions: vec![LegAction { trigger: Trigger::Start, act }] },
+        Edit::SetEmergency { of: Some(leg.clone()), cause: None, plan: Some(emergency) },
+    ])
+    .apply(&plan)
+    .unwrap();
+    let mut other = made(Template::Patrol);
+    other.emergency_plans.clear();
+    let pasted = paste(&other, &copy(&plan, &[leg]).unwrap(), &spot(&other), None).unwrap();
+    let after = pasted.edit.apply(&other).unwrap();
+    assert!(after.variable(&name).is_some());
+    assert!(after.leg(&pasted.legs[0]).unwrap().leg.emergency.by_cause.is_empty());
+}
+
+#[test]
+fn a_set_is_duplicated_behind_itself() {
+    let plan = made(Template::Patrol);
+    let chosen = &legs(&plan)[..2];
+    let pasted = duplicate(&plan, chosen).unwrap();
+    let after = pasted.edit.apply(&plan).unwrap();
+    let order = legs(&after);
+    let last = order.iter().position(|id| *id == chosen[1]).unwrap();
+    assert_eq!(&order[last + 1..last + 3], &pasted.legs[..]);
+}
+
+#[test]
+fn hostile_text_is_refused_in_words() {
+    let plan = made(Template::Patrol);
+    let many = "<track/>".repeat(MAX_LEGS + 1);
+    let deep = "<iterative>".repeat(100_000);
+    for (text, expected) in [
+        ("x".repeat(50 << 20), "50 MB"),
+        ("hello".into(), "neither legs nor a place"),
+        (String::new(), "neither"),
+        ("<svg/>".into(), "no flight plan"),
+        ("<flightPlan".into(), "no flight plan"),
+        (format!("<flightPlan>{many}</flightPlan>"), "no flight plan"),
+        (format!("<flightPlan>{deep}"), "no flight plan"),
+        (write(&FlightPlan { aircraft: "trainer".into(), ..FlightPlan::default() }), "no legs"),
+    ] {
+        let refused = paste(&plan, &text, &spot(&plan), None).unwrap_err();
+        assert!(refused.contains(expected), "{refused}");
+    }
+    assert!(copy(&plan, &["nothing".into()]).is_none());
+}
+
+#[test]
+fn more_legs_than_can_be_pasted_are_refused() {
+    let mut plan = made(Template::Patrol);
+    let leg = plan.stages.iter().flat_map(|stage| &stage.legs).next().unwrap().clone();
+    let many =
+        (0..=MAX_LEGS).map(|n| Arc::new(Leg { id: Id::new(&format!("x{n}")), ..leg.as_ref().clone() }));
+    plan.stages.iter_mut().find(|stage| !stage.legs.is_empty()).unwrap().legs.extend(many);
+    let text = copy(&plan, &legs(&plan)).unwrap();
+    assert!(paste(&plan, &text, &spot(&plan), None).unwrap_err().contains("at once"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn no_text_is_too_odd(text in "[<>/a-z \"=]{0,200}") {
+        let plan = made(Template::Patrol);
+        if let Ok(pasted) = paste(&plan, &text, &spot(&plan), None) {
+            prop_assert!(pasted.edit.apply(&plan).is_ok());
+        }
+    }
+}
