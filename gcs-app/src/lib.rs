@@ -11,6 +11,7 @@ pub mod assets;
 pub mod chart;
 pub mod command;
 pub mod connections;
+pub mod coordinates;
 pub mod demo;
 pub mod dock;
 pub mod document;

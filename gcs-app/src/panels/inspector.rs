@@ -8,6 +8,7 @@ mod several;
 use super::field::{self, Change};
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Selection};
+use crate::coordinates;
 use crate::document::procedure_leg;
 use crate::theme;
 use crate::units;
@@ -197,17 +198,10 @@ fn position_row(
 ) {
     field::row(ui, name, |ui| {
         let text = field::text(ui, name, &units::position(at), false);
-        if let Some(to) = text.as_deref().and_then(parse_position) {
+        if let Some(to) = text.as_deref().and_then(coordinates::position) {
             queue.edit(edit(to));
         }
     });
-}
-
-/// `36.54, -84.23` or `36.54 -84.23`.
-pub fn parse_position(text: &str) -> Option<geometry::LatLon> {
-    let mut numbers = text.split([',', ' ', ';']).filter(|s| !s.is_empty()).map(|s| s.parse::<f64>().ok());
-    let position = geometry::LatLon::new(numbers.next()??, numbers.next()??);
-    (position.is_valid() && numbers.next().is_none()).then_some(position)
 }
 
 fn show_runway(ui: &mut Ui, scene: &Scene<'_>, runway: &Runway) {
@@ -315,7 +309,7 @@ fn variable_field(
         },
         VariableValue::Position(at) => {
             let text = field::text(ui, name, &units::position(*at), false);
-            match text.as_deref().and_then(parse_position) {
+            match text.as_deref().and_then(coordinates::position) {
                 Some(to) => Change::Set(VariableValue::Position(to)),
                 None => Change::None,
             }
@@ -325,26 +319,4 @@ fn variable_field(
             Change::None
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn positions_are_read_as_people_write_them() {
-        let there = Some(geometry::LatLon::new(36.54, -84.23));
-        for (text, expected) in [
-            ("36.54, -84.23", there),
-            ("36.54 -84.23", there),
-            ("36.54;-84.23", there),
-            ("36.54", None),
-            ("91, 0", None),
-            ("1 2 3", None),
-            ("NaN, 0", None),
-            ("north", None),
-        ] {
-            assert_eq!(parse_position(text), expected, "{text}");
-        }
-    }
 }

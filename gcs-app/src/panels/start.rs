@@ -1,8 +1,8 @@
 //! The beginning of a plan: a card over the map of an empty document. A few answers give a plan that can be flown.
 
-use super::inspector::parse_position;
 use super::{Scene, field, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
+use crate::coordinates;
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
 use crate::map::furniture::NARROW;
 use crate::map::text;
@@ -74,7 +74,7 @@ fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     ui.label(RichText::new("Zoom in and click the map, or type it:").color(p.weak));
     let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", "", false));
     if let Some(typed) = typed {
-        match parse_position(&typed) {
+        match coordinates::position(&typed) {
             Some(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
             None => refuse(&typed, queue),
         }
@@ -184,7 +184,7 @@ fn place(
     let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown, false)));
     row.response.on_hover_text(hint);
     if let Some(typed) = row.inner {
-        parse_position(&typed).map_or_else(|| refuse(&typed, queue), &mut set);
+        coordinates::position(&typed).map_or_else(|| refuse(&typed, queue), &mut set);
     }
 }
 
