@@ -5,7 +5,9 @@ use super::{App, Now};
 use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
 use crate::panels::bar::PanelEntry;
-use crate::panels::{self, Scene, bar, browse, decision, emergency, flight, push, recover, start, unsaved};
+use crate::panels::{
+    self, Elevations, Scene, bar, browse, decision, emergency, flight, push, recover, start, unsaved,
+};
 use crate::recovery::Keeper;
 use crate::theme;
 use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
@@ -14,7 +16,18 @@ impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
         let Self {
-            document, vehicles, view, analysis, map, panels, dock, keeper, recent, connections, ..
+            document,
+            vehicles,
+            view,
+            analysis,
+            map,
+            panels,
+            dock,
+            keeper,
+            recent,
+            connections,
+            terrain,
+            ..
         } = self;
         let vehicle = vehicles.shown();
         let scene = Scene {
@@ -26,6 +39,7 @@ impl App {
             recent,
             connections,
             left_behind: keeper.as_ref().and_then(Keeper::left_behind),
+            ground: Elevations(terrain.as_ref()),
             now_s: now.window_s,
             utc: now.utc,
         };

@@ -19,7 +19,7 @@ use crate::files::Files;
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
-use crate::panels::{self, Panel, Scene, ViewState};
+use crate::panels::{self, Elevations, Panel, Scene, ViewState};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
@@ -176,6 +176,7 @@ impl App {
             recent: &self.recent,
             connections: &self.connections,
             left_behind: self.keeper.as_ref().and_then(Keeper::left_behind),
+            ground: Elevations(self.terrain.as_ref()),
             now_s: now.window_s,
             utc: now.utc,
         }

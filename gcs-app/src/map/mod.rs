@@ -3,8 +3,10 @@
 
 pub mod aircraft;
 pub mod basemap;
+mod clipboard;
 pub mod furniture;
 pub mod hillshade;
+mod menu;
 pub mod navigate;
 pub mod path;
 pub mod plan;
@@ -53,6 +55,7 @@ pub struct MapState {
     aircraft: aircraft::Layer,
     tools: Toolbox,
     navigation: navigate::Navigation,
+    menu: menu::Menu,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
 }
@@ -170,7 +173,9 @@ impl MapState {
         plan::draw_runways(&painter, view, scene.document.plan(), p);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
-        self.tools.run(ui, response, &canvas, queue, p);
+        let asked = self.tools.run(ui, response, &canvas, queue, p);
+        self.menu.run(ui, asked, &canvas, queue);
+        clipboard::run(ui, response, &mut self.menu, &canvas, queue);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);

@@ -114,14 +114,23 @@ pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palett
     }
 }
 
-/// The leg whose path is under the pointer.
-pub fn leg_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<Id> {
+/// The legs whose path is under the pointer, the nearest first.
+pub fn legs_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Vec<Id> {
     const REACH: f32 = 9.0;
     let forecast = scene.forecast();
-    let near =
-        |i: &usize| forecast.points.get(*i).map_or(f32::INFINITY, |q| view.place(q.position).distance(at));
-    let closest =
-        (0..forecast.points.len()).min_by(|a, b| near(a).total_cmp(&near(b))).filter(|i| near(i) < REACH)?;
-    let passage = forecast.points.get(closest)?.passage;
-    forecast.passages.get(passage).map(|passage| passage.leg.clone())
+    let mut near: Vec<(f32, usize)> = Vec::new();
+    for point in &forecast.points {
+        let far = view.place(point.position).distance(at);
+        match near.last_mut() {
+            _ if far >= REACH => {}
+            Some((least, passage)) if *passage == point.passage => *least = least.min(far),
+            _ => near.push((far, point.passage)),
+        }
+    }
+    // where one leg follows another, the nearer is meant
+    let follows = |a: usize, b: usize| a.abs_diff(b) == 1;
+    let all = near.clone();
+    near.retain(|(far, passage)| !all.iter().any(|(other, b)| follows(*passage, *b) && other < far));
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.iter().filter_map(|(_, passage)| forecast.passages.get(*passage)).map(|p| p.leg.clone()).collect()
 }

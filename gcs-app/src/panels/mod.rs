@@ -38,6 +38,7 @@ use browse::Browsing;
 use egui::{RichText, Ui};
 use flight_plan::{FlightPlan, Id, Problem};
 use std::collections::BTreeSet;
+use terrain::Terrain;
 
 /// A panel's identifier; never changes, for layouts are stored with it.
 pub type PanelId = &'static str;
@@ -163,6 +164,16 @@ impl ViewState {
     }
 }
 
+/// The ground, as far as its elevation is known.
+#[derive(Clone, Copy)]
+pub struct Elevations<'a>(pub &'a dyn Terrain);
+
+impl std::fmt::Debug for Elevations<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Elevations")
+    }
+}
+
 /// Everything there is to draw, borrowed for a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
@@ -182,6 +193,8 @@ pub struct Scene<'a> {
     pub connections: &'a Connections,
     /// What a window left behind that crashed, until the operator has decided.
     pub left_behind: Option<&'a LeftBehind>,
+    /// The ground.
+    pub ground: Elevations<'a>,
     /// The window's clock, seconds.
     pub now_s: f64,
     /// The time of day.

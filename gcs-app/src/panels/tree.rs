@@ -1,7 +1,7 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
 mod make;
-mod menu;
+pub mod menu;
 mod rows;
 mod search;
 

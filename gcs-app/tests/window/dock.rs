@@ -154,6 +154,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             fly(&mut window);
         }
         let app = window.app();
+        let terrain = gcs_app::assets::demo_terrain();
         let recent = gcs_app::recent::Recent::default();
         let connections = gcs_app::connections::Connections::default();
         let scene = Scene {
@@ -165,6 +166,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             recent: &recent,
             connections: &connections,
             left_behind: None,
+            ground: panels::Elevations(terrain.as_ref()),
             now_s: 1.0,
             utc: Default::default(),
         };

@@ -13,7 +13,9 @@ mod fleet;
 mod flying;
 mod looks;
 mod maps;
+mod pasting;
 mod planning;
+mod pointing;
 mod reach;
 mod recovering;
 mod store;
@@ -109,6 +111,18 @@ impl Window {
         self.harness.drag_at(at);
         self.steps(1);
         self.harness.drop_at(at);
+        self.steps(3);
+    }
+
+    /// Clicks a place of the screen with the right button.
+    fn right_click_at(&mut self, at: Pos2) {
+        self.harness.hover_at(at);
+        self.steps(1);
+        for pressed in [true, false] {
+            let (button, modifiers) = (egui::PointerButton::Secondary, egui::Modifiers::NONE);
+            self.harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+            self.steps(1);
+        }
         self.steps(3);
     }
 

@@ -8,14 +8,15 @@ mod draw_leg;
 mod guided;
 mod measure;
 pub mod new_leg;
-mod pen;
+pub(super) mod pen;
+pub(super) mod pick;
 pub mod select;
 mod thing;
 mod track;
 
 use super::sketch::{Handled, Sketch};
 use super::view::View;
-use crate::command::Queue;
+use crate::command::{Queue, Selection};
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{Context, CursorIcon, Key, Modifiers, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2};
@@ -100,6 +101,8 @@ pub struct Pointer {
     pub at: Pos2,
     /// The grip under it.
     pub grip: Option<usize>,
+    /// With Shift or Ctrl: what is there is selected besides what is.
+    pub adds: bool,
 }
 
 /// What the pointer does to the grips.
@@ -134,6 +137,11 @@ pub trait Tool: std::fmt::Debug {
 
     /// The map or a grip was clicked, or a grip begins to be dragged.
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue);
+
+    /// What the last press may have meant, if that is several things; asked for once.
+    fn among(&mut self) -> Vec<Selection> {
+        Vec::new()
+    }
 
     /// The map was clicked twice: what is drawn ends here. Both clicks were presses before.
     fn finish(&mut self, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
@@ -258,13 +266,19 @@ impl Toolbox {
         }
     }
 
-    /// Passes what happened on the map to the tool in use, and lets it paint.
-    pub fn run(&mut self, ui: &Ui, map: &Response, canvas: &Canvas<'_>, queue: &mut Queue, p: &Palette) {
+    /// Passes what happened on the map to the tool in use, and lets it paint. Gives what a menu was asked for.
+    pub fn run(
+        &mut self,
+        ui: &Ui,
+        map: &Response,
+        canvas: &Canvas<'_>,
+        queue: &mut Queue,
+        p: &Palette,
+    ) -> Option<Asked> {
         self.is_guided = guided::Guided::is_wanted(canvas.scene);
-        let chosen = self.tools.get_mut(self.current).map(AsMut::as_mut);
-        let Some(tool) = (if self.is_guided { Some(&mut self.guided as &mut dyn Tool) } else { chosen })
-        else {
-            return;
+        let tool: &mut dyn Tool = match self.is_guided {
+            true => &mut self.guided,
+            false => self.tools.get_mut(self.current)?.as_mut(),
         };
         tool.hover(map.hover_pos(), canvas);
         for key in std::mem::take(&mut self.pressed) {
@@ -274,6 +288,7 @@ impl Toolbox {
             ui.ctx().set_cursor_icon(tool.cursor());
         }
         let mut touch = Touch::default();
+        let mut asks = map.secondary_clicked();
         for grip in tool.grips(canvas) {
             let response = widget(ui, &grip);
             if response.hovered() {
@@ -283,6 +298,7 @@ impl Toolbox {
             if response.dragged() {
                 touch.dragged = Some(grip.key);
             }
+            asks |= response.secondary_clicked();
             react(tool, &mut self.offset, &response, &grip, canvas, queue);
         }
         if map.double_clicked() || map.triple_clicked() {
@@ -290,10 +306,30 @@ impl Toolbox {
         } else if map.clicked()
             && let Some(at) = map.interact_pointer_pos()
         {
-            tool.press(Pointer { at, grip: None }, canvas, queue);
+            tool.press(Pointer { at, grip: None, adds: adds(ui.ctx()) }, canvas, queue);
         }
         tool.paint(ui.painter(), canvas, touch, p);
+        let at = ui.input(|i| i.pointer.interact_pos())?;
+        match tool.among() {
+            _ if asks => Some(Asked::Menu(at)),
+            several if several.len() > 1 => Some(Asked::Which(at, several)),
+            _ => None,
+        }
     }
+}
+
+/// What the pointer asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Asked {
+    /// What can be done here.
+    Menu(Pos2),
+    /// Which of these is meant.
+    Which(Pos2, Vec<Selection>),
+}
+
+/// A click with Shift or Ctrl adds to what is selected.
+fn adds(ctx: &Context) -> bool {
+    ctx.input(|i| i.modifiers.shift || i.modifiers.command)
 }
 
 fn widget(ui: &Ui, grip: &Grip) -> Response {
@@ -314,7 +350,12 @@ fn react(
 ) {
     let pointer = response.interact_pointer_pos();
     if response.clicked() || response.drag_started() {
-        tool.press(Pointer { at: pointer.unwrap_or(grip.at), grip: Some(grip.key) }, canvas, queue);
+        let pointer = Pointer {
+            at: pointer.unwrap_or(grip.at),
+            grip: Some(grip.key),
+            adds: response.clicked() && adds(&response.ctx),
+        };
+        tool.press(pointer, canvas, queue);
     }
     let Some(pointer) = pointer else { return };
     if response.drag_started() {

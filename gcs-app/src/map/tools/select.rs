@@ -1,12 +1,12 @@
 //! Select and move: waypoints, fixes, the middle and the rim of circles, corners of areas, routes and zones. The small marks
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
+use super::pick::{lines_near, selection};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::chart::labels::Labels;
-use crate::chart::zones as chart;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::sketch::{Handle, Handled, Sketch, radius_edit};
-use crate::map::{path, text};
+use crate::map::text;
 use crate::theme::Palette;
 use aircraft::Profile;
 use egui::{Align2, Key, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
@@ -16,8 +16,6 @@ use geometry::LatLon;
 
 /// Most handles that react at once; more could not be told apart.
 const MOST: usize = 1000;
-/// A line so near to the pointer is meant, screen points.
-const NEAR: f32 = 7.0;
 /// A leg that is shorter on the screen shows no middle to be dragged, screen points.
 const GAP: f64 = 90.0;
 
@@ -28,6 +26,8 @@ pub struct Select {
     corner: Option<Handled>,
     /// The mark that is being dragged, by its name, and what it has become.
     inserting: Option<(String, Handled)>,
+    /// What the last click may have meant.
+    among: Vec<Selection>,
 }
 
 impl Select {
@@ -79,16 +79,23 @@ impl Tool for Select {
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
         let plan = canvas.scene.document.plan();
         let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
+        self.among = if pointer.grip.is_none() { lines_near(pointer.at, canvas) } else { Vec::new() };
         let picked = match handle {
             Some(handle) => Some(selection(plan, &handle.what)),
-            None => path::leg_near(pointer.at, canvas.view, canvas.scene)
-                .map(|leg| Selection::Leg(canvas.scene.document.written(&leg)))
-                .or_else(|| outline_near(pointer.at, canvas)),
+            None => self.among.first().cloned(),
         };
         let corner = handle.map(|handle| &handle.what).filter(|what| matches!(what, Handled::Corner { .. }));
         // hover forgets it until its owner is the selected one
         self.corner = corner.filter(|what| canvas.scene.is_selected(&selection(plan, what))).cloned();
-        queue.view(ViewCommand::Select(picked));
+        queue.view(match picked {
+            Some(Selection::Leg(leg)) if pointer.adds => ViewCommand::Toggle(leg),
+            _ if pointer.adds => return,
+            picked => ViewCommand::Select(picked),
+        });
+    }
+
+    fn among(&mut self) -> Vec<Selection> {
+        std::mem::take(&mut self.among)
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -160,22 +167,6 @@ fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos
         .filter(move |(_, handle, _)| is_shown(handle))
 }
 
-/// What is selected with a handle.
-pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
-    match what {
-        Handled::Fix(id) => Selection::Fix(id.clone()),
-        Handled::Waypoint(id)
-        | Handled::Centre(id)
-        | Handled::Radius(id)
-        | Handled::Corner { leg: id, .. }
-        | Handled::Ghost { leg: id, .. }
-        | Handled::Between { leg: id, .. } => match plan.zone(id) {
-            Some(_) => Selection::Zone(id.clone()),
-            None => Selection::Leg(id.clone()),
-        },
-    }
-}
-
 /// Removes a corner, unless too few would be left.
 pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {
     let Handled::Corner { leg, hole, corner } = corner else { return };
@@ -206,44 +197,6 @@ fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, 
         // of a variable: the edit counts them
         _ => (usize::MAX, 3, "An area"),
     }
-}
-
-/// The area, circle, runway or zone whose line is under the pointer.
-pub fn outline_near(at: Pos2, canvas: &Canvas<'_>) -> Option<Selection> {
-    let Canvas { view, sketch, scene, .. } = *canvas;
-    let on_line = |line: &[LatLon], closed: bool| {
-        let points: Vec<Pos2> = line.iter().map(|p| view.place(*p)).collect();
-        let back = points.first().copied().filter(|_| closed);
-        points.windows(2).any(|ends| is_near(at, ends[0], ends[1]))
-            || back.zip(points.last()).is_some_and(|(first, last)| is_near(at, *last, first))
-    };
-    let plan = scene.document.plan();
-    let runway = plan.runways.iter().find(|runway| {
-        let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
-        on_line(&[runway.threshold, end], false)
-    });
-    if let Some(runway) = runway {
-        return Some(Selection::Runway(runway.id.clone()));
-    }
-    let polygon = sketch.polygons.iter().find(|(_, rings)| rings.iter().any(|ring| on_line(ring, true)));
-    let on_circle = |centre: LatLon, radius_m: f64| {
-        (view.place(centre).distance(at) - (radius_m * view.points_per_metre()) as f32).abs() < NEAR
-    };
-    let circle = sketch.circles.iter().find(|circle| on_circle(circle.centre, circle.radius_m));
-    let leg = polygon.map(|(leg, _)| leg).or(circle.map(|circle| &circle.leg));
-    if let Some(leg) = leg {
-        return Some(Selection::Leg(leg.clone()));
-    }
-    let zone = plan.zones.iter().find(|zone| on_line(&chart::outline(zone), true));
-    let emergency = || sketch.emergencies.iter().find(|(_, line)| on_line(line, false));
-    zone.map(|zone| Selection::Zone(zone.id.clone()))
-        .or_else(|| emergency().map(|(id, _)| Selection::Emergency(id.clone())))
-}
-
-fn is_near(at: Pos2, from: Pos2, to: Pos2) -> bool {
-    let (way, off) = (to - from, at - from);
-    let share = (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0);
-    (from + way * share).distance(at) < NEAR
 }
 
 /// The edit that moves what a handle stands for.

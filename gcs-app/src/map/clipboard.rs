@@ -1,0 +1,89 @@
+//! Copy, cut, paste and duplicate: legs as text, and coordinates as a waypoint.
+
+use super::menu::Menu;
+use super::tools::{Canvas, new_leg};
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::coordinates::{self, Known};
+use egui::{Context, Event, Key, Modifiers, Response, Ui};
+use flight_plan::clipboard::{self, Pasted};
+use flight_plan::create::{Drawn, LegChoice};
+use flight_plan::{Edit, Place, Value};
+use geometry::LatLon;
+use new_leg::Side;
+
+/// Takes the keys and what the menu asked for, unless something is being typed.
+pub fn run(ui: &Ui, map: &Response, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
+    if ui.ctx().text_edit_focused() || canvas.scene.is_asking() {
+        return;
+    }
+    let is_ours = |event: &&Event| matches!(event, Event::Copy | Event::Cut | Event::Paste(_));
+    let events: Vec<Event> = ui.input(|i| i.events.iter().filter(is_ours).cloned().collect());
+    for event in events {
+        match event {
+            Event::Copy => drop(copy(ui.ctx(), canvas)),
+            Event::Cut => cut(ui.ctx(), canvas, queue),
+            Event::Paste(text) => {
+                let under = map.hover_pos().map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
+                paste(&text, menu.paste_at().or(under), canvas, queue);
+            }
+            _ => {}
+        }
+    }
+    if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::D)) {
+        let legs = canvas.scene.selected_legs();
+        put(clipboard::duplicate(canvas.scene.document.plan(), &legs), queue);
+    }
+}
+
+/// The selected legs to the clipboard; or the place of what is selected. `None`: there is nothing to be copied.
+fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
+    let plan = canvas.scene.document.plan();
+    let legs = clipboard::copy(plan, &canvas.scene.selected_legs());
+    let place = || match &canvas.scene.view.selection {
+        Some(Selection::Fix(id)) => plan.fix(id).map(|fix| fix.position),
+        Some(Selection::Runway(id)) => plan.runway(id).map(|runway| runway.threshold),
+        _ => None,
+    };
+    ctx.copy_text(legs.or_else(|| place().map(crate::units::position))?);
+    Some(())
+}
+
+fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
+    let legs = canvas.scene.selected_legs();
+    if !legs.is_empty() && copy(ctx, canvas).is_some() {
+        queue.edit(Edit::All(legs.into_iter().map(|leg| Edit::DeleteLeg { leg }).collect()));
+    }
+}
+
+/// Coordinates become a waypoint where they say; legs come to where the pointer is.
+fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Queue) {
+    let scene = canvas.scene;
+    let plan = scene.document.plan();
+    let Some(at) = new_leg::spot(plan, scene.view.selection.as_ref(), Side::Behind) else {
+        return queue
+            .view(ViewCommand::Notice("Make a new mission first: it has a stage to paste into.".into()));
+    };
+    let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
+    let known = Known { plan: Some(plan), aircraft, near: under };
+    match coordinates::read(text, &known) {
+        Ok(place) => {
+            let drawn = Drawn::Place(Place::Position(Value::Constant(place)));
+            let approach = new_leg::approach(canvas, &at);
+            new_leg::add(LegChoice::Tf, &drawn, at, approach, plan, queue);
+        }
+        Err(_) => put(clipboard::paste(plan, text, &at, under), queue),
+    }
+}
+
+/// Puts legs into the plan and selects them, or says why that can't be.
+fn put(pasted: Result<Pasted, String>, queue: &mut Queue) {
+    match pasted {
+        Ok(Pasted { legs, edit }) => {
+            queue.edit(edit);
+            let mut legs = legs.into_iter();
+            queue.view(ViewCommand::Select(legs.next().map(Selection::Leg)));
+            legs.for_each(|leg| queue.view(ViewCommand::Toggle(leg)));
+        }
+        Err(why) => queue.view(ViewCommand::Notice(why)),
+    }
+}

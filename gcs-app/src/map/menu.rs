@@ -1,0 +1,221 @@
+//! What a right click on the map offers: what can be done here and with what is here. A click on several things asks which.
+
+use super::tools::pick::things_near;
+use super::tools::{Asked, Canvas, new_leg};
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::map::tools::pen::way;
+use crate::panels::tree::menu as tree_menu;
+use crate::panels::{Scene, tree};
+use crate::theme;
+use crate::units;
+use egui::containers::menu::menu_style;
+use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
+use flight_exec::{Command, Phase};
+use flight_plan::create::{self, Drawn, LegChoice};
+use flight_plan::{Edit, Id, Place, Spot, Thing, Value};
+use geometry::LatLon;
+use new_leg::Side;
+
+/// The menu, if one is open.
+#[derive(Debug, Default)]
+pub struct Menu {
+    opened: Option<Opened>,
+    /// Where what is pasted next goes.
+    paste: Option<LatLon>,
+}
+
+#[derive(Debug)]
+struct Opened {
+    at: Pos2,
+    place: LatLon,
+    things: Vec<Selection>,
+    /// It only asks which of the things is meant.
+    asks: bool,
+}
+
+impl Menu {
+    /// Opens what was asked for, and draws what is open.
+    pub fn run(&mut self, ui: &Ui, asked: Option<Asked>, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(asked) = asked {
+            let (at, things, asks) = match asked {
+                Asked::Menu(at) => (at, things_near(at, canvas), false),
+                Asked::Which(at, things) => (at, things, true),
+            };
+            let place = canvas.view.geo(at);
+            self.opened = place.is_valid().then_some(Opened { at, place, things, asks });
+        }
+        let Some(opened) = &self.opened else { return };
+        let mut open = true;
+        let mut pastes = false;
+        let id = ui.scope_id().with(("map menu", opened.at.x.to_bits(), opened.at.y.to_bits()));
+        Popup::new(id, ui.ctx().clone(), PopupAnchor::Position(opened.at), ui.layer_id())
+            .kind(PopupKind::Menu)
+            .layout(Layout::top_down_justified(egui::Align::Min))
+            .style(menu_style)
+            .gap(0.0)
+            .open_bool(&mut open)
+            .show(|ui| match opened.asks {
+                true => which(ui, canvas, &opened.things, queue),
+                false => pastes = here(ui, canvas, opened, queue),
+            });
+        if pastes {
+            self.paste = Some(opened.place);
+        }
+        if !open {
+            self.opened = None;
+        }
+    }
+
+    /// Where what is pasted goes, if a place was chosen for it; asked for once.
+    pub fn paste_at(&mut self) -> Option<LatLon> {
+        self.paste.take()
+    }
+}
+
+/// Which of several things is meant.
+fn which(ui: &mut Ui, canvas: &Canvas<'_>, things: &[Selection], queue: &mut Queue) {
+    for thing in things {
+        if ui.button(name(canvas.scene, thing)).clicked() {
+            queue.view(ViewCommand::Select(Some(thing.clone())));
+        }
+    }
+}
+
+/// True if something is to be pasted here.
+fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) -> bool {
+    for thing in &opened.things {
+        ui.menu_button(name(canvas.scene, thing), |ui| with(ui, canvas.scene, thing, queue));
+    }
+    if !opened.things.is_empty() {
+        ui.separator();
+    }
+    insert(ui, canvas, opened, queue);
+    if ui.button("Make a fix here").clicked() {
+        let fix = create::fix(canvas.scene.document.plan(), opened.place);
+        let id = fix.id.clone();
+        queue.edit(Edit::Add(Box::new(Thing::Fix(fix))));
+        queue.view(ViewCommand::Select(Some(Selection::Fix(id))));
+    }
+    ui.separator();
+    if ui.button("Copy the coordinates").clicked() {
+        ui.copy_text(units::position(opened.place));
+    }
+    let pastes = ui.button("Paste here").on_hover_text("Copied legs, or coordinates as a waypoint").clicked();
+    if pastes {
+        ui.send_viewport_cmd(ViewportCommand::RequestPaste);
+    }
+    ui.separator();
+    what_is_here(ui, canvas, opened.place);
+    pastes
+}
+
+/// What can be done with a thing.
+fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
+    let plan = scene.document.plan();
+    if !scene.is_selected(thing) && ui.button("Select it").clicked() {
+        queue.view(ViewCommand::Select(Some(thing.clone())));
+    }
+    if let Selection::Leg(leg) = thing
+        && is_flown(scene, leg)
+        && ui.button("Go to it now").on_hover_text("The aircraft leaves what it flies").clicked()
+    {
+        queue.plan(Command::GoTo { leg: leg.clone() });
+    }
+    let variable = match thing {
+        Selection::Fix(fix) => create::variable_of_fix(plan, fix),
+        Selection::Leg(leg) => create::variable_of_leg(plan, leg),
+        _ => None,
+    };
+    if let Some((made, edit)) = variable
+        && ui.button("Make its place a variable").on_hover_text("Services can move it in flight").clicked()
+    {
+        queue.edit(edit);
+        queue.view(ViewCommand::Select(Some(Selection::Variable(made))));
+    }
+    tree_menu::show(ui, scene, thing, queue);
+}
+
+/// The vehicle flies, and its plan has this leg.
+fn is_flown(scene: &Scene<'_>, leg: &Id) -> bool {
+    let aboard = scene.vehicle.aboard.as_ref().is_some_and(|aboard| aboard.plan.leg(leg).is_some());
+    aboard && matches!(scene.vehicle.phase(), Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
+}
+
+/// New legs here: beside the leg under the pointer, or the selected one.
+fn insert(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) {
+    let scene = canvas.scene;
+    let plan = scene.document.plan();
+    let is_leg = |thing: &&Selection| matches!(thing, Selection::Leg(_));
+    let beside = opened.things.iter().find(is_leg).or(scene.view.selection.as_ref());
+    let Some(behind) = new_leg::spot(plan, beside, Side::Behind) else { return };
+    let before = new_leg::spot(plan, beside, Side::Before).filter(|before| *before != behind);
+    let mut offer = |name: String, choice: LegChoice, at: &Spot| {
+        if ui.button(name).clicked() {
+            let drawn = Drawn::Place(Place::Position(Value::Constant(opened.place)));
+            let approach = new_leg::approach(canvas, at);
+            new_leg::add(choice, &drawn, at.clone(), approach, plan, queue);
+        }
+    };
+    for at in before.iter().chain([&behind]) {
+        offer(format!("Waypoint here, {}", new_leg::words(at)), LegChoice::Tf, at);
+    }
+    offer("Scan here".into(), LegChoice::Scan, &behind);
+    offer("Orbit here".into(), LegChoice::Orbit, &behind);
+    offer("Hold here".into(), LegChoice::Hm, &behind);
+}
+
+/// Elevation, and the way from the aircraft and from what is selected.
+fn what_is_here(ui: &mut Ui, canvas: &Canvas<'_>, place: LatLon) {
+    let scene = canvas.scene;
+    let weak = theme::of(ui).weak;
+    let ground = match scene.ground.0.elevation_m(place) {
+        Some(metres) => format!("Ground {} AMSL", scene.units().altitude().show(metres)),
+        None => "The ground is not known here".into(),
+    };
+    let mut lines = vec![units::position(place), ground];
+    if let Some(aircraft) = &scene.vehicle.position {
+        let from = aircraft.value.position;
+        lines.push(format!("From the aircraft {}", way(from, place, scene.units())));
+    }
+    if let Some((id, from)) = selected_place(canvas) {
+        lines.push(format!("From {id} {}", way(from, place, scene.units())));
+    }
+    for line in lines {
+        ui.label(RichText::new(line).size(12.0).color(weak));
+    }
+}
+
+/// What is selected, and where it is.
+fn selected_place<'a>(canvas: &Canvas<'a>) -> Option<(&'a Id, LatLon)> {
+    let plan = canvas.scene.document.plan();
+    let selection = canvas.scene.view.selection.as_ref()?;
+    let at = match selection {
+        Selection::Fix(id) => plan.fix(id)?.position,
+        Selection::Runway(id) => plan.runway(id)?.threshold,
+        Selection::Leg(id) => {
+            let place = || canvas.sketch.handles.iter().find(|h| h.what.leg() == Some(id)).map(|h| h.at);
+            plan.leg(id).and_then(|context| new_leg::place_of(canvas, context.leg)).or_else(place)?
+        }
+        _ => return None,
+    };
+    Some((selection.id(), at))
+}
+
+/// What a thing is, for people.
+fn name(scene: &Scene<'_>, thing: &Selection) -> String {
+    let plan = scene.document.plan();
+    let kind = match thing {
+        Selection::Leg(id) => match plan.leg(id) {
+            Some(context) => tree::leg_tag(&context.leg.kind),
+            None => "Leg",
+        },
+        Selection::Stage(_) => "Stage",
+        Selection::Emergency(_) => "Emergency plan",
+        Selection::Fix(_) => "Fix",
+        Selection::Runway(_) => "Runway",
+        Selection::Variable(_) => "Variable",
+        Selection::Zone(_) => "Zone",
+        Selection::Procedure(_) => "Procedure",
+    };
+    format!("{kind} {}", thing.id())
+}

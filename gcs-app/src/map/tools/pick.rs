@@ -1,0 +1,98 @@
+//! What is under the pointer.
+
+use super::Canvas;
+use crate::chart::zones as chart;
+use crate::command::Selection;
+use crate::map::path;
+use crate::map::sketch::Handled;
+use egui::Pos2;
+use flight_plan::{FlightPlan, Id};
+use geometry::LatLon;
+
+/// A line so near to the pointer is meant, screen points.
+const NEAR: f32 = 7.0;
+/// A handle so near to the pointer is meant, screen points.
+const REACH: f32 = 9.0;
+
+/// Everything under the pointer, what is on top first.
+pub fn things_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
+    let plan = canvas.scene.document.plan();
+    let handles = canvas.sketch.handles.iter().filter(|handle| {
+        matches!(handle.what, Handled::Fix(_) | Handled::Waypoint(_) | Handled::Centre(_))
+            && canvas.view.place(handle.at).distance(at) < REACH
+    });
+    let mut things: Vec<Selection> = handles.map(|handle| selection(plan, &handle.what)).collect();
+    things.extend(lines_near(at, canvas));
+    without_repeats(things)
+}
+
+/// Everything whose line is under the pointer.
+pub fn lines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
+    let written = |leg: Id| Selection::Leg(canvas.scene.document.written(&leg));
+    let mut things: Vec<Selection> =
+        path::legs_near(at, canvas.view, canvas.scene).into_iter().map(written).collect();
+    things.extend(outlines_near(at, canvas));
+    without_repeats(things)
+}
+
+fn without_repeats(things: Vec<Selection>) -> Vec<Selection> {
+    let mut once = Vec::with_capacity(things.len());
+    things.into_iter().for_each(|thing| {
+        if !once.contains(&thing) {
+            once.push(thing);
+        }
+    });
+    once
+}
+
+/// What is selected with a handle.
+pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
+    match what {
+        Handled::Fix(id) => Selection::Fix(id.clone()),
+        Handled::Waypoint(id)
+        | Handled::Centre(id)
+        | Handled::Radius(id)
+        | Handled::Corner { leg: id, .. }
+        | Handled::Ghost { leg: id, .. }
+        | Handled::Between { leg: id, .. } => match plan.zone(id) {
+            Some(_) => Selection::Zone(id.clone()),
+            None => Selection::Leg(id.clone()),
+        },
+    }
+}
+
+/// The runways, areas, circles, zones and emergency plans whose line is under the pointer.
+fn outlines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let on_line = |line: &[LatLon], closed: bool| {
+        let points: Vec<Pos2> = line.iter().map(|p| view.place(*p)).collect();
+        let back = points.first().copied().filter(|_| closed);
+        points.windows(2).any(|ends| is_near(at, ends[0], ends[1]))
+            || back.zip(points.last()).is_some_and(|(first, last)| is_near(at, *last, first))
+    };
+    let on_circle = |centre: LatLon, radius_m: f64| {
+        (view.place(centre).distance(at) - (radius_m * view.points_per_metre()) as f32).abs() < NEAR
+    };
+    let plan = scene.document.plan();
+    let runways = plan.runways.iter().filter(|runway| {
+        let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
+        on_line(&[runway.threshold, end], false)
+    });
+    let polygons = sketch.polygons.iter().filter(|(_, rings)| rings.iter().any(|ring| on_line(ring, true)));
+    let circles = sketch.circles.iter().filter(|circle| on_circle(circle.centre, circle.radius_m));
+    let zones = plan.zones.iter().filter(|zone| on_line(&chart::outline(zone), true));
+    let emergencies = sketch.emergencies.iter().filter(|(_, line)| on_line(line, false));
+    let legs = polygons.map(|(leg, _)| leg).chain(circles.map(|circle| &circle.leg));
+    runways
+        .map(|runway| Selection::Runway(runway.id.clone()))
+        .chain(legs.map(|leg| Selection::Leg(leg.clone())))
+        .chain(zones.map(|zone| Selection::Zone(zone.id.clone())))
+        .chain(emergencies.map(|(id, _)| Selection::Emergency(id.clone())))
+        .collect()
+}
+
+fn is_near(at: Pos2, from: Pos2, to: Pos2) -> bool {
+    let (way, off) = (to - from, at - from);
+    let share = (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0);
+    (from + way * share).distance(at) < NEAR
+}

@@ -1,0 +1,112 @@
+//! Copy, cut, paste and duplicate on the map.
+
+use super::{SQUARE, Window};
+use egui::{Event, OutputCommand, vec2};
+use flight_plan::{Id, transform};
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+fn legs(window: &Window) -> Vec<String> {
+    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
+    stage.legs.iter().map(|leg| leg.id.to_string()).collect()
+}
+
+/// What a key puts on the clipboard.
+fn taken(window: &mut Window, event: Event) -> String {
+    window.harness.event(event);
+    window.harness.step();
+    let commands = window.harness.output().platform_output.commands.clone();
+    window.steps(3);
+    let text = commands.into_iter().find_map(|command| match command {
+        OutputCommand::CopyText(text) => Some(text),
+        _ => None,
+    });
+    text.unwrap_or_default()
+}
+
+fn paste(window: &mut Window, text: &str) {
+    window.harness.event(Event::Paste(text.into()));
+    window.steps(3);
+}
+
+#[test]
+fn copied_legs_are_pasted_at_the_pointer_even_in_another_window() {
+    let mut window = window();
+    window.click("TF side2");
+    let text = taken(&mut window, Event::Copy);
+    assert!(text.contains("<TF") && text.contains("side2"), "{text}");
+    let mut other = self::window();
+    other.click("TF side4");
+    let here = other.centre("Map") + vec2(90.0, 60.0);
+    other.harness.hover_at(here);
+    other.steps(2);
+    paste(&mut other, &text);
+    assert_eq!(legs(&other), ["side1", "side2", "side3", "side4", "side5"]);
+    assert_eq!(other.selected(), "side5");
+    assert!(other.centre("Waypoint side5").distance(here) < 3.0);
+    other.click("Undo");
+    assert_eq!(legs(&other), ["side1", "side2", "side3", "side4"], "one step");
+}
+
+#[test]
+fn cut_takes_away_and_ctrl_d_doubles() {
+    let mut window = window();
+    window.click("TF side2");
+    window.press_ctrl(egui::Key::D);
+    assert_eq!(legs(&window), ["side1", "side2", "side5", "side3", "side4"]);
+    assert_eq!(window.selected(), "side5");
+    let plan = window.plan();
+    let places = |id: &str| transform::places(&plan, plan.leg(&Id::new(id)).unwrap().leg);
+    assert_eq!(places("side5"), places("side2"));
+    let text = taken(&mut window, Event::Cut);
+    assert!(text.contains("side5"));
+    assert_eq!(legs(&window), ["side1", "side2", "side3", "side4"]);
+}
+
+#[test]
+fn pasted_coordinates_are_a_waypoint() {
+    let mut window = window();
+    window.click("TF side4");
+    let at = gcs_app::coordinates::position("36°31'N 84°12'W").unwrap();
+    paste(&mut window, "  36°31'N 84°12'W\n");
+    let plan = window.plan();
+    let leg = plan.leg(&"leg1".into()).unwrap();
+    assert!(transform::places(&plan, leg.leg)[0].distance_m(at) < 0.1);
+    // where the pointer is not, and by the name of something
+    paste(&mut window, "090° 300 m from A");
+    let plan = window.plan();
+    let a = plan.fix(&"A".into()).unwrap().position;
+    let second = transform::places(&plan, plan.leg(&"leg2".into()).unwrap().leg)[0];
+    assert!((second.distance_m(a) - 300.0).abs() < 0.1);
+}
+
+#[test]
+fn what_cannot_be_pasted_is_refused_in_words() {
+    let mut window = window();
+    for (text, why) in [
+        ("x".repeat(50 << 20), "50 MB"),
+        ("hello".into(), "neither legs nor a place"),
+        ("<html/>".into(), "no flight plan"),
+    ] {
+        paste(&mut window, &text);
+        let notice = window.app().view().notice.clone().unwrap_or_default();
+        assert!(notice.contains(why), "{notice}");
+    }
+    assert!(!window.is_enabled("Undo"));
+}
+
+#[test]
+fn what_is_typed_into_a_field_is_pasted_there() {
+    use egui_kittest::kittest::Queryable;
+    let mut window = window();
+    window.click("TF side1");
+    let name = window.harness.get_all_by_role(egui::accesskit::Role::TextInput).next().unwrap();
+    name.focus();
+    window.steps(1);
+    paste(&mut window, "36.5, -84.2");
+    assert_eq!(legs(&window), ["side1", "side2", "side3", "side4"]);
+}

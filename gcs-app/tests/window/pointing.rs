@@ -1,0 +1,117 @@
+//! What can be done with what is under the pointer.
+
+use super::{SQUARE, Window};
+use egui::{Key, vec2};
+use egui_kittest::kittest::Queryable;
+use flight_plan::create::LegChoice;
+use flight_plan::{Id, Place, Value};
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+fn legs(window: &Window) -> Vec<String> {
+    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
+    stage.legs.iter().map(|leg| leg.id.to_string()).collect()
+}
+
+#[test]
+fn a_right_click_puts_a_leg_where_the_pointer_is() {
+    for (entry, choice, at) in [
+        ("Waypoint here, behind side2", LegChoice::Tf, 2),
+        ("Waypoint here, before side2", LegChoice::Tf, 1),
+        ("Scan here", LegChoice::Scan, 2),
+        ("Orbit here", LegChoice::Orbit, 2),
+        ("Hold here", LegChoice::Hm, 2),
+    ] {
+        let mut window = window();
+        window.click("TF side2");
+        let here = window.centre("Map") + vec2(90.0, 60.0);
+        window.right_click_at(here);
+        window.click(entry);
+        let made = window.selected();
+        assert_eq!(legs(&window).iter().position(|id| *id == made), Some(at), "{entry}: {made}");
+        assert_eq!(LegChoice::of(&window.plan().leg(&Id::new(&made)).unwrap().leg.kind), choice);
+        assert!(!window.shows(entry), "the menu is closed");
+        window.click("Undo");
+        assert_eq!(legs(&window), ["side1", "side2", "side3", "side4"], "one step");
+    }
+}
+
+#[test]
+fn a_right_click_makes_a_fix_and_says_what_is_here() {
+    let mut window = window();
+    window.click("TF side2");
+    let here = window.centre("Map") + vec2(90.0, 60.0);
+    window.right_click_at(here);
+    assert!(window.shows("Ground ") && window.shows(" m AMSL") && window.shows("From side2 "));
+    window.click("Make a fix here");
+    assert_eq!(window.selected(), "FIX1");
+    assert!(window.centre("Fix FIX1").distance(here) < 2.0);
+    window.right_click_at(here + vec2(60.0, 0.0));
+    assert!(window.shows("From FIX1 "));
+    window.press(Key::Escape);
+    assert!(!window.shows("Make a fix here"));
+}
+
+#[test]
+fn the_coordinates_under_the_pointer_are_copied() {
+    let mut window = window();
+    window.right_click_at(window.centre("Map") + vec2(90.0, 60.0));
+    let entry = window.harness.get_by_label("Copy the coordinates");
+    entry.click();
+    window.harness.step();
+    let copied = window.harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    assert!(gcs_app::coordinates::position(&copied.unwrap()).is_some());
+}
+
+#[test]
+fn what_is_under_the_pointer_has_its_own_menu() {
+    let mut window = window();
+    let fix = window.centre("Fix A");
+    window.right_click_at(fix);
+    let entry = window.harness.get_all_by_label("Fix A").last().unwrap();
+    entry.click();
+    window.steps(3);
+    window.click("Make its place a variable");
+    assert_eq!(window.selected(), "at_a");
+    let plan = window.plan();
+    assert!(plan.fix(&"A".into()).is_none() && plan.variable(&"at_a".into()).is_some());
+    let bound = plan.all_legs().iter().filter(|context| {
+        matches!(context.leg.place(), Some(Place::Position(Value::Expression(source))) if &**source == "at_a")
+    }).count();
+    assert!(bound > 0);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window.click("Undo");
+    assert!(window.plan().fix(&"A".into()).is_some(), "one step");
+}
+
+#[test]
+fn a_click_on_several_things_asks_which_is_meant() {
+    let mut window = window();
+    let at = window.centre("Map") + vec2(90.0, 60.0);
+    // two zones with one edge
+    for corner in [vec2(0.0, 0.0), vec2(60.0, 60.0)] {
+        window.press(Key::Z);
+        let far = vec2(60.0, 60.0) - corner;
+        for offset in [vec2(60.0, 0.0), vec2(far.x, far.y) + (far - corner) * 0.2, vec2(0.0, 60.0)] {
+            window.click_at(at + offset);
+        }
+        window.press(Key::Enter);
+    }
+    window.press(Key::V);
+    window.press(Key::Escape);
+    let edge = at + vec2(40.0, 20.0);
+    window.click_at(edge);
+    assert!(window.shows("Zone keep-out-1") && window.shows("Zone keep-out-2"));
+    let second = window.harness.get_all_by_label("Zone keep-out-2").last().unwrap();
+    second.click();
+    window.steps(3);
+    assert_eq!(window.selected(), "keep-out-2");
+}
