@@ -251,7 +251,7 @@ impl<'a> Document<'a> {
 }
 
 /// A leg's element.
-fn is_leg(name: &str) -> bool {
+pub(super) fn is_leg(name: &str) -> bool {
     matches!(
         name,
         "IF" | "TF"

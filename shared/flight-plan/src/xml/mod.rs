@@ -7,6 +7,7 @@ mod actions;
 mod attributes;
 mod cursor;
 mod legs;
+mod patch;
 mod patterns;
 mod read;
 mod values;
@@ -15,6 +16,7 @@ mod write_legs;
 mod zone;
 
 pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEMS};
+pub use patch::patch;
 pub use read::{Places, Reading, read};
 pub use write::write;
 
