@@ -45,6 +45,10 @@ pub enum DocumentCommand {
     },
     /// An emergency plan that brings the aircraft to this runway.
     BringHome(Id),
+    /// Take over what another program has written in the document's file.
+    LoadTheirs,
+    /// Keep the document as it is; saving replaces what another program has written.
+    KeepMine,
     /// Open what a crashed window left behind.
     Recover,
     /// Delete it.

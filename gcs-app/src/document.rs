@@ -14,6 +14,8 @@ pub struct Document {
     path: Option<PathBuf>,
     /// The file as it was last read or written.
     stamp: Option<Stamp>,
+    /// What was in it then.
+    text: Option<Arc<str>>,
     reading_problems: Vec<Problem>,
     kinds: BTreeMap<Id, &'static str>,
     version: u64,
@@ -40,6 +42,7 @@ impl Document {
             gesture: 0,
             path,
             stamp: None,
+            text: None,
             reading_problems,
             kinds: BTreeMap::new(),
             version: 0,
@@ -53,7 +56,17 @@ impl Document {
     /// A plan from the text of a document; whatever is wrong with it, it opens.
     pub fn read(bytes: &[u8], path: Option<PathBuf>) -> Self {
         let reading = flight_plan::read(bytes);
-        Self::new(reading.plan, path, reading.problems)
+        let text = std::str::from_utf8(bytes).ok().map(Arc::from);
+        Self { text, ..Self::new(reading.plan, path, reading.problems) }
+    }
+
+    /// Takes over what another program wrote in its file, as a step that can be undone.
+    pub fn reread(&mut self, bytes: &[u8], stamp: Option<Stamp>) {
+        let theirs = Self::read(bytes, None);
+        self.replace(theirs.plan().as_ref().clone());
+        self.reading_problems = theirs.reading_problems;
+        (self.text, self.stamp) = (theirs.text, stamp);
+        self.history.mark_saved();
     }
 
     /// A plan that was never saved to its file; it differs from that.
@@ -160,16 +173,22 @@ impl Document {
         }
     }
 
-    /// The present version was written to `path`.
-    pub fn saved_as(&mut self, path: PathBuf, stamp: Option<Stamp>) {
-        self.written_to(path, stamp);
-        self.history.mark_saved();
+    /// A version of it was written to `path`, which is its file now, in these words.
+    pub fn saved(&mut self, version: u64, path: PathBuf, text: Arc<str>, stamp: Option<Stamp>) {
+        (self.path, self.text, self.stamp) = (Some(path), Some(text), stamp);
+        if version == self.version {
+            self.history.mark_saved();
+        }
     }
 
-    /// Some version of it was written to `path`, which is its file now.
-    pub fn written_to(&mut self, path: PathBuf, stamp: Option<Stamp>) {
-        self.path = Some(path);
-        self.stamp = stamp;
+    /// Its file no longer has it.
+    pub fn differs_from_file(&mut self) {
+        self.history.mark_unsaved();
+    }
+
+    /// The text of its file as it was last read or written.
+    pub fn text(&self) -> Option<&Arc<str>> {
+        self.text.as_ref()
     }
 
     /// The file's state as it was last read or written; `None`: not known, or of no importance.

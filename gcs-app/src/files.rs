@@ -1,11 +1,17 @@
 //! Files: dialogs, reading and saving, each on a thread of its own; the window gets the result later.
 
+mod watch;
+
+pub use watch::Watched;
+
+use flight_plan::FlightPlan;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant, SystemTime};
+use watch::Watch;
 
 /// What came of it.
 #[derive(Debug)]
@@ -19,10 +25,23 @@ pub enum FileEvent {
         /// Its state at that time.
         stamp: Option<Stamp>,
     },
+    /// The document's own file was read again.
+    Reread {
+        /// Which.
+        path: PathBuf,
+        /// What is in it.
+        bytes: Vec<u8>,
+        /// Its state at that time.
+        stamp: Option<Stamp>,
+    },
     /// The document was saved; `version` of it.
     Saved {
         /// Where.
         path: PathBuf,
+        /// What is in it now.
+        text: Arc<str>,
+        /// Which document.
+        document: u64,
         /// Which version.
         version: u64,
         /// The file's state since then.
@@ -30,6 +49,15 @@ pub enum FileEvent {
     },
     /// Another program has written the file since; it was left as it is.
     ChangedMeanwhile(PathBuf),
+    /// The same was found without saving.
+    ChangedOutside {
+        /// The file.
+        path: PathBuf,
+        /// Its state as the window knew it.
+        known: Stamp,
+        /// Its state now; `None`: it is gone.
+        stamp: Option<Stamp>,
+    },
     /// The desktop has no dialog to ask with.
     NoDialog(Purpose),
     /// What is in a folder, or why that can't be said.
@@ -72,8 +100,12 @@ pub enum Over {
 /// A plan that is to be written.
 #[derive(Debug, Clone)]
 pub struct Writing {
-    /// The text of the document.
-    pub text: String,
+    /// What is to be read from it.
+    pub plan: Arc<FlightPlan>,
+    /// The text that it comes from: what was not edited stays as it is there.
+    pub original: Option<Arc<str>>,
+    /// Which document it is.
+    pub document: u64,
     /// Which version of the document it is.
     pub version: u64,
     /// What may be overwritten.
@@ -110,6 +142,7 @@ pub struct Files {
     outbox: Sender<FileEvent>,
     inbox: Receiver<FileEvent>,
     wake: Arc<dyn Fn() + Send + Sync>,
+    watch: Watch,
     /// The desktop is asked for a dialog; false as soon as it turned out to have none.
     pub desktop: bool,
 }
@@ -124,7 +157,30 @@ impl Files {
     /// `wake` is called when an event is ready.
     pub fn new(wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (outbox, inbox) = channel();
-        Self { outbox, inbox, wake, desktop: true }
+        let watch = {
+            let (outbox, wake) = (outbox.clone(), wake.clone());
+            Watch::spawn(Arc::new(move |event| {
+                // the window may be gone: nobody receives it
+                let _ = outbox.send(event);
+                wake();
+            }))
+        };
+        Self { outbox, inbox, wake, watch, desktop: true }
+    }
+
+    /// Looks at a file from now on, and tells once if it is no longer in this state.
+    pub fn watch(&mut self, file: Option<Watched>) {
+        self.watch.look_at(file);
+    }
+
+    /// Reads the document's own file again.
+    pub fn reread(&self, path: PathBuf) {
+        self.work(move || {
+            Some(match open(&path) {
+                FileEvent::Opened { path, bytes, stamp } => FileEvent::Reread { path, bytes, stamp },
+                other => other,
+            })
+        });
     }
 
     /// The next event, if there is one.
@@ -240,14 +296,28 @@ fn save(path: PathBuf, writing: &Writing) -> FileEvent {
         }
         _ => {}
     }
-    match write_whole(&path, writing.text.as_bytes()) {
+    let text = text_of(&path, writing);
+    match write_whole(&path, text.as_bytes()) {
         Ok(()) => {
             let stamp = Stamp::of(&path);
-            FileEvent::Saved { path, version: writing.version, stamp }
+            let (document, version) = (writing.document, writing.version);
+            FileEvent::Saved { path, text: text.into(), document, version, stamp }
         }
         Err(error) => {
             FileEvent::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
         }
+    }
+}
+
+/// The plan in the words of the text that it comes from; without one, in those of its file that it takes the place of.
+fn text_of(path: &Path, writing: &Writing) -> String {
+    let in_file = || match writing.over {
+        Over::As(_) => std::fs::read_to_string(path).ok().map(Arc::from),
+        Over::Anything | Over::Nothing => None,
+    };
+    match writing.original.clone().or_else(in_file) {
+        Some(original) => flight_plan::xml::patch(&original, &writing.plan),
+        None => flight_plan::write(&writing.plan),
     }
 }
 
@@ -279,8 +349,18 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 mod tests {
     use super::*;
 
-    fn writing(text: &str, version: u64) -> Writing {
-        Writing { text: text.into(), version, over: Over::Anything }
+    fn writing(name: &str, version: u64) -> Writing {
+        let plan = FlightPlan { name: name.into(), ..FlightPlan::default() };
+        Writing { plan: Arc::new(plan), original: None, document: 1, version, over: Over::Anything }
+    }
+
+    fn name_in(path: &Path) -> String {
+        flight_plan::read(std::fs::read(path).unwrap()).plan.name
+    }
+
+    fn why(event: FileEvent) -> String {
+        let FileEvent::Failed(why) = event else { panic!("{event:?}") };
+        why
     }
 
     #[test]
@@ -289,11 +369,52 @@ mod tests {
         let path = folder.path().join("plan.xml");
         assert!(matches!(save(path.clone(), &writing("one", 1)), FileEvent::Saved { version: 1, .. }));
         assert!(matches!(save(path.clone(), &writing("two", 2)), FileEvent::Saved { .. }));
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(name_in(&path), "two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
-        let nowhere = folder.path().join("missing").join("plan.xml");
-        assert!(matches!(save(nowhere, &writing("x", 3)), FileEvent::Failed(_)));
         assert!(matches!(open(&folder.path().join("none.xml")), FileEvent::Failed(_)));
+    }
+
+    #[test]
+    fn folder_that_vanished_is_named_and_not_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("missing").join("plan.xml");
+        let why = why(save(path.clone(), &writing("x", 3)));
+        assert!(why.contains("missing") && why.contains("Save it elsewhere"), "{why}");
+        assert!(!path.parent().unwrap().exists());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn full_disk_is_told() {
+        let why = why(save("/dev/full".into(), &writing("x", 1)));
+        assert!(why.contains("/dev/full was not saved") && why.contains("space"), "{why}");
+    }
+
+    #[test]
+    fn file_stays_whole_where_no_new_one_can_be_written_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.xml");
+        save(path.clone(), &writing("old", 1));
+        // as in a folder that may not be written: the temporary file can't be made
+        let blocked = folder.path().join(format!(".plan.xml.{}.tmp", std::process::id()));
+        std::fs::create_dir(&blocked).unwrap();
+        let why = why(save(path.clone(), &writing("new", 2)));
+        assert!(why.contains("plan.xml was not saved"), "{why}");
+        assert_eq!(name_in(&path), "old");
+    }
+
+    #[test]
+    fn comments_of_the_text_and_of_the_file_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.xml");
+        let text = "<flightPlan xmlns='urn:legwork:flight-plan:1' aircraft='t'><!-- mine --></flightPlan>";
+        let from_text = Writing { original: Some(text.into()), ..writing("new", 1) };
+        let FileEvent::Saved { text: written, stamp, .. } = save(path.clone(), &from_text) else { panic!() };
+        assert!(written.contains("<!-- mine -->") && name_in(&path) == "new", "{written}");
+        // a recovered plan has no text
+        let recovered = Writing { over: Over::As(stamp.unwrap()), ..writing("newer", 2) };
+        let FileEvent::Saved { text: written, .. } = save(path.clone(), &recovered) else { panic!() };
+        assert!(written.contains("<!-- mine -->") && name_in(&path) == "newer", "{written}");
     }
 
     #[test]

@@ -282,7 +282,7 @@ mod tests {
         document.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
         assert_eq!(keeper.tend(&document, 10.5), Some(Duration::from_millis(1500)));
         assert_eq!(keeper.tend(&document, 12.0), None);
-        document.saved_as("/plans/a.xml".into(), None);
+        document.saved(document.version(), "/plans/a.xml".into(), "".into(), None);
         assert_eq!(keeper.tend(&document, 12.1), None, "taken away at once");
         drop(keeper);
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);

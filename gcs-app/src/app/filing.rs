@@ -6,6 +6,7 @@ use crate::files::{Entry, FileEvent, Over, Purpose, Stamp, Writing};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl App {
     /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
@@ -38,15 +39,24 @@ impl App {
         match event {
             FileEvent::Opened { path, bytes, stamp } => {
                 self.recent.add(&path);
-                self.document = Document::read(&bytes, Some(path));
-                self.document.set_stamp(stamp);
-                self.view.select(None);
-                self.view.cursor_s = None;
+                let mut opened = Document::read(&bytes, Some(path));
+                opened.set_stamp(stamp);
+                self.shelf.open(&mut self.document, opened);
+                self.show_another();
                 self.view.notice = None;
-                self.map.fit();
             }
-            FileEvent::Saved { path, version, stamp } => self.saved(path, version, stamp),
+            FileEvent::Reread { path, bytes, stamp } => {
+                if self.document.path() == Some(path.as_path()) {
+                    self.document.reread(&bytes, stamp);
+                }
+            }
+            FileEvent::Saved { path, text, document, version, stamp } => {
+                self.saving = false;
+                self.recent.add(&path);
+                self.saved(document, version, path, text, stamp);
+            }
             FileEvent::ChangedMeanwhile(path) => {
+                self.saving = false;
                 // who saves again has been told
                 self.document.set_stamp(None);
                 self.view.notice = Some(format!(
@@ -54,30 +64,72 @@ impl App {
                     path.display()
                 ));
             }
+            FileEvent::ChangedOutside { path, known, stamp } => self.changed_outside(&path, known, stamp),
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),
             FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
-            FileEvent::Failed(why) => self.view.notice = Some(why),
+            FileEvent::Failed(why) => {
+                self.saving = false;
+                self.view.notice = Some(why);
+            }
         }
     }
 
-    fn saved(&mut self, path: PathBuf, version: u64, stamp: Option<Stamp>) {
-        self.recent.add(&path);
-        if version == self.document.version() {
-            self.document.saved_as(path, stamp);
+    fn saved(&mut self, document: u64, version: u64, path: PathBuf, text: Arc<str>, stamp: Option<Stamp>) {
+        let Some(saved) = self.shelf.find(&mut self.document, document) else { return };
+        if saved.version() != version {
+            let why = format!("{} was saved; edits made meanwhile are not in it yet.", path.display());
+            self.view.notice = Some(why);
+        }
+        saved.saved(version, path, text, stamp);
+    }
+
+    /// Another document took the place of the one that was shown.
+    pub(super) fn show_another(&mut self) {
+        self.view.select(None);
+        self.view.cursor_s = None;
+        self.view.changed_outside = None;
+        self.map.fit();
+    }
+
+    /// Has the document's file looked at, as long as nobody is asked about it and it is not being written.
+    pub(super) fn watch_file(&mut self) {
+        let is_quiet = !self.saving && self.view.changed_outside.is_none();
+        let file = self.document.path().zip(self.document.stamp()).filter(|_| is_quiet);
+        self.files.watch(file.map(|(path, stamp)| (path.to_owned(), stamp)));
+    }
+
+    fn changed_outside(&mut self, path: &Path, known: Stamp, now: Option<Stamp>) {
+        let is_news = self.document.path() == Some(path) && self.document.stamp() == Some(known);
+        if self.saving || !is_news {
             return;
         }
-        self.view.notice =
-            Some(format!("{} was saved; edits made meanwhile are not in it yet.", path.display()));
-        // it may have been another document's
-        if version >= self.document.id() {
-            self.document.written_to(path, stamp);
+        self.view.changed_outside = now;
+        if now.is_none() {
+            self.document.set_stamp(None);
+            self.document.differs_from_file();
+            let why = "was deleted or moved by another program. Save to write it again.";
+            self.view.notice = Some(format!("{} {why}", path.display()));
         }
+    }
+
+    pub(super) fn load_theirs(&mut self) {
+        self.keep_mine();
+        if let Some(path) = self.document.path() {
+            self.files.reread(path.to_owned());
+        }
+    }
+
+    pub(super) fn keep_mine(&mut self) {
+        let stamp = self.view.changed_outside.take();
+        self.document.set_stamp(stamp);
+        self.document.differs_from_file();
     }
 
     pub(super) fn save(&mut self) {
         match self.document.path() {
             Some(path) => {
                 let over = self.document.stamp().map_or(Over::Anything, Over::As);
+                self.saving = true;
                 self.files.save(path.to_owned(), Writing { over, ..self.writing() });
             }
             None => self.ask_save(),
@@ -86,10 +138,10 @@ impl App {
 
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
-        self.document = Document::recovered(found.text.as_bytes(), found.path);
-        self.document.set_stamp(found.stamp);
-        self.view.select(None);
-        self.map.fit();
+        let mut recovered = Document::recovered(found.text.as_bytes(), found.path);
+        recovered.set_stamp(found.stamp);
+        self.shelf.open(&mut self.document, recovered);
+        self.show_another();
     }
 
     pub(super) fn take_left_behind(&mut self) -> Option<LeftBehind> {
@@ -99,6 +151,7 @@ impl App {
     /// Saves in a file that was chosen; over another one only if that was chosen, too.
     pub(super) fn save_to(&mut self, path: PathBuf, over: bool) {
         let over = if over { Over::Anything } else { Over::Nothing };
+        self.saving = self.document.path() == Some(path.as_path());
         self.files.save(path, Writing { over, ..self.writing() });
     }
 
@@ -108,8 +161,13 @@ impl App {
 
     /// The document for any file: who chose that one knows what is in it.
     fn writing(&self) -> Writing {
-        let text = flight_plan::write(self.document.plan());
-        Writing { text, version: self.document.version(), over: Over::Anything }
+        Writing {
+            plan: self.document.plan().clone(),
+            original: self.document.text().cloned(),
+            document: self.document.id(),
+            version: self.document.version(),
+            over: Over::Anything,
+        }
     }
 
     fn suggested_name(&self) -> String {

@@ -6,7 +6,7 @@ use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewComma
 use crate::dock::Content;
 use crate::panels::bar::PanelEntry;
 use crate::panels::{
-    self, Elevations, Scene, bar, browse, decision, emergency, flight, push, recover, start, unsaved,
+    self, Elevations, Scene, bar, browse, changed, decision, emergency, flight, push, recover, start, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -17,6 +17,7 @@ impl App {
         // fields apart, so that the panels borrow the rest
         let Self {
             document,
+            shelf,
             vehicles,
             view,
             analysis,
@@ -32,6 +33,7 @@ impl App {
         let vehicle = vehicles.shown();
         let scene = Scene {
             document,
+            can_undo: (shelf.can_undo(document), shelf.can_redo(document)),
             analysis,
             vehicle,
             vehicles,
@@ -74,6 +76,7 @@ impl App {
             over_map(ui, floor, &scene, queue);
         });
         unsaved::show(ui, &scene, queue);
+        changed::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);
         dropped_files(ui, queue);

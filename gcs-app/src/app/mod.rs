@@ -6,6 +6,7 @@ mod keys;
 mod layout;
 mod orders;
 mod screenshot;
+mod shelf;
 mod window;
 
 pub use screenshot::Screenshot;
@@ -26,6 +27,7 @@ use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
+use shelf::Shelf;
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
@@ -33,6 +35,8 @@ use terrain::Terrain;
 /// The ground station.
 pub struct App {
     document: Document,
+    /// Those before and after it.
+    shelf: Shelf,
     vehicles: Vehicles,
     view: ViewState,
     analysis: Analysis,
@@ -44,6 +48,8 @@ pub struct App {
     worker: Worker,
     terrain: Arc<dyn Terrain>,
     files: Files,
+    /// The document's own file is being written.
+    saving: bool,
     recent: Recent,
     connections: Connections,
     /// `None`: no copy of unsaved changes is kept.
@@ -114,6 +120,7 @@ impl App {
         let panels = panels::all();
         let mut app = Self {
             document,
+            shelf: Shelf::default(),
             vehicles: Vehicles::default(),
             view: ViewState { units: remembered.units, ..ViewState::default() },
             analysis: Analysis::default(),
@@ -125,6 +132,7 @@ impl App {
             worker: Worker::spawn(terrain.clone(), wake.clone())?,
             terrain,
             files: Files::new(wake),
+            saving: false,
             recent: remembered.recent,
             connections: remembered.connections,
             keeper: None,
@@ -169,6 +177,7 @@ impl App {
     fn scene(&self, now: Now) -> Scene<'_> {
         Scene {
             document: &self.document,
+            can_undo: (self.shelf.can_undo(&self.document), self.shelf.can_redo(&self.document)),
             analysis: &self.analysis,
             vehicle: self.vehicles.shown(),
             vehicles: &self.vehicles,
@@ -218,6 +227,7 @@ impl App {
         while let Some(event) = self.files.next_event() {
             self.file_event(event);
         }
+        self.watch_file();
     }
 
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.

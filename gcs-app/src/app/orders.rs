@@ -59,8 +59,18 @@ impl App {
             DocumentCommand::Browse(folder, name) => self.browse(folder, name),
             DocumentCommand::SaveTo { path, over } => self.save_to(path, over),
             DocumentCommand::EndGesture => self.document.end_gesture(),
-            DocumentCommand::Undo => self.document.undo(),
-            DocumentCommand::Redo => self.document.redo(),
+            DocumentCommand::LoadTheirs => self.load_theirs(),
+            DocumentCommand::KeepMine => self.keep_mine(),
+            DocumentCommand::Undo => {
+                if self.shelf.undo(&mut self.document) {
+                    self.show_another();
+                }
+            }
+            DocumentCommand::Redo => {
+                if self.shelf.redo(&mut self.document) {
+                    self.show_another();
+                }
+            }
         }
     }
 
@@ -83,7 +93,7 @@ impl App {
         self.view.unsaved = None;
         match with {
             Replacement::New => {
-                self.document = Document::default();
+                self.shelf.open(&mut self.document, Document::default());
                 self.view.select(None);
             }
             Replacement::AskOpen => self.files.ask_open(),

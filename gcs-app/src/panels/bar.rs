@@ -88,12 +88,12 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queu
         ui.separator();
         panel_menu(ui, panels, queue);
     });
-    let undo = ui.add_enabled(scene.document.can_undo(), egui::Button::new("↶"));
+    let undo = ui.add_enabled(scene.can_undo.0, egui::Button::new("↶"));
     named(&undo, "Undo");
     if undo.on_hover_text("Undo (Ctrl+Z)").clicked() {
         queue.document(DocumentCommand::Undo);
     }
-    let redo = ui.add_enabled(scene.document.can_redo(), egui::Button::new("↷"));
+    let redo = ui.add_enabled(scene.can_undo.1, egui::Button::new("↷"));
     named(&redo, "Redo");
     if redo.on_hover_text("Redo (Ctrl+Y)").clicked() {
         queue.document(DocumentCommand::Redo);

@@ -5,6 +5,7 @@
 pub mod alarms;
 pub mod bar;
 pub mod browse;
+pub mod changed;
 pub mod decision;
 pub mod emergency;
 pub mod field;
@@ -27,6 +28,7 @@ pub mod unsaved;
 use crate::command::{Queue, Replacement, Selection};
 use crate::connections::Connections;
 use crate::document::Document;
+use crate::files::Stamp;
 use crate::forecast::{Analysis, Forecast};
 use crate::guide::Guide;
 use crate::recent::Recent;
@@ -121,6 +123,8 @@ pub struct ViewState {
     pub guide: Guide,
     /// What would replace a plan with unsaved changes, until the operator has decided.
     pub unsaved: Option<Replacement>,
+    /// The state of the document's file after another program has changed it, until the operator has decided.
+    pub changed_outside: Option<Stamp>,
     /// A file is being chosen in the window.
     pub browsing: Option<Browsing>,
     /// Something the operator should read: a file that can't be opened, and the like.
@@ -179,6 +183,8 @@ impl std::fmt::Debug for Elevations<'_> {
 pub struct Scene<'a> {
     /// The plan being edited.
     pub document: &'a Document,
+    /// There is something to undo and to redo, in this document or from one to another.
+    pub can_undo: (bool, bool),
     /// What is known of the plan, found out in the background; belongs to an older version for a moment.
     pub analysis: &'a Analysis,
     /// What is known of the vehicle that is shown.
@@ -216,7 +222,10 @@ impl<'a> Scene<'a> {
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {
-        self.left_behind.is_some() || self.view.unsaved.is_some() || self.view.browsing.is_some()
+        self.left_behind.is_some()
+            || self.view.unsaved.is_some()
+            || self.view.changed_outside.is_some()
+            || self.view.browsing.is_some()
     }
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {

@@ -33,9 +33,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 fn consequence(with: &Replacement) -> &'static str {
     match with {
-        Replacement::New => "A new plan takes its place: the changes would be lost.",
+        Replacement::New => "A new plan takes its place. Until the window closes, undo brings this one back.",
         Replacement::AskOpen | Replacement::Open(_) => {
-            "Another plan takes its place: the changes would be lost."
+            "Another plan takes its place. Until the window closes, undo brings this one back."
         }
         Replacement::Quit => "The window is about to close: the changes would be lost.",
     }

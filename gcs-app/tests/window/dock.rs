@@ -158,6 +158,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
         let recent = gcs_app::recent::Recent::default();
         let connections = gcs_app::connections::Connections::default();
         let scene = Scene {
+            can_undo: (false, false),
             document: app.document(),
             analysis: app.analysis(),
             vehicle: app.vehicle(),

@@ -154,3 +154,115 @@ fn file_that_was_open_is_offered_again() {
     window.click("square.xml");
     window.until("opened", |app| app.document().path().is_some());
 }
+
+/// A window with a file of its own, opened by its dialog; the file's text is `text`.
+fn window_on(path: &Path, text: &str) -> Window {
+    std::fs::write(path, text).unwrap();
+    let mut window = window("");
+    open(&mut window, path);
+    window
+}
+
+fn open(window: &mut Window, path: &Path) {
+    window.press_ctrl(egui::Key::O);
+    until_listed(window);
+    name(window, path);
+    window.click("Open");
+    let path = path.to_owned();
+    window.until("opened", move |app| app.document().path() == Some(path.as_path()));
+}
+
+#[test]
+fn saving_keeps_the_comments_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.xml");
+    let text = SQUARE.replacen("<mainPlan", "<!-- my words -->\n  <mainPlan", 1);
+    let mut window = window_on(&path, &text);
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    window.press_ctrl(egui::Key::S);
+    window.until("saved", |app| !app.document().is_dirty());
+    let written = std::fs::read_to_string(&path).unwrap();
+    let kept: Vec<&str> = text.lines().filter(|line| !line.contains("\"side2\"")).collect();
+    assert_eq!(written.lines().collect::<Vec<_>>(), kept);
+}
+
+#[test]
+fn undo_brings_back_the_plan_before_new_and_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first.xml"), folder.path().join("second.xml"));
+    std::fs::write(&second, SQUARE.replace("side2", "other")).unwrap();
+    let mut window = window_on(&first, SQUARE);
+    let saved = window.plan();
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    let edited = window.plan();
+    window.press_ctrl(egui::Key::N);
+    window.click("Discard the changes");
+    assert!(window.plan().stages.is_empty());
+    open(&mut window, &second);
+    assert!(!window.app().document().is_dirty());
+    window.press_ctrl(egui::Key::Z);
+    assert_eq!(window.plan(), edited, "an empty plan that nobody worked on is no step");
+    assert_eq!(window.app().document().path(), Some(first.as_path()));
+    assert!(window.app().document().is_dirty());
+    window.press_ctrl(egui::Key::Z);
+    assert!(window.plan() == saved && !window.app().document().is_dirty());
+    for _ in 0..2 {
+        window.press_ctrl(egui::Key::Y);
+    }
+    assert_eq!(window.app().document().path(), Some(second.as_path()));
+    assert!(!window.is_enabled("Redo") && window.is_enabled("Undo"));
+}
+
+#[test]
+fn file_that_another_program_changed_is_loaded_or_kept_as_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shared.xml");
+    let mut window = window_on(&path, SQUARE);
+    let mine = window.plan();
+    std::fs::write(&path, SQUARE.replace("side2", "their-side")).unwrap();
+    window.until("question", |app| app.view().changed_outside.is_some());
+    assert!(window.shows("Another program has changed shared.xml"));
+    window.click("Load theirs");
+    window.until("theirs", |app| app.document().plan().leg(&"their-side".into()).is_some());
+    assert!(!window.app().document().is_dirty());
+    window.press_ctrl(egui::Key::Z);
+    assert!(window.plan() == mine && window.app().document().is_dirty());
+
+    std::fs::write(&path, "something else").unwrap();
+    window.until("question", |app| app.view().changed_outside.is_some());
+    window.click("Keep mine");
+    assert!(window.app().document().is_dirty());
+    window.press_ctrl(egui::Key::S);
+    window.until("saved", |app| !app.document().is_dirty());
+    assert_eq!(flight_plan::read(std::fs::read(&path).unwrap()).plan, mine);
+}
+
+#[test]
+fn file_that_vanished_is_told_and_written_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("gone.xml");
+    let mut window = window_on(&path, SQUARE);
+    std::fs::remove_file(&path).unwrap();
+    window.until("notice", |app| app.view().notice.is_some());
+    assert!(window.shows("was deleted or moved") && window.app().document().is_dirty());
+    window.press_ctrl(egui::Key::S);
+    window.until("saved", |app| !app.document().is_dirty());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), SQUARE);
+}
+
+#[test]
+fn plan_that_cannot_be_saved_stays_unsaved_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("below").join("plan.xml");
+    std::fs::create_dir(path.parent().unwrap()).unwrap();
+    let mut window = window_on(&path, SQUARE);
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    let edited = window.plan();
+    std::fs::remove_dir_all(path.parent().unwrap()).unwrap();
+    window.press_ctrl(egui::Key::S);
+    window.until("notice", |app| app.view().notice.as_ref().is_some_and(|n| n.contains("Save it elsewhere")));
+    assert!(window.plan() == edited && window.app().document().is_dirty());
+}

@@ -93,6 +93,11 @@ impl History {
         self.saved == Some(self.present)
     }
 
+    /// No state is on disk any more.
+    pub fn mark_unsaved(&mut self) {
+        self.saved = None;
+    }
+
     /// The present state has been written to disk.
     pub fn mark_saved(&mut self) {
         self.saved = Some(self.present);
