@@ -56,6 +56,16 @@ fn read(bencher: Bencher) {
     bencher.counter(BytesCount::of_str(&text)).bench_local(|| flight_plan::read(black_box(&text)));
 }
 
+/// Saving a plan in which every leg was turned around, into the text that it was read from.
+#[divan::bench]
+fn patch_reversed(bencher: Bencher) {
+    let text = document(LEGS);
+    let mut plan = flight_plan::read(&text).plan;
+    plan.stages.iter_mut().for_each(|stage| stage.legs.reverse());
+    let bytes = BytesCount::of_str(&text);
+    bencher.counter(bytes).bench_local(|| flight_plan::xml::patch(black_box(&text), &plan));
+}
+
 #[divan::bench]
 fn write(bencher: Bencher) {
     let plan = flight_plan::read(document(LEGS)).plan;
