@@ -112,6 +112,14 @@ pub enum ViewCommand {
     Tool(&'static str),
     /// Other units.
     Units(Units),
+    /// Light, dark, or as the system.
+    Theme(egui::ThemePreference),
+    /// How large everything is.
+    Scale(crate::theme::Scale),
+    /// Open the command palette, or close it.
+    Palette(bool),
+    /// Show the plan and type what to search in it.
+    Search,
     /// Show a panel, or hide it.
     ShowPanel(PanelId, bool),
     /// Put all panels back to where they are by default.
@@ -213,6 +221,10 @@ impl Selection {
 pub struct Queue(Vec<Command>);
 
 impl Queue {
+    /// Whatever it is to.
+    pub fn push(&mut self, command: Command) {
+        self.0.push(command);
+    }
     /// To the document.
     pub fn document(&mut self, command: DocumentCommand) {
         self.0.push(Command::Document(command));

@@ -6,6 +6,7 @@
 #[macro_use]
 mod say;
 
+pub mod actions;
 pub mod app;
 pub mod assets;
 pub mod chart;

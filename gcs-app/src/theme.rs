@@ -2,6 +2,7 @@
 //! anything else; what colour says, shape or line style says too.
 
 use egui::{Color32, CornerRadius, Margin, Shadow, Stroke, TextStyle, Theme, Ui, Visuals, vec2};
+use serde::{Deserialize, Serialize};
 
 /// The colours that carry meaning, for one theme.
 #[derive(Debug, Clone, Copy)]
@@ -85,6 +86,32 @@ const LIGHT: Palette = Palette {
     land: rgb(0xedeee4),
     border: rgb(0xa8aea2),
 };
+
+/// How large everything is; 1 is normal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Scale(f32);
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl Scale {
+    /// A scale from 0.8 to 3; `None` for any other number.
+    pub fn new(scale: f32) -> Option<Self> {
+        (0.8..=3.0).contains(&scale).then_some(Self(scale))
+    }
+    /// As a number.
+    pub fn get(self) -> f32 {
+        self.0
+    }
+    /// So many tenths larger.
+    pub fn larger(self, tenths: f32) -> Option<Self> {
+        // in whole tenths, so that the steps up lead through the steps down
+        Self::new(((self.0 * 10.0) + tenths).round() / 10.0)
+    }
+}
 
 /// The colours of a theme.
 pub fn palette(dark: bool) -> &'static Palette {

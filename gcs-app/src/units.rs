@@ -54,7 +54,7 @@ impl Unit {
 
 impl Units {
     /// What a menu calls it.
-    pub fn label(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Si => "SI: m, m/s, km",
             Self::Aviation => "Aviation: ft, kt, NM",

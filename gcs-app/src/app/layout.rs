@@ -4,9 +4,8 @@
 use super::{App, Now};
 use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
-use crate::panels::bar::PanelEntry;
 use crate::panels::{
-    self, Elevations, Scene, bar, browse, changed, decision, emergency, flight, push, recover, start, unsaved,
+    Elevations, Scene, bar, browse, changed, decision, emergency, flight, push, recover, start, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -15,6 +14,7 @@ use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
         // fields apart, so that the panels borrow the rest
+        let fittings = self.fittings();
         let Self {
             document,
             shelf,
@@ -28,6 +28,7 @@ impl App {
             recent,
             connections,
             terrain,
+            palette,
             ..
         } = self;
         let vehicle = vehicles.shown();
@@ -45,17 +46,11 @@ impl App {
             now_s: now.window_s,
             utc: now.utc,
         };
-        let entry = |panel: &dyn panels::Panel| PanelEntry {
-            id: panel.id(),
-            name: panel.name(),
-            shown: dock.shows(panel.id()),
-        };
-        let entries: Vec<PanelEntry> = panels.iter().map(|panel| entry(panel.as_ref())).collect();
         let frame = theme::panel(ui);
         Panel::top("bar")
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
-            .show(ui, |ui| bar::show(ui, &scene, &entries, queue));
+            .show(ui, |ui| bar::show(ui, &scene, &fittings, queue));
         // before all that may take its place
         commands(ui, &scene, queue);
         emergency::show(ui, &scene, queue);
@@ -79,6 +74,7 @@ impl App {
         changed::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);
+        palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
     }
 }

@@ -12,6 +12,7 @@ mod window;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
+use crate::actions::{Fittings, PanelEntry};
 use crate::command::{Queue, Replacement};
 use crate::connections::Connections;
 use crate::dock::Dock;
@@ -20,7 +21,8 @@ use crate::files::Files;
 use crate::forecast::{Analysis, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
-use crate::panels::{self, Elevations, Panel, Scene, ViewState};
+use crate::panels::palette::CommandPalette;
+use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
@@ -39,6 +41,7 @@ pub struct App {
     shelf: Shelf,
     vehicles: Vehicles,
     view: ViewState,
+    palette: CommandPalette,
     analysis: Analysis,
     map: MapState,
     panels: Vec<Box<dyn Panel>>,
@@ -75,6 +78,18 @@ struct Remembered {
     recent: Recent,
     #[serde(default)]
     connections: Connections,
+    #[serde(default)]
+    theme: egui::ThemePreference,
+    #[serde(default)]
+    scale: theme::Scale,
+}
+
+impl Remembered {
+    fn view(&self) -> ViewState {
+        // what is stored may be damaged
+        let scale = theme::Scale::new(self.scale.get()).unwrap_or_default();
+        ViewState { units: self.units, theme: self.theme, scale, ..ViewState::default() }
+    }
 }
 
 const STORAGE_KEY: &str = "legwork";
@@ -122,7 +137,8 @@ impl App {
             document,
             shelf: Shelf::default(),
             vehicles: Vehicles::default(),
-            view: ViewState { units: remembered.units, ..ViewState::default() },
+            view: remembered.view(),
+            palette: CommandPalette::default(),
             analysis: Analysis::default(),
             map: MapState::default(),
             dock: Dock::new(&panels, creation.storage),
@@ -288,6 +304,32 @@ impl App {
         }
     }
 
+    /// What the window has besides the scene.
+    fn fittings(&self) -> Fittings {
+        let entry = |panel: &dyn Panel| PanelEntry {
+            id: panel.id(),
+            name: panel.name(),
+            shown: self.dock.shows(panel.id()),
+        };
+        Fittings {
+            panels: self.panels.iter().map(|panel| entry(panel.as_ref())).collect(),
+            tools: self.map.tool_cards(),
+        }
+    }
+
+    /// Theme and scale as they were asked for, and the keyboard to whom it was promised.
+    fn look(&mut self, ctx: &egui::Context) {
+        if ctx.options(|o| o.theme_preference) != self.view.theme {
+            ctx.set_theme(self.view.theme);
+        }
+        if ctx.zoom_factor() != self.view.scale.get() {
+            ctx.set_zoom_factor(self.view.scale.get());
+        }
+        if std::mem::take(&mut self.view.search) {
+            tree::focus_search(ctx);
+        }
+    }
+
     /// The cursor runs thirty times as fast as the flight.
     fn play(&mut self, ctx: &egui::Context) {
         const SPEED: f64 = 30.0;
@@ -324,7 +366,7 @@ impl eframe::App for App {
         // a menu takes Escape for itself
         if !self.scene(now).is_asking() && !egui::Popup::is_any_open(&ctx) {
             self.map.keys(&ctx);
-            keys::read(&ctx, &self.scene(now), &mut queue);
+            keys::read(&ctx, &self.scene(now), &self.fittings(), &mut queue);
         }
         self.lay_out(ui, now, &mut queue);
         // what was asked for was meant for the vehicle that was drawn
@@ -333,6 +375,7 @@ impl eframe::App for App {
             self.carry_out(command, drawn.as_ref(), now.window_s);
         }
         self.queue = queue;
+        self.look(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
             screenshot.run(&ctx, now.window_s);
         }
@@ -352,6 +395,8 @@ impl eframe::App for App {
                 units: self.view.units,
                 recent: self.recent.clone(),
                 connections: self.connections.clone(),
+                theme: self.view.theme,
+                scale: self.view.scale,
             },
         );
         self.dock.save(storage);

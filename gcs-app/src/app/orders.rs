@@ -175,6 +175,13 @@ impl App {
                 self.map.choose_tool(id);
             }
             ViewCommand::Units(units) => self.view.units = units,
+            ViewCommand::Theme(theme) => self.view.theme = theme,
+            ViewCommand::Scale(scale) => self.view.scale = scale,
+            ViewCommand::Palette(open) => self.view.palette = open,
+            ViewCommand::Search => {
+                self.dock.show_panel(crate::panels::tree::ID, true);
+                self.view.search = true;
+            }
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
             ViewCommand::Scrub(cursor_s) => {

@@ -88,9 +88,6 @@ fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
 
 fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<App> {
     let ctx = creation.egui_ctx.clone();
-    if let Some(theme) = options.theme {
-        ctx.set_theme(theme);
-    }
     let links = Links::spawn(Arc::new(move || ctx.request_repaint()))?;
     let terrain = assets::demo_terrain();
     let mut app = App::new(creation, options.document.unwrap_or_default(), links, terrain.clone())?;
@@ -107,6 +104,9 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
         app.keep_copies(&folder.join("recovery"));
     }
     app.screenshot = options.screenshot;
+    if let Some(theme) = options.theme {
+        app.view.theme = theme.into();
+    }
     if options.follow {
         app.view.follow = true;
         app.map.follow();

@@ -93,6 +93,11 @@ impl MapState {
         }
     }
 
+    /// Each tool's card, and whether it is in use.
+    pub fn tool_cards(&self) -> Vec<(&'static tools::Card, bool)> {
+        self.tools.cards().collect()
+    }
+
     /// Puts a tool to use.
     pub fn choose_tool(&mut self, id: &str) {
         self.tools.choose(id);

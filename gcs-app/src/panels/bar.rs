@@ -1,29 +1,19 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
 
-use super::{PanelId, Scene};
-use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement, ViewCommand};
+use super::Scene;
+use crate::actions::{Action, Fittings, Group, Kind, all};
+use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
 use crate::theme::{self, Palette};
-use crate::units::{self, Units};
+use crate::units;
 use egui::{Color32, RichText, Ui};
 use flight_exec::Phase;
 
-/// A panel in the menu.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PanelEntry {
-    /// Its identifier.
-    pub id: PanelId,
-    /// For people.
-    pub name: &'static str,
-    /// It is not hidden.
-    pub shown: bool,
-}
-
 /// Draws the bar.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queue) {
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
     ui.horizontal_centered(|ui| {
-        menus(ui, scene, panels, queue);
+        menus(ui, scene, fittings, queue);
         ui.separator();
         super::link::show(ui, scene, queue);
         state(ui, scene);
@@ -59,44 +49,79 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
     ui.add(egui::Label::new(RichText::new(text).color(p.weak)).truncate()).on_hover_text(hover);
 }
 
-fn menus(ui: &mut Ui, scene: &Scene<'_>, panels: &[PanelEntry], queue: &mut Queue) {
+fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
+    let actions = all(scene, fittings);
     ui.menu_button(RichText::new("Legwork").strong(), |ui| {
-        let file: [(&str, &str, DocumentCommand); 5] = [
-            ("New", "Ctrl+N", DocumentCommand::Replace(Replacement::New)),
-            ("Open…", "Ctrl+O", DocumentCommand::Replace(Replacement::AskOpen)),
-            ("Save", "Ctrl+S", DocumentCommand::Save),
-            ("Save as…", "", DocumentCommand::AskSaveAs),
-            ("Take the plan aboard", "", DocumentCommand::EndGesture),
-        ];
-        for (text, keys, command) in file {
-            let aboard = matches!(command, DocumentCommand::EndGesture);
-            if aboard && scene.vehicle.aboard.is_none() {
-                continue;
-            }
-            if ui.add(egui::Button::new(text).shortcut_text(keys)).clicked() {
-                if aboard {
-                    queue.fly(FlyCommand::TakeAboard)
-                } else {
-                    queue.document(command)
-                }
+        section(ui, &actions, &[Group::File], queue);
+        recent_menu(ui, scene, queue);
+        ui.separator();
+        submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
+        submenu(ui, "Panels", &actions, &[Group::Panel], queue);
+        ui.separator();
+        section(ui, &actions, &[Group::Units], queue);
+        ui.separator();
+        section(ui, &actions, &[Group::Theme], queue);
+        ui.separator();
+        section(ui, &actions, &[Group::Help], queue);
+    });
+    for (id, symbol) in [("undo", "↶"), ("redo", "↷")] {
+        if let Some(action) = actions.iter().find(|action| action.id == id) {
+            symbol_button(ui, action, symbol, queue);
+        }
+    }
+}
+
+fn submenu(ui: &mut Ui, name: &str, actions: &[Action], groups: &[Group], queue: &mut Queue) {
+    ui.menu_button(name, |ui| section(ui, actions, groups, queue));
+}
+
+/// The actions of some groups, one below the other.
+fn section(ui: &mut Ui, actions: &[Action], groups: &[Group], queue: &mut Queue) {
+    for group in groups {
+        for action in actions.iter().filter(|action| action.group == *group) {
+            item(ui, action, queue);
+        }
+    }
+}
+
+/// An entry of a menu. One that is not possible says why; a switch leaves the menu open.
+fn item(ui: &mut Ui, action: &Action, queue: &mut Queue) {
+    let name = action.name.as_ref();
+    let enabled = action.command.is_ok();
+    let response = match action.kind {
+        Kind::Switch(mut on) => ui.add_enabled(enabled, egui::Checkbox::new(&mut on, name)),
+        Kind::Choice(on) => ui.add_enabled(enabled, egui::RadioButton::new(on, name)),
+        Kind::Do | Kind::Hold => {
+            let key = action.key(ui.ctx()).unwrap_or_default();
+            let response = ui.add_enabled(enabled, egui::Button::new(name).shortcut_text(key));
+            named(&response, name);
+            response
+        }
+    };
+    match &action.command {
+        Ok(command) if response.clicked() => {
+            queue.push(command.clone());
+            if !matches!(action.kind, Kind::Switch(_)) {
                 ui.close();
             }
         }
-        recent_menu(ui, scene, queue);
-        ui.separator();
-        view_menu(ui, scene, queue);
-        ui.separator();
-        panel_menu(ui, panels, queue);
-    });
-    let undo = ui.add_enabled(scene.can_undo.0, egui::Button::new("↶"));
-    named(&undo, "Undo");
-    if undo.on_hover_text("Undo (Ctrl+Z)").clicked() {
-        queue.document(DocumentCommand::Undo);
+        Ok(_) => {}
+        Err(why_not) => drop(response.on_disabled_hover_text(why_not.as_ref())),
     }
-    let redo = ui.add_enabled(scene.can_undo.1, egui::Button::new("↷"));
-    named(&redo, "Redo");
-    if redo.on_hover_text("Redo (Ctrl+Y)").clicked() {
-        queue.document(DocumentCommand::Redo);
+}
+
+/// A button with a symbol in the bar.
+fn symbol_button(ui: &mut Ui, action: &Action, symbol: &str, queue: &mut Queue) {
+    let response = ui.add_enabled(action.command.is_ok(), egui::Button::new(symbol));
+    named(&response, &action.name);
+    let hover = format!("{}{}", action.name, action.key_in_brackets(ui.ctx()));
+    match &action.command {
+        Ok(command) => {
+            if response.on_hover_text(hover).clicked() {
+                queue.push(command.clone());
+            }
+        }
+        Err(why_not) => drop(response.on_disabled_hover_text(format!("{hover}: {why_not}"))),
     }
 }
 
@@ -117,46 +142,9 @@ fn recent_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 /// A name for those who can't see the symbol.
-fn named(response: &egui::Response, name: &'static str) {
+fn named(response: &egui::Response, name: &str) {
     let enabled = response.enabled();
-    response.widget_info(move || egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
-}
-
-/// Which panels are shown, and the way back to the default layout.
-fn panel_menu(ui: &mut Ui, panels: &[PanelEntry], queue: &mut Queue) {
-    ui.menu_button("Panels", |ui| {
-        for PanelEntry { id, name, mut shown } in panels.iter().copied() {
-            if ui.checkbox(&mut shown, name).clicked() {
-                queue.view(ViewCommand::ShowPanel(id, shown));
-            }
-        }
-        ui.separator();
-        if ui.button("Default layout").on_hover_text("Put every panel back to its place").clicked() {
-            queue.view(ViewCommand::ResetLayout);
-            ui.close();
-        }
-    });
-}
-
-fn view_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    for units in [Units::Si, Units::Aviation] {
-        if ui.radio(scene.units() == units, units.label()).clicked() {
-            queue.view(ViewCommand::Units(units));
-            ui.close();
-        }
-    }
-    ui.separator();
-    for (theme, text) in [(egui::Theme::Dark, "Dark"), (egui::Theme::Light, "Light")] {
-        if ui.radio(ui.ctx().theme() == theme, text).clicked() {
-            ui.ctx().set_theme(theme);
-            ui.close();
-        }
-    }
-    ui.separator();
-    if ui.add(egui::Button::new("Show the whole plan").shortcut_text("F")).clicked() {
-        queue.view(ViewCommand::Fit);
-        ui.close();
-    }
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
 }
 
 /// What the gateway and the autopilot do: green is engaged.
@@ -235,15 +223,29 @@ fn standing_style(standing: Standing, p: &Palette) -> (&'static str, Color32) {
     }
 }
 
-fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// This document can be proposed to the vehicle; or why it can't.
+pub fn may_push(scene: &Scene<'_>) -> Result<(), &'static str> {
     let (_, standing) = plan_state(scene);
-    let connected = matches!(scene.vehicle.link, LinkState::Connected(_));
-    let differs = matches!(standing, Standing::Draft | Standing::Proposed);
-    let enabled = connected && differs && !scene.vehicle.requests.is_pending(PUSH);
+    if !matches!(scene.vehicle.link, LinkState::Connected(_)) {
+        Err("Connect to a vehicle first")
+    } else if !matches!(standing, Standing::Draft | Standing::Proposed) {
+        Err("This plan is aboard already")
+    } else if scene.vehicle.requests.is_pending(PUSH) {
+        Err("The vehicle is looking at it")
+    } else {
+        Ok(())
+    }
+}
+
+fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let possible = may_push(scene);
     let button = super::primary_button("⬆ Push", theme::of(ui));
-    let response = ui.add_enabled(enabled, if enabled { button } else { egui::Button::new("⬆ Push") });
+    let response =
+        ui.add_enabled(possible.is_ok(), if possible.is_ok() { button } else { egui::Button::new("⬆ Push") });
     named(&response, "Push");
-    if response
+    if let Err(why_not) = possible {
+        response.on_disabled_hover_text(why_not);
+    } else if response
         .on_hover_text("Propose this plan to the vehicle, look at what it would do, then commit")
         .clicked()
     {

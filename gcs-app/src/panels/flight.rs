@@ -182,7 +182,8 @@ fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
     }
 }
 
-fn can_launch(scene: &Scene<'_>) -> bool {
+/// The vehicle stands on the ground, with a plan to be flown.
+pub fn can_launch(scene: &Scene<'_>) -> bool {
     let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
     let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
     // nothing may have come of an earlier start: the arming was refused, or somebody held it

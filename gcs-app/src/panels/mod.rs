@@ -13,6 +13,7 @@ pub mod flight;
 pub mod inspector;
 pub mod link;
 pub mod log;
+pub mod palette;
 pub mod pfd;
 pub mod problems;
 pub mod profile;
@@ -109,6 +110,14 @@ pub enum Place {
 pub struct ViewState {
     /// In which units.
     pub units: Units,
+    /// Light, dark, or as the system.
+    pub theme: egui::ThemePreference,
+    /// How large everything is.
+    pub scale: theme::Scale,
+    /// The command palette is open.
+    pub palette: bool,
+    /// The plan's search is about to get the keyboard.
+    pub search: bool,
     /// What is selected.
     pub selection: Option<Selection>,
     /// Legs that are selected besides a leg.
@@ -226,6 +235,7 @@ impl<'a> Scene<'a> {
             || self.view.unsaved.is_some()
             || self.view.changed_outside.is_some()
             || self.view.browsing.is_some()
+            || self.view.palette
     }
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {

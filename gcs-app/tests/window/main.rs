@@ -13,6 +13,7 @@ mod fleet;
 mod flying;
 mod looks;
 mod maps;
+mod palette;
 mod pasting;
 mod planning;
 mod pointing;

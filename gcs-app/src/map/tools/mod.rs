@@ -39,6 +39,11 @@ fn all() -> Vec<Box<dyn Tool>> {
     ]
 }
 
+/// The guide to a new plan has the map: no tool can be chosen.
+pub fn is_guided(scene: &Scene<'_>) -> bool {
+    guided::Guided::is_wanted(scene)
+}
+
 /// What a tool is called.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Card {
@@ -244,15 +249,10 @@ impl Toolbox {
         self.pressed.clear();
     }
 
-    /// Keys that choose a tool, and those that the tool in use takes. Escape ends its gesture, then the mode.
+    /// Keys that the tool in use takes. Escape ends its gesture, then the mode.
     pub fn keys(&mut self, ctx: &Context) {
         let pressed = |key: Key| ctx.input(|i| i.modifiers.is_none() && i.key_pressed(key));
         let consume = |key: Key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
-        let chosen = self.tools.iter().map(|tool| tool.card()).find(|card| pressed(card.key));
-        if let Some(card) = chosen.filter(|_| !self.is_guided) {
-            consume(card.key);
-            self.choose(card.id);
-        }
         for key in KEYS.into_iter().filter(|key| pressed(*key)) {
             let wanted = self.in_use().is_some_and(|tool| tool.wants(key));
             if wanted || (key == Key::Escape && self.current != 0) {
@@ -275,7 +275,7 @@ impl Toolbox {
         queue: &mut Queue,
         p: &Palette,
     ) -> Option<Asked> {
-        self.is_guided = guided::Guided::is_wanted(canvas.scene);
+        self.is_guided = is_guided(canvas.scene);
         let tool: &mut dyn Tool = match self.is_guided {
             true => &mut self.guided,
             false => self.tools.get_mut(self.current)?.as_mut(),

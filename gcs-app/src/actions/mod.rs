@@ -1,0 +1,183 @@
+//! Everything that can be done, in one list. The keys, the menus and the command palette read it: an
+//! action has one name, one key and one reason why it is not possible now, wherever it is met.
+//!
+//! To add an action: a line in [`table`]. Tools and panels come from their own registries.
+
+pub mod fuzzy;
+pub mod places;
+mod table;
+
+use crate::command::{Command, ViewCommand};
+use crate::map::tools::{Card, is_guided};
+use crate::panels::{PanelId, Scene};
+use egui::{Context, KeyboardShortcut, Modifiers};
+use std::borrow::Cow;
+
+/// Where an action stands in menus, and what it is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// Files.
+    File,
+    /// The plan.
+    Edit,
+    /// What is shown, and how.
+    View,
+    /// In which units.
+    Units,
+    /// Light or dark.
+    Theme,
+    /// How large everything is.
+    Size,
+    /// Map tools.
+    Tool,
+    /// Panels.
+    Panel,
+    /// The vehicle.
+    Flight,
+    /// A place of the plan.
+    GoTo,
+    /// Help.
+    Help,
+}
+
+impl Group {
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::View => "View",
+            Self::Units => "Units",
+            Self::Theme => "Theme",
+            Self::Size => "Size",
+            Self::Tool => "Tool",
+            Self::Panel => "Panel",
+            Self::Flight => "Flight",
+            Self::GoTo => "Go to",
+            Self::Help => "Help",
+        }
+    }
+}
+
+/// What kind of action it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Something happens.
+    Do,
+    /// Something happens that can't be taken back: it must be held.
+    Hold,
+    /// Something is on or off.
+    Switch(bool),
+    /// One of several is so.
+    Choice(bool),
+}
+
+/// Something that can be done.
+#[derive(Debug, Clone)]
+pub struct Action {
+    /// Never changes; no two are alike.
+    pub id: Cow<'static, str>,
+    /// For people.
+    pub name: Cow<'static, str>,
+    /// What it is about.
+    pub group: Group,
+    /// What kind of action it is.
+    pub kind: Kind,
+    /// Keys for it; the first is shown.
+    pub keys: Vec<KeyboardShortcut>,
+    /// The keys work while text is being typed, too.
+    pub while_typing: bool,
+    /// What it asks for; or why it is not possible now.
+    pub command: Result<Command, Cow<'static, str>>,
+}
+
+impl Action {
+    /// Its key as people write it, if it has one.
+    pub fn key(&self, ctx: &Context) -> Option<String> {
+        self.keys.first().map(|key| ctx.format_shortcut(key))
+    }
+
+    /// Its key in brackets for the end of a tooltip; nothing without one.
+    pub fn key_in_brackets(&self, ctx: &Context) -> String {
+        self.key(ctx).map_or_else(String::new, |key| format!(" ({key})"))
+    }
+}
+
+/// A panel as an action sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PanelEntry {
+    /// Its identifier.
+    pub id: PanelId,
+    /// For people.
+    pub name: &'static str,
+    /// It is not hidden.
+    pub shown: bool,
+}
+
+/// What the window has besides the [`Scene`].
+#[derive(Debug, Clone, Default)]
+pub struct Fittings {
+    /// The panels.
+    pub panels: Vec<PanelEntry>,
+    /// The map tools, and whether each is in use.
+    pub tools: Vec<(&'static Card, bool)>,
+}
+
+/// All actions but the places of the plan, in the order of the menus.
+pub fn all(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
+    let mut actions: Vec<Action> = table::ENTRIES.iter().map(|entry| entry.action(scene)).collect();
+    let guided = is_guided(scene);
+    actions.extend(fittings.tools.iter().map(|(card, in_use)| tool(card, *in_use, guided)));
+    actions.extend(fittings.panels.iter().map(panel));
+    actions
+}
+
+fn tool(card: &'static Card, in_use: bool, guided: bool) -> Action {
+    let choose = Command::View(ViewCommand::Tool(card.id));
+    Action {
+        id: format!("tool-{}", card.id).into(),
+        name: card.name.into(),
+        group: Group::Tool,
+        kind: Kind::Choice(in_use),
+        keys: vec![KeyboardShortcut::new(Modifiers::NONE, card.key)],
+        while_typing: false,
+        command: if guided {
+            Err("Draw what the card of the new mission asks for first".into())
+        } else {
+            Ok(choose)
+        },
+    }
+}
+
+fn panel(entry: &PanelEntry) -> Action {
+    Action {
+        id: format!("panel-{}", entry.id).into(),
+        name: entry.name.into(),
+        group: Group::Panel,
+        kind: Kind::Switch(entry.shown),
+        keys: Vec::new(),
+        while_typing: false,
+        command: Ok(Command::View(ViewCommand::ShowPanel(entry.id, !entry.shown))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn no_two_actions_share_an_identifier_or_a_key() {
+        let (mut ids, mut keys) = (BTreeSet::new(), BTreeSet::new());
+        for entry in table::ENTRIES {
+            assert!(ids.insert(entry.id), "{} is there twice", entry.id);
+            for key in entry.keys {
+                assert!(keys.insert(format!("{key:?}")), "{}: {key:?} is taken", entry.id);
+            }
+        }
+        for (card, _) in crate::map::tools::Toolbox::default().cards() {
+            let key = KeyboardShortcut::new(Modifiers::NONE, card.key);
+            assert!(keys.insert(format!("{key:?}")), "{}: {key:?} is taken", card.id);
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! The actions, one a line: group, identifier, name, kind, keys, and what it asks for or why it can't.
+
+use super::{Action, Group, Kind};
+use crate::command::{
+    Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
+};
+use crate::panels::{Scene, bar, flight};
+use crate::theme::Scale;
+use crate::units::Units;
+use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
+use flight_exec::{Command as PlanCommand, Phase};
+use flight_plan::{Cause, Edit, edit::Spot};
+use usal::contract::{GatewayRequest, GatewayState};
+
+/// What an action asks for; or why it is not possible now.
+type Asked = Result<Command, &'static str>;
+
+/// An action as it is written down.
+pub struct Entry {
+    group: Group,
+    pub id: &'static str,
+    name: &'static str,
+    kind: fn(&Scene<'_>) -> Kind,
+    pub keys: &'static [KeyboardShortcut],
+    ask: fn(&Scene<'_>) -> Asked,
+}
+
+impl Entry {
+    /// As it is now.
+    pub fn action(&self, scene: &Scene<'_>) -> Action {
+        Action {
+            id: self.id.into(),
+            name: self.name.into(),
+            group: self.group,
+            kind: (self.kind)(scene),
+            keys: self.keys.to_vec(),
+            while_typing: self.group != Group::Edit && self.keys.iter().all(|key| !is_plain(key)),
+            command: (self.ask)(scene).map_err(Into::into),
+        }
+    }
+}
+
+/// A key that types something.
+fn is_plain(key: &KeyboardShortcut) -> bool {
+    key.modifiers.is_none() && !(Key::F1..=Key::F12).contains(&key.logical_key)
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+const DO: fn(&Scene<'_>) -> Kind = |_| Kind::Do;
+const HOLD: fn(&Scene<'_>) -> Kind = |_| Kind::Hold;
+
+const fn entry(
+    group: Group,
+    id: &'static str,
+    name: &'static str,
+    keys: &'static [KeyboardShortcut],
+    ask: fn(&Scene<'_>) -> Asked,
+) -> Entry {
+    Entry { group, id, name, kind: DO, keys, ask }
+}
+
+const fn choice(
+    group: Group,
+    id: &'static str,
+    name: &'static str,
+    kind: fn(&Scene<'_>) -> Kind,
+    ask: fn(&Scene<'_>) -> Asked,
+) -> Entry {
+    Entry { group, id, name, kind, keys: &[], ask }
+}
+
+const fn hold(id: &'static str, name: &'static str, ask: fn(&Scene<'_>) -> Asked) -> Entry {
+    Entry { group: Group::Flight, id, name, kind: HOLD, keys: &[], ask }
+}
+
+/// All of them, in the order of the menus.
+#[rustfmt::skip]
+pub const ENTRIES: &[Entry] = &[
+    entry(Group::File, "new", "New", &[ctrl(Key::N)], |_| document(DocumentCommand::Replace(Replacement::New))),
+    entry(Group::File, "open", "Open…", &[ctrl(Key::O)], |_| document(DocumentCommand::Replace(Replacement::AskOpen))),
+    entry(Group::File, "save", "Save", &[ctrl(Key::S)], |_| document(DocumentCommand::Save)),
+    entry(Group::File, "save-as", "Save as…", &[ctrl_shift(Key::S)], |_| document(DocumentCommand::AskSaveAs)),
+    entry(Group::File, "take-aboard", "Take the plan aboard", &[], take_aboard),
+    entry(Group::File, "quit", "Quit", &[ctrl(Key::Q)], |_| document(DocumentCommand::Replace(Replacement::Quit))),
+
+    entry(Group::Edit, "undo", "Undo", &[ctrl(Key::Z)], undo),
+    entry(Group::Edit, "redo", "Redo", &[ctrl_shift(Key::Z), ctrl(Key::Y)], redo),
+    entry(Group::Edit, "delete", "Delete the selected legs", &[plain(Key::Delete)], delete),
+    entry(Group::Edit, "earlier", "Move the leg before its neighbour", &[ctrl(Key::ArrowUp)], |scene| shift(scene, -1)),
+    entry(Group::Edit, "later", "Move the leg after its neighbour", &[ctrl(Key::ArrowDown)], |scene| shift(scene, 1)),
+    entry(Group::Edit, "select-nothing", "Select nothing", &[plain(Key::Escape)], |_| view(ViewCommand::Select(None))),
+    entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
+
+    entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
+    choice(Group::View, "follow", "Follow the aircraft", |s| Kind::Switch(s.view.follow), follow),
+    choice(Group::View, "play", "Play the preview", |s| Kind::Switch(s.view.playing), play).with_keys(&[plain(Key::Space)]),
+    entry(Group::Panel, "default-layout", "Default layout", &[], |_| view(ViewCommand::ResetLayout)),
+
+    choice(Group::Units, "units-si", Units::Si.label(), |s| Kind::Choice(s.units() == Units::Si), |_| view(ViewCommand::Units(Units::Si))),
+    choice(Group::Units, "units-aviation", Units::Aviation.label(), |s| Kind::Choice(s.units() == Units::Aviation), |_| view(ViewCommand::Units(Units::Aviation))),
+
+    choice(Group::Theme, "theme-dark", "Dark", |s| theme_is(s, ThemePreference::Dark), |_| view(ViewCommand::Theme(ThemePreference::Dark))),
+    choice(Group::Theme, "theme-light", "Light", |s| theme_is(s, ThemePreference::Light), |_| view(ViewCommand::Theme(ThemePreference::Light))),
+    choice(Group::Theme, "theme-system", "As the system", |s| theme_is(s, ThemePreference::System), |_| view(ViewCommand::Theme(ThemePreference::System))),
+
+    entry(Group::Size, "larger", "Larger", &[ctrl(Key::Plus), ctrl(Key::Equals)], |s| scale(s, 1.0, "It can't be larger")),
+    entry(Group::Size, "smaller", "Smaller", &[ctrl(Key::Minus)], |s| scale(s, -1.0, "It can't be smaller")),
+    entry(Group::Size, "normal-size", "Normal size", &[ctrl(Key::Num0)], |_| view(ViewCommand::Scale(Scale::default()))),
+
+    entry(Group::Flight, "push", "Push the plan to the vehicle", &[], |s| bar::may_push(s).map(|()| Command::Fly(FlyCommand::Propose))),
+    entry(Group::Flight, "hold", "Hold here", &[], |s| flying(s, PlanCommand::Hold)),
+    entry(Group::Flight, "resume", "Resume", &[], resume),
+    hold("start", "Start and take off", start),
+    hold("skip-leg", "Skip the leg", |s| flying(s, PlanCommand::SkipLeg)),
+    hold("emergency", "Emergency: fly the alternate in force", emergency),
+    hold("abort", "Abort: Safe mode flies home", |s| in_the_air(s, PlanCommand::AbortToSafe)),
+    entry(Group::Flight, "leave-safe", "Leave Safe mode", &[], leave_safe),
+    entry(Group::Flight, "disconnect", "Disconnect", &[], disconnect),
+
+    entry(Group::Help, "palette", "All commands…", &[ctrl(Key::K), ctrl_shift(Key::P)], |_| view(ViewCommand::Palette(true))),
+];
+
+impl Entry {
+    const fn with_keys(mut self, keys: &'static [KeyboardShortcut]) -> Self {
+        self.keys = keys;
+        self
+    }
+}
+
+fn document(command: DocumentCommand) -> Asked {
+    Ok(Command::Document(command))
+}
+
+fn view(command: ViewCommand) -> Asked {
+    Ok(Command::View(command))
+}
+
+fn take_aboard(scene: &Scene<'_>) -> Asked {
+    scene.vehicle.aboard.as_ref().ok_or("No plan aboard is known: connect first")?;
+    Ok(Command::Fly(FlyCommand::TakeAboard))
+}
+
+fn undo(scene: &Scene<'_>) -> Asked {
+    if scene.can_undo.0 { document(DocumentCommand::Undo) } else { Err("Nothing was changed yet") }
+}
+
+fn redo(scene: &Scene<'_>) -> Asked {
+    if scene.can_undo.1 { document(DocumentCommand::Redo) } else { Err("Nothing was undone") }
+}
+
+const NO_LEG: &str = "Select a leg first";
+
+fn delete(scene: &Scene<'_>) -> Asked {
+    let legs = scene.selected_legs();
+    if legs.is_empty() {
+        return Err(NO_LEG);
+    }
+    let edits = legs.into_iter().map(|leg| Edit::DeleteLeg { leg });
+    document(DocumentCommand::Edit(Edit::All(edits.collect())))
+}
+
+/// Moves the selected leg among its neighbours.
+fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
+    let Some(Selection::Leg(id)) = &scene.view.selection else { return Err(NO_LEG) };
+    let context = scene.document.plan().leg(id).ok_or(NO_LEG)?;
+    let neighbour = context.index.checked_add_signed(offset).and_then(|i| context.siblings.get(i));
+    let neighbour = neighbour.ok_or("It has no neighbour there")?.id.clone();
+    let at = if offset < 0 { Spot::Before(neighbour) } else { Spot::After(neighbour) };
+    document(DocumentCommand::Edit(Edit::MoveLeg { leg: id.clone(), at }))
+}
+
+fn follow(scene: &Scene<'_>) -> Asked {
+    scene.vehicle.position.as_ref().ok_or("The aircraft's position is not known")?;
+    view(ViewCommand::Follow(!scene.view.follow))
+}
+
+fn play(scene: &Scene<'_>) -> Asked {
+    view(ViewCommand::Play(!scene.view.playing))
+}
+
+fn theme_is(scene: &Scene<'_>, theme: ThemePreference) -> Kind {
+    Kind::Choice(scene.view.theme == theme)
+}
+
+fn scale(scene: &Scene<'_>, tenths: f32, why_not: &'static str) -> Asked {
+    scene.view.scale.larger(tenths).ok_or(why_not).and_then(|scale| view(ViewCommand::Scale(scale)))
+}
+
+fn plan(command: PlanCommand) -> Asked {
+    Ok(Command::Fly(FlyCommand::Plan(command)))
+}
+
+const NOT_FLYING: &str = "No plan is being flown";
+
+fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
+    let flying = matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision);
+    if flying { plan(command) } else { Err(NOT_FLYING) }
+}
+
+fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
+    if scene.vehicle.phase() == Phase::Holding { plan(command) } else { flying(scene, command) }
+}
+
+fn resume(scene: &Scene<'_>) -> Asked {
+    if scene.vehicle.phase() == Phase::Holding { plan(PlanCommand::Resume) } else { Err("Nothing is held") }
+}
+
+fn start(scene: &Scene<'_>) -> Asked {
+    let why_not = "A vehicle on the ground with a plan aboard can be started";
+    if flight::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
+}
+
+fn emergency(scene: &Scene<'_>) -> Asked {
+    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: None })
+}
+
+fn leave_safe(scene: &Scene<'_>) -> Asked {
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
+        Ok(Command::Fly(FlyCommand::Gateway(GatewayRequest::Recover)))
+    } else {
+        Err("The gateway is not in Safe mode")
+    }
+}
+
+fn disconnect(scene: &Scene<'_>) -> Asked {
+    let name = scene.vehicles.shown_name().filter(|_| scene.vehicle.open_link().is_some());
+    let name = name.ok_or("No link is open")?;
+    Ok(Command::Link(LinkCommand::Disconnect(name.clone())))
+}

@@ -1,0 +1,163 @@
+//! The command palette: everything that can be done, found by a few letters.
+
+use super::{Scene, field};
+use crate::actions::{Action, Fittings, Kind, all, fuzzy, places};
+use crate::command::{Queue, ViewCommand};
+use crate::theme;
+use egui::{Align2, Area, Id, Key, Modifiers, Order, RichText, ScrollArea, Ui, vec2};
+
+const WIDTH: f32 = 460.0;
+const ROW_HEIGHT: f32 = 26.0;
+/// So many are shown of what was found.
+const MOST: usize = 100;
+
+/// The palette, and what is typed into it.
+#[derive(Debug, Default)]
+pub struct CommandPalette {
+    query: String,
+    /// The row that Enter takes.
+    current: usize,
+    /// An action that must be held.
+    held: Option<Action>,
+}
+
+impl CommandPalette {
+    /// Draws it, while it is open.
+    pub fn show(&mut self, ui: &Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
+        if !scene.view.palette {
+            *self = Self::default();
+            return;
+        }
+        let window = ui.ctx().content_rect();
+        let area = Area::new(Id::unique("palette")).order(Order::Foreground);
+        let area = area.pivot(Align2::CENTER_TOP).fixed_pos(window.center_top() + vec2(0.0, 52.0));
+        let frame = theme::card(ui).shadow(ui.visuals().popup_shadow);
+        let shown = area.show(ui.ctx(), |ui| {
+            ui.set_width(WIDTH.min(window.width() - 40.0));
+            frame.show(ui, |ui| self.contents(ui, scene, fittings, queue));
+        });
+        let escaped = ui.input(|i| i.key_pressed(Key::Escape));
+        if escaped || shown.response.clicked_elsewhere() {
+            queue.view(ViewCommand::Palette(false));
+        }
+    }
+
+    fn contents(&mut self, ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
+        if let Some(action) = self.held.clone() {
+            hold(ui, &action, queue);
+            return;
+        }
+        let (down, up) = ui.input_mut(|i| {
+            let mut times = |key| i.count_and_consume_key(Modifiers::NONE, key);
+            (times(Key::ArrowDown), times(Key::ArrowUp))
+        });
+        let entered = ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter));
+        let field = egui::TextEdit::singleline(&mut self.query)
+            .id(Id::unique("palette query"))
+            .hint_text("What do you want to do?  A few letters are enough")
+            .desired_width(f32::INFINITY);
+        let typed = ui.add(field);
+        let text = self.query.clone();
+        typed.widget_info(|| {
+            let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search commands");
+            info.current_text_value = Some(text.clone());
+            info
+        });
+        typed.request_focus();
+        if typed.changed() {
+            self.current = 0;
+        }
+        let found = find(&self.query, scene, fittings);
+        self.current = (self.current + down).saturating_sub(up).min(found.len().saturating_sub(1));
+        let clicked = self.rows(ui, &found, up + down > 0 || typed.changed());
+        let chosen = clicked.or(entered.then_some(self.current)).and_then(|i| found.get(i));
+        if let Some(action) = chosen {
+            self.choose(action, queue);
+        }
+    }
+
+    /// Draws what was found, and says which row was clicked.
+    fn rows(&self, ui: &mut Ui, found: &[Action], moved: bool) -> Option<usize> {
+        if found.is_empty() {
+            ui.label("Nothing has these letters. Fewer letters find more.");
+        }
+        let height = (ui.ctx().content_rect().height() - 160.0).clamp(ROW_HEIGHT, 14.0 * ROW_HEIGHT);
+        let mut clicked = None;
+        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            for (i, action) in found.iter().enumerate() {
+                let row = row(ui, action, i == self.current);
+                if i == self.current && moved {
+                    row.scroll_to_me(None);
+                }
+                if row.clicked() {
+                    clicked = Some(i);
+                }
+            }
+        });
+        clicked
+    }
+
+    fn choose(&mut self, action: &Action, queue: &mut Queue) {
+        let Ok(command) = &action.command else { return };
+        if action.kind == Kind::Hold {
+            self.held = Some(action.clone());
+            return;
+        }
+        // first, for what was chosen may open it again
+        queue.view(ViewCommand::Palette(false));
+        queue.push(command.clone());
+    }
+}
+
+/// A dangerous action is not done by Enter alone.
+fn hold(ui: &mut Ui, action: &Action, queue: &mut Queue) {
+    let p = theme::of(ui);
+    ui.label("This can't be taken back. Hold the button, or the space bar on it; Escape leaves it.");
+    if field::hold_button(ui, &action.name, p.warning, ui.available_width())
+        && let Ok(command) = &action.command
+    {
+        queue.view(ViewCommand::Palette(false));
+        queue.push(command.clone());
+    }
+}
+
+/// What answers the query, the best first. The places of the plan are many: they are there when something is typed.
+fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
+    let mut actions = all(scene, fittings);
+    // it is here already
+    actions.retain(|action| action.id != "palette");
+    if query.trim().is_empty() {
+        return actions;
+    }
+    actions.extend(places::of(scene.document.plan()));
+    let score = |action: &Action| fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
+    let mut scored: Vec<(i32, Action)> =
+        actions.into_iter().filter_map(|action| Some((score(&action)?, action))).collect();
+    // what is possible before what is not
+    scored.sort_by_key(|(score, action)| (action.command.is_err(), -score));
+    scored.into_iter().take(MOST).map(|(_, action)| action).collect()
+}
+
+fn row(ui: &mut Ui, action: &Action, current: bool) -> egui::Response {
+    let p = theme::of(ui);
+    let colour = if action.command.is_ok() { p.text } else { p.weak };
+    let on = matches!(action.kind, Kind::Switch(true) | Kind::Choice(true));
+    let mark = if on { " ✔" } else { "" };
+    let text = RichText::new(format!("{}  ▸  {}{mark}", action.group.name(), action.name)).color(colour);
+    let aside = match &action.command {
+        Ok(_) => action.key(ui.ctx()).unwrap_or_default(),
+        Err(why_not) => why_not.to_string(),
+    };
+    let button = egui::Button::new(text)
+        .selected(current)
+        .frame_when_inactive(current)
+        .right_text(RichText::new(&aside).color(p.weak).size(11.5))
+        .truncate()
+        .min_size(vec2(ui.available_width(), ROW_HEIGHT));
+    let response = ui.add(button);
+    let name = format!("{} {}", action.group.name(), action.name);
+    let enabled = action.command.is_ok();
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, current, &name));
+    if aside.is_empty() { response } else { response.on_hover_text(aside) }
+}

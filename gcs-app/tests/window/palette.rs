@@ -1,0 +1,105 @@
+//! The command palette, and the keys: everything that can be done, without the pointer.
+
+use super::vehicle::{place, status};
+use super::{SQUARE, Window};
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use flight_exec::{Command, Phase};
+use gcs_app::link::Call;
+use gcs_app::units::Units;
+
+impl Window {
+    /// Opens the palette and types into it.
+    pub fn ask_for(&mut self, letters: &str) {
+        self.press_ctrl(Key::K);
+        self.harness.get_by_label("Search commands").type_text(letters);
+        self.steps(3);
+    }
+}
+
+#[test]
+fn a_few_letters_and_enter_do_what_they_find() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("aviation");
+    assert!(window.shows("Units Aviation"));
+    window.press(Key::Enter);
+    assert_eq!(window.app().view().units, Units::Aviation);
+    assert!(!window.app().view().palette);
+    window.ask_for("fire and forget");
+    assert!(window.shows("Nothing has these letters"));
+    window.press(Key::Enter);
+    assert!(window.app().view().palette);
+    window.press(Key::Escape);
+    assert!(!window.app().view().palette);
+}
+
+#[test]
+fn arrows_choose_among_what_was_found_and_places_of_the_plan_are_there() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("go to leg side");
+    for _ in 0..2 {
+        window.press(Key::ArrowDown);
+    }
+    window.press(Key::ArrowUp);
+    window.press(Key::Enter);
+    assert_eq!(window.selected(), "side2");
+    // F is for the whole plan, but not while it is typed
+    window.ask_for("tool zone");
+    window.press(Key::Enter);
+    assert!(window.shows("Keep-out zone"), "the tool says what it draws");
+}
+
+#[test]
+fn what_is_not_possible_says_why_and_does_nothing() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("push the plan");
+    let row = window.harness.get_by_label("Flight Push the plan to the vehicle");
+    assert!(egui_kittest::kittest::NodeT::accesskit_node(&row).is_disabled());
+    window.press(Key::Enter);
+    assert!(window.app().view().palette && window.asked().is_none());
+}
+
+#[test]
+fn a_dangerous_command_is_given_by_holding_alone() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.connect();
+    let mut value = status(Phase::Flying);
+    value.plan = Some(window.app().analysis().hash.clone().into());
+    value.place = Some(place("circuit", "side2"));
+    window.receive_position(false);
+    window.receive_status(value);
+    while window.asked().is_some() {}
+    window.ask_for("abort safe");
+    window.press(Key::Enter);
+    assert!(window.asked().is_none(), "nothing was said");
+    window.hold("Abort: Safe mode flies home (hold)", 30);
+    assert!(window.asked().is_none(), "not held long enough");
+    window.hold("Abort: Safe mode flies home (hold)", 70);
+    let Some((_, Call::Plan(command))) = window.asked() else { panic!("no command") };
+    assert_eq!(command, Command::AbortToSafe);
+}
+
+#[test]
+fn keys_change_the_size_and_a_key_of_the_palette_is_shown() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    for _ in 0..3 {
+        window.press_ctrl(Key::Plus);
+    }
+    assert!((window.app().view().scale.get() - 1.3).abs() < 1e-6);
+    assert!((window.harness.ctx.zoom_factor() - 1.3).abs() < 1e-6);
+    window.press_ctrl(Key::Minus);
+    assert!((window.app().view().scale.get() - 1.2).abs() < 1e-6);
+    window.press_ctrl(Key::Num0);
+    for _ in 0..5 {
+        window.press_ctrl(Key::Minus);
+    }
+    assert!((window.app().view().scale.get() - 0.8).abs() < 1e-6, "no smaller");
+    window.harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::P);
+    window.steps(3);
+    assert!(window.app().view().palette);
+}
