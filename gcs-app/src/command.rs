@@ -6,8 +6,9 @@ use crate::panels::PanelId;
 use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
+use flight_exec::rehearse::WhatIf;
 use flight_plan::template::Outline;
-use flight_plan::{Edit, Id};
+use flight_plan::{Cause, Edit, Id};
 use geometry::LatLon;
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
@@ -128,6 +129,14 @@ pub enum ViewCommand {
     Scrub(Option<f64>),
     /// Run the preview's cursor, or stop it.
     Play(bool),
+    /// The preview's cursor runs so many times as fast as the flight.
+    Speed(f64),
+    /// The world that the preview is flown in.
+    WhatIf(Box<WhatIf>),
+    /// Raise an alarm at the preview's cursor, or none.
+    Raise(Option<Cause>),
+    /// Show how alarms would end all along the path.
+    Coverage(bool),
     /// Show a message.
     Notice(String),
     /// Take a message away.

@@ -3,16 +3,40 @@
 //! The worker checks, compiles, previews, hashes and reviews the newest plan on threads of its own; from edit to edit only what has
 //! changed, and a newer plan always wins.
 
+mod bench;
+mod coverage;
 mod preview;
+mod reviewer;
 mod worker;
 
+pub use coverage::Coverage;
 pub use worker::{Analysis, Question, Worker};
 
+use flight_exec::rehearse::WhatIf;
 use flight_exec::{PlacePointer, Waypoint};
-use flight_plan::Id;
 use flight_plan::create::Approach;
+use flight_plan::{Cause, Id};
 use geometry::LatLon;
 use std::sync::Arc;
+
+/// An alarm that is raised in a preview.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alarm {
+    /// Seconds since the start.
+    pub time_s: f64,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// A forecast and the world that it is for.
+#[derive(Debug, Clone)]
+struct Flown {
+    /// The last one that could be made.
+    forecast: Shared,
+    forecast_version: u64,
+    no_forecast: Option<String>,
+    what_if: WhatIf,
+}
 
 /// A point of the path that will be flown.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +116,11 @@ impl Forecast {
         let from = at(index)?;
         let before = index.checked_sub(1).and_then(at).filter(|before| before.distance_m(from) > 0.5);
         Some(Approach { from, course_deg: before.map(|before| before.inverse(from).bearing_end_deg) })
+    }
+    /// The point of the path that is nearest on the screen to a place, as its index; `far` measures.
+    pub fn nearest_index(&self, far: impl Fn(&Point) -> f32, reach: f32) -> Option<usize> {
+        let all = self.points.iter().map(far).enumerate();
+        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).filter(|(_, far)| *far < reach).map(|(index, _)| index)
     }
     /// Points of the passages of a leg, part by part.
     pub fn passages_of<'a>(&'a self, leg: &'a Id) -> impl Iterator<Item = &'a [Point]> {

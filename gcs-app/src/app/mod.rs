@@ -239,7 +239,18 @@ impl App {
         if self.analysis.document != document {
             self.analysis = Analysis::default();
         }
-        self.worker.ask(Question { document, version, plan: self.document.plan().clone() });
+        self.worker.ask(Question {
+            document,
+            version,
+            plan: self.document.plan().clone(),
+            what_if: self.view.what_if.clone(),
+            alarm: self.view.alarm_at_cursor(),
+            coverage: self.view.coverage,
+        });
+        self.view.behind_since_s = match self.scene(Now::read(ctx)).is_behind() {
+            true => self.view.behind_since_s.or(Some(now_s)),
+            false => None,
+        };
         while let Some(event) = self.files.next_event() {
             self.file_event(event);
         }
@@ -330,13 +341,12 @@ impl App {
         }
     }
 
-    /// The cursor runs thirty times as fast as the flight.
+    /// The cursor runs so many times as fast as the flight.
     fn play(&mut self, ctx: &egui::Context) {
-        const SPEED: f64 = 30.0;
         if !self.view.playing {
             return;
         }
-        let step = f64::from(ctx.input(|i| i.stable_dt)).min(0.1) * SPEED;
+        let step = f64::from(ctx.input(|i| i.stable_dt)).min(0.1) * self.view.speed.0;
         let end = self.analysis.forecast.duration_s();
         let next = self.view.cursor_s.unwrap_or(0.0) + step;
         self.view.cursor_s = Some(next.min(end));

@@ -7,6 +7,7 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
+use crate::panels::Speed;
 use crate::panels::bar::PUSH;
 use crate::state::{Proposal, VehicleName};
 use aircraft::Profile;
@@ -188,6 +189,16 @@ impl App {
                 self.view.cursor_s = cursor_s;
                 self.view.playing = false;
             }
+            ViewCommand::Speed(speed) => self.view.speed = Speed(speed),
+            ViewCommand::WhatIf(what_if) => self.view.what_if = *what_if,
+            ViewCommand::Raise(cause) => {
+                self.view.alarm = cause;
+                if cause.is_some() {
+                    let middle_s = self.analysis.forecast.duration_s() / 2.0;
+                    self.view.cursor_s.get_or_insert(middle_s);
+                }
+            }
+            ViewCommand::Coverage(shown) => self.view.coverage = shown,
             ViewCommand::Play(playing) => {
                 self.view.playing = playing;
                 if self.view.cursor_s.is_some_and(|c| c >= self.analysis.forecast.duration_s()) {

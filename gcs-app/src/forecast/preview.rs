@@ -1,37 +1,82 @@
 //! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
-use super::{Forecast, Passage, Point, Shared};
-use aircraft::{Profile, Wind};
-use flight_exec::rehearse::{Kept, Options, Preview, PreviewError, Rehearsal, Start};
-use flight_plan::{FlightPlan, Program};
+use super::{Alarm, Forecast, Passage, Point, Shared};
+use aircraft::{Profile, Wind, Winds};
+use flight_exec::rehearse::{
+    Diversion, Kept, Options, Preview, PreviewError, Reach, Rehearsal, Start, WhatIf,
+};
+use flight_exec::review::Margins;
+use flight_plan::{Cause, FlightPlan, Id, Program};
 use geometry::LocalFrame;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use terrain::Terrain;
 
 /// Most points of a forecast: a longer flight is given in coarser steps.
 const MAX_POINTS: f64 = 60_000.0;
 
-/// Flies plan after plan ahead of time, in calm air.
+/// Flies plan after plan ahead of time.
 pub struct Forecaster {
     rehearsal: Rehearsal,
+    profile: Profile,
+    world: World,
     terrain: Arc<dyn Terrain>,
     /// What came out last.
     last: Shared,
 }
 
+/// What the flights of a rehearsal have in common besides the aircraft.
+#[derive(Debug, Clone, PartialEq)]
+struct World {
+    winds: Winds,
+    energy_share: f64,
+    decisions: BTreeMap<Id, Id>,
+}
+
+impl World {
+    fn of(what_if: &WhatIf, plan: &FlightPlan) -> Self {
+        Self {
+            winds: what_if.winds(plan),
+            energy_share: what_if.energy_share,
+            decisions: what_if.decisions.clone(),
+        }
+    }
+}
+
 impl Forecaster {
     /// For an aircraft, over a ground.
     pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
-        let options = Options::default();
-        let track_every_s = (options.most_s / MAX_POINTS).max(options.track_every_s);
-        let options = Options { track_every_s, ..options };
-        let rehearsal = Rehearsal::new(profile, terrain.clone(), Wind::default(), options);
-        Self { rehearsal, terrain, last: Shared::default() }
+        let world = World { winds: Wind::CALM.into(), energy_share: 1.0, decisions: BTreeMap::new() };
+        let rehearsal = Rehearsal::new(profile.clone(), terrain.clone(), world.winds, options());
+        Self { rehearsal, profile, world, terrain, last: Shared::default() }
     }
 
-    /// Flies a plan. The sentence says why it can't be flown at all; one that ends too early is flown until then.
-    pub fn fly(&mut self, program: &Arc<Program>) -> Result<Shared, String> {
+    /// What would become of the last flight after an alarm.
+    pub fn divert(&self, alarm: Alarm) -> Option<Diversion> {
+        self.rehearsal.divert(alarm.time_s, alarm.cause)
+    }
+
+    /// How the worst alarm would end at a time of the last flight.
+    pub fn worst(&self, time_s: f64) -> Option<(Reach, Cause)> {
+        let Margins { glide_m, energy_share, .. } = Margins::default();
+        self.rehearsal.worst(time_s, glide_m, energy_share)
+    }
+
+    /// From now on in this world.
+    fn enter(&mut self, what_if: &WhatIf, plan: &FlightPlan) {
+        let world = World::of(what_if, plan);
+        if self.world != world {
+            let options = what_if.options(options());
+            let rehearsal = Rehearsal::new(self.profile.clone(), self.terrain.clone(), world.winds, options);
+            self.rehearsal = rehearsal.with(what_if.scenario());
+            self.world = world;
+        }
+    }
+
+    /// Flies a plan, which has the values of this world already. The sentence says why it can't be flown at all; one that ends too early is flown until then.
+    pub fn fly(&mut self, program: &Arc<Program>, what_if: &WhatIf) -> Result<Shared, String> {
         let plan = &program.plan;
+        self.enter(what_if, plan);
         if plan.stages.is_empty() {
             return Err("Nothing to be flown yet: add stages and legs to the plan.".into());
         }
@@ -50,6 +95,12 @@ impl Forecaster {
         });
         Ok(self.last.clone())
     }
+}
+
+fn options() -> Options {
+    let options = Options::default();
+    let track_every_s = (options.most_s / MAX_POINTS).max(options.track_every_s);
+    Options { track_every_s, ..options }
 }
 
 fn cut_short(preview: &Preview, outcome: Result<(), PreviewError>) -> Option<String> {
@@ -131,12 +182,14 @@ mod tests {
             |plan: &FlightPlan| Arc::new(compile(plan.clone(), &profile, terrain.as_ref()).unwrap());
         let mut plan = flight_plan::read(include_bytes!("../../../assets/plans/fire-watch.xml")).plan;
         let mut forecaster = Forecaster::new(profile.clone(), terrain.clone());
-        forecaster.fly(&program(&plan)).unwrap();
+        forecaster.fly(&program(&plan), &WhatIf::default()).unwrap();
         for (fix, degrees) in [("RIDGE2", 10.0), ("CLIMB", 200.0), ("RIDGE2", 300.0)] {
             let to = plan.fix(&fix.into()).unwrap().position.destination(degrees, 60.0);
             plan = Edit::MoveFix { fix: fix.into(), to }.apply(&plan).unwrap();
-            let kept = forecaster.fly(&program(&plan)).unwrap();
-            let fresh = Forecaster::new(profile.clone(), terrain.clone()).fly(&program(&plan)).unwrap();
+            let kept = forecaster.fly(&program(&plan), &WhatIf::default()).unwrap();
+            let fresh = Forecaster::new(profile.clone(), terrain.clone())
+                .fly(&program(&plan), &WhatIf::default())
+                .unwrap();
             assert_eq!(kept.points.len(), fresh.points.len());
             for (a, b) in kept.points.iter().zip(&fresh.points) {
                 // one is a sum over all of the way, the other over its parts
@@ -153,7 +206,7 @@ mod tests {
         let plan = flight_plan::read(include_bytes!("../../../assets/plans/square.xml")).plan;
         let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
         let Ok(program) = compile(plan, &Profile::default(), terrain.as_ref()) else { return };
-        let forecast = Forecaster::new(profile, terrain).fly(&Arc::new(program)).unwrap();
+        let forecast = Forecaster::new(profile, terrain).fly(&Arc::new(program), &WhatIf::default()).unwrap();
         assert!(forecast.duration_s() > 60.0);
         assert!(forecast.cut_short.as_ref().unwrap().contains("energy"));
     }

@@ -1,20 +1,20 @@
-//! The worker: newest plan in, analysis out.
+//! The worker: newest question in, analysis out.
 //!
-//! Two threads: one checks, compiles and previews, and keeps from plan to plan what the next edit doesn't reach, so that a
-//! plan can be dragged about; the other reviews the path of a plan that was left alone, which takes longer.
+//! Two threads. The bench (`bench.rs`) checks, compiles and previews, and keeps from plan to plan what the next edit doesn't reach, so
+//! that a plan can be dragged about; what takes longer and can wait follows. The reviewer (`reviewer.rs`) judges the path of a
+//! plan that was left alone.
 
-use super::Shared;
-use super::preview::Forecaster;
-use aircraft::Profile;
-use flight_exec::review::{Conditions, review, review_extremes};
-use flight_plan::{FlightPlan, IncrementalCache, Problem, Program};
+use super::bench::Bench;
+use super::reviewer::Reviewer;
+use super::{Alarm, Coverage, Flown, Shared};
+use flight_exec::rehearse::{Diversion, WhatIf};
+use flight_plan::{FlightPlan, Problem};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use terrain::Terrain;
 
 /// A plan to be analysed.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// Which document it is of.
     pub document: u64,
@@ -22,6 +22,20 @@ pub struct Question {
     pub version: u64,
     /// The plan.
     pub plan: Arc<FlightPlan>,
+    /// The world that it is flown in.
+    pub what_if: WhatIf,
+    /// What would happen then?
+    pub alarm: Option<Alarm>,
+    /// How would alarms all along the path end?
+    pub coverage: bool,
+}
+
+impl Question {
+    /// The same question, without looking into the plan.
+    fn is(&self, other: &Self) -> bool {
+        let what = |q: &Self| (q.document, q.version, q.alarm, q.coverage);
+        what(self) == what(other) && self.what_if == other.what_if
+    }
 }
 
 /// What was found out about a version of the plan.
@@ -33,7 +47,7 @@ pub struct Analysis {
     pub version: u64,
     /// The plan's hash; empty until it is known.
     pub hash: String,
-    /// What the checks found, and the review of the path if it was made.
+    /// What the checks found, and the review of the path if it was made. The review is made in calm air, whatever the forecast is.
     pub problems: Vec<Problem>,
     /// The path was reviewed, or there is none.
     pub reviewed: bool,
@@ -43,6 +57,14 @@ pub struct Analysis {
     pub forecast_version: u64,
     /// Why there is no forecast of this version.
     pub no_forecast: Option<String>,
+    /// The world of the forecast.
+    pub what_if: WhatIf,
+    /// What the review of the forecast finds in a world that is not the standard one, with the forecast it belongs to.
+    pub what_if_problems: Option<(u64, Vec<Problem>)>,
+    /// What would happen after the last alarm, with the forecast it belongs to.
+    pub diversion: Option<(u64, Arc<Diversion>)>,
+    /// How alarms along the path end, with the forecast it belongs to.
+    pub coverage: Option<(u64, Arc<Coverage>)>,
 }
 
 impl Analysis {
@@ -58,24 +80,74 @@ impl Analysis {
             None => "Nothing to be flown yet: add stages and legs to the plan.".into(),
         }
     }
+    /// What would happen after the last alarm, if that belongs to the present forecast.
+    pub fn diversion(&self) -> Option<&Diversion> {
+        let (of, diversion) = self.diversion.as_ref()?;
+        (*of == self.forecast_version).then_some(diversion)
+    }
+    /// How alarms along the path end, as far as is known of the present forecast.
+    pub fn coverage(&self) -> Option<&Coverage> {
+        let (of, coverage) = self.coverage.as_ref()?;
+        (*of == self.forecast_version).then_some(coverage)
+    }
+    /// What the review finds in the world of the present forecast, if that is not the standard one.
+    pub fn what_if_problems(&self) -> Option<&[Problem]> {
+        let (of, problems) = self.what_if_problems.as_ref()?;
+        (*of == self.forecast_version).then_some(problems)
+    }
+
+    fn take_forecast(&mut self, flown: Flown) {
+        self.forecast = flown.forecast;
+        self.forecast_version = flown.forecast_version;
+        self.no_forecast = flown.no_forecast;
+        self.what_if = flown.what_if;
+    }
+
+    /// A newer version; what belongs to the former forecast is kept until it is known anew.
+    fn succeed(&mut self, newer: Self) {
+        let former = std::mem::replace(self, newer);
+        if former.document == self.document {
+            self.diversion = former.diversion;
+            self.coverage = former.coverage;
+            self.what_if_problems = former.what_if_problems;
+        }
+    }
+
+    fn take(&mut self, found: Found) {
+        match found {
+            Found::Analysis(analysis) => self.succeed(analysis),
+            Found::Forecast(version, flown) if version == self.version => self.take_forecast(flown),
+            Found::Hash(version, hash) if version == self.version => self.hash = hash,
+            Found::Problems(version, problems) if version == self.version => {
+                self.problems.extend(problems);
+                self.reviewed = true;
+            }
+            Found::WhatIfProblems(forecast, problems) => self.what_if_problems = Some((forecast, problems)),
+            Found::Diversion(forecast, diversion) => {
+                self.diversion = diversion.map(|diversion| (forecast, Arc::new(diversion)));
+            }
+            Found::Coverage(forecast, coverage) => self.coverage = Some((forecast, Arc::new(coverage))),
+            // of a version that is history
+            Found::Forecast(..) | Found::Hash(..) | Found::Problems(..) => {}
+        }
+    }
 }
 
-/// The plan has to be left alone for so long before its path is reviewed.
-const REST: Duration = Duration::from_millis(80);
-
 /// What the threads find out.
-enum Found {
+pub(super) enum Found {
     Analysis(Analysis),
+    /// Of this version, in another world.
+    Forecast(u64, Flown),
     /// Of this version.
     Hash(u64, String),
     /// Of the path of this version.
     Problems(u64, Vec<Problem>),
-}
-
-/// A path to be reviewed.
-struct Path {
-    version: u64,
-    program: Arc<Program>,
+    /// Of this forecast.
+    WhatIfProblems(u64, Vec<Problem>),
+    /// From this forecast.
+    Diversion(u64, Option<Diversion>),
+    /// Of this forecast.
+    Coverage(u64, Coverage),
 }
 
 /// The window's end of the worker. Dropping it ends the worker.
@@ -83,7 +155,7 @@ struct Path {
 pub struct Worker {
     questions: Sender<Question>,
     answers: Receiver<Found>,
-    asked: u64,
+    asked: Option<Question>,
     known: Analysis,
 }
 
@@ -94,17 +166,17 @@ impl Worker {
         let (outbox, answers) = channel();
         let (paths, to_review) = channel();
         let (reviewer, ground) = (Outbox { found: outbox.clone(), wake: wake.clone() }, terrain.clone());
-        let review = move || review_paths(&to_review, &reviewer, &ground);
+        let review = move || Reviewer::new(ground).work(&to_review, &reviewer);
         std::thread::Builder::new().name("review".into()).spawn(review)?;
         let work = move || Bench::new(terrain).work(&inbox, &Outbox { found: outbox, wake }, &paths);
         std::thread::Builder::new().name("forecast".into()).spawn(work)?;
-        Ok(Self { questions, answers, asked: 0, known: Analysis::default() })
+        Ok(Self { questions, answers, asked: None, known: Analysis::default() })
     }
 
     /// Asks about a plan, unless that was the last thing asked.
     pub fn ask(&mut self, question: Question) {
-        if question.version != self.asked {
-            self.asked = question.version;
+        if self.asked.as_ref().is_none_or(|asked| !asked.is(&question)) {
+            self.asked = Some(question.clone());
             // a worker that died has said so in its own words
             let _ = self.questions.send(question);
         }
@@ -115,150 +187,23 @@ impl Worker {
         let mut changed = false;
         while let Ok(found) = self.answers.try_recv() {
             changed = true;
-            match found {
-                Found::Analysis(analysis) => self.known = analysis,
-                Found::Hash(version, hash) if version == self.known.version => self.known.hash = hash,
-                Found::Problems(version, problems) if version == self.known.version => {
-                    self.known.problems.extend(problems);
-                    self.known.reviewed = true;
-                }
-                // of a version that is history
-                Found::Hash(..) | Found::Problems(..) => {}
-            }
+            self.known.take(found);
         }
         changed.then(|| self.known.clone())
     }
 }
 
 /// Where answers go.
-struct Outbox {
+pub(super) struct Outbox {
     found: Sender<Found>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
 
 impl Outbox {
     /// False: nobody listens any more.
-    fn send(&self, found: Found) -> bool {
+    pub fn send(&self, found: Found) -> bool {
         let told = self.found.send(found).is_ok();
         (self.wake)();
         told
-    }
-}
-
-/// What the forecasting thread keeps from plan to plan.
-struct Bench {
-    terrain: Arc<dyn Terrain>,
-    /// For which aircraft.
-    aircraft: Option<String>,
-    memory: IncrementalCache,
-    forecaster: Forecaster,
-    /// The last forecast, and of which document.
-    last: Shared,
-    document: u64,
-}
-
-impl Bench {
-    fn new(terrain: Arc<dyn Terrain>) -> Self {
-        let profile = Profile::default();
-        Self {
-            memory: IncrementalCache::new(profile.clone(), terrain.clone()),
-            forecaster: Forecaster::new(profile, terrain.clone()),
-            terrain,
-            aircraft: None,
-            last: Shared::default(),
-            document: 0,
-        }
-    }
-
-    /// Answers the newest question. What takes long, and is of no use while the plan is being changed, comes later: its hash,
-    /// and what there is to be said about its path.
-    fn work(mut self, inbox: &Receiver<Question>, outbox: &Outbox, paths: &Sender<Path>) {
-        let mut next = inbox.recv().ok();
-        while let Some(question) = next.take() {
-            let question = inbox.try_iter().last().unwrap_or(question);
-            let (analysis, program) = self.analyse(&question);
-            if !outbox.send(Found::Analysis(analysis)) {
-                return;
-            }
-            next = inbox.try_recv().ok();
-            if next.is_none() {
-                let hash = program
-                    .as_ref()
-                    .map_or_else(|| flight_plan::hash(&question.plan), |p| p.hash().to_string());
-                outbox.send(Found::Hash(question.version, hash));
-                next = match inbox.recv_timeout(REST) {
-                    Ok(newer) => Some(newer),
-                    Err(RecvTimeoutError::Disconnected) => return,
-                    Err(RecvTimeoutError::Timeout) => {
-                        let path = program.map(|program| Path { version: question.version, program });
-                        // without a reviewer the path stays unreviewed, which is shown
-                        path.into_iter().for_each(|path| drop(paths.send(path)));
-                        inbox.recv().ok()
-                    }
-                };
-            }
-        }
-    }
-
-    /// Everything but the hash and the review of the path, and the program if the plan can be flown.
-    fn analyse(&mut self, question: &Question) -> (Analysis, Option<Arc<Program>>) {
-        let plan = &question.plan;
-        if self.document != question.document {
-            // what another document would do is nothing to be seen under this one
-            (self.document, self.last) = (question.document, Shared::default());
-        }
-        if self.aircraft.as_ref() != Some(&plan.aircraft) {
-            let profile = profile_of(plan);
-            self.memory = IncrementalCache::new(profile.clone(), self.terrain.clone());
-            self.forecaster = Forecaster::new(profile, self.terrain.clone());
-            self.aircraft = Some(plan.aircraft.clone());
-        }
-        let (program, problems) = match flight_plan::compile_again(plan.clone(), &mut self.memory) {
-            Ok(program) => (Some(Arc::new(program)), None),
-            Err(problems) => (None, Some(problems)),
-        };
-        let problems = problems.or_else(|| program.as_ref().map(|p| p.warnings.clone())).unwrap_or_default();
-        let flown = match &program {
-            Some(program) => self.forecaster.fly(program),
-            None => Err("This plan can't be flown yet: see its problems.".into()),
-        };
-        let no_forecast = flown.map(|forecast| self.last = forecast).err();
-        let version = question.version;
-        let analysis = Analysis {
-            document: question.document,
-            version,
-            hash: String::new(),
-            problems,
-            reviewed: program.is_none(),
-            forecast: self.last.clone(),
-            forecast_version: version,
-            no_forecast,
-        };
-        (analysis, program)
-    }
-}
-
-fn profile_of(plan: &FlightPlan) -> Profile {
-    Profile::by_name(&plan.aircraft).unwrap_or_default()
-}
-
-/// Looks at the path of the newest plan that was left alone, then at the extremes of its variables; the others can wait for ever.
-fn review_paths(paths: &Receiver<Path>, outbox: &Outbox, terrain: &Arc<dyn Terrain>) {
-    let mut next = paths.recv().ok();
-    while let Some(path) = next.take() {
-        let Path { version, program } = paths.try_iter().last().unwrap_or(path);
-        let (profile, conditions) = (profile_of(&program.plan), Conditions::default());
-        let found = review(&program, &profile, terrain, conditions);
-        if !outbox.send(Found::Problems(version, found.clone())) {
-            return;
-        }
-        let more = review_extremes(&program, &profile, terrain, conditions, &found, &mut |_, _| {
-            next = paths.try_recv().ok();
-            next.is_none()
-        });
-        if !more.is_empty() && !outbox.send(Found::Problems(version, more)) {
-            return;
-        }
-        next = next.or_else(|| paths.recv().ok());
     }
 }

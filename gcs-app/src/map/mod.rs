@@ -3,9 +3,12 @@
 
 pub mod aircraft;
 pub mod basemap;
+mod chips;
 mod clipboard;
+pub mod coverage;
 pub mod furniture;
 pub mod hillshade;
+pub mod marks;
 mod menu;
 pub mod navigate;
 pub mod path;
@@ -176,6 +179,11 @@ impl MapState {
         aircraft::draw_ahead(&painter, view, scene, p);
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);
+        marks::draw_diversion(&painter, view, scene, p);
+        let error_at =
+            marks::selection_of_error(scene).and_then(|s| self.place_of(&s, scene.document.plan()));
+        marks::draw_failures(&painter, view, scene, error_at, p);
+        path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
         let asked = self.tools.run(ui, response, &canvas, queue, p);
@@ -185,6 +193,7 @@ impl MapState {
         start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);
         furniture::draw(&painter, view, scene, p);
+        chips::show(ui, view, scene, queue);
     }
 
     /// Places the plan anew, when it or the variables aboard have changed.

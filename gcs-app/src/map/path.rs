@@ -4,10 +4,11 @@ use super::polyline::{self, Cached, Style};
 use super::sketch::Sketch;
 use super::text;
 use super::view::{Mercator, View};
-use crate::command::Selection;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
 use flight_plan::Id;
 
 /// The layer; keeps the decimated line until view or forecast change.
@@ -27,14 +28,23 @@ impl Layer {
         let forecast = scene.forecast();
         let (_, standing) = bar::plan_state(scene);
         if forecast.points.is_empty() {
-            return draft(painter, view, sketch, p);
+            return draft(painter, view, sketch, colour(scene, p), p);
         }
         let line = || forecast.points.iter().map(|point| point.position.into()).collect();
         let parts = self.line.parts(line, scene.analysis.forecast_version, view);
         // a draft that differs from what is aboard is dashed
         let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
         let style = if is_draft { Style::Dashed } else { Style::Solid };
-        polyline::draw(painter, parts, Stroke::new(2.0, p.accent), style, p.halo);
+        match scene.analysis.coverage().filter(|_| scene.view.coverage) {
+            Some(known) if scene.out_of_date().is_none() => {
+                for (reach, part) in coverage::parts(&forecast.points, known) {
+                    let line: Vec<Mercator> = part.iter().map(|q| q.position.into()).collect();
+                    let (stroke, style) = coverage::look(reach, p);
+                    polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
+                }
+            }
+            _ => polyline::draw(painter, parts, Stroke::new(2.0, colour(scene, p)), style, p.halo),
+        }
         highlight_selection(painter, view, scene, p);
         if view.points_per_metre() > WAYPOINTS_FROM {
             waypoints(painter, view, scene, p);
@@ -42,10 +52,15 @@ impl Layer {
     }
 }
 
-fn draft(painter: &Painter, view: &View, sketch: &Sketch, p: &Palette) {
+/// Grey, when it is out of date.
+fn colour(scene: &Scene<'_>, p: &Palette) -> Color32 {
+    if scene.out_of_date().is_some() { p.weak } else { p.accent }
+}
+
+fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &Palette) {
     let line: Vec<Mercator> = sketch.main.iter().flatten().map(|at| (*at).into()).collect();
     let parts = polyline::visible_parts(&line, view);
-    polyline::draw(painter, &parts, Stroke::new(2.0, p.accent), Style::Dashed, p.halo);
+    polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
 }
 
 fn highlight_selection(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
@@ -112,6 +127,21 @@ pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palett
     for d in [vec2(0.0, 1.0), vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(-1.0, 0.0)] {
         painter.add(Shape::line_segment([at + d * 7.0, at + d * 12.0], Stroke::new(2.0, p.text)));
     }
+}
+
+/// While an alarm is raised, a click on the path puts the cursor there.
+pub fn move_cursor(response: &egui::Response, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
+    let at = response.interact_pointer_pos().filter(|_| scene.view.alarm.is_some() && response.clicked());
+    let near = at.and_then(|at| point_near(at, view, scene));
+    if let Some(point) = near.and_then(|index| scene.forecast().points.get(index)) {
+        queue.view(ViewCommand::Scrub(Some(point.time_s)));
+    }
+}
+
+/// The index of the point of the path under the pointer.
+fn point_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<usize> {
+    const REACH: f32 = 9.0;
+    scene.forecast().nearest_index(|point| view.place(point.position).distance(at), REACH)
 }
 
 /// The legs whose path is under the pointer, the nearest first.

@@ -25,12 +25,13 @@ pub mod table;
 pub mod timeline;
 pub mod tree;
 pub mod unsaved;
+pub mod what_if;
 
 use crate::command::{Queue, Replacement, Selection};
 use crate::connections::Connections;
 use crate::document::Document;
 use crate::files::Stamp;
-use crate::forecast::{Analysis, Forecast};
+use crate::forecast::{Alarm, Analysis, Forecast};
 use crate::guide::Guide;
 use crate::recent::Recent;
 use crate::recovery::LeftBehind;
@@ -39,7 +40,8 @@ use crate::theme;
 use crate::units::{self, Units};
 use browse::Browsing;
 use egui::{RichText, Ui};
-use flight_plan::{FlightPlan, Id, Problem};
+use flight_exec::rehearse::WhatIf;
+use flight_plan::{Cause, FlightPlan, Id, Problem};
 use std::collections::BTreeSet;
 use terrain::Terrain;
 
@@ -55,6 +57,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(flight::Flight),
         Box::new(profile::Profile::default()),
         Box::new(table::Table),
+        Box::new(what_if::WhatIfPanel),
         Box::new(log::EventLog),
         Box::new(services::Services),
     ]
@@ -105,6 +108,19 @@ pub enum Place {
     Below,
 }
 
+/// How many times as fast as the flight the preview's cursor runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Speed(pub f64);
+
+impl Default for Speed {
+    fn default() -> Self {
+        Self(30.0)
+    }
+}
+
+/// What is out of date for so long is shown as that, seconds: less is a flicker.
+const OUT_OF_DATE_AFTER_S: f64 = 0.3;
+
 /// What the operator looks at.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ViewState {
@@ -128,6 +144,16 @@ pub struct ViewState {
     pub cursor_s: Option<f64>,
     /// The cursor runs by itself.
     pub playing: bool,
+    /// So fast.
+    pub speed: Speed,
+    /// The world that the preview is flown in.
+    pub what_if: WhatIf,
+    /// An alarm that is raised at the cursor.
+    pub alarm: Option<Cause>,
+    /// The path shows how alarms would end.
+    pub coverage: bool,
+    /// Since when what is shown is not what was asked for, seconds on the window's clock.
+    pub behind_since_s: Option<f64>,
     /// What was answered of a new plan.
     pub guide: Guide,
     /// What would replace a plan with unsaved changes, until the operator has decided.
@@ -141,6 +167,10 @@ pub struct ViewState {
 }
 
 impl ViewState {
+    /// The alarm that is raised, with its time.
+    pub fn alarm_at_cursor(&self) -> Option<Alarm> {
+        Some(Alarm { time_s: self.cursor_s?, cause: self.alarm? })
+    }
     /// Selects this, and nothing else.
     pub fn select(&mut self, selection: Option<Selection>) {
         self.selection = selection;
@@ -224,6 +254,21 @@ impl<'a> Scene<'a> {
     /// What will be flown.
     pub fn forecast(&self) -> &'a Forecast {
         &self.analysis.forecast
+    }
+    /// What is known is of another version of the plan, or of another world, than the present one.
+    pub fn is_behind(&self) -> bool {
+        self.analysis.version != self.document.version() || self.analysis.what_if != self.view.what_if
+    }
+    /// Why the path that is drawn is not that of the present plan.
+    pub fn out_of_date(&self) -> Option<&'static str> {
+        let since_s = self.view.behind_since_s.map_or(0.0, |since_s| self.now_s - since_s);
+        let drawn = !self.forecast().points.is_empty();
+        match &self.analysis.no_forecast {
+            Some(_) if drawn => Some("Out of date: the last path that could be flown. The plan has errors"),
+            Some(_) if !self.document.plan().stages.is_empty() => Some("A draft: the plan has errors"),
+            None if drawn && since_s > OUT_OF_DATE_AFTER_S => Some("Out of date: being computed…"),
+            _ => None,
+        }
     }
     /// What is wrong with the plan: first what reading it found, then what checking it found.
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {

@@ -3,6 +3,7 @@
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, ViewCommand};
 use crate::forecast::{Forecast, Passage, Point};
+use crate::map::coverage;
 use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
@@ -224,8 +225,20 @@ fn draw_ground(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette)
 
 fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let forecast = scene.forecast();
-    let path: Vec<Pos2> = thinned(axes, forecast).map(|point| axes.place(point)).collect();
-    painter.add(Shape::line(path, Stroke::new(1.8, p.accent)));
+    match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
+        Some(known) => {
+            for (reach, part) in coverage::parts(&forecast.points, known) {
+                let path: Vec<Pos2> = part.iter().map(|point| axes.place(point)).collect();
+                coverage::line(painter, &path, coverage::look(reach, p));
+            }
+        }
+        None => {
+            let path: Vec<Pos2> = thinned(axes, forecast).map(|point| axes.place(point)).collect();
+            let colour = if scene.out_of_date().is_some() { p.weak } else { p.accent };
+            painter.add(Shape::line(path, Stroke::new(1.8, colour)));
+        }
+    }
+    draw_diversion(painter, axes, scene, p);
     let highlighted = |leg: &flight_plan::Id, colour: Color32| {
         for part in forecast.passages_of(leg) {
             painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), Stroke::new(2.6, colour)));
@@ -238,6 +251,21 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
         highlighted(leg, p.active);
     }
     draw_aircraft(painter, axes, scene, p);
+}
+
+/// The way out after the alarm: it goes on beyond the end of the flight, if need be.
+fn draw_diversion(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let Some(found) = scene.analysis.diversion().filter(|_| scene.view.alarm.is_some()) else { return };
+    let at = |time_s: f64, altitude_amsl_m: f64| pos2(axes.x(time_s), axes.y(altitude_amsl_m));
+    let powered = found.powered.iter().flat_map(|f| &f.track).map(|q| at(q.time_s, q.altitude_amsl_m));
+    let glide = found.glide.iter().flat_map(|g| &g.path);
+    let glide = glide.map(|q| at(found.time_s + q.time_s, q.altitude_amsl_m));
+    let (powered, glide): (Vec<Pos2>, Vec<Pos2>) = (powered.collect(), glide.collect());
+    let engine = found.cause == flight_plan::Cause::Engine;
+    let (chosen, other) = if engine { (glide, powered) } else { (powered, glide) };
+    for (path, stroke) in [(other, Stroke::new(1.2, p.weak)), (chosen, Stroke::new(2.2, p.text))] {
+        painter.extend(Shape::dashed_line(&path, stroke, 8.0, 5.0));
+    }
 }
 
 fn draw_aircraft(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {

@@ -26,6 +26,7 @@ impl Panel for Table {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        timeline::strip(ui, scene, queue);
         // where the columns have no room
         ScrollArea::horizontal().id_salt("columns").auto_shrink(false).show(ui, |ui| rows(ui, scene, queue));
     }

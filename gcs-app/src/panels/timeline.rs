@@ -1,10 +1,14 @@
-//! The preview's timeline: play and pause, and what the preview comes to.
+//! The preview's timeline: play and pause, what the preview comes to, and a strip with its stages along which the cursor is moved.
 
 use super::Scene;
 use crate::command::{Queue, ViewCommand};
-use crate::theme;
+use crate::forecast::Forecast;
+use crate::theme::{self, Palette};
 use crate::units;
-use egui::{RichText, Ui};
+use egui::{Align2, FontId, Key, Painter, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+
+/// How many times as fast as the flight the cursor may run.
+pub const SPEEDS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 30.0, 50.0, 100.0, 200.0];
 
 /// Play and pause of the preview, and what it comes to.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -13,6 +17,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if ui.add_enabled(!forecast.points.is_empty(), egui::Button::new(text)).on_hover_text("Space").clicked() {
         queue.view(ViewCommand::Play(!scene.view.playing));
     }
+    speed(ui, scene, queue);
     if scene.view.cursor_s.is_some() && ui.button("✖").on_hover_text("Hide the cursor").clicked() {
         queue.view(ViewCommand::Scrub(None));
     }
@@ -25,11 +30,99 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         forecast.battery_left.map_or_else(String::new, |b| format!(" · {:.0} % energy left", b * 100.0)),
     );
     ui.add(egui::Label::new(RichText::new(&sum).color(p.weak)).truncate()).on_hover_text(sum);
-    if scene.analysis.version != scene.document.version() {
+    if scene.is_behind() {
         ui.add(egui::Spinner::new().size(14.0));
     }
     if let Some(why) = forecast.cut_short.as_ref().or(scene.analysis.no_forecast.as_ref()) {
         ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
             .on_hover_text(why);
     }
+}
+
+fn speed(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let now = scene.view.speed.0;
+    let combo = egui::ComboBox::from_id_salt("play speed").width(58.0).selected_text(format!("{now:.0}×"));
+    let shown = combo.show_ui(ui, |ui| {
+        for speed in SPEEDS {
+            if ui.selectable_label(now == speed, format!("{speed:.0}×")).clicked() {
+                queue.view(ViewCommand::Speed(speed));
+            }
+        }
+    });
+    shown.response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("Play speed: {now:.0}×"))
+    });
+    shown.response.on_hover_text("How many times as fast as the flight the cursor runs");
+}
+
+/// Height of the strip, screen points.
+const STRIP: f32 = 20.0;
+/// The arrow keys move the cursor so far, as a share of the flight.
+const KEY_SHARE: f64 = 0.01;
+
+/// The stages in the order in which they are flown, with their names, and the cursor: click, drag, or arrow keys.
+pub fn strip(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let size = vec2(ui.available_width().max(80.0), STRIP);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let forecast = scene.forecast();
+    let duration_s = forecast.duration_s();
+    let cursor_s = scene.view.cursor_s.unwrap_or(0.0);
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::Slider, true, "Timeline");
+        info.value = Some(cursor_s);
+        info
+    });
+    if duration_s <= 0.0 {
+        return;
+    }
+    let p = theme::of(ui);
+    draw_strip(&ui.painter_at(rect), rect, scene, p);
+    if response.has_focus() {
+        ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.0, p.text), egui::StrokeKind::Inside);
+        let pressed = |key| ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));
+        let by = f64::from(i8::from(pressed(Key::ArrowRight)) - i8::from(pressed(Key::ArrowLeft)));
+        if by != 0.0 {
+            let to = (cursor_s + by * KEY_SHARE * duration_s).clamp(0.0, duration_s);
+            queue.view(ViewCommand::Scrub(Some(to)));
+        }
+    }
+    let moved = response.dragged() || response.clicked();
+    if let Some(at) = response.interact_pointer_pos().filter(|_| moved) {
+        let share = f64::from(((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0));
+        queue.view(ViewCommand::Scrub(Some(share * duration_s)));
+    }
+}
+
+fn draw_strip(painter: &Painter, rect: Rect, scene: &Scene<'_>, p: &Palette) {
+    let forecast = scene.forecast();
+    let duration_s = forecast.duration_s();
+    let x = |time_s: f64| rect.left() + (time_s / duration_s) as f32 * rect.width();
+    for (stage, from_s, to_s) in stages(forecast) {
+        let name = scene.document.plan().stage(stage).map_or("", |stage| stage.name.as_str());
+        let name = if name.is_empty() { stage.as_str() } else { name };
+        let band = Rect::from_x_y_ranges(x(from_s) + 1.0..=x(to_s) - 1.0, rect.y_range());
+        painter.rect_filled(band, 2.0, p.line);
+        let galley = painter.layout_no_wrap(name.into(), FontId::proportional(11.0), p.text);
+        if galley.size().x + 4.0 < band.width() {
+            painter.galley(
+                Align2::CENTER_CENTER.anchor_size(band.center(), galley.size()).min,
+                galley,
+                p.text,
+            );
+        }
+    }
+    if let Some(cursor_s) = scene.view.cursor_s {
+        let at = x(cursor_s.min(duration_s));
+        painter.vline(at, rect.y_range(), Stroke::new(2.0, p.accent));
+        painter.circle_filled(pos2(at, rect.center().y), 4.0, p.accent);
+    }
+}
+
+/// Each stage with when it begins and ends, seconds.
+pub fn stages(forecast: &Forecast) -> Vec<(&flight_plan::Id, f64, f64)> {
+    let time =
+        |index: usize| forecast.points.get(index).map_or_else(|| forecast.duration_s(), |point| point.time_s);
+    let parts = forecast.passages.chunk_by(|a, b| a.stage == b.stage);
+    let ends = parts.filter_map(|part| Some((part.first()?, part.last()?)));
+    ends.map(|(first, last)| (&first.stage, time(first.first), time(last.end))).collect()
 }

@@ -23,6 +23,7 @@ mod store;
 mod tools;
 mod tree;
 mod vehicle;
+mod whatif;
 
 use egui::{Pos2, Vec2, vec2};
 use egui_kittest::Harness;

@@ -150,6 +150,23 @@ fn a_glide_reaches_the_runway_from_near_and_high_and_not_from_afar() {
 }
 
 #[test]
+fn the_worst_alarm_ends_no_better_than_any_other() {
+    let plan = plan("fire-watch");
+    let rehearsal = rehearsed(&plan, &WhatIf::default());
+    let duration_s = rehearsal.preview().unwrap().time_s;
+    let worst = |time_s| rehearsal.worst(time_s, 15.0, 0.05);
+    assert_eq!((worst(1.0), worst(duration_s)), (None, None), "on the runway");
+    for share in [0.3, 0.5, 0.7] {
+        let time_s = duration_s * share;
+        let (found, cause) = worst(time_s).unwrap();
+        let causes = [Cause::Engine, Cause::Energy, Cause::Gps, Cause::Link, Cause::Operator];
+        let all = causes.map(|cause| reach(&rehearsal.divert(time_s, cause).unwrap()));
+        assert_eq!(Some(&found), all.iter().min(), "{share}: {all:?}");
+        assert_eq!(found, reach(&rehearsal.divert(time_s, cause).unwrap()));
+    }
+}
+
+#[test]
 fn where_no_plan_answers_it_says_so() {
     let text = String::from_utf8(asset("plans/square.xml")).unwrap().replace(r#" emergency="return""#, "");
     let plan = Arc::new(flight_plan::read(text.as_bytes()).plan);

@@ -10,7 +10,7 @@ use super::super::{GlidePoint, GlideStart, Preview, PreviewError, TrackPoint, gl
 use super::{Flown, Rehearsal};
 use crate::api::Command;
 use crate::layout::path::distance_and_course;
-use flight_plan::{Cause, EmergencyPlan, Id, Program, Runway, Variables};
+use flight_plan::{Cause, EmergencyPlan, Id, Runway, StageKind, Variables};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
 
@@ -78,32 +78,99 @@ pub enum Reach {
     Good,
 }
 
+/// A point of a flight at which an alarm is raised.
+struct Here<'a> {
+    rehearsal: &'a Rehearsal,
+    flown: &'a Flown,
+    time_s: f64,
+    start: GlideStart,
+    leg: Id,
+}
+
+/// What answers an alarm: an emergency plan with its runway.
+type Answer<'a> = (&'a EmergencyPlan, &'a Runway);
+
 impl Rehearsal {
     /// What would become of the last flight if an alarm were raised so many seconds after its start; `None`: nothing was flown.
     ///
     /// Only what follows the nearest place before that was kept is flown again.
     pub fn divert(&self, time_s: f64, cause: Cause) -> Option<Diversion> {
-        let flown = self.flown.as_ref()?;
-        let (from, leg) = origin(&flown.preview, time_s)?;
-        let program = &flown.program;
-        let answer = answer(program, &leg, cause);
-        let mut scenario = self.scenario.clone();
-        let alarm = Act::Command(Command::Emergency { cause, plan: None });
-        scenario.triggers.push(Trigger { at: When::After { seconds: time_s }, then: vec![alarm] });
-        let given = Circumstances { winds: self.winds, scenario: &scenario, options: &self.options };
+        let here = Here::of(self, time_s)?;
+        let answer = here.answer(cause);
         let powered = match answer {
-            Some(_) => powered(flown.resumed_before(time_s, given)?, time_s),
+            Some(_) => here.powered(cause)?,
             None => Err("no emergency plan answers here: the gateway's Safe mode decides".into()),
         };
-        let glide = answer.filter(|_| powered.is_ok()).map(|(plan, runway)| {
-            let named = names_engine(program, &leg);
-            let variables = Variables::initial(program.flown());
-            let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
-            let points = glide(&self.profile, self.winds, from, &way, runway.heading_deg);
-            Glide::of(named, points, runway, self.terrain.as_ref())
-        });
+        let glide = answer.filter(|_| powered.is_ok()).map(|answer| here.glide(answer));
         let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
-        Some(Diversion { time_s, cause, leg, plan, powered, glide })
+        Some(Diversion { time_s, cause, leg: here.leg, plan, powered, glide })
+    }
+
+    /// How the worst alarm would end so many seconds after the start, and which that is; `None`: nothing was flown, or the aircraft
+    /// is taking off or landing then. The reserves are those of [`Diversion::reach`].
+    pub fn worst(&self, time_s: f64, glide_m: f64, energy_share: f64) -> Option<(Reach, Cause)> {
+        let here = Here::of(self, time_s)?;
+        let program = &here.flown.program;
+        let kind = program.stage(&program.path(&here.leg)?)?.kind;
+        if matches!(kind, StageKind::TakeOff | StageKind::Land) {
+            return None;
+        }
+        let engine = here.answer(Cause::Engine);
+        let reach = engine.map_or(Reach::Out, |answer| here.glide(answer).reach(glide_m));
+        let mut worst = (reach, Cause::Engine);
+        let mut tried: Vec<Option<&Id>> = Vec::new();
+        for cause in POWERED {
+            let plan = here.answer(cause).map(|(plan, _)| &plan.id);
+            if tried.contains(&plan) {
+                continue;
+            }
+            tried.push(plan);
+            let reach = match plan {
+                Some(_) => reach_powered(&here.powered(cause)?, energy_share),
+                None => Reach::Out,
+            };
+            if reach < worst.0 {
+                worst = (reach, cause);
+            }
+        }
+        Some(worst)
+    }
+}
+
+/// The alarms after which the engine runs, the most severe first.
+const POWERED: [Cause; 4] = [Cause::Energy, Cause::Gps, Cause::Link, Cause::Operator];
+
+impl<'a> Here<'a> {
+    fn of(rehearsal: &'a Rehearsal, time_s: f64) -> Option<Self> {
+        let flown = rehearsal.flown.as_ref()?;
+        let (start, leg) = origin(&flown.preview, time_s)?;
+        Some(Self { rehearsal, flown, time_s, start, leg })
+    }
+
+    fn answer(&self, cause: Cause) -> Option<Answer<'a>> {
+        let program = &self.flown.program;
+        let id = program.emergency_choice(&self.leg, cause)?.plan_for(cause)?;
+        let plan = program.flown().emergency_plans.iter().find(|plan| plan.id == *id)?;
+        Some((plan, program.plan.runway(&plan.runway)?))
+    }
+
+    /// As it is flown with an engine, or why it is not.
+    fn powered(&self, cause: Cause) -> Option<Result<Powered, String>> {
+        let mut scenario = self.rehearsal.scenario.clone();
+        let alarm = Act::Command(Command::Emergency { cause, plan: None });
+        scenario.triggers.push(Trigger { at: When::After { seconds: self.time_s }, then: vec![alarm] });
+        let (winds, options) = (self.rehearsal.winds, &self.rehearsal.options);
+        let given = Circumstances { winds, scenario: &scenario, options };
+        Some(powered(self.flown.resumed_before(self.time_s, given)?, self.time_s))
+    }
+
+    fn glide(&self, (plan, runway): Answer) -> Glide {
+        let (program, rehearsal) = (&self.flown.program, self.rehearsal);
+        let named = names_engine(program, &self.leg);
+        let variables = Variables::initial(program.flown());
+        let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
+        let points = glide(&rehearsal.profile, rehearsal.winds, self.start, &way, runway.heading_deg);
+        Glide::of(named, points, runway, rehearsal.terrain.as_ref())
     }
 }
 
@@ -133,11 +200,15 @@ impl Diversion {
         if self.cause == Cause::Engine {
             return self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
         }
-        match &self.powered {
-            Ok(flown) if flown.landed && flown.battery_left >= energy_share => Reach::Good,
-            Ok(flown) if flown.landed => Reach::Tight,
-            _ => Reach::Out,
-        }
+        reach_powered(&self.powered, energy_share)
+    }
+}
+
+fn reach_powered(powered: &Result<Powered, String>, energy_share: f64) -> Reach {
+    match powered {
+        Ok(flown) if flown.landed && flown.battery_left >= energy_share => Reach::Good,
+        Ok(flown) if flown.landed => Reach::Tight,
+        _ => Reach::Out,
     }
 }
 
@@ -179,13 +250,6 @@ fn origin(preview: &Preview, time_s: f64) -> Option<(GlideStart, Id)> {
     };
     let course_deg = distance_and_course(from, to).1;
     Some((GlideStart { position: at.position, altitude_amsl_m: at.altitude_amsl_m, course_deg }, leg))
-}
-
-/// The emergency plan that answers on a leg, with its runway.
-fn answer<'a>(program: &'a Program, leg: &Id, cause: Cause) -> Option<(&'a EmergencyPlan, &'a Runway)> {
-    let id = program.emergency_choice(leg, cause)?.plan_for(cause)?;
-    let plan = program.flown().emergency_plans.iter().find(|plan| plan.id == *id)?;
-    Some((plan, program.plan.runway(&plan.runway)?))
 }
 
 fn powered(flight: Flight, since_s: f64) -> Result<Powered, String> {

@@ -1,0 +1,91 @@
+//! The thread that reviews paths: the newest one of a plan that was left alone, then the extremes of its variables; the others can wait
+//! for ever.
+
+use super::bench::profile_of;
+use super::worker::{Found, Outbox};
+use flight_exec::review::{Conditions, review, review_extremes};
+use flight_plan::{Problem, Program};
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use terrain::Terrain;
+
+/// A path to be reviewed.
+pub(super) struct Path {
+    pub version: u64,
+    pub program: Arc<Program>,
+    /// The same plan in another world.
+    pub trial: Option<Trial>,
+}
+
+/// A forecast in another world than the standard one.
+pub(super) struct Trial {
+    pub forecast_version: u64,
+    pub program: Arc<Program>,
+    pub conditions: Conditions,
+}
+
+/// What it knows of the version that it reviewed last.
+pub(super) struct Reviewer {
+    terrain: Arc<dyn Terrain>,
+    known: Option<(u64, Vec<Problem>)>,
+    /// The version whose extremes were tried.
+    tried: Option<u64>,
+}
+
+impl Reviewer {
+    pub fn new(terrain: Arc<dyn Terrain>) -> Self {
+        Self { terrain, known: None, tried: None }
+    }
+
+    pub fn work(mut self, paths: &Receiver<Path>, outbox: &Outbox) {
+        let mut next = paths.recv().ok();
+        while let Some(path) = next.take() {
+            let path = paths.try_iter().last().unwrap_or(path);
+            if !self.standard(&path, outbox) || !self.trial(&path, outbox) {
+                return;
+            }
+            let Some(interrupted) = self.extremes(&path, paths, outbox) else { return };
+            next = interrupted.or_else(|| paths.recv().ok());
+        }
+    }
+
+    /// In the standard world, once a version. False: nobody listens.
+    fn standard(&mut self, path: &Path, outbox: &Outbox) -> bool {
+        if self.known.as_ref().is_some_and(|(version, _)| *version == path.version) {
+            return true;
+        }
+        let profile = profile_of(&path.program.plan);
+        let found = review(&path.program, &profile, &self.terrain, Conditions::default());
+        self.known = Some((path.version, found.clone()));
+        outbox.send(Found::Problems(path.version, found))
+    }
+
+    fn trial(&self, path: &Path, outbox: &Outbox) -> bool {
+        let Some(trial) = &path.trial else { return true };
+        let profile = profile_of(&trial.program.plan);
+        let found = review(&trial.program, &profile, &self.terrain, trial.conditions);
+        outbox.send(Found::WhatIfProblems(trial.forecast_version, found))
+    }
+
+    /// Gives the path that interrupted it, if one did; `None`: nobody listens.
+    fn extremes(&mut self, path: &Path, paths: &Receiver<Path>, outbox: &Outbox) -> Option<Option<Path>> {
+        let mut next = None;
+        if self.tried == Some(path.version) {
+            return Some(next);
+        }
+        let profile = profile_of(&path.program.plan);
+        let known = self.known.as_ref().map(|(_, found)| found.as_slice()).unwrap_or_default();
+        let conditions = Conditions::default();
+        let mut go_on = |_, _| {
+            next = paths.try_recv().ok();
+            next.is_none()
+        };
+        let more = review_extremes(&path.program, &profile, &self.terrain, conditions, known, &mut go_on);
+        if next.is_some() {
+            return Some(next);
+        }
+        self.tried = Some(path.version);
+        let told = more.is_empty() || outbox.send(Found::Problems(path.version, more));
+        told.then_some(None)
+    }
+}

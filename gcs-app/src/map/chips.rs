@@ -1,0 +1,77 @@
+//! Chips at the map's lower right: in which world the path is flown, whether it is up to date, and what its colours mean.
+
+use super::marks;
+use crate::command::{Queue, ViewCommand};
+use crate::map::{coverage, view::View};
+use crate::panels::{Scene, problems, what_if};
+use crate::theme::{self, Palette};
+use egui::{Align2, Area, Id, Margin, RichText, Ui, vec2};
+
+/// Widest chip, and the room below for the sources of the map, screen points.
+const WIDTH: f32 = 330.0;
+const BELOW: f32 = 22.0;
+
+/// Draws them, the most urgent one lowest.
+pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
+    let corner = view.rect.right_bottom() - vec2(12.0, BELOW);
+    let width = WIDTH.min(view.rect.width() - 170.0).max(160.0);
+    let area = Area::new(Id::unique("map chips")).fixed_pos(corner).pivot(Align2::RIGHT_BOTTOM);
+    area.constrain_to(view.rect).show(ui.ctx(), |ui| {
+        ui.set_max_width(width);
+        let p = theme::of(ui);
+        colours(ui, scene);
+        world(ui, scene, queue);
+        standing(ui, scene, p, queue);
+    });
+}
+
+fn chip(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    theme::card(ui).inner_margin(Margin::symmetric(8, 4)).show(ui, add);
+}
+
+fn row(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    chip(ui, |ui| drop(ui.horizontal(add)));
+}
+
+/// What is out of date says so, and a plan that is wrong where.
+fn standing(ui: &mut Ui, scene: &Scene<'_>, p: &Palette, queue: &mut Queue) {
+    let Some(why) = scene.out_of_date() else { return };
+    let error = marks::first_error(scene);
+    row(ui, |ui| {
+        let place = error.and_then(|e| problems::find(scene.document.plan(), e.subject.as_ref()?));
+        if let Some(place) = place
+            && ui.small_button("Show the error").clicked()
+        {
+            queue.view(ViewCommand::JumpTo(place));
+        }
+        let text = RichText::new(format!("◌ {why}")).color(p.caution).size(12.0);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
+    });
+}
+
+fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let words = what_if::in_words(&scene.view.what_if, scene.document.plan(), scene.units());
+    if words.is_empty() {
+        return;
+    }
+    row(ui, |ui| {
+        let button = ui.small_button("✖");
+        button.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, "Back to the plan's own world")
+        });
+        if button.on_hover_text("Back to the plan's own world").clicked() {
+            queue.view(ViewCommand::WhatIf(Box::default()));
+        }
+        let text = format!("What if: {words}");
+        ui.add(egui::Label::new(RichText::new(&text).size(12.0)).truncate()).on_hover_text(&text);
+    });
+}
+
+fn colours(ui: &mut Ui, scene: &Scene<'_>) {
+    let Some(known) = scene.analysis.coverage().filter(|_| scene.view.coverage) else { return };
+    chip(ui, |ui| {
+        let title = format!("Coverage, worst alarm ({:.0} %)", known.progress() * 100.0);
+        ui.label(RichText::new(title).size(11.5));
+        coverage::legend(ui, known);
+    });
+}

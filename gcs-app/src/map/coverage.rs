@@ -1,0 +1,92 @@
+//! How alarms would end, as the look of a path: the style says as much as the colour.
+
+use super::polyline::Style;
+use crate::forecast::{Coverage, Point};
+use crate::panels::what_if::reach_name;
+use crate::theme::{self, Palette};
+use egui::{Painter, Pos2, RichText, Sense, Shape, Stroke, Ui, vec2};
+use flight_exec::rehearse::Reach;
+
+/// All of them, the best first.
+const REACHES: [Reach; 3] = [Reach::Good, Reach::Tight, Reach::Out];
+
+/// How a part of the path looks; `None`: not judged.
+pub fn look(reach: Option<Reach>, p: &Palette) -> (Stroke, Style) {
+    match reach {
+        Some(Reach::Good) => (Stroke::new(2.4, p.good), Style::Solid),
+        Some(Reach::Tight) => (Stroke::new(2.8, p.caution), Style::Dashed),
+        Some(Reach::Out) => (Stroke::new(3.4, p.warning), Style::Dotted),
+        None => (Stroke::new(1.4, p.weak), Style::Solid),
+    }
+}
+
+/// The path in parts that end alike, each with the first point of the next so that the line has no gap.
+pub fn parts<'a>(points: &'a [Point], coverage: &Coverage) -> Vec<(Option<Reach>, &'a [Point])> {
+    let reach = |point: &Point| coverage.at(point.time_s).map(|(reach, _)| reach);
+    let mut parts = Vec::new();
+    let mut first = 0;
+    for part in points.chunk_by(|a, b| reach(a) == reach(b)) {
+        let end = first + part.len();
+        let with_next = points.get(first..(end + 1).min(points.len())).unwrap_or(part);
+        parts.push((part.first().and_then(reach), with_next));
+        first = end;
+    }
+    parts
+}
+
+/// A line of some look, in a picture without a halo.
+pub fn line(painter: &Painter, path: &[Pos2], (stroke, style): (Stroke, Style)) {
+    match style {
+        Style::Solid => drop(painter.add(Shape::line(path.to_vec(), stroke))),
+        Style::Dashed => painter.extend(Shape::dashed_line(path, stroke, 9.0, 6.0)),
+        Style::Dotted => painter.extend(Shape::dotted_line(path, stroke.color, 6.0, stroke.width * 0.75)),
+    }
+}
+
+/// What the looks mean, and on how much of the path.
+pub fn legend(ui: &mut Ui, coverage: &Coverage) {
+    let p = theme::of(ui);
+    for reach in REACHES {
+        ui.horizontal(|ui| {
+            ui.set_height(14.0);
+            let (rect, _) = ui.allocate_exact_size(vec2(34.0, 12.0), Sense::hover());
+            let ends = [rect.left_center(), rect.right_center()];
+            line(ui.painter(), &ends, look(Some(reach), p));
+            let text = format!("{}: {:.0} %", reach_name(reach), coverage.share(reach) * 100.0);
+            ui.label(RichText::new(text).size(11.5).color(p.text));
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forecast::Forecast;
+    use flight_plan::Cause;
+
+    #[test]
+    fn the_path_falls_into_parts_without_gaps() {
+        let point = |time_s: f64| Point {
+            time_s,
+            distance_m: 0.0,
+            position: geometry::LatLon::new(0.0, time_s * 1e-4),
+            altitude_amsl_m: 0.0,
+            ground_amsl_m: None,
+            passage: 0,
+        };
+        let points: Vec<Point> = (0..16).map(|n| point(f64::from(n))).collect();
+        let mut coverage = Coverage::of(&Forecast { points: points.clone(), ..Forecast::default() });
+        // three points: the first, then the last
+        coverage.push(None);
+        coverage.push(Some((Reach::Out, Cause::Engine)));
+        let parts = parts(&points, &coverage);
+        let found: Vec<_> = parts.iter().map(|(reach, part)| (*reach, part.len())).collect();
+        assert_eq!(found, [(None, 11), (Some(Reach::Out), 6)]);
+        for pair in parts.windows(2) {
+            assert_eq!(pair[0].1.last(), pair[1].1.first());
+        }
+        let p = theme::palette(true);
+        let looks = REACHES.map(|reach| look(Some(reach), p));
+        assert!(looks[0].1 != looks[1].1 && looks[1].1 != looks[2].1 && looks[0].1 != looks[2].1);
+    }
+}

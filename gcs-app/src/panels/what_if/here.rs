@@ -1,0 +1,83 @@
+//! What happens here: an alarm at the preview's cursor, and how alarms end all along the path.
+
+use super::{remark, words};
+use crate::command::{Queue, ViewCommand};
+use crate::panels::{Scene, group_title};
+use crate::theme;
+use crate::units;
+use egui::{RichText, Ui};
+use flight_exec::rehearse::Reach;
+use flight_plan::Cause;
+
+/// The alarms that can be raised.
+pub const CAUSES: [Cause; 5] = [Cause::Engine, Cause::Energy, Cause::Link, Cause::Gps, Cause::Operator];
+
+/// For people.
+pub fn cause_name(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Engine => "Engine failure",
+        Cause::Energy => "Energy low",
+        Cause::Link => "Link lost",
+        Cause::Gps => "GPS lost",
+        Cause::Operator => "Operator",
+        Cause::Payload => "Payload failure",
+        Cause::Traffic => "Traffic",
+    }
+}
+
+/// How a way out ends.
+pub fn reach_name(reach: Reach) -> &'static str {
+    match reach {
+        Reach::Good => "reached",
+        Reach::Tight => "reached on the reserve",
+        Reach::Out => "not reached",
+    }
+}
+
+/// Alarms at the cursor, and the coverage.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let at = scene.view.cursor_s.map_or_else(String::new, |s| format!(" at {}", units::duration(s)));
+    group_title(ui, &format!("What happens here{at}"));
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().button_padding.x = 3.0;
+        ui.spacing_mut().item_spacing.x = 2.0;
+        CAUSES.into_iter().for_each(|cause| alarm(ui, cause, scene, queue));
+    });
+    let mut covered = scene.view.coverage;
+    let hover = "Colours the path by the worst of these alarms at each of its points";
+    if ui.checkbox(&mut covered, "Coverage of the whole path").on_hover_text(hover).changed() {
+        queue.view(ViewCommand::Coverage(covered));
+    }
+    if let Some(known) = scene.analysis.coverage().filter(|c| scene.view.coverage && !c.is_complete()) {
+        ui.add(egui::ProgressBar::new(known.progress() as f32).desired_height(6.0));
+    }
+    outcome(ui, scene);
+}
+
+fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
+    let (raised, name) = (scene.view.alarm == Some(cause), cause_name(cause));
+    let short = name.split_whitespace().next().unwrap_or(name);
+    let button = ui.selectable_label(raised, RichText::new(short).size(12.5));
+    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, raised, name));
+    if button.on_hover_text(name).clicked() {
+        queue.view(ViewCommand::Raise((!raised).then_some(cause)));
+    }
+}
+
+fn outcome(ui: &mut Ui, scene: &Scene<'_>) {
+    if scene.view.alarm.is_none() {
+        return remark(
+            ui,
+            "Raise an alarm: the way out is drawn from the cursor. Click the path or the profile to move it.",
+        );
+    }
+    let Some(found) = scene.analysis.diversion() else {
+        return remark(ui, "Being computed…");
+    };
+    let p = theme::of(ui);
+    for (index, line) in words::diversion(found, scene.units()).into_iter().enumerate() {
+        let text = RichText::new(line).size(12.5);
+        let text = if index == 0 { text.strong().color(p.text) } else { text.color(p.weak) };
+        ui.add(egui::Label::new(text).wrap());
+    }
+}

@@ -1,0 +1,203 @@
+//! What if: other worlds for the preview, and alarms at its cursor.
+
+use super::{SQUARE, Window};
+use aircraft::{Profile, Wind};
+use egui::accesskit::Role;
+use egui::vec2;
+use egui_kittest::kittest::Queryable;
+use flight_exec::rehearse::{Act, Options, Reach, Scenario, Start, Trigger, When};
+use flight_exec::{Command, preview};
+use flight_plan::{Cause, VariableValue, compile};
+use gcs_app::app::App;
+use gcs_app::forecast::Coverage;
+use std::sync::Arc;
+
+const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+
+fn opened(text: &str) -> Window {
+    let mut window = Window::open(text);
+    window.until_analysed();
+    window.harness.get_all_by_label("What if").next().unwrap().click();
+    window.steps(3);
+    window
+}
+
+/// Moves a slider, and waits until the preview is that of the new world.
+fn slide(window: &mut Window, name: &str, value: f64) {
+    window.harness.get_by_role_and_label(Role::Slider, name).set_value_accesskit(value);
+    window.steps(2);
+    window.until("the other world", |app| app.analysis().what_if == app.view().what_if);
+}
+
+/// Chooses something that may have to be scrolled to.
+fn choose(window: &mut Window, label: &str) {
+    window.harness.get_by_label(label).click_accesskit();
+    window.steps(3);
+}
+
+fn duration_s(window: &Window) -> f64 {
+    window.app().analysis().forecast.duration_s()
+}
+
+fn is_current(app: &App) -> bool {
+    app.analysis().what_if == app.view().what_if && app.analysis().version == app.document().version()
+}
+
+#[test]
+fn wind_changes_the_preview_and_not_the_document() {
+    let mut window = opened(SQUARE);
+    let (before, calm_s) = (window.plan(), duration_s(&window));
+    slide(&mut window, "Wind from", 240.0);
+    slide(&mut window, "Wind speed", 10.0);
+    assert!((window.app().view().what_if.wind.direction_from_deg() - 240.0).abs() < 1e-6);
+    let windy_s = duration_s(&window);
+    assert!((windy_s - calm_s).abs() > 5.0, "{calm_s} {windy_s}");
+    assert!(window.shows("What if: wind 10.0 m/s from 240°"));
+    assert_eq!(window.plan(), before);
+    assert!(!window.is_enabled("Undo") && !window.app().document().is_dirty());
+    window.until("the review stays the standard one", |app| app.analysis().reviewed);
+    assert!(window.shows("This plan can be flown"));
+    window.click("Back to the plan's own world");
+    window.until("calm again", is_current);
+    assert_eq!(duration_s(&window), calm_s);
+    assert!(!window.shows("What if: wind"));
+}
+
+#[test]
+fn a_slider_grows_the_scan_and_taking_it_into_the_plan_is_one_step() {
+    let mut window = opened(FIRE_WATCH);
+    let (before, short_m) = (window.plan(), window.app().analysis().forecast.length_m());
+    slide(&mut window, "fire_radius", 600.0);
+    let long_m = window.app().analysis().forecast.length_m();
+    assert!(long_m > short_m + 500.0, "{short_m} {long_m}");
+    assert_eq!(window.plan(), before);
+    choose(&mut window, "Take into the plan");
+    let radius = |window: &Window| window.plan().variable(&"fire_radius".into()).unwrap().initial.clone();
+    assert_eq!(radius(&window), VariableValue::Number(600.0));
+    assert!(window.app().view().what_if.is_nothing() && !window.is_enabled("Take into the plan"));
+    window.until("the plan's own path", is_current);
+    assert!((window.app().analysis().forecast.length_m() - long_m).abs() < 1.0);
+    window.click("Undo");
+    assert_eq!(window.plan(), before);
+    assert!(!window.is_enabled("Undo"));
+}
+
+#[test]
+fn a_decision_takes_the_other_branch() {
+    let mut window = opened(FIRE_WATCH);
+    let looks = |window: &Window| {
+        window.app().analysis().forecast.passages.iter().filter(|p| p.leg.as_str() == "look").count()
+    };
+    assert_eq!(looks(&window), 0);
+    choose(&mut window, "ask: Close look");
+    window.until("the other branch", is_current);
+    assert_eq!(looks(&window), 1);
+    choose(&mut window, "ask: as planned");
+    window.until("the plan's branch", is_current);
+    assert_eq!(looks(&window), 0);
+}
+
+#[test]
+fn less_energy_at_the_start_is_less_at_the_end() {
+    let mut window = opened(SQUARE);
+    let full = window.app().analysis().forecast.battery_left.unwrap();
+    slide(&mut window, "Energy at start", 50.0);
+    let half = window.app().analysis().forecast.battery_left.unwrap();
+    assert!((full - half - 0.5).abs() < 0.01, "{full} {half}");
+    slide(&mut window, "Energy at start", 10.0);
+    let forecast = &window.app().analysis().forecast;
+    if forecast.cut_short.is_some() {
+        assert!(window.shows("energy"), "it says why it ends");
+    }
+}
+
+/// Puts the cursor at a share of the flight, by the timeline.
+fn scrub(window: &mut Window, share: f32) {
+    let strip = window.harness.get_by_label("Timeline").rect();
+    window.click_at(strip.left_center() + vec2(share * strip.width(), 0.0));
+}
+
+#[test]
+fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_window() {
+    let mut window = opened(SQUARE);
+    scrub(&mut window, 0.5);
+    let at_s = window.app().view().cursor_s.unwrap();
+    assert!((at_s / duration_s(&window) - 0.5).abs() < 0.02);
+    choose(&mut window, "Engine failure");
+    window.until("the way out", |app| app.analysis().diversion().is_some());
+    assert!(window.shows("Engine failure: return, runway R05"));
+    let analysis = window.app().analysis().clone();
+    let found = analysis.diversion().unwrap();
+    assert_eq!(found.time_s, at_s);
+    let threshold = window.plan().runway(&"R05".into()).unwrap().threshold;
+    assert!(found.glide.as_ref().unwrap().path.last().unwrap().position.distance_m(threshold) < 500.0);
+    let flown = found.powered.as_ref().unwrap();
+    let whole = without_window(&window, at_s);
+    assert!(flown.landed && whole.landed && whole.refusals.is_empty());
+    assert!((flown.time_s - (whole.time_s - at_s)).abs() < 0.1);
+    assert!((flown.battery_left - whole.battery_left).abs() < 1e-6);
+    scrub(&mut window, 0.3);
+    window.until("the way from there", |app| {
+        app.analysis().diversion().is_some_and(|d| d.time_s < at_s && Some(d.time_s) == app.view().cursor_s)
+    });
+}
+
+/// The same flight with the same alarm.
+fn without_window(window: &Window, seconds: f64) -> flight_exec::Preview {
+    let (profile, terrain) = (Profile::by_name("trainer").unwrap(), gcs_app::assets::demo_terrain());
+    let program = Arc::new(compile(window.plan(), &profile, terrain.as_ref()).unwrap());
+    let alarm = Act::Command(Command::Emergency { cause: Cause::Engine, plan: None });
+    let scenario = Scenario { triggers: vec![Trigger { at: When::After { seconds }, then: vec![alarm] }] };
+    let options = Options::default();
+    preview(&program, &profile, &terrain, Wind::CALM, Start::Runway, &scenario, &options).unwrap()
+}
+
+#[test]
+fn the_coverage_tells_parts_that_are_reached_from_parts_that_are_not() {
+    let mut window = opened(FIRE_WATCH);
+    choose(&mut window, "Coverage of the whole path");
+    window.until("the coverage", |app| {
+        let known = |c: &Coverage| c.share(Reach::Good) > 0.0 && c.share(Reach::Out) > 0.0;
+        app.analysis().coverage().is_some_and(known)
+    });
+    let analysis = window.app().analysis().clone();
+    let coverage = analysis.coverage().unwrap();
+    let p = gcs_app::theme::palette(true);
+    let parts = gcs_app::map::coverage::parts(&analysis.forecast.points, coverage);
+    let look = |reach| gcs_app::map::coverage::look(Some(reach), p);
+    for reach in [Reach::Good, Reach::Out] {
+        assert!(parts.iter().any(|(found, _)| *found == Some(reach)), "{reach:?}");
+    }
+    assert_ne!(look(Reach::Good).0.color, look(Reach::Out).0.color);
+    assert_ne!(look(Reach::Good).1, look(Reach::Out).1);
+    assert!(window.shows("not reached: ") && window.shows("Coverage, worst alarm ("));
+}
+
+#[test]
+fn a_plan_with_an_error_still_draws_and_says_where_it_fails() {
+    let broken = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" fix="NOWHERE"/>"#);
+    let mut draft = opened(&broken);
+    assert!(draft.app().analysis().no_forecast.is_some());
+    assert!(draft.shows("A draft: the plan has errors"));
+    draft.click("Show the error");
+    assert_eq!(draft.selected(), "side2");
+}
+
+#[test]
+fn the_cursor_runs_as_fast_as_chosen() {
+    let mut window = opened(SQUARE);
+    let ran_s = |window: &mut Window, speed: &str| {
+        window.harness.get_all_by_label_contains("Play speed").next().unwrap().click();
+        window.steps(3);
+        window.click(speed);
+        scrub(window, 0.2);
+        let from_s = window.app().view().cursor_s.unwrap();
+        window.click("▶ Preview");
+        window.steps(20);
+        let ran_s = window.app().view().cursor_s.unwrap() - from_s;
+        window.click("⏸ Pause");
+        ran_s
+    };
+    let (slow, fast) = (ran_s(&mut window, "2×"), ran_s(&mut window, "50×"));
+    assert!(slow > 0.0 && (fast / slow - 25.0).abs() < 1.0, "{slow} {fast}");
+}
