@@ -2,6 +2,7 @@
 
 pub(crate) mod lists;
 mod number;
+mod rename;
 mod repair;
 pub(crate) mod shape;
 mod things;
@@ -194,7 +195,8 @@ pub enum Edit {
         /// What it is to name.
         to: Id,
     },
-    /// Gives a leg, stage, fix, runway, zone, procedure or emergency plan another identifier, and whatever refers to it.
+    /// Gives a leg, stage, fix, runway, zone, procedure, emergency plan or variable another identifier, and whatever refers to
+    /// it. (Of a variable and a thing with one name: the thing.)
     SetId {
         /// Its identifier.
         id: Id,
@@ -367,7 +369,7 @@ impl Edit {
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
-            Edit::SetId { id, to } => return repair::set_id(plan, id, to),
+            Edit::SetId { id, to } => return rename::anything(plan, id, to),
             Edit::SetTitle(name) => plan.name.clone_from(name),
             Edit::SetAircraft(name) => plan.aircraft.clone_from(name),
             Edit::SetRunway { of, runway } => return repair::set_runway(plan, of, runway),

@@ -3,6 +3,7 @@
 pub mod checks;
 pub mod clipboard;
 pub mod create;
+pub mod describe;
 pub mod diff;
 pub mod edit;
 pub mod expression;
@@ -31,4 +32,4 @@ pub use program::{LegPath, Program, compile, compile_again, compile_document, co
 pub use uses::{Part, Use};
 pub use variables::{VariableError, Variables};
 pub use walk::{Fork, LegContext, Loop, Section};
-pub use xml::{Places, Reading, hash, read, write};
+pub use xml::{Element, Places, Reading, hash, read, write};

@@ -234,6 +234,17 @@ impl FlightPlan {
         self.all_legs().into_iter().find(|c| c.leg.id == *id)
     }
 
+    /// A leg of a procedure by its identifier there, with the procedure.
+    pub fn procedure_leg(&self, id: &Id) -> Option<(&crate::Procedure, &Leg)> {
+        self.procedures.iter().find_map(|procedure| Some((procedure, leg_in(&procedure.legs, id)?)))
+    }
+
+    /// A leg by its identifier, in a stage or in a procedure.
+    pub fn any_leg(&self, id: &Id) -> Option<&Leg> {
+        let flown = self.all_stages().find_map(|(_, stage)| leg_in(&stage.legs, id));
+        flown.or_else(|| self.procedure_leg(id).map(|(_, leg)| leg))
+    }
+
     /// A stage by its identifier.
     pub fn stage(&self, id: &Id) -> Option<&Stage> {
         self.all_stages().map(|(_, s)| s).find(|s| s.id == *id)
@@ -280,6 +291,10 @@ impl FlightPlan {
     pub fn lowest_ground_amsl_m(&self) -> f64 {
         self.runways.iter().map(|runway| runway.elevation_amsl_m).fold(0.0, f64::min)
     }
+}
+
+fn leg_in<'a>(legs: &'a [Arc<Leg>], id: &Id) -> Option<&'a Leg> {
+    legs.iter().find_map(|leg| if leg.id == *id { Some(leg.as_ref()) } else { leg_in(leg.body(), id) })
 }
 
 fn collect<'a>(

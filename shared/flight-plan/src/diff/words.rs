@@ -1,6 +1,6 @@
 //! What changed in one part, as phrases: its attributes, then what stands inside it.
 
-use crate::xml::{self, Piece};
+use crate::xml::{self, Element, Piece};
 use std::collections::HashMap;
 
 /// Up to so many changes inside a part are listed one by one, more only by their number.
@@ -52,7 +52,8 @@ fn inside(old: &Element, new: &Element) -> Vec<String> {
         words.push(format!("{} → {}", was.short(), now.short()));
         return words;
     }
-    let mut names: Vec<&str> = old.children.iter().chain(&new.children).map(|child| child.name).collect();
+    let mut names: Vec<&str> =
+        old.children.iter().chain(&new.children).map(|child| child.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     for name in names {
@@ -80,9 +81,9 @@ fn children(name: &str, old: &Element, new: &Element) -> Vec<String> {
 }
 
 /// Elements by the attribute that distinguishes them; `None`: there is none.
-type Keys<'e, 'a> = HashMap<&'e str, &'e Element<'a>>;
+type Keys<'e> = HashMap<&'e str, &'e Element>;
 
-fn by_key<'e, 'a>(list: &[&'e Element<'a>]) -> Option<Keys<'e, 'a>> {
+fn by_key<'e>(list: &[&'e Element]) -> Option<Keys<'e>> {
     let keys: Keys = list.iter().filter_map(|element| Some((element.key()?, *element))).collect();
     (keys.len() == list.len()).then_some(keys)
 }
@@ -103,7 +104,7 @@ fn keyed(old: &[&Element], new: &[&Element], (before, after): (&Keys, &Keys)) ->
         list.iter().map(key).filter(|key| other.contains_key(key.as_str())).collect()
     };
     if kept(old, after) != kept(new, before) {
-        words.push(format!("{} in another order", new.first().map_or("", |e| e.name)));
+        words.push(format!("{} in another order", new.first().map_or("", |e| &e.name)));
     }
     words
 }
@@ -138,49 +139,8 @@ fn within(label: &str, old: &Element, new: &Element) -> Option<String> {
     }
 }
 
-/// A canonical element, taken apart.
-#[derive(PartialEq)]
-struct Element<'a> {
-    name: &'a str,
-    attributes: Vec<(&'a str, String)>,
-    children: Vec<Element<'a>>,
-}
-
-impl<'a> Element<'a> {
-    /// From its canonical text: one tag a line, what is in it deeper.
-    fn of(text: &'a str) -> Option<Self> {
-        let mut lines = text.lines().map(str::trim_start);
-        let first = lines.next()?;
-        let mut element = Self::opened(first);
-        if !first.ends_with("/>") {
-            element.read(&mut lines);
-        }
-        Some(element)
-    }
-
-    /// By its start tag.
-    fn opened(tag: &'a str) -> Self {
-        let tag = tag.trim_start_matches('<').trim_end_matches('>').trim_end_matches('/');
-        let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
-        Self { name, attributes: xml::attributes(attributes), children: Vec::new() }
-    }
-
-    /// What stands in it, up to its end tag. (Documents nest few elements.)
-    fn read(&mut self, lines: &mut dyn Iterator<Item = &'a str>) {
-        while let Some(line) = lines.next().filter(|line| !line.starts_with("</")) {
-            let mut child = Self::opened(line);
-            if !line.ends_with("/>") {
-                child.read(lines);
-            }
-            self.children.push(child);
-        }
-    }
-
-    fn attribute(&self, name: &str) -> Option<&str> {
-        self.attributes.iter().find(|(n, _)| *n == name).map(|(_, value)| value.as_str())
-    }
-
-    fn called(&self, name: &str) -> Vec<&Element<'a>> {
+impl Element {
+    fn called(&self, name: &str) -> Vec<&Element> {
         self.children.iter().filter(|child| child.name == name).collect()
     }
 
@@ -195,7 +155,7 @@ impl<'a> Element<'a> {
 
     /// ` (on end, photo)`; nothing if there is nothing to say, or too much.
     fn in_brackets(&self) -> String {
-        let shown = self.attributes.iter().filter(|(name, _)| !KEYS.contains(name));
+        let shown = self.attributes.iter().filter(|(name, _)| !KEYS.contains(&name.as_str()));
         let shown = shown.map(|(name, value)| format!("{name} {value}"));
         let parts: Vec<String> = shown.chain(self.children.iter().map(Element::short)).collect();
         let text = parts.join(", ");

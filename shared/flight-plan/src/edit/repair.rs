@@ -26,18 +26,18 @@ pub(super) fn distinguish(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(),
 }
 
 /// Every identifier of a plan with the number of the group within which it is unique.
-struct Walk<'v, 'a> {
+pub(super) struct Walk<'v, 'a> {
     visit: &'v mut dyn FnMut(usize, &'a mut Id),
     /// The last group's number.
     groups: usize,
 }
 
 /// Fixes, runways, zones, procedures, emergency plans, stages and legs.
-const DOCUMENT: usize = 0;
+pub(super) const DOCUMENT: usize = 0;
 const VARIABLES: usize = 1;
 
 impl<'a> Walk<'_, 'a> {
-    fn of(plan: &'a mut FlightPlan, visit: &mut dyn FnMut(usize, &'a mut Id)) {
+    pub(super) fn of(plan: &'a mut FlightPlan, visit: &mut dyn FnMut(usize, &'a mut Id)) {
         let mut walk = Walk { visit, groups: VARIABLES };
         plan.fixes.iter_mut().for_each(|f| (walk.visit)(DOCUMENT, &mut f.id));
         plan.runways.iter_mut().for_each(|r| (walk.visit)(DOCUMENT, &mut r.id));
@@ -106,7 +106,7 @@ pub(super) fn refer(plan: &mut FlightPlan, of: Option<&Id>, from: &Id, to: &Id) 
     if hits > 0 { Ok(()) } else { Err(EditError::Unknown(from.clone())) }
 }
 
-fn leg_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
+pub(super) fn leg_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
     leg.next.iter_mut().for_each(&mut *rename);
     leg.emergency.by_cause.iter_mut().for_each(|(_, id)| rename(id));
     let sets = leg.actions.iter_mut().filter_map(|action| match &mut action.act {
@@ -130,62 +130,6 @@ fn leg_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
             rename(id);
         }
     });
-}
-
-const TAKEN: &str = "can't be called that: something else is, choose another identifier";
-const NO_IDENTIFIER: &str = "can't be called that: use letters, digits, `-`, `_` and `.`, at most 64 of them";
-
-/// Gives something another identifier, and whatever refers to it.
-pub(super) fn set_id(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
-    if id == to {
-        return Ok(());
-    }
-    let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.');
-    if !(1..=64).contains(&to.as_str().len()) || !to.as_str().bytes().all(allowed) {
-        return Err(not_applicable(id, NO_IDENTIFIER));
-    }
-    if super::lists::ids(plan).contains(to) || plan.variable(id).is_some() {
-        return Err(not_applicable(id, TAKEN));
-    }
-    let mut known = false;
-    Walk::of(plan, &mut |group, found: &mut Id| {
-        if group == DOCUMENT && found == id {
-            found.clone_from(to);
-            known = true;
-        }
-    });
-    if !known {
-        return Err(EditError::Unknown(id.clone()));
-    }
-    let mut rename = |reference: &mut Id| {
-        if reference == id {
-            reference.clone_from(to);
-        }
-    };
-    plan.emergency.by_cause.iter_mut().for_each(|(_, id)| rename(id));
-    plan.emergency_plans.iter_mut().for_each(|e| rename(&mut e.runway));
-    for stage in stages_mut(plan) {
-        stage.runway.iter_mut().for_each(&mut rename);
-        stage.emergency.by_cause.iter_mut().for_each(|(_, id)| rename(id));
-        stage.legs.iter_mut().for_each(|leg| deep_references(Arc::make_mut(leg), &mut rename));
-    }
-    for procedure in &mut plan.procedures {
-        procedure.legs.iter_mut().for_each(|leg| deep_references(Arc::make_mut(leg), &mut rename));
-    }
-    Ok(())
-}
-
-/// What a leg and those in it name; the default of a fork names a branch.
-fn deep_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
-    let branch = leg.as_fork().and_then(|fork| fork.default.cloned());
-    leg_references(leg, rename);
-    match &mut leg.kind {
-        LegKind::Intersection { default, .. } => *default = branch,
-        LegKind::Iterative { body, .. } => {
-            body.iter_mut().for_each(|inner| deep_references(Arc::make_mut(inner), rename))
-        }
-        _ => {}
-    }
 }
 
 /// The runway of a stage or of an emergency plan.

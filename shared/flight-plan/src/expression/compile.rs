@@ -27,6 +27,12 @@ impl<'a> Names<'a> {
             fixes: plan.fixes.iter().map(|f| (f.id.as_str(), f.position)).collect(),
         }
     }
+
+    /// With other variables besides, which hide the plan's.
+    pub(crate) fn and(mut self, more: &'a [Variable]) -> Self {
+        self.variables.extend(more.iter().map(|v| (v.name.as_str(), v)));
+        self
+    }
 }
 
 /// Parses and type-checks `source` over a plan's fixes and variables.
@@ -164,7 +170,7 @@ impl Checker<'_> {
     }
 
     fn name(&mut self, at: &IdedExpr, name: &str) -> Checked {
-        if let Some((_, flight, kind)) = FlightName::ALL.iter().find(|(n, ..)| *n == name) {
+        if let Some((_, flight, kind, _)) = FlightName::ALL.iter().find(|(n, ..)| *n == name) {
             return Ok((Node::Flight(*flight), *kind));
         }
         let Some(variable) = self.names.variables.get(name) else {

@@ -103,16 +103,43 @@ enum FlightName {
 
 impl FlightName {
     /// Every in-flight name with its meaning.
-    const ALL: [(&'static str, FlightName, Type); 8] = [
-        ("iteration", FlightName::Iteration, Type::Int),
-        ("time", FlightName::Time, Type::Number),
-        ("altitude", FlightName::Altitude, Type::Number),
-        ("airspeed", FlightName::Airspeed, Type::Number),
-        ("battery", FlightName::Battery, Type::Number),
-        ("fuel", FlightName::Fuel, Type::Number),
-        ("wind", FlightName::Wind, Type::Number),
-        ("position", FlightName::Position, Type::Position),
+    const ALL: [(&'static str, FlightName, Type, &'static str); 8] = [
+        ("iteration", FlightName::Iteration, Type::Int, "the pass of the innermost loop, from 1"),
+        ("time", FlightName::Time, Type::Number, "seconds since the start"),
+        ("altitude", FlightName::Altitude, Type::Number, "metres above mean sea level"),
+        ("airspeed", FlightName::Airspeed, Type::Number, "m/s"),
+        ("battery", FlightName::Battery, Type::Number, "the share that is left, 0 to 1"),
+        ("fuel", FlightName::Fuel, Type::Number, "the share that is left, 0 to 1"),
+        ("wind", FlightName::Wind, Type::Number, "m/s"),
+        ("position", FlightName::Position, Type::Position, "the aircraft's"),
     ];
+}
+
+/// The functions, with what they give.
+const FUNCTIONS: [(&str, &str); 13] = [
+    ("double", "a whole number as a double"),
+    ("abs", "a number without its sign"),
+    ("min", "the smaller of two numbers"),
+    ("max", "the greater of two numbers"),
+    ("distance", "metres between two positions"),
+    ("distance_to", "metres from the aircraft to a fix or position"),
+    ("offset", "a position: from one, by a bearing and metres"),
+    ("lat_lon", "a position: latitude and longitude"),
+    ("area", "square metres of a polygon"),
+    ("centre", "the middle of a polygon"),
+    ("contains", "a polygon has a position inside, a text another one"),
+    ("startsWith", "a text begins with another one"),
+    ("endsWith", "a text ends with another one"),
+];
+
+/// The names that every expression may read, with what they mean.
+pub(crate) fn flight_names() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FlightName::ALL.iter().map(|(name, _, _, meaning)| (*name, *meaning))
+}
+
+/// The functions, with what they give.
+pub(crate) fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FUNCTIONS.into_iter()
 }
 
 /// True for names that a variable or parameter can have.
@@ -123,8 +150,8 @@ pub fn is_variable_name(name: &str) -> bool {
 
 /// True for names that a variable can't have because the language has them.
 pub fn is_reserved(name: &str) -> bool {
-    /// CEL's keywords and reserved words, and our functions.
-    const WORDS: [&str; 35] = [
+    /// CEL's keywords and reserved words.
+    const WORDS: [&str; 22] = [
         "true",
         "false",
         "null",
@@ -146,22 +173,11 @@ pub fn is_reserved(name: &str) -> bool {
         "var",
         "void",
         "while",
-        "double",
         "int",
-        "abs",
-        "min",
-        "max",
-        "distance",
-        "distance_to",
-        "offset",
-        "lat_lon",
-        "area",
-        "centre",
-        "contains",
-        "startsWith",
-        "endsWith",
     ];
-    WORDS.contains(&name) || FlightName::ALL.iter().any(|(n, ..)| *n == name)
+    WORDS.contains(&name)
+        || FUNCTIONS.iter().any(|(n, _)| *n == name)
+        || FlightName::ALL.iter().any(|(n, ..)| *n == name)
 }
 
 /// Arithmetic and comparison.

@@ -34,7 +34,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn leg(&mut self, element: Element<'a>) -> Leg {
+    pub(super) fn leg(&mut self, element: Element<'a>) -> Leg {
         let id = self.id(&element, "id");
         let name = self.text(&element, "name");
         let mut emergency = self.emergency_attribute(&element);

@@ -6,6 +6,7 @@
 mod actions;
 mod attributes;
 mod cursor;
+mod element;
 mod legs;
 mod patch;
 mod patterns;
@@ -27,17 +28,9 @@ use std::sync::Arc;
 /// The document's namespace.
 pub const NAMESPACE: &str = "urn:legwork:flight-plan:1";
 
+pub use element::Element;
+pub(crate) use read::part::{Part, read_part};
 pub(crate) use write::{Piece, text};
-
-/// The attributes of a canonical element: what stands behind its name.
-pub(crate) fn attributes(text: &str) -> Vec<(&str, String)> {
-    use quick_xml::XmlVersion::Implicit1_0;
-    let raw = quick_xml::events::attributes::Attributes::new(text, 0);
-    let plain = |a: quick_xml::events::attributes::Attribute| {
-        a.normalized_value(Implicit1_0).map_or_else(|_| String::new(), Into::into)
-    };
-    raw.filter_map(Result::ok).map(|a| (a.key.0, plain(a))).collect()
-}
 
 /// How long legs are when they are written, bytes.
 pub(crate) fn size(legs: &[Arc<Leg>]) -> usize {

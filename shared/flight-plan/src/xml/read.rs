@@ -1,5 +1,7 @@
 //! From bytes to a plan and problems.
 
+pub(super) mod part;
+
 use super::cursor::{Cursor, Element, MAX_BYTES, shown};
 use super::values::{position, positions};
 use super::{NAMESPACE, attributes};

@@ -157,7 +157,7 @@ impl Tag {
 }
 
 /// Attribute values: what reading would change is written as a reference; what XML can't say becomes U+FFFD.
-struct Escaped<'a>(&'a mut String);
+pub(super) struct Escaped<'a>(pub &'a mut String);
 
 impl Write for Escaped<'_> {
     fn write_str(&mut self, value: &str) -> std::fmt::Result {
