@@ -223,6 +223,22 @@ impl Selection {
             | Self::Procedure(id) => id,
         }
     }
+
+    /// The same under another identifier.
+    pub fn renamed(&self, to: Id) -> Self {
+        let mut renamed = self.clone();
+        match &mut renamed {
+            Self::Leg(id)
+            | Self::Stage(id)
+            | Self::Emergency(id)
+            | Self::Fix(id)
+            | Self::Runway(id)
+            | Self::Variable(id)
+            | Self::Zone(id)
+            | Self::Procedure(id) => *id = to,
+        }
+        renamed
+    }
 }
 
 /// Commands on their way to the app.

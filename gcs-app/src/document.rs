@@ -1,7 +1,7 @@
 //! The plan being edited: immutable states, undo and redo over all of them, and its file.
 
 use crate::files::Stamp;
-use flight_plan::{Edit, FlightPlan, History, Id, Leg, Problem, Procedure};
+use flight_plan::{Edit, FlightPlan, History, Id, Problem};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -128,7 +128,7 @@ impl Document {
         let text = flown.as_str();
         let inner = text.match_indices('.').filter_map(|(dot, _)| text.get(dot + 1..)).map(Id::new);
         let mut made = inner.filter(|_| !self.kinds.contains_key(flown));
-        made.find(|id| procedure_leg(self.plan(), id).is_some()).unwrap_or_else(|| flown.clone())
+        made.find(|id| self.plan().procedure_leg(id).is_some()).unwrap_or_else(|| flown.clone())
     }
 
     /// Replaces the plan by another one, as a step that can be undone.
@@ -209,15 +209,6 @@ impl Document {
         // versions are never used twice, not even by another document of this run
         self.version = next_version();
     }
-}
-
-/// A leg inside a procedure, by its identifier there.
-pub fn procedure_leg<'a>(plan: &'a FlightPlan, id: &Id) -> Option<(&'a Procedure, &'a Leg)> {
-    plan.procedures.iter().find_map(|procedure| Some((procedure, leg_in(&procedure.legs, id)?)))
-}
-
-fn leg_in<'a>(legs: &'a [Arc<Leg>], id: &Id) -> Option<&'a Leg> {
-    legs.iter().find_map(|leg| if leg.id == *id { Some(leg.as_ref()) } else { leg_in(leg.body(), id) })
 }
 
 fn next_version() -> u64 {

@@ -3,8 +3,7 @@
 use crate::theme;
 use crate::units::Unit;
 use egui::{Color32, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
-use flight_plan::Value;
-use std::sync::Arc;
+use std::ops::RangeInclusive;
 
 /// What happened to a field.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +40,19 @@ pub fn row<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     .inner
 }
 
+/// The same; what the value is stands in the name's tooltip.
+pub fn row_with_help<R>(ui: &mut Ui, name: &str, help: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let label = ui.scope(|ui| self::name(ui, name, 92.0)).response;
+        if !help.is_empty() {
+            label.on_hover_text(format!("{name}: {help}"));
+        }
+        add(ui)
+    })
+    .inner
+}
+
 /// The name of a value, in a column of its own.
 pub fn name(ui: &mut Ui, name: &str, width: f32) {
     let p = theme::of(ui);
@@ -54,12 +66,23 @@ pub fn name(ui: &mut Ui, name: &str, width: f32) {
 
 /// A number in a unit, stored in SI.
 pub fn number(ui: &mut Ui, name: &str, si: f64, unit: Unit, least_si: f64) -> Change<f64> {
+    number_between(ui, name, si, unit, least_si..=f64::MAX)
+}
+
+/// The same with a greatest value too.
+pub fn number_between(
+    ui: &mut Ui,
+    name: &str,
+    si: f64,
+    unit: Unit,
+    range_si: RangeInclusive<f64>,
+) -> Change<f64> {
     let mut shown = unit.from_si(si);
     let drag = DragValue::new(&mut shown)
         .suffix(format!(" {}", unit.symbol))
         .max_decimals(unit.decimals.max(1))
         .speed(unit.from_si(1.0).max(0.05))
-        .range(unit.from_si(least_si)..=f64::MAX)
+        .range(unit.from_si(*range_si.start())..=unit.from_si(*range_si.end()))
         .update_while_editing(false);
     let response = ui.add_sized([78.0, 24.0], drag);
     named(&response, name, shown);
@@ -85,34 +108,33 @@ fn outcome<T>(response: &Response, value: T) -> Change<T> {
     }
 }
 
-/// A number or an expression; the small button changes between the two.
-pub fn number_value(
-    ui: &mut Ui,
-    name: &str,
-    value: &Value<f64>,
-    unit: Unit,
-    least_si: f64,
-) -> Change<Value<f64>> {
-    let change = match value {
-        Value::Constant(si) => number(ui, name, *si, unit, least_si).map(Value::Constant),
-        Value::Expression(source) => expression(ui, name, source).map(Value::Expression),
-    };
-    let toggle = ui.small_button("ƒ").on_hover_text("Number or expression over the plan's variables");
-    if !toggle.clicked() {
-        return change;
-    }
-    Change::Set(match value {
-        Value::Constant(si) => Value::Expression(si.to_string().into()),
-        Value::Expression(source) => Value::Constant(source.trim().parse().unwrap_or(least_si.max(1.0))),
-    })
+/// A choice among several: the index of the one that was chosen now. A text that is too long is cut, and whole in the tooltip.
+pub fn choice(ui: &mut Ui, name: &str, options: &[&str], now: Option<usize>) -> Option<usize> {
+    let shown = now.and_then(|now| options.get(now)).copied().unwrap_or("choose …");
+    let mut chosen = None;
+    let width = (ui.available_width() - 8.0).clamp(40.0, 170.0);
+    let combo = egui::ComboBox::from_id_salt(("choice", name)).width(width).truncate().selected_text(shown);
+    let response = combo.show_ui(ui, |ui| {
+        for (index, option) in options.iter().enumerate() {
+            if ui.selectable_label(now == Some(index), *option).clicked() && now != Some(index) {
+                chosen = Some(index);
+            }
+        }
+    });
+    let (name, enabled) = (name.to_owned(), ui.is_enabled());
+    response.response.on_hover_text(shown).widget_info(move || {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, enabled, &name);
+        info.current_text_value = Some(shown.to_owned());
+        info
+    });
+    chosen
 }
 
-/// The source of an expression, taken when the field is left.
-pub fn expression(ui: &mut Ui, name: &str, source: &Arc<str>) -> Change<Arc<str>> {
-    match text(ui, name, source, true) {
-        Some(new) => Change::Set(new.trim().trim_start_matches('=').trim().into()),
-        None => Change::None,
-    }
+/// A small button with a symbol, named for what it does.
+pub fn small_button(ui: &mut Ui, symbol: &str, name: &str) -> bool {
+    let response = ui.small_button(symbol).on_hover_text(name);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+    response.clicked()
 }
 
 /// A text, taken when the field is left or Enter is pressed.

@@ -208,7 +208,7 @@ fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
     assert!(before.leg(&"side3".into()).unwrap().leg.altitude.is_none() && stage.altitude.is_some());
     window.click("TF side3");
     assert!(window.shows("from circuit") && window.shows("from the aircraft's cruise"));
-    window.click("150 m above home");
+    window.click("Altitude: 150 m above home");
     let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone();
     assert_eq!(own, stage.altitude, "nothing jumps");
     window.until_analysed();

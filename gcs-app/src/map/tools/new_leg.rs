@@ -37,7 +37,7 @@ impl Side {
 pub fn spot(plan: &FlightPlan, selected: Option<&Selection>, side: Side) -> Option<Spot> {
     match selected {
         Some(Selection::Leg(id)) => {
-            if let Some(leg) = any_leg(plan, id) {
+            if let Some(leg) = plan.any_leg(id) {
                 return Some(beside(leg, side));
             }
         }
@@ -69,12 +69,6 @@ fn beside(leg: &Leg, side: Side) -> Spot {
     }
 }
 
-/// A leg, in a procedure too.
-fn any_leg<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a Leg> {
-    let flown = plan.leg(id).map(|context| context.leg);
-    flown.or_else(|| crate::document::procedure_leg(plan, id).map(|(_, leg)| leg))
-}
-
 /// The autopilot performs take-off and landing by itself.
 fn has_legs(kind: StageKind) -> bool {
     !matches!(kind, StageKind::TakeOff | StageKind::Land)
@@ -93,7 +87,7 @@ pub fn words(spot: &Spot) -> String {
 pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
     let (plan, selected) = (scene.document.plan(), scene.view.selection.as_ref());
     let Some(Selection::Leg(id)) = selected else { return };
-    let Some(leg) = any_leg(plan, id) else { return };
+    let Some(leg) = plan.any_leg(id) else { return };
     let shown = words(&beside(leg, *side));
     let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
         for other in Side::ALL.into_iter().filter(|s| *s != Side::Inside || leg.as_loop().is_some()) {

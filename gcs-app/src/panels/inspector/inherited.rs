@@ -1,8 +1,11 @@
 //! What a leg or stage has where it has nothing of its own, and from whom.
 
+use super::page::Page;
 use crate::panels::Scene;
+use crate::units::Unit;
 use aircraft::Profile;
-use flight_plan::{Altitude, AltitudeReference, Id, LegContext, Value};
+use flight_plan::describe::Property;
+use flight_plan::{Altitude, AltitudeReference, EmergencyChoice, Id, LegContext, Value};
 
 /// A value and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,32 +17,45 @@ pub struct Inherited<T> {
 }
 
 /// The altitude of a leg or stage: from the loops around it, its stage, else that at which the path arrives there.
-pub fn altitude(scene: &Scene<'_>, of: &Id) -> Inherited<Altitude> {
+/// `None`: it is in a procedure, and each call may say it.
+pub fn altitude(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Altitude>> {
+    if is_called(scene, of) {
+        return None;
+    }
     let context = scene.document.plan().leg(of);
     let given =
         context.and_then(|context| around(&context, |leg| leg.altitude.as_ref(), |s| s.altitude.as_ref()));
-    given.unwrap_or_else(|| Inherited {
+    Some(given.unwrap_or_else(|| Inherited {
         value: Altitude {
             metres: Value::Constant(arrival_amsl_m(scene, of)),
             reference: AltitudeReference::Amsl,
         },
         from: "the leg before".into(),
-    })
+    }))
+}
+
+fn is_called(scene: &Scene<'_>, of: &Id) -> bool {
+    let plan = scene.document.plan();
+    plan.procedure_leg(of).is_some() && plan.leg(of).is_none()
 }
 
 /// The airspeed of a leg or stage: from the loops around it, its stage, else the aircraft's in cruise.
-pub fn speed_mps(scene: &Scene<'_>, of: &Id) -> Inherited<Value<f64>> {
+/// `None`: as for the altitude.
+pub fn speed_mps(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Value<f64>>> {
+    if is_called(scene, of) {
+        return None;
+    }
     let plan = scene.document.plan();
     let context = plan.leg(of);
     let given =
         context.and_then(|context| around(&context, |leg| leg.speed_mps.as_ref(), |s| s.speed_mps.as_ref()));
-    given.unwrap_or_else(|| {
+    Some(given.unwrap_or_else(|| {
         let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
         Inherited {
             value: Value::Constant(profile.cruise_airspeed_mps),
             from: "the aircraft's cruise".into(),
         }
-    })
+    }))
 }
 
 fn around<T: Clone>(
@@ -62,4 +78,51 @@ fn arrival_amsl_m(scene: &Scene<'_>, of: &Id) -> f64 {
     let before = passage.and_then(|passage| forecast.points.get(passage.first));
     let home = || scene.document.plan().home().map(|runway| runway.elevation_amsl_m);
     before.map(|point| point.altitude_amsl_m).or_else(home).unwrap_or(0.0).round()
+}
+
+/// What holds where a property names nothing: of an alternate, the one from outside.
+pub fn said(page: &Page<'_, '_>, property: &Property) -> Option<String> {
+    let of = page.leg_or_stage().filter(|_| property.attribute == "emergency" && !page.is_several())?;
+    let plan = page.plan();
+    let named = |choice: &EmergencyChoice| {
+        choice.by_cause.iter().find(|(cause, _)| cause.is_none()).map(|(_, id)| id.clone())
+    };
+    let context = plan.leg(of);
+    let outside = context.as_ref().map_or_else(Vec::new, |context| {
+        let loops = context.loops.iter().rev().map(|leg| (&leg.emergency, &leg.name, &leg.id));
+        loops.chain([(&context.stage.emergency, &context.stage.name, &context.stage.id)]).collect()
+    });
+    let found = outside.into_iter().find_map(|(choice, name, id)| {
+        Some((named(choice)?, if name.is_empty() { id.to_string() } else { name.clone() }))
+    });
+    let of_plan = || Some((named(&plan.emergency)?, "the plan".to_owned()));
+    let (id, from) = found.or_else(|| if is_called(page.scene, of) { None } else { of_plan() })?;
+    let name = plan.emergency_plan(&id).map_or("", |e| &e.name);
+    Some(format!("inherited: {} from {from}", if name.is_empty() { id.as_str() } else { name }))
+}
+
+/// A number with its unit, or a formula.
+pub fn value_text(value: &Value<f64>, unit: Unit) -> String {
+    match value {
+        Value::Constant(number) => unit.show(*number),
+        Value::Expression(formula) => formula.to_string(),
+    }
+}
+
+/// A number or a formula, as the document has it.
+pub fn as_written(value: &Value<f64>) -> String {
+    match value {
+        Value::Constant(number) => number.to_string(),
+        Value::Expression(formula) => format!("= {formula}"),
+    }
+}
+
+/// An altitude with what it is measured from.
+pub fn altitude_text(scene: &Scene<'_>, altitude: &Altitude) -> String {
+    let above = match altitude.reference {
+        AltitudeReference::Amsl => "AMSL",
+        AltitudeReference::Agl => "AGL",
+        AltitudeReference::Home => "above home",
+    };
+    format!("{} {above}", value_text(&altitude.metres, scene.units().altitude()))
 }

@@ -1,104 +1,81 @@
-//! The altitude and airspeed of a leg or stage: its own, or inherited.
+//! An altitude with what it is measured from: one row, or what holds where there is none.
 
-use super::super::{Scene, field};
-use super::{inherited, send};
-use crate::command::Queue;
-use crate::{theme, units};
-use egui::{RichText, Ui};
-use flight_plan::{Altitude, AltitudeReference, Edit, Id, Value};
+use super::page::Page;
+use super::{inherited, value};
+use crate::panels::field;
+use egui::Ui;
+use flight_plan::Edit;
+use flight_plan::describe::{Change, OneOf, Property, Row};
 
-fn reference_text(reference: AltitudeReference) -> &'static str {
-    match reference {
-        AltitudeReference::Amsl => "AMSL",
-        AltitudeReference::Agl => "AGL",
-        AltitudeReference::Home => "home",
+/// It is an altitude and its reference, or nothing.
+pub fn is_level(one: &OneOf) -> bool {
+    matches!(one.ways, [own, none] if own.rows.len() == 2 && none.is_empty())
+}
+
+/// Draws it.
+pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
+    let way = one.way(page.element());
+    if page.elements().any(|element| one.way(element) != way) {
+        return value::mixed(ui, page, one.label, one.help, way.map(|way| Change::Choose(*one, way)));
+    }
+    let Some([Row::Property(metres), Row::Property(reference)]) = one.ways.first().map(|way| way.rows) else {
+        return;
+    };
+    match way {
+        Some(0) => own(ui, page, one, metres, reference),
+        _ => absent(ui, page, one),
     }
 }
 
-/// A number with its unit, or a formula.
-fn value_text(value: &Value<f64>, unit: units::Unit) -> String {
-    match value {
-        Value::Constant(number) => unit.show(*number),
-        Value::Expression(formula) => formula.to_string(),
-    }
-}
-
-/// A value that comes from elsewhere; true when it becomes one of its own, to be changed.
-fn inherited_button(ui: &mut Ui, text: &str, from: &str, what: &str) -> bool {
-    let hover =
-        format!("Inherited from {from}. Click to give it {what} of its own, beginning with this one.");
-    let clicked = ui.button(text).on_hover_text(hover).clicked();
-    let from = RichText::new(format!("from {from}")).size(12.0).color(theme::of(ui).weak);
-    ui.add(egui::Label::new(from).truncate());
-    clicked
-}
-
-/// The altitude of a leg or stage: number, unit and datum, or inherited.
-pub(super) fn altitude_row(
-    ui: &mut Ui,
-    scene: &Scene<'_>,
-    of: &Id,
-    altitude: Option<&Altitude>,
-    queue: &mut Queue,
-) {
-    let units = scene.units();
-    let set = |altitude| Edit::SetAltitude { of: of.clone(), altitude };
-    field::row(ui, "Altitude", |ui| {
-        let Some(current) = altitude else {
-            let inherited = inherited::altitude(scene, of);
-            let metres = value_text(&inherited.value.metres, units.altitude());
-            let datum = match inherited.value.reference {
-                AltitudeReference::Home => "above home",
-                other => reference_text(other),
-            };
-            let text = format!("{metres} {datum}");
-            if inherited_button(ui, &text, &inherited.from, "an altitude") {
-                queue.edit(set(Some(inherited.value)));
-            }
-            return;
-        };
-        let change = field::number_value(ui, "Altitude", &current.metres, units.altitude(), -500.0);
-        send(change.map(|metres| set(Some(Altitude { metres, reference: current.reference }))), queue);
-        egui::ComboBox::from_id_salt(("datum", of))
-            .width(56.0)
-            .selected_text(reference_text(current.reference))
-            .show_ui(ui, |ui| {
-                for reference in [AltitudeReference::Amsl, AltitudeReference::Agl, AltitudeReference::Home] {
-                    if ui
-                        .selectable_label(reference == current.reference, reference_text(reference))
-                        .clicked()
-                    {
-                        queue.edit(set(Some(Altitude { metres: current.metres.clone(), reference })));
-                    }
-                }
+fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
+    let below = field::row_with_help(ui, one.label, one.help, |ui| {
+        let below = value::field(ui, page, metres);
+        if below.is_none() {
+            ui.scope(|ui| {
+                ui.set_max_width(ui.available_width() - 24.0);
+                value::field(ui, page, reference);
             });
-        if ui.small_button("✖").on_hover_text("Inherit the altitude").clicked() {
-            queue.edit(set(None));
+            remove(ui, page, one);
         }
+        below
     });
+    let is_formula = below.is_some();
+    value::finish(ui, page, metres, below);
+    if is_formula {
+        // a formula takes the whole row
+        field::row_with_help(ui, "", "", |ui| {
+            ui.scope(|ui| {
+                ui.set_max_width(ui.available_width() - 24.0);
+                value::field(ui, page, reference);
+            });
+            remove(ui, page, one);
+        });
+    }
 }
 
-pub(super) fn speed_row(
-    ui: &mut Ui,
-    scene: &Scene<'_>,
-    of: &Id,
-    speed: Option<&Value<f64>>,
-    queue: &mut Queue,
-) {
-    let set = |speed_mps| Edit::SetSpeed { of: of.clone(), speed_mps };
-    field::row(ui, "Airspeed", |ui| match speed {
-        None => {
-            let inherited = inherited::speed_mps(scene, of);
-            let text = value_text(&inherited.value, scene.units().speed());
-            if inherited_button(ui, &text, &inherited.from, "an airspeed") {
-                queue.edit(set(Some(inherited.value)));
+fn remove(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
+    let name = page.name(&format!("Leave out the {}", one.label.to_lowercase()));
+    if field::small_button(ui, "✖", &name) {
+        page.change(&Change::Choose(*one, 1));
+    }
+}
+
+/// What holds without one; a click gives it one of its own, which begins with that.
+fn absent(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
+    let said = one.ways.last().map_or("none", |way| way.label);
+    let inherits = page.leg_or_stage().filter(|_| said == "inherited" && !page.is_several());
+    let inherited = inherits.and_then(|of| Some((of, inherited::altitude(page.scene, of)?)));
+    field::row_with_help(ui, one.label, one.help, |ui| match inherited {
+        Some((of, inherited)) => {
+            let text = inherited::altitude_text(page.scene, &inherited.value);
+            if value::inherited_button(ui, &page.name(one.label), &text, &inherited.from) {
+                let altitude = Some(inherited.value);
+                page.queue.edit(Edit::SetAltitude { of: of.clone(), altitude });
             }
         }
-        Some(current) => {
-            let change = field::number_value(ui, "Airspeed", current, scene.units().speed(), 1.0);
-            send(change.map(|v| set(Some(v))), queue);
-            if ui.small_button("✖").on_hover_text("Inherit the airspeed").clicked() {
-                queue.edit(set(None));
+        None => {
+            if value::absent_button(ui, &page.name(one.label), said) {
+                page.change(&Change::Choose(*one, 0));
             }
         }
     });

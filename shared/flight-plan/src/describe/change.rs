@@ -9,6 +9,8 @@ use crate::Element;
 pub enum Change {
     /// Gives a property a value, as the document has it; `None` leaves it out.
     Set(Property, Option<String>),
+    /// Gives a property its first value.
+    Begin(Property),
     /// Says something in another of its ways, by its index.
     Choose(OneOf, usize),
     /// Puts a new element into it.
@@ -29,6 +31,7 @@ pub(super) fn apply(root: &mut Element, at: &[usize], change: &Change, first: &F
     let element = root.at_mut(at)?;
     match change {
         Change::Set(property, value) => set(element, property, value.as_deref()),
+        Change::Begin(property) => set(element, property, Some(&first.value(property, &[]))),
         Change::Choose(one, way) => choose(element, one, *way, first)?,
         Change::Add(what) => {
             let new = first.element(what, &element.children);

@@ -6,7 +6,7 @@ use crate::xml::{Part, Piece, read_part, text};
 use crate::{Edit, Element, FlightPlan, Id, Leg, LegKind, Thing};
 
 /// What is shown or changed.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// The plan itself.
     Plan,

@@ -15,11 +15,13 @@ mod parts;
 mod patterns;
 mod reference;
 mod things;
+mod together;
 
 pub use change::Change;
 pub use draft::{Draft, Subject};
 pub use formula::{Completion, Formula, completions, look};
 pub use reference::{Choice, choices};
+pub use together::add;
 
 use crate::{Element, Use};
 

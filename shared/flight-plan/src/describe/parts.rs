@@ -104,7 +104,9 @@ pub(super) const PLACE_WAYS: &[Way] = &[
     Way { label: "a formula", fixed: &[], rows: &[P(AT)] },
 ];
 pub(super) const TO: Row = Row::OneOf(OneOf { label: "To", help: "Where the leg goes.", ways: PLACE_WAYS });
-pub(super) const PLACE: Row = Row::OneOf(OneOf { label: "Where", help: "Its place.", ways: PLACE_WAYS });
+const fn place(label: &'static str, help: &'static str) -> Row {
+    Row::OneOf(OneOf { label, help, ways: PLACE_WAYS })
+}
 pub(super) const ANCHOR: Row = Row::OneOf(OneOf {
     label: "Put at",
     help: "Where the procedure's reference point comes to.",
@@ -151,7 +153,7 @@ const AREA: Description = Description {
     help: "What the pattern covers.",
     alike: &[],
     groups: &[&[Row::OneOf(OneOf {
-        label: "Shape",
+        label: "Area",
         help: "A circle, an outline with holes, or the polygon that a formula gives.",
         ways: &[
             Way {
@@ -202,14 +204,14 @@ const CENTRE: Description = Description {
     label: "Centre",
     help: "What the pattern is about.",
     alike: &[],
-    groups: &[&[PLACE]],
+    groups: &[&[place("Centre", "What the pattern is about.")]],
 };
 const POINT: Description = Description {
     element: "point",
     label: "Point",
     help: "A point of the route.",
     alike: &[],
-    groups: &[&[PLACE]],
+    groups: &[&[place("Point", "A point of the route.")]],
 };
 const ROUTE: Description = Description {
     element: "route",

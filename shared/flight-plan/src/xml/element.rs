@@ -35,7 +35,7 @@ impl Element {
     }
 
     /// What stands in it, up to its end tag. (Documents nest few elements.)
-    fn read<'a>(&mut self, lines: &mut dyn Iterator<Item = &'a str>) {
+    fn read(&mut self, lines: &mut dyn Iterator<Item = &str>) {
         while let Some(line) = lines.next().filter(|line| !line.starts_with("</")) {
             let mut child = Self::opened(line);
             if !line.ends_with("/>") {

@@ -1,0 +1,81 @@
+//! The rows of a part: drawn from its description, whatever it is.
+
+use super::page::Page;
+use super::{level, list, value};
+use crate::panels::field;
+use egui::Ui;
+use flight_plan::describe::{Change, OneOf, Row};
+
+/// Draws all that the part has.
+pub fn show(ui: &mut Ui, page: &mut Page<'_, '_>) {
+    kind(ui, page);
+    let description = page.draft().description();
+    for row in description.rows().filter(|row| page.is_common(row)).collect::<Vec<_>>() {
+        self::row(ui, page, row);
+    }
+}
+
+/// A choice among elements that are alike.
+fn kind(ui: &mut Ui, page: &mut Page<'_, '_>) {
+    let words = page.draft().description().alike;
+    if words.is_empty() || page.is_several() {
+        return;
+    }
+    let now = words.iter().position(|(name, _)| *name == page.element().name);
+    let labels: Vec<&str> = words.iter().map(|(_, label)| *label).collect();
+    let chosen =
+        field::row_with_help(ui, "Kind", "What it is.", |ui| field::choice(ui, "Kind", &labels, now));
+    if let Some((name, _)) = chosen.and_then(|index| words.get(index)) {
+        page.change(&Change::Rename(name));
+    }
+}
+
+/// Draws some rows of the element.
+pub fn rows(ui: &mut Ui, page: &mut Page<'_, '_>, rows: &'static [Row]) {
+    rows.iter().for_each(|row| self::row(ui, page, row));
+}
+
+fn row(ui: &mut Ui, page: &mut Page<'_, '_>, row: &'static Row) {
+    match row {
+        Row::Property(property) => value::row(ui, page, property),
+        Row::OneOf(one) if level::is_level(one) => level::row(ui, page, one),
+        Row::OneOf(one) => one_of(ui, page, one),
+        Row::Children(children) if !page.is_several() => list::show(ui, page, children),
+        Row::Children(_) => {}
+    }
+}
+
+/// Which way it is said, and what is said: one value stands beside the way.
+fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
+    let way = one.way(page.element());
+    if page.elements().any(|element| page.is_several() && one.way(element) != way) {
+        return value::mixed(ui, page, one.label, one.help, way.map(|way| Change::Choose(*one, way)));
+    }
+    let labels: Vec<&str> = one.ways.iter().map(|way| way.label).collect();
+    let inside = way.and_then(|way| one.ways.get(way)).map_or(&[][..], |way| way.rows);
+    let name = page.name(one.label);
+    let (chosen, below) = field::row_with_help(ui, one.label, one.help, |ui| {
+        let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
+        let alone = inside.split_first().filter(|_| short && !page.is_several());
+        let Some((Row::Property(property), [])) = alone else {
+            return (field::choice(ui, &name, &labels, way), None);
+        };
+        let chosen = ui.scope(|ui| {
+            ui.set_max_width(WAY_WIDTH);
+            field::choice(ui, &name, &labels, way)
+        });
+        (chosen.inner, Some((property, value::field(ui, page, property))))
+    });
+    match below {
+        Some((property, below)) => value::finish(ui, page, property, below),
+        None => rows(ui, page, inside),
+    }
+    if let Some(way) = chosen {
+        page.change(&Change::Choose(*one, way));
+    }
+}
+
+/// Bytes of a way that has room beside its value.
+const SHORT: usize = 10;
+/// Of the choice of a way beside its value, screen points.
+const WAY_WIDTH: f32 = 92.0;

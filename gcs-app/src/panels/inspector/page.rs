@@ -1,0 +1,160 @@
+//! What is being shown and changed: one part of the plan, or several legs together.
+
+use super::super::{Scene, field};
+use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use flight_plan::describe::{Change, Draft, Kind, Property, Row, Subject};
+use flight_plan::{Edit, Element, FlightPlan, Id};
+
+/// A part of the plan, down to one of its elements.
+pub struct Page<'a, 's> {
+    pub scene: &'a Scene<'s>,
+    pub queue: &'a mut Queue,
+    /// Where the changes go: to all of them at once. There is always one.
+    drafts: &'a [Draft],
+    first: &'a Draft,
+    /// Which element, by indices among children.
+    path: Vec<usize>,
+    /// What names begin with inside that element.
+    prefix: String,
+}
+
+impl<'a, 's> Page<'a, 's> {
+    /// `None`: there is nothing to be shown.
+    pub fn of(scene: &'a Scene<'s>, drafts: &'a [Draft], queue: &'a mut Queue) -> Option<Self> {
+        let first = drafts.first()?;
+        Some(Self { scene, queue, drafts, first, path: Vec::new(), prefix: String::new() })
+    }
+
+    pub fn plan(&self) -> &'a FlightPlan {
+        self.scene.document.plan()
+    }
+
+    pub fn subject(&self) -> &'a Subject {
+        self.first.subject()
+    }
+
+    pub fn draft(&self) -> &'a Draft {
+        self.first
+    }
+
+    /// The leg or stage it is, if it is one, and its own element is shown.
+    pub fn leg_or_stage(&self) -> Option<&'a Id> {
+        match self.first.subject() {
+            Subject::Leg(id) | Subject::Stage(id) if self.path.is_empty() => Some(id),
+            _ => None,
+        }
+    }
+
+    pub fn is_several(&self) -> bool {
+        self.drafts.len() > 1
+    }
+
+    /// The element that is shown; of several legs the first one's.
+    pub fn element(&self) -> &'a Element {
+        // what was there when the path was made is there now
+        self.first.element().at(&self.path).unwrap_or(self.first.element())
+    }
+
+    /// The elements that are changed together.
+    pub fn elements(&self) -> impl Iterator<Item = &'a Element> {
+        self.drafts.iter().map(Draft::element)
+    }
+
+    /// Each of the legs has it.
+    pub fn is_common(&self, row: &Row) -> bool {
+        self.drafts.iter().skip(1).all(|draft| draft.description().rows().any(|other| other == row))
+    }
+
+    /// All that is changed together.
+    pub fn drafts(&self) -> &'a [Draft] {
+        self.drafts
+    }
+
+    /// The change can be made.
+    pub fn can(&self, change: &Change) -> bool {
+        self.edit(change).is_ok()
+    }
+
+    /// The name of a widget.
+    pub fn name(&self, label: &str) -> String {
+        format!("{}{label}", self.prefix)
+    }
+
+    /// Shows a child of the element; names begin with `prefix` meanwhile.
+    pub fn inside<R>(&mut self, child: usize, prefix: &str, show: impl FnOnce(&mut Self) -> R) -> R {
+        self.path.push(child);
+        let outside = self.prefix.len();
+        self.prefix.push_str(prefix);
+        let result = show(self);
+        self.prefix.truncate(outside);
+        self.path.pop();
+        result
+    }
+
+    fn edit(&self, change: &Change) -> Result<Edit, String> {
+        let edit = |draft: &Draft| draft.edit(self.plan(), &self.path, change);
+        match self.drafts {
+            [draft] => edit(draft),
+            several => several.iter().map(edit).collect::<Result<_, _>>().map(Edit::All),
+        }
+    }
+
+    /// Makes a change as one undo step, or says why it can't be made.
+    pub fn change(&mut self, change: &Change) {
+        match self.edit(change) {
+            Ok(edit) => {
+                let selection = self.renamed(change, &edit);
+                self.queue.edit(edit);
+                if selection.is_some() {
+                    self.queue.view(ViewCommand::Select(selection));
+                }
+            }
+            Err(why) => self.queue.view(ViewCommand::Notice(why)),
+        }
+    }
+
+    /// The selection under its new identifier, if the change gives it one.
+    fn renamed(&self, change: &Change, edit: &Edit) -> Option<Selection> {
+        match change {
+            Change::Set(property, Some(to)) if self.path.is_empty() && property.kind == Kind::Identifier => {
+                edit.apply(self.plan()).ok()?;
+                Some(self.scene.view.selection.as_ref()?.renamed(Id::new(to.trim())))
+            }
+            _ => None,
+        }
+    }
+
+    /// Sets a property.
+    pub fn set(&mut self, property: &Property, value: Option<String>) {
+        self.change(&Change::Set(*property, value));
+    }
+
+    /// Sets a property as its field is changed: a drag becomes one undo step.
+    pub fn send(&mut self, property: &Property, change: field::Change<String>) {
+        match change {
+            field::Change::None => {}
+            field::Change::Moving(value) => {
+                if let Ok(edit) = self.edit(&Change::Set(*property, Some(value))) {
+                    self.queue.document(DocumentCommand::DragEdit(edit));
+                }
+            }
+            field::Change::Set(value) => self.set(property, Some(value)),
+            field::Change::Ended => self.queue.document(DocumentCommand::EndGesture),
+        }
+    }
+}
+
+/// What a selection is in the plan.
+pub fn subject(selection: Option<&Selection>) -> Subject {
+    match selection {
+        None => Subject::Plan,
+        Some(Selection::Leg(id)) => Subject::Leg(id.clone()),
+        Some(Selection::Stage(id)) => Subject::Stage(id.clone()),
+        Some(Selection::Emergency(id)) => Subject::EmergencyPlan(id.clone()),
+        Some(Selection::Fix(id)) => Subject::Fix(id.clone()),
+        Some(Selection::Runway(id)) => Subject::Runway(id.clone()),
+        Some(Selection::Variable(id)) => Subject::Variable(id.clone()),
+        Some(Selection::Zone(id)) => Subject::Zone(id.clone()),
+        Some(Selection::Procedure(id)) => Subject::Procedure(id.clone()),
+    }
+}

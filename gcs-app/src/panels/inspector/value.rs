@@ -1,0 +1,301 @@
+//! A value: its field, by what it may be.
+
+use super::formula::{self, Typing};
+use super::page::Page;
+use super::{inherited, together};
+use crate::coordinates;
+use crate::panels::field;
+use crate::theme;
+use crate::units::{self, Unit, Units};
+use egui::{RichText, Ui};
+use flight_plan::Use;
+use flight_plan::describe::{self, Kind, Property, Quantity, Range, Sort, choices};
+
+/// A value in a row of its own.
+pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
+    if page.is_several() {
+        if property.kind == Kind::Identifier {
+            return;
+        }
+        let first = property.value(page.element());
+        if page.elements().any(|element| property.value(element) != first) {
+            let to_first = describe::Change::Set(*property, first);
+            return mixed(ui, page, property.label, property.help, Some(to_first));
+        }
+    }
+    let below = field::row_with_help(ui, property.label, property.help, |ui| {
+        let below = field(ui, page, property);
+        if page.is_several() && below.is_none() {
+            together::add(ui, page, property);
+        }
+        below
+    });
+    finish(ui, page, property, below);
+}
+
+/// What several legs don't have in common; a click gives all of them the first one's.
+pub fn mixed(
+    ui: &mut Ui,
+    page: &mut Page<'_, '_>,
+    label: &str,
+    help: &str,
+    to_first: Option<describe::Change>,
+) {
+    let clicked = field::row_with_help(ui, label, help, |ui| {
+        let hover = "They differ. Click to give all of them what the first one has.";
+        let response = ui.button("mixed").on_hover_text(hover);
+        let name = format!("{label}: mixed");
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        response.clicked()
+    });
+    if let Some(change) = to_first.filter(|_| clicked) {
+        page.change(&change);
+    }
+}
+
+/// The field alone. What it gives back belongs below the row: see [`finish`].
+pub fn field(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property) -> Option<Typing> {
+    let value = property.value(page.element());
+    match (value, property.without) {
+        (None, Some(said)) if !is_there_when_absent(property.kind) => {
+            absent(ui, page, property, said);
+            None
+        }
+        (value, said) => {
+            let optional = said.is_some() && value.is_some() && !is_there_when_absent(property.kind);
+            let below = present(ui, page, property, value.as_deref().unwrap_or(""));
+            if optional && field::small_button(ui, "✖", &page.name(&format!("Leave out {}", property.label)))
+            {
+                page.set(property, None);
+                return None;
+            }
+            below
+        }
+    }
+}
+
+/// Draws what belongs below a field, and takes what was typed into it.
+pub fn finish(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, below: Option<Typing>) {
+    let Some(below) = below else { return };
+    let unit = match property.kind {
+        Kind::Value(range) => Some(unit(range.quantity, page.scene.units())),
+        _ => None,
+    };
+    let Some(source) = below.finish(ui, page, unit) else { return };
+    let value = match (property.kind, source.is_empty()) {
+        (_, true) if property.without.is_some() => None,
+        (Kind::Condition, _) => Some(source),
+        _ => Some(format!("= {source}")),
+    };
+    if value != property.value(page.element()) {
+        page.set(property, value);
+    }
+}
+
+/// Its field says that nothing is given.
+fn is_there_when_absent(kind: Kind) -> bool {
+    matches!(kind, Kind::Text | Kind::Flag | Kind::Choice(_) | Kind::Reference(_))
+}
+
+fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) -> Option<Typing> {
+    let name = page.name(property.label);
+    match property.kind {
+        Kind::Choice(words) => choice(ui, page, property, words, value),
+        Kind::Reference(sort) => reference(ui, page, property, sort, value),
+        Kind::Flag => flag(ui, page, property, value),
+        Kind::Number(range) => number(ui, page, property, range, value),
+        Kind::Value(range) => return number_or_formula(ui, page, property, range, value),
+        Kind::LatLon(_) | Kind::Position => position(ui, page, property, value),
+        Kind::Ahead => ahead(ui, page, property, value),
+        Kind::Condition => return Some(formula::field(ui, page, &name, value, Use::Condition)),
+        Kind::Formula(used) => {
+            let source = value.trim_start_matches('=').trim();
+            return Some(formula::field(ui, page, &name, source, used));
+        }
+        Kind::Identifier | Kind::Text | Kind::Names | Kind::Instant | Kind::Positions => {
+            if let Some(new) = field::text(ui, &name, value, false) {
+                let optional = property.without.is_some() && new.trim().is_empty();
+                page.set(property, (!optional).then_some(new));
+            }
+        }
+    }
+    None
+}
+
+fn choice(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, words: &[describe::Word], value: &str) {
+    let mut options: Vec<(&str, Option<&str>)> =
+        words.iter().map(|(word, label)| (*label, Some(*word))).collect();
+    // left out, unless that is one of the words
+    if let Some(said) = property.without.filter(|said| !words.iter().any(|(_, label)| label == said)) {
+        options.insert(0, (said, None));
+    }
+    let without = || options.iter().position(|(label, _)| Some(*label) == property.without);
+    let now = options.iter().position(|(_, word)| *word == Some(value)).or_else(without);
+    let labels: Vec<&str> = options.iter().map(|(label, _)| *label).collect();
+    let chosen = field::choice(ui, &page.name(property.label), &labels, now);
+    if let Some((_, word)) = chosen.and_then(|chosen| options.get(chosen)) {
+        page.set(property, word.map(str::to_owned));
+    }
+}
+
+fn reference(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, sort: Sort, value: &str) {
+    let found = choices(page.plan(), page.draft(), sort);
+    let mut options: Vec<(String, Option<String>)> =
+        found.iter().map(|choice| (choice.label(), Some(choice.id.to_string()))).collect();
+    if let Some(said) = property.without {
+        options.insert(0, (inherited::said(page, property).unwrap_or_else(|| said.to_owned()), None));
+    }
+    // what the plan does not have is shown all the same
+    if !value.is_empty() && !found.iter().any(|choice| choice.id.as_str() == value) {
+        options.push((format!("{value} (not in the plan)"), Some(value.to_owned())));
+    }
+    let given = (!value.is_empty()).then_some(value);
+    let now = options.iter().position(|(_, id)| id.as_deref() == given);
+    let labels: Vec<&str> = options.iter().map(|(label, _)| label.as_str()).collect();
+    let chosen = field::choice(ui, &page.name(property.label), &labels, now);
+    if let Some((_, id)) = chosen.and_then(|chosen| options.get(chosen)) {
+        page.set(property, id.clone());
+    }
+}
+
+fn flag(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
+    let mut on = value == "true";
+    let text = if on { "yes" } else { "no" };
+    let response = ui.checkbox(&mut on, text);
+    let name = page.name(property.label);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &name));
+    if response.changed() {
+        page.set(property, (on || property.without.is_none()).then(|| on.to_string()));
+    }
+}
+
+fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Range, value: &str) {
+    let name = page.name(property.label);
+    match value.parse::<f64>() {
+        Ok(si) if si.is_finite() => {
+            let unit = unit(range.quantity, page.scene.units());
+            let change = field::number_between(ui, &name, si, unit, range.least..=range.most);
+            if let Some(own) = page.element().attribute("unit").filter(|_| range.quantity == Quantity::Plain)
+            {
+                ui.label(own);
+            }
+            page.send(property, change.map(|si| si.to_string()));
+        }
+        _ => {
+            if let Some(new) = field::text(ui, &name, value, false) {
+                page.set(property, Some(new));
+            }
+        }
+    }
+}
+
+fn number_or_formula(
+    ui: &mut Ui,
+    page: &mut Page<'_, '_>,
+    property: &Property,
+    range: Range,
+    value: &str,
+) -> Option<Typing> {
+    let source = value.strip_prefix('=').map(str::trim);
+    let below = match source {
+        Some(source) => Some(formula::field(ui, page, &page.name(property.label), source, Use::Number)),
+        None => {
+            number(ui, page, property, range, value);
+            None
+        }
+    };
+    let name = page.name(&format!("{}: number or formula", property.label));
+    if field::small_button(ui, "ƒ", &name) {
+        let other = match source {
+            None => format!("= {:?}", value.parse::<f64>().unwrap_or(range.least.max(1.0))),
+            Some(source) => result(page, source).map_or_else(|| property.first.to_owned(), |n| n.to_string()),
+        };
+        page.set(property, Some(other));
+        return None;
+    }
+    below
+}
+
+/// What a formula gives at the start.
+fn result(page: &Page<'_, '_>, source: &str) -> Option<f64> {
+    match describe::look(page.plan(), page.subject(), source, Use::Number) {
+        Ok(describe::Formula::Value(flight_plan::VariableValue::Number(n))) => Some(n),
+        _ => None,
+    }
+}
+
+fn position(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
+    let name = page.name(property.label);
+    let shown = coordinates::position(value).map_or_else(|| value.to_owned(), units::position);
+    if let Some(typed) = field::text(ui, &name, &shown, false) {
+        // what is no position is refused by the document, in words
+        let exact = coordinates::position(&typed).map(|at| format!("{} {}", at.lat_deg, at.lon_deg));
+        page.set(property, Some(exact.unwrap_or(typed)));
+    }
+}
+
+/// Seconds or metres.
+fn ahead(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
+    let in_metres = value.ends_with('m');
+    let number = value.trim_end_matches(['s', 'm']).trim().parse::<f64>().unwrap_or(0.0);
+    let quantity = if in_metres { Quantity::Length } else { Quantity::Time };
+    let symbol = |metres: bool| if metres { "m" } else { "s" };
+    let name = page.name(property.label);
+    let change = field::number_between(ui, &name, number, unit(quantity, page.scene.units()), 0.0..=f64::MAX);
+    page.send(property, change.map(|si| format!("{si}{}", symbol(in_metres))));
+    let unit_name = page.name(&format!("{}: of time or distance", property.label));
+    let chosen = field::choice(ui, &unit_name, &["of time", "of distance"], Some(usize::from(in_metres)));
+    if let Some(metres) = chosen.map(|chosen| chosen == 1).filter(|metres| *metres != in_metres) {
+        page.set(property, Some(format!("{number}{}", symbol(metres))));
+    }
+}
+
+/// What holds when nothing is given; a click gives it a value of its own.
+fn absent(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, said: &str) {
+    let name = page.name(property.label);
+    let of = page.leg_or_stage().filter(|_| property.attribute == "speed" && !page.is_several());
+    if let Some(inherited) = of.and_then(|of| inherited::speed_mps(page.scene, of)) {
+        let text = inherited::value_text(&inherited.value, page.scene.units().speed());
+        if inherited_button(ui, &name, &text, &inherited.from) {
+            page.set(property, Some(inherited::as_written(&inherited.value)));
+        }
+    } else if absent_button(ui, &name, said) {
+        page.change(&describe::Change::Begin(*property));
+    }
+}
+
+/// True when it is to be given.
+pub fn absent_button(ui: &mut Ui, name: &str, said: &str) -> bool {
+    let response = ui.button(said).on_hover_text("Not given. Click to give it a value.");
+    let label = format!("{name}: {said}");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+    response.clicked()
+}
+
+/// A value that comes from elsewhere; true when it becomes one of its own, to be changed.
+pub fn inherited_button(ui: &mut Ui, name: &str, text: &str, from: &str) -> bool {
+    let hover =
+        format!("{name}: inherited from {from}. Click to give it one of its own, beginning with this one.");
+    let response = ui.button(text).on_hover_text(hover);
+    let label = format!("{name}: {text}");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+    let clicked = response.clicked();
+    let from = RichText::new(format!("from {from}")).size(12.0).color(theme::of(ui).weak);
+    ui.add(egui::Label::new(from).truncate());
+    clicked
+}
+
+/// In which unit a quantity is shown.
+pub fn unit(quantity: Quantity, u: Units) -> Unit {
+    let of = |symbol, per_si, decimals| Unit { symbol, per_si, decimals };
+    match quantity {
+        Quantity::Length => u.length(),
+        Quantity::Height => u.altitude(),
+        Quantity::Speed => u.speed(),
+        Quantity::Angle => of("°", 1.0, 0),
+        Quantity::Time => of("s", 1.0, 0),
+        Quantity::Count => of("×", 1.0, 0),
+        Quantity::Share => of("%", 100.0, 0),
+        Quantity::Plain => of("", 1.0, 2),
+    }
+}
