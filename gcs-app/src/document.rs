@@ -18,6 +18,8 @@ pub struct Document {
     text: Option<Arc<str>>,
     reading_problems: Vec<Problem>,
     kinds: BTreeMap<Id, &'static str>,
+    /// Of the legs that have one.
+    names: BTreeMap<Id, String>,
     version: u64,
     /// The first version.
     id: u64,
@@ -45,6 +47,7 @@ impl Document {
             text: None,
             reading_problems,
             kinds: BTreeMap::new(),
+            names: BTreeMap::new(),
             version: 0,
             id: 0,
         };
@@ -121,6 +124,11 @@ impl Document {
     /// What a leg is called in the document; empty for one that is not there.
     pub fn kind_name(&self, leg: &Id) -> &'static str {
         self.kinds.get(leg).copied().unwrap_or_default()
+    }
+
+    /// What people call a leg: its name, else its identifier.
+    pub fn leg_label<'a>(&'a self, leg: &'a Id) -> &'a str {
+        self.names.get(leg).map_or(leg.as_str(), String::as_str)
     }
 
     /// The leg of the document that a flown one stands for: that of the procedure, where it was made by a call.
@@ -205,7 +213,10 @@ impl Document {
         if self.version > 0 {
             self.reading_problems.clear();
         }
-        self.kinds = self.plan().all_legs().iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
+        let legs = self.history.plan().all_legs();
+        self.kinds = legs.iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
+        let named = legs.iter().filter(|context| !context.leg.name.is_empty());
+        self.names = named.map(|context| (context.leg.id.clone(), context.leg.name.clone())).collect();
         // versions are never used twice, not even by another document of this run
         self.version = next_version();
     }

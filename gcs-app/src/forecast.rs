@@ -68,6 +68,10 @@ pub struct Passage {
     pub first: usize,
     /// Index after its last point.
     pub end: usize,
+    /// Share of the energy that is left at its end, 0..1.
+    pub energy_left: f64,
+    /// Least height above the ground, metres, where the ground is known.
+    pub clearance_m: Option<f64>,
 }
 
 /// A flight ahead of time.
@@ -169,6 +173,8 @@ mod tests {
             passes: vec![pass],
             first,
             end,
+            energy_left: 1.0,
+            clearance_m: None,
         };
         Forecast {
             points: vec![point(0, 0), point(1, 0), point(2, 1), point(3, 2), point(4, 2)],

@@ -86,9 +86,10 @@ impl Forecaster {
             return Err(outcome.err().map_or_else(String::new, |why| why.to_string()));
         };
         let points = points(preview, &self.last.points, self.rehearsal.kept(), self.terrain.as_ref());
+        let passages = passages(preview, &points, self.profile.energy_j);
         self.last = Arc::new(Forecast {
             points,
-            passages: passages(preview),
+            passages,
             waypoints: preview.waypoints.iter().filter(|w| !w.replaced).map(|w| w.waypoint.clone()).collect(),
             battery_left: Some(preview.battery_left),
             cut_short: cut_short(preview, outcome),
@@ -156,16 +157,28 @@ fn points(preview: &Preview, former: &[Point], kept: Kept, terrain: &dyn Terrain
     points
 }
 
-fn passages(preview: &Preview) -> Vec<Passage> {
+fn passages(preview: &Preview, points: &[Point], energy_j: f64) -> Vec<Passage> {
     let at = |time_s: f64| preview.track.partition_point(|p| p.time_s < time_s);
-    let passages = preview.legs.iter().enumerate().map(|(i, leg)| Passage {
-        leg: leg.place.leg.clone(),
-        stage: leg.place.stage.clone(),
-        passes: leg.place.iterations.iter().map(|place| place.iteration).collect(),
-        first: if i == 0 { 0 } else { at(leg.start_s) },
-        end: at(leg.end_s),
+    let mut left_j = preview.legs.iter().map(|leg| leg.energy_j).sum::<f64>();
+    let passages = preview.legs.iter().enumerate().map(|(i, leg)| {
+        let (first, end) = (if i == 0 { 0 } else { at(leg.start_s) }, at(leg.end_s));
+        left_j -= leg.energy_j;
+        Passage {
+            leg: leg.place.leg.clone(),
+            stage: leg.place.stage.clone(),
+            passes: leg.place.iterations.iter().map(|place| place.iteration).collect(),
+            first,
+            end,
+            energy_left: preview.battery_left + left_j / energy_j,
+            clearance_m: clearance_m(points.get(first..end).unwrap_or_default()),
+        }
     });
     passages.collect()
+}
+
+fn clearance_m(points: &[Point]) -> Option<f64> {
+    let heights = points.iter().filter_map(|point| Some(point.altitude_amsl_m - point.ground_amsl_m?));
+    heights.reduce(f64::min)
 }
 
 #[cfg(test)]
@@ -196,8 +209,31 @@ mod tests {
                 assert!((a.distance_m - b.distance_m).abs() < 1e-6);
                 assert_eq!(*a, Point { distance_m: a.distance_m, ..b.clone() });
             }
-            assert_eq!((&kept.passages, &kept.waypoints), (&fresh.passages, &fresh.waypoints));
+            for (a, b) in kept.passages.iter().zip(&fresh.passages) {
+                assert!((a.energy_left - b.energy_left).abs() < 1e-9);
+                assert_eq!(*a, Passage { energy_left: a.energy_left, ..b.clone() });
+            }
+            assert_eq!(kept.passages.len(), fresh.passages.len());
+            assert_eq!(kept.waypoints, fresh.waypoints);
         }
+    }
+
+    #[test]
+    fn energy_falls_from_leg_to_leg_to_what_is_left_at_the_end() {
+        let terrain: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+        let plan = flight_plan::read(include_bytes!("../../../assets/plans/square.xml")).plan;
+        let program = compile(plan, &Profile::default(), terrain.as_ref()).unwrap();
+        let forecast =
+            Forecaster::new(Profile::default(), terrain).fly(&Arc::new(program), &WhatIf::default()).unwrap();
+        let left: Vec<f64> = forecast.passages.iter().map(|passage| passage.energy_left).collect();
+        assert!(left.is_sorted_by(|a, b| a > b) && left[0] < 1.0, "{left:?}");
+        let at_end = forecast.battery_left.unwrap();
+        assert!((left.last().unwrap() - at_end).abs() < 1e-9, "{left:?}, {at_end}");
+        let heights: Vec<f64> = forecast.passages.iter().filter_map(|passage| passage.clearance_m).collect();
+        assert!(
+            heights.len() == left.len() && heights[1..heights.len() - 1].iter().all(|h| *h > 10.0),
+            "{heights:?}"
+        );
     }
 
     #[test]

@@ -44,6 +44,9 @@ fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         format!("Altitude AMSL, {}", u.altitude().symbol),
         "ETE".into(),
         "Elapsed".into(),
+        format!("Speed, {}", u.speed().symbol),
+        "Energy left".into(),
+        format!("Above ground, {}", u.altitude().symbol),
     ];
     let passages = &scene.forecast().passages;
     let p = theme::of(ui);
@@ -54,7 +57,7 @@ fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
         .column(Column::initial(120.0).at_least(60.0).clip(true))
         .columns(Column::initial(60.0).at_least(40.0), 3)
-        .columns(Column::remainder().at_least(60.0), 5)
+        .columns(Column::remainder().at_least(60.0), 8)
         .header(20.0, |mut header| {
             for head in &heads {
                 header.col(|ui| {
@@ -78,18 +81,20 @@ fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         });
 }
 
-fn cells(scene: &Scene<'_>, passage: &Passage) -> [String; 9] {
+fn cells(scene: &Scene<'_>, passage: &Passage) -> [String; 12] {
     let forecast = scene.forecast();
     let kind = scene.document.kind_name(&passage.leg);
     let pass = passage.passes.last().map_or_else(String::new, u64::to_string);
     let points = forecast.part(passage).unwrap_or_default();
+    let name = scene.document.leg_label(&passage.leg).to_owned();
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        let none = || "–".to_owned();
-        return [passage.leg.to_string(), kind.into(), pass, none(), none(), none(), none(), none(), none()];
+        let mut cells = [(); 12].map(|()| "–".to_owned());
+        cells[..3].clone_from_slice(&[name, kind.into(), pass]);
+        return cells;
     };
     let u = scene.units();
     [
-        passage.leg.to_string(),
+        name,
         kind.into(),
         pass,
         track(first, last),
@@ -98,6 +103,9 @@ fn cells(scene: &Scene<'_>, passage: &Passage) -> [String; 9] {
         u.altitude().number(last.altitude_amsl_m),
         units::duration(last.time_s - first.time_s),
         units::duration(last.time_s),
+        u.speed().number((last.distance_m - first.distance_m) / (last.time_s - first.time_s)),
+        format!("{:.0} %", 100.0 * passage.energy_left),
+        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
     ]
 }
 

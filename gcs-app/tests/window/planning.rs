@@ -215,3 +215,16 @@ fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
     window.click("Undo");
     assert_eq!(window.plan(), before);
 }
+
+#[test]
+fn table_tells_name_energy_and_height_above_ground_of_each_leg() {
+    let text = SQUARE.replacen("<TF id=\"side2\"", "<TF name=\"Second side\" id=\"side2\"", 1);
+    let mut window = Window::open(&text);
+    window.until_analysed();
+    window.harness.get_all_by_label("Table").next().unwrap().click();
+    window.steps(3);
+    for shown in ["Energy left", "Above ground, m", "Second side"] {
+        assert!(window.shows(shown), "{shown}");
+    }
+    assert!(window.harness.query_all_by_label_contains(" %").count() > 1, "energy of each leg");
+}
