@@ -23,7 +23,7 @@ pub mod zones;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::{Scene, start};
 use crate::theme;
-use egui::{Role, Ui};
+use egui::{DragPanButtons, Role, Ui};
 use flight_plan::Variables;
 use geometry::LatLon;
 use sketch::Sketch;
@@ -139,8 +139,11 @@ impl MapState {
         let here = here.or_else(|| scene.document.plan().home().map(|r| r.threshold)).unwrap_or(HOME);
         let mut memory = std::mem::take(&mut self.memory);
         let followed = memory.detached().is_none();
+        // a drag with Shift draws around what is to be selected
+        let selects = ui.input(|i| i.modifiers.shift) || self.tools.is_sweeping();
         let shown = Map::new(None, &mut memory, lat_lon(here.lat_deg, here.lon_deg))
             .zoom_gesture(false)
+            .drag_pan_buttons(if selects { DragPanButtons::empty() } else { DragPanButtons::PRIMARY })
             .panning(false)
             .double_click_to_zoom(false)
             .show(ui, |ui, response, projector, _| {

@@ -1,91 +1,17 @@
 //! A plan's places, before anything is flown: what can be dragged, areas, and the lines of emergency
 //! plans. Broken drafts give what can be made of them.
 
+mod handle;
+pub mod numbers;
+
+pub use handle::{Handle, Handled};
+
 use flight_plan::{
     Area, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Pattern, Place, Scan, Section, Value,
     VariableValue, Variables, Zone, ZoneShape, expression,
 };
 use geometry::LatLon;
 use std::collections::HashMap;
-
-/// Something on the map that can be dragged.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Handle {
-    /// What it is.
-    pub what: Handled,
-    /// Where.
-    pub at: LatLon,
-}
-
-/// What a handle moves.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Handled {
-    /// A fix, with every leg that goes there.
-    Fix(Id),
-    /// Where a leg goes.
-    Waypoint(Id),
-    /// The middle of a scan or orbit.
-    Centre(Id),
-    /// The rim of a scan or orbit; the middle is at [`Circle::centre`].
-    Radius(Id),
-    /// A corner of a scan's polygon, or a point of a route.
-    Corner {
-        /// The scan.
-        leg: Id,
-        /// `None`: the outer ring.
-        hole: Option<usize>,
-        /// Which corner.
-        corner: usize,
-    },
-    /// Between two corners or points: dragged, it is a new one.
-    Ghost {
-        /// The scan, route or zone.
-        leg: Id,
-        /// `None`: the outer ring or the route.
-        hole: Option<usize>,
-        /// Before which corner.
-        before: usize,
-    },
-    /// In the middle of a leg: dragged, it is a new leg before that one.
-    Between {
-        /// The leg.
-        leg: Id,
-        /// How long that is, whole metres.
-        gap_m: u32,
-    },
-}
-
-impl Handled {
-    /// The leg it belongs to, if it is a leg's.
-    pub fn leg(&self) -> Option<&Id> {
-        match self {
-            Self::Fix(_) | Self::Between { .. } => None,
-            Self::Waypoint(leg)
-            | Self::Centre(leg)
-            | Self::Radius(leg)
-            | Self::Corner { leg, .. }
-            | Self::Ghost { leg, .. } => Some(leg),
-        }
-    }
-    /// Its name.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Fix(id) => format!("Fix {id}"),
-            Self::Waypoint(id) => format!("Waypoint {id}"),
-            Self::Centre(id) => format!("Centre of {id}"),
-            Self::Radius(id) => format!("Radius of {id}"),
-            Self::Corner { leg, hole: None, corner } => format!("Corner {} of {leg}", corner + 1),
-            Self::Corner { leg, hole: Some(hole), corner } => {
-                format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1)
-            }
-            Self::Ghost { leg, hole: None, before } => format!("New corner {} of {leg}", before + 1),
-            Self::Ghost { leg, hole: Some(hole), before } => {
-                format!("New corner {} of hole {} of {leg}", before + 1, hole + 1)
-            }
-            Self::Between { leg, .. } => format!("New leg before {leg}"),
-        }
-    }
-}
 
 /// A circle on the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,6 +61,7 @@ impl Sketch {
     }
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
+        self.handles.extend(numbers::handles(leg, reader));
         match &leg.kind {
             LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {

@@ -22,7 +22,7 @@ fn kind_of(window: &Window, id: &str) -> LegChoice {
 }
 
 /// Opens the list that begins so and takes an entry of it.
-fn choose(window: &mut Window, list: &str, entry: &str) {
+pub fn choose(window: &mut Window, list: &str, entry: &str) {
     let opened = window.harness.get_all_by_label_contains(list).next().unwrap();
     opened.click();
     window.steps(3);

@@ -11,6 +11,7 @@ mod emergency;
 mod filing;
 mod fleet;
 mod flying;
+mod handles;
 mod inspecting;
 mod looks;
 mod maps;

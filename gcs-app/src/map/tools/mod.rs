@@ -5,12 +5,14 @@
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
 mod draw_leg;
+mod group;
 mod guided;
 mod measure;
 pub mod new_leg;
 pub(super) mod pen;
 pub(super) mod pick;
 pub mod select;
+mod sweep;
 mod thing;
 mod track;
 
@@ -23,6 +25,7 @@ use egui::{Context, CursorIcon, Key, Modifiers, Painter, Pos2, Rect, Response, R
 use flight_plan::{Place, Value};
 use geometry::LatLon;
 use pen::Mark;
+use sweep::Sweep;
 
 /// All tools, in the order of the toolbar. The first one is in use unless another one is chosen.
 fn all() -> Vec<Box<dyn Tool>> {
@@ -108,6 +111,8 @@ pub struct Pointer {
     pub grip: Option<usize>,
     /// With Shift or Ctrl: what is there is selected besides what is.
     pub adds: bool,
+    /// It is a click; else a drag begins.
+    pub clicks: bool,
 }
 
 /// What the pointer does to the grips.
@@ -154,6 +159,9 @@ pub trait Tool: std::fmt::Debug {
     /// A grip is dragged to a place of the screen.
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue);
 
+    /// A part of the screen was drawn around with Shift.
+    fn sweep(&mut self, _area: Rect, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
+
     /// The drag is over.
     fn release(&mut self, _queue: &mut Queue) {}
 
@@ -191,6 +199,7 @@ pub struct Toolbox {
     offset: Vec2,
     /// Keys that the tool in use has not seen yet.
     pressed: Vec<Key>,
+    sweep: Sweep,
     /// Draws the answers to the guide to a new plan.
     guided: guided::Guided,
     /// The guide asks for something: its tool is in use, whichever was chosen.
@@ -203,6 +212,7 @@ impl Default for Toolbox {
             tools: all(),
             current: 0,
             offset: Vec2::ZERO,
+            sweep: Sweep::default(),
             pressed: Vec::new(),
             guided: guided::Guided::default(),
             is_guided: false,
@@ -222,6 +232,11 @@ impl Toolbox {
             return Some(&self.guided);
         }
         self.tools.get(self.current).map(AsRef::as_ref)
+    }
+
+    /// Something is being drawn around: the map stays where it is.
+    pub fn is_sweeping(&self) -> bool {
+        self.sweep.is_active()
     }
 
     /// What the tool in use says.
@@ -306,9 +321,13 @@ impl Toolbox {
         } else if map.clicked()
             && let Some(at) = map.interact_pointer_pos()
         {
-            tool.press(Pointer { at, grip: None, adds: adds(ui.ctx()) }, canvas, queue);
+            tool.press(Pointer { at, grip: None, adds: adds(ui.ctx()), clicks: true }, canvas, queue);
+        }
+        if let Some(area) = self.sweep.follow(map) {
+            tool.sweep(area, canvas, queue);
         }
         tool.paint(ui.painter(), canvas, touch, p);
+        self.sweep.paint(ui.painter(), p);
         let at = ui.input(|i| i.pointer.interact_pos())?;
         match tool.among() {
             _ if asks => Some(Asked::Menu(at)),
@@ -354,6 +373,7 @@ fn react(
             at: pointer.unwrap_or(grip.at),
             grip: Some(grip.key),
             adds: response.clicked() && adds(&response.ctx),
+            clicks: response.clicked(),
         };
         tool.press(pointer, canvas, queue);
     }

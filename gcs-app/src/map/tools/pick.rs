@@ -53,6 +53,10 @@ pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
         | Handled::Centre(id)
         | Handled::Radius(id)
         | Handled::Corner { leg: id, .. }
+        | Handled::Number { leg: id, .. }
+        | Handled::ArcCentre(id)
+        | Handled::Entry { leg: id, .. }
+        | Handled::Side(id)
         | Handled::Ghost { leg: id, .. }
         | Handled::Between { leg: id, .. } => match plan.zone(id) {
             Some(_) => Selection::Zone(id.clone()),

@@ -1,11 +1,13 @@
 //! Select and move: waypoints, fixes, the middle and the rim of circles, corners of areas, routes and zones. The small marks
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
+use super::group::{Group, legs_within};
+use super::pen::length;
 use super::pick::{lines_near, selection};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::chart::labels::Labels;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
-use crate::map::sketch::{Handle, Handled, Sketch, radius_edit};
+use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
 use crate::map::text;
 use crate::theme::Palette;
 use aircraft::Profile;
@@ -28,6 +30,8 @@ pub struct Select {
     inserting: Option<(String, Handled)>,
     /// What the last click may have meant.
     among: Vec<Selection>,
+    /// The handles around several selected legs.
+    group: Group,
 }
 
 impl Select {
@@ -67,7 +71,8 @@ impl Tool for Select {
             _ => handle.what.name(),
         };
         let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
-        shown.map(|(key, handle, at)| Grip { key, name: name(handle), at }).collect()
+        let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at });
+        grips.chain(self.group.grips(canvas)).collect()
     }
 
     fn hover(&mut self, _at: Option<Pos2>, canvas: &Canvas<'_>) {
@@ -78,8 +83,15 @@ impl Tool for Select {
 
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
         let plan = canvas.scene.document.plan();
+        if pointer.grip.is_some_and(|key| self.group.press(key, pointer.clicks, canvas)) {
+            return;
+        }
         let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
         self.among = if pointer.grip.is_none() { lines_near(pointer.at, canvas) } else { Vec::new() };
+        let chosen = handle.filter(|_| pointer.clicks).and_then(|handle| numbers::choice(plan, &handle.what));
+        if let Some(edit) = chosen {
+            return queue.edit(edit);
+        }
         let picked = match handle {
             Some(handle) => Some(selection(plan, &handle.what)),
             None => self.among.first().cloned(),
@@ -99,6 +111,9 @@ impl Tool for Select {
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if self.group.drag(to, canvas, queue) {
+            return;
+        }
         let Some(handle) = canvas.sketch.handles.get(grip) else { return };
         let (plan, to) = (canvas.scene.document.plan(), canvas.view.geo(to));
         if is_mark(handle) {
@@ -111,8 +126,17 @@ impl Tool for Select {
         }
     }
 
+    fn sweep(&mut self, area: Rect, canvas: &Canvas<'_>, queue: &mut Queue) {
+        for leg in legs_within(area, canvas) {
+            if !canvas.scene.is_selected(&Selection::Leg(leg.clone())) {
+                queue.view(ViewCommand::Toggle(leg));
+            }
+        }
+    }
+
     fn release(&mut self, queue: &mut Queue) {
         self.inserting = None;
+        self.group.release();
         queue.document(DocumentCommand::EndGesture);
     }
 
@@ -135,8 +159,10 @@ impl Tool for Select {
             let chosen = self.corner.as_ref() == Some(&handle.what);
             draw(painter, at, handle, selected, hot || chosen, p);
             labels.extend(label(handle, at, selected || touch.hovered == Some(key)));
+            labels.extend(value(handle, at, canvas).filter(|_| hot));
         }
         draw_labels(painter, labels, p);
+        self.group.paint(painter, canvas, p);
     }
 }
 
@@ -150,6 +176,9 @@ fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos
     let Canvas { view, sketch, scene, .. } = *canvas;
     let plan = scene.document.plan();
     let is_shown = move |handle: &Handle| match &handle.what {
+        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side(_) => {
+            scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
+        }
         Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
             scene.is_selected(&selection(plan, &handle.what))
         }
@@ -163,8 +192,8 @@ fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos
         .enumerate()
         .map(move |(key, handle)| (key, handle, view.place(handle.at)))
         .filter(move |(_, _, at)| view.rect.contains(*at))
-        .take(MOST)
         .filter(move |(_, handle, _)| is_shown(handle))
+        .take(MOST)
 }
 
 /// Removes a corner, unless too few would be left.
@@ -214,8 +243,25 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         Handled::Corner { leg, hole, corner } => {
             Some(Edit::MoveCorner { leg: leg.clone(), hole: *hole, corner: *corner, to })
         }
-        Handled::Ghost { .. } | Handled::Between { .. } => None,
+        Handled::Number { leg, number, ruler } => numbers::edit(plan, leg, number, ruler.read(to)),
+        Handled::ArcCentre(leg) => numbers::move_arc_centre(plan, leg, to),
+        Handled::Ghost { .. } | Handled::Between { .. } | Handled::Entry { .. } | Handled::Side(_) => None,
     }
+}
+
+/// What a handle that is hovered or dragged has come to.
+fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
+    let (plan, units) = (canvas.scene.document.plan(), canvas.scene.units());
+    let text = match &handle.what {
+        Handled::Number { number, ruler, .. } => numbers::words(number, ruler.read(handle.at), units),
+        Handled::Radius(of) => {
+            let centre = canvas.sketch.centre_of(of, plan)?;
+            format!("Radius {}", length(centre.distance_m(handle.at), units))
+        }
+        what if what.is_choice() => what.name(),
+        _ => return None,
+    };
+    Some(Label { at: at + vec2(11.0, -9.0), anchor: Align2::LEFT_BOTTOM, text, first: true })
 }
 
 /// Shapes say what a handle is: triangle a fix, circle a waypoint, cross a centre, square a rim or corner.
@@ -244,6 +290,19 @@ fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: bool,
                 painter.line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], stroke);
             }
         }
+        Handled::Number { .. } | Handled::ArcCentre(_) => {
+            let corners = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0)];
+            let corners = corners.map(|d| at + d * size).to_vec();
+            painter.add(Shape::convex_polygon(corners, p.halo, stroke));
+        }
+        Handled::Entry { chosen, .. } => {
+            painter.circle(at, size * 0.9, if *chosen { p.accent } else { p.halo }, stroke);
+            painter.circle_filled(at, 2.0, p.text);
+        }
+        Handled::Side(_) => {
+            painter.circle(at, size * 0.9, p.halo, stroke);
+            text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
+        }
         Handled::Radius(_) | Handled::Corner { .. } => {
             let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
             painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
@@ -264,9 +323,7 @@ fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
     let (id, offset, anchor) = match &handle.what {
         Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
         Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
-        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } | Handled::Between { .. } => {
-            return None;
-        }
+        _ => return None,
     };
     Some(Label { at: at + offset, anchor, text: id.to_string(), first })
 }

@@ -1,0 +1,131 @@
+//! What can be dragged or clicked on the map.
+
+use super::numbers::{self, Ruler};
+use flight_plan::{Id, ScanEntry};
+use geometry::LatLon;
+
+/// Something on the map that can be dragged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Handle {
+    /// What it is.
+    pub what: Handled,
+    /// Where.
+    pub at: LatLon,
+}
+
+/// What a handle moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Handled {
+    /// A fix, with every leg that goes there.
+    Fix(Id),
+    /// Where a leg goes.
+    Waypoint(Id),
+    /// The middle of a scan or orbit.
+    Centre(Id),
+    /// The rim of a scan or orbit; the middle is at [`Circle::centre`].
+    Radius(Id),
+    /// A corner of a scan's polygon, or a point of a route.
+    Corner {
+        /// The scan.
+        leg: Id,
+        /// `None`: the outer ring.
+        hole: Option<usize>,
+        /// Which corner.
+        corner: usize,
+    },
+    /// Between two corners or points: dragged, it is a new one.
+    Ghost {
+        /// The scan, route or zone.
+        leg: Id,
+        /// `None`: the outer ring or the route.
+        hole: Option<usize>,
+        /// Before which corner.
+        before: usize,
+    },
+    /// In the middle of a leg: dragged, it is a new leg before that one.
+    Between {
+        /// The leg.
+        leg: Id,
+        /// How long that is, whole metres.
+        gap_m: u32,
+    },
+    /// A number of a leg.
+    Number {
+        /// The leg.
+        leg: Id,
+        /// Its name in the document.
+        number: &'static str,
+        /// How its place says it.
+        ruler: Ruler,
+    },
+    /// The centre of an arc.
+    ArcCentre(Id),
+    /// A corner where a scan may begin: clicked, it does.
+    Entry {
+        /// The scan.
+        leg: Id,
+        /// The corner.
+        entry: ScanEntry,
+        /// It does already.
+        chosen: bool,
+    },
+    /// The side on which a holding is not: clicked, it is.
+    Side(Id),
+}
+
+impl Handled {
+    /// The leg it belongs to, if it is a leg's.
+    pub fn leg(&self) -> Option<&Id> {
+        match self {
+            Self::Fix(_) | Self::Between { .. } => None,
+            Self::Waypoint(leg)
+            | Self::Centre(leg)
+            | Self::Radius(leg)
+            | Self::Corner { leg, .. }
+            | Self::Number { leg, .. }
+            | Self::ArcCentre(leg)
+            | Self::Entry { leg, .. }
+            | Self::Side(leg)
+            | Self::Ghost { leg, .. } => Some(leg),
+        }
+    }
+
+    /// It stands for a choice: it is clicked, not dragged.
+    pub fn is_choice(&self) -> bool {
+        matches!(self, Self::Entry { .. } | Self::Side(_))
+    }
+
+    /// Its name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Fix(id) => format!("Fix {id}"),
+            Self::Waypoint(id) => format!("Waypoint {id}"),
+            Self::Centre(id) => format!("Centre of {id}"),
+            Self::Radius(id) => format!("Radius of {id}"),
+            Self::Corner { leg, hole: None, corner } => format!("Corner {} of {leg}", corner + 1),
+            Self::Corner { leg, hole: Some(hole), corner } => {
+                format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1)
+            }
+            Self::Ghost { leg, hole: None, before } => format!("New corner {} of {leg}", before + 1),
+            Self::Ghost { leg, hole: Some(hole), before } => {
+                format!("New corner {} of hole {} of {leg}", before + 1, hole + 1)
+            }
+            Self::Between { leg, .. } => format!("New leg before {leg}"),
+            Self::Number { leg, number, .. } => format!("{} of {leg}", numbers::name(number)),
+            Self::ArcCentre(leg) => format!("Centre of the arc {leg}"),
+            Self::Entry { leg, entry, .. } => format!("Begin {leg} at its {}", corner(*entry)),
+            Self::Side(leg) => format!("Hold {leg} on this side"),
+        }
+    }
+}
+
+/// A corner, seen along the tracks.
+fn corner(entry: ScanEntry) -> &'static str {
+    match entry {
+        ScanEntry::Nearest => "nearest corner",
+        ScanEntry::StartLeft => "left start",
+        ScanEntry::StartRight => "right start",
+        ScanEntry::EndLeft => "left end",
+        ScanEntry::EndRight => "right end",
+    }
+}

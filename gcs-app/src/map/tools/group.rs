@@ -1,0 +1,183 @@
+//! Several selected legs as one: a box around them, and handles that move, turn and scale them together.
+
+use super::pen::way;
+use super::{Canvas, Grip};
+use crate::command::{DocumentCommand, Queue, Selection};
+use crate::map::text;
+use crate::theme::Palette;
+use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use flight_plan::transform::{self, Motion};
+use flight_plan::{FlightPlan, Id, Section};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// The grips' keys begin here; those of the sketch's handles end before.
+const FIRST_KEY: usize = 1 << 32;
+/// From the places to the box, screen points.
+const AROUND: f32 = 22.0;
+/// From the box to the handle that turns it, screen points.
+const ABOVE: f32 = 26.0;
+/// Smaller than this, nothing could be told apart any more.
+const LEAST_SCALE: f64 = 0.05;
+
+/// What a grip does to the set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Does {
+    Move,
+    Turn,
+    Scale,
+}
+
+impl Does {
+    const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Scale];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Move => "Move the selected legs",
+            Self::Turn => "Turn the selected legs",
+            Self::Scale => "Scale the selected legs",
+        }
+    }
+
+    fn at(self, around: Rect) -> Pos2 {
+        match self {
+            Self::Move => around.left_top(),
+            Self::Turn => around.center_top() - vec2(0.0, ABOVE),
+            Self::Scale => around.right_bottom(),
+        }
+    }
+}
+
+/// A drag on its way. It always begins from the plan as it was, so that it ends exactly where it leads.
+#[derive(Debug)]
+struct Drag {
+    plan: Arc<FlightPlan>,
+    legs: Vec<Id>,
+    does: Does,
+    /// Where the grip was.
+    from: Pos2,
+    pivot: LatLon,
+    motion: Motion,
+}
+
+/// The handles around the selected legs.
+#[derive(Debug, Default)]
+pub struct Group {
+    drag: Option<Drag>,
+}
+
+impl Group {
+    /// None if fewer than two legs are selected.
+    pub fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
+        let Some(around) = around(canvas) else { return Vec::new() };
+        let grips = (FIRST_KEY..).zip(Does::ALL);
+        grips.map(|(key, does)| Grip { key, name: does.name().into(), at: does.at(around) }).collect()
+    }
+
+    /// A grip was clicked, or a drag of it begins; true if it is one of these.
+    pub fn press(&mut self, key: usize, clicks: bool, canvas: &Canvas<'_>) -> bool {
+        let Some(does) = key.checked_sub(FIRST_KEY).and_then(|index| Does::ALL.get(index)) else {
+            return false;
+        };
+        self.drag = around(canvas).filter(|_| !clicks).map(|around| {
+            let pivot = canvas.view.geo(around.center());
+            Drag {
+                plan: canvas.scene.document.plan().clone(),
+                legs: canvas.scene.selected_legs(),
+                does: *does,
+                from: does.at(around),
+                pivot,
+                motion: Motion::shift(pivot, pivot),
+            }
+        });
+        true
+    }
+
+    /// The pressed grip is dragged; true if there is one.
+    pub fn drag(&mut self, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) -> bool {
+        let Some(drag) = &mut self.drag else { return false };
+        drag.motion = motion(drag, to, canvas);
+        if drag.motion.to.is_valid() {
+            queue.document(DocumentCommand::DragEdit(drag.motion.edit(&drag.plan, &drag.legs)));
+        }
+        true
+    }
+
+    /// The drag is over.
+    pub fn release(&mut self) {
+        self.drag = None;
+    }
+
+    /// The box, its handles, and what the drag has come to.
+    pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+        let Some(around) = around(canvas) else { return };
+        let stroke = Stroke::new(1.4, p.accent);
+        let corners = [around.left_top(), around.right_top(), around.right_bottom(), around.left_bottom()];
+        let ring: Vec<Pos2> = corners.into_iter().chain([around.left_top()]).collect();
+        painter.extend(Shape::dashed_line(&ring, stroke, 5.0, 4.0));
+        painter.line_segment([around.center_top(), Does::Turn.at(around)], stroke);
+        let [moves, turns, scales] = Does::ALL.map(|does| does.at(around));
+        for axis in [vec2(7.0, 0.0), vec2(0.0, 7.0)] {
+            painter.line_segment([moves - axis, moves + axis], Stroke::new(2.4, p.accent));
+        }
+        painter.circle(turns, 6.0, p.halo, Stroke::new(2.0, p.accent));
+        let square = Rect::from_center_size(scales, Vec2::splat(11.0));
+        painter.rect(square, 1.0, p.halo, Stroke::new(2.0, p.accent), egui::StrokeKind::Middle);
+        if let Some(drag) = &self.drag {
+            let at = drag.does.at(around) + vec2(12.0, -10.0);
+            text::haloed(painter, at, Align2::LEFT_BOTTOM, &words(drag, canvas), 13.0, p.text, p);
+        }
+    }
+}
+
+fn motion(drag: &Drag, to: Pos2, canvas: &Canvas<'_>) -> Motion {
+    let view = canvas.view;
+    let still = Motion::shift(drag.pivot, drag.pivot);
+    let middle = view.place(drag.pivot);
+    let (before, now) = (drag.from - middle, to - middle);
+    match drag.does {
+        Does::Move => Motion::shift(drag.pivot, view.geo(middle + (to - drag.from))),
+        Does::Turn => {
+            let turn_deg = f64::from((now.angle() - before.angle()).to_degrees()).round();
+            Motion { turn_deg: geometry::geodesy::normalise_180(turn_deg), ..still }
+        }
+        Does::Scale => {
+            let scale = f64::from(now.length() / before.length().max(1.0));
+            Motion { scale: ((scale * 100.0).round() / 100.0).max(LEAST_SCALE), ..still }
+        }
+    }
+}
+
+fn words(drag: &Drag, canvas: &Canvas<'_>) -> String {
+    match drag.does {
+        Does::Move => way(drag.motion.pivot, drag.motion.to, canvas.scene.units()),
+        Does::Turn => format!("Turned {:+.0}°", drag.motion.turn_deg),
+        Does::Scale => format!("× {:.2}", drag.motion.scale),
+    }
+}
+
+/// The box around the selected legs on the screen, if they are several.
+fn around(canvas: &Canvas<'_>) -> Option<Rect> {
+    if canvas.scene.view.also.is_empty() {
+        return None;
+    }
+    let (scene, mut around, mut legs) = (canvas.scene, Rect::NOTHING, 0);
+    for context in scene.document.plan().all_legs() {
+        if scene.is_selected(&Selection::Leg(context.leg.id.clone())) {
+            legs += 1;
+            let places = transform::places(scene.document.plan(), context.leg);
+            places.into_iter().for_each(|at| around.extend_with(canvas.view.place(at)));
+        }
+    }
+    (legs > 1 && around.is_finite()).then(|| around.expand(AROUND))
+}
+
+/// The main plan's legs that have a place in a part of the screen.
+pub fn legs_within(area: Rect, canvas: &Canvas<'_>) -> Vec<Id> {
+    let plan = canvas.scene.document.plan();
+    let within =
+        |leg| transform::places(plan, leg).into_iter().any(|at| area.contains(canvas.view.place(at)));
+    let contexts = plan.all_legs();
+    let found = contexts.iter().filter(|context| context.section == Section::Main && within(context.leg));
+    found.map(|context| context.leg.id.clone()).collect()
+}

@@ -1,0 +1,231 @@
+//! The numbers of a leg by their handles on the map, and several legs as one.
+
+use super::drawing::choose;
+use super::{SQUARE, Window};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
+use flight_plan::create::LegChoice;
+use flight_plan::{Id, LegKind, ScanEntry, TurnDirection, Value, transform};
+use geometry::LatLon;
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+/// A window in which a leg of a kind was drawn, and the leg.
+fn with(tool: Key, figure: &[Vec2], choice: LegChoice) -> (Window, Id) {
+    let mut window = window();
+    window.click("TF side4");
+    window.press(tool);
+    choose(&mut window, "Kind: ", choice.name());
+    let at = window.centre("Map") + vec2(60.0, 40.0);
+    figure.iter().for_each(|offset| window.click_at(at + *offset));
+    if figure.len() > 2 {
+        window.press(Key::Enter);
+    }
+    window.press(Key::V);
+    let made = Id::new(&window.selected());
+    assert_eq!(LegChoice::of(&window.plan().leg(&made).unwrap().leg.kind), choice);
+    (window, made)
+}
+
+fn number(window: &Window, leg: &Id, name: &str) -> Option<f64> {
+    let plan = window.plan();
+    let numbers = plan.leg(leg).unwrap().leg.numbers();
+    match numbers.into_iter().find(|(known, _)| *known == name)?.1 {
+        Some(Value::Constant(number)) => Some(*number),
+        _ => None,
+    }
+}
+
+const CIRCLE: [Vec2; 2] = [vec2(0.0, 0.0), vec2(90.0, 0.0)];
+const LINE: [Vec2; 3] = [vec2(0.0, 0.0), vec2(150.0, 0.0), vec2(150.0, 60.0)];
+const AREA: [Vec2; 4] = [vec2(0.0, 0.0), vec2(150.0, 0.0), vec2(150.0, 100.0), vec2(0.0, 100.0)];
+
+#[test]
+fn every_handle_sets_its_number_in_one_step_and_no_altitude() {
+    let cases: [(Key, &[Vec2], LegChoice, &[(&str, &str)]); 11] = [
+        (
+            Key::A,
+            &AREA,
+            LegChoice::Scan,
+            &[("Heading", "heading"), ("Spacing", "spacing"), ("Overshoot", "overshoot")],
+        ),
+        (Key::A, &AREA, LegChoice::Contour, &[("Spacing", "spacing")]),
+        (Key::L, &LINE, LegChoice::Corridor, &[("Width", "width"), ("Spacing", "spacing")]),
+        (Key::L, &LINE, LegChoice::TrackLine, &[("Spacing", "spacing")]),
+        (Key::O, &CIRCLE, LegChoice::Spiral, &[("Inner radius", "innerRadius"), ("Spacing", "spacing")]),
+        (Key::O, &CIRCLE, LegChoice::ExpandingSquare, &[("Heading", "heading"), ("Spacing", "spacing")]),
+        (Key::O, &CIRCLE, LegChoice::Sector, &[("Heading", "heading"), ("Radius", "radius")]),
+        (Key::O, &CIRCLE, LegChoice::FigureEight, &[("Heading", "heading")]),
+        (Key::T, &CIRCLE[..1], LegChoice::Hm, &[("Length", "length"), ("Course", "course")]),
+        (Key::T, &CIRCLE[..1], LegChoice::Cf, &[("Course", "course")]),
+        (Key::T, &CIRCLE[..1], LegChoice::Fa, &[("Course", "course")]),
+    ];
+    for (tool, figure, choice, handles) in cases {
+        let (mut window, leg) = with(tool, figure, choice);
+        for (name, attribute) in handles {
+            let handle = format!("{name} of {leg}");
+            let altitude = window.plan().leg(&leg).unwrap().leg.altitude.clone();
+            let before = number(&window, &leg, attribute);
+            let at = window.centre(&handle);
+            window.drag(at, vec2(13.0, 17.0));
+            let after = number(&window, &leg, attribute);
+            assert!(after.is_some() && after != before, "{handle}: {before:?}, {after:?}");
+            assert_eq!(window.plan().leg(&leg).unwrap().leg.altitude, altitude);
+            window.click("Undo");
+            assert_eq!(number(&window, &leg, attribute), before, "one step: {handle}");
+        }
+    }
+}
+
+#[test]
+fn a_handle_is_where_its_number_says() {
+    let (mut window, leg) = with(Key::O, &CIRCLE, LegChoice::Sector);
+    let handle = format!("Heading of {leg}");
+    let before = number(&window, &leg, "heading").unwrap();
+    for by in [vec2(30.0, 40.0), vec2(-60.0, 20.0)] {
+        let at = window.centre(&handle);
+        window.drag(at, by);
+        let heading = number(&window, &leg, "heading").unwrap();
+        let way = window.centre(&handle) - window.centre(&format!("Centre of {leg}"));
+        let shown = f64::from(way.x.atan2(-way.y).to_degrees()).rem_euclid(360.0);
+        assert!(heading != before && (shown - heading).abs() < 1.5, "{shown} {heading}");
+    }
+}
+
+#[test]
+fn a_click_on_a_corner_begins_a_scan_there() {
+    let (mut window, leg) = with(Key::A, &AREA, LegChoice::Scan);
+    let entry = |window: &Window| match &window.plan().leg(&leg).unwrap().leg.kind {
+        LegKind::Scan(scan) => scan.entry,
+        _ => panic!("no scan"),
+    };
+    let mark = format!("Begin {leg} at its right end");
+    window.click(&mark);
+    assert_eq!(entry(&window), ScanEntry::EndRight);
+    window.click(&mark);
+    assert_eq!(entry(&window), ScanEntry::Nearest);
+    window.click("Undo");
+    assert_eq!(entry(&window), ScanEntry::EndRight);
+}
+
+#[test]
+fn a_holding_changes_its_side_and_an_arc_its_centre() {
+    let (mut window, leg) = with(Key::T, &CIRCLE[..1], LegChoice::Hf);
+    let mark = format!("Hold {leg} on this side");
+    let right = window.centre(&mark);
+    window.click(&mark);
+    let LegKind::Hf(holding) = window.plan().leg(&leg).unwrap().leg.kind.clone() else { panic!("no hold") };
+    assert_eq!(holding.turn, TurnDirection::Left);
+    assert!(window.centre(&mark).distance(right) > 10.0, "the mark is on the other side");
+    let (mut window, leg) = with(Key::T, &CIRCLE[..1], LegChoice::Rf);
+    let at = window.centre(&format!("Centre of the arc {leg}"));
+    window.drag(at, vec2(20.0, 12.0));
+    assert!(window.centre(&format!("Centre of the arc {leg}")).distance(at + vec2(20.0, 12.0)) < 2.0);
+}
+
+/// Drags with Shift.
+fn sweep(window: &mut Window, from: Pos2, to: Pos2) {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::SHIFT,
+    };
+    window.harness.key_down_modifiers(Modifiers::SHIFT, Key::F12);
+    window.harness.hover_at(from);
+    window.harness.event_modifiers(button(from, true), Modifiers::SHIFT);
+    window.steps(1);
+    for part in 1..=4 {
+        let pos = from + (to - from) * (part as f32 / 4.0);
+        window.harness.event_modifiers(Event::PointerMoved(pos), Modifiers::SHIFT);
+        window.steps(1);
+    }
+    window.harness.event_modifiers(button(to, false), Modifiers::SHIFT);
+    window.steps(1);
+    window.harness.key_up(Key::F12);
+    window.steps(3);
+}
+
+/// Three waypoints of their own, all selected.
+fn group() -> (Window, Vec<Id>) {
+    let mut window = window();
+    window.click("TF side4");
+    window.press(Key::T);
+    let at = window.centre("Map") + vec2(60.0, 40.0);
+    for offset in [vec2(0.0, 0.0), vec2(80.0, 10.0), vec2(40.0, 70.0)] {
+        window.click_at(at + offset);
+    }
+    window.press(Key::V);
+    window.press(Key::Escape);
+    sweep(&mut window, at - vec2(30.0, 30.0), at + vec2(120.0, 100.0));
+    let legs = ["leg1", "leg2", "leg3"].map(Id::new).to_vec();
+    let also = &window.app().view().also;
+    assert_eq!((window.selected().as_str(), also.len()), ("leg1", 2), "{also:?}");
+    (window, legs)
+}
+
+fn places(window: &Window, legs: &[Id]) -> Vec<LatLon> {
+    let plan = window.plan();
+    legs.iter().flat_map(|id| transform::places(&plan, plan.leg(id).unwrap().leg)).collect()
+}
+
+#[test]
+fn what_is_drawn_around_with_shift_moves_as_one() {
+    let (mut window, legs) = group();
+    let before = places(&window, &legs);
+    let grip = window.centre("Move the selected legs");
+    window.drag(grip, vec2(40.0, -30.0));
+    let after = places(&window, &legs);
+    for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+        let (was, is) = (before[a].distance_m(before[b]), after[a].distance_m(after[b]));
+        assert!((was - is).abs() < 0.5 && before[a].distance_m(after[a]) > 10.0, "{was} {is}");
+    }
+    assert!(window.centre("Move the selected legs").distance(grip + vec2(40.0, -30.0)) < 3.0);
+    window.click("Undo");
+    assert_eq!(places(&window, &legs), before, "one step");
+}
+
+#[test]
+fn a_set_turns_and_scales_by_its_handles() {
+    let (mut window, legs) = group();
+    let before = places(&window, &legs);
+    let grip = window.centre("Scale the selected legs");
+    window.drag(grip, vec2(60.0, 50.0));
+    let larger = places(&window, &legs);
+    let ratio = |a: usize, b: usize| larger[a].distance_m(larger[b]) / before[a].distance_m(before[b]);
+    assert!(ratio(0, 1) > 1.2 && (ratio(0, 1) - ratio(1, 2)).abs() < 1e-3);
+    window.click("Undo");
+    let grip = window.centre("Turn the selected legs");
+    window.drag(grip, vec2(90.0, 60.0));
+    let turned = places(&window, &legs);
+    let by = |a: usize, b: usize| {
+        (turned[a].bearing_deg(turned[b]) - before[a].bearing_deg(before[b])).rem_euclid(360.0)
+    };
+    assert!(by(0, 1) > 30.0 && (by(0, 1) - by(1, 2)).abs() < 0.05, "{} {}", by(0, 1), by(1, 2));
+    window.click("Undo");
+    assert_eq!(places(&window, &legs), before);
+}
+
+#[test]
+fn a_click_with_shift_adds_a_leg_and_takes_it_out() {
+    let (mut window, _) = group();
+    let at = window.centre("Waypoint leg2");
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::SHIFT,
+    };
+    window.harness.hover_at(at);
+    window.steps(1);
+    for pressed in [true, false] {
+        window.harness.event_modifiers(button(pressed), Modifiers::SHIFT);
+        window.steps(1);
+    }
+    window.steps(2);
+    assert_eq!(window.app().view().also.len(), 1);
+    assert!(!window.app().view().also.contains("leg2"));
+}
