@@ -182,6 +182,10 @@ pub enum FlyCommand {
     TakeAboard,
     /// A command for the plan's executor.
     Plan(PlanCommand),
+    /// Look at what would follow a command, to give it then.
+    Consider(PlanCommand),
+    /// Give the command that is considered up.
+    PutAside,
     /// A request for the gateway.
     Gateway(GatewayRequest),
     /// Start the plan: the aircraft takes off.
@@ -273,6 +277,10 @@ impl Queue {
     /// To the plan's executor.
     pub fn plan(&mut self, command: PlanCommand) {
         self.fly(FlyCommand::Plan(command));
+    }
+    /// To be looked at before it goes to the plan's executor.
+    pub fn consider(&mut self, command: PlanCommand) {
+        self.fly(FlyCommand::Consider(command));
     }
     /// Everything that was asked for, in order.
     pub fn take(&mut self) -> Vec<Command> {

@@ -3,12 +3,14 @@
 //! The worker checks, compiles, previews, hashes and reviews the newest plan on threads of its own; from edit to edit only what has
 //! changed, and a newer plan always wins.
 
+mod aboard;
 mod bench;
 mod coverage;
 mod preview;
 mod reviewer;
 mod worker;
 
+pub use aboard::Aboard;
 pub use coverage::Coverage;
 pub use worker::{Analysis, Question, Worker};
 

@@ -1,11 +1,12 @@
 //! Where the parts of the window are: the bar above, the dock with map and panels below, and what
 //! floats over it.
 
-use super::{App, Now};
+use super::{App, Now, path_aboard};
 use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, decision, emergency, flight, push, recover, start, unsaved,
+    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, push, recover, start,
+    unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -29,6 +30,7 @@ impl App {
             connections,
             terrain,
             palette,
+            aboard,
             ..
         } = self;
         let vehicle = vehicles.shown();
@@ -37,6 +39,7 @@ impl App {
             can_undo: (shelf.can_undo(document), shelf.can_redo(document)),
             analysis,
             vehicle,
+            aboard: path_aboard(aboard, vehicle),
             vehicles,
             view,
             recent,
@@ -56,7 +59,9 @@ impl App {
         emergency::show(ui, &scene, queue);
         notice(ui, &scene, queue);
         announcements(ui, &scene, queue);
-        push::show(ui, &scene, queue);
+        if !consider::show(ui, &scene, queue) {
+            push::show(ui, &scene, queue);
+        }
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));

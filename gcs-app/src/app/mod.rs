@@ -9,6 +9,7 @@ mod screenshot;
 mod shelf;
 mod window;
 
+pub(crate) use orders::plan_label;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
@@ -18,14 +19,14 @@ use crate::connections::Connections;
 use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
-use crate::forecast::{Analysis, Question, Worker};
+use crate::forecast::{Aboard, Analysis, Forecast, Question, Worker};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::{MapState, hillshade::Ground};
 use crate::panels::palette::CommandPalette;
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
-use crate::state::{Outcome, READ_ABOARD, Vehicle, VehicleName, Vehicles};
+use crate::state::{LOOK_AHEAD, Outcome, READ_ABOARD, Ticket, Vehicle, VehicleName, Vehicles};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,7 @@ pub struct App {
     queue: Queue,
     links: Links,
     worker: Worker,
+    aboard: Aboard,
     terrain: Arc<dyn Terrain>,
     files: Files,
     /// The document's own file is being written.
@@ -59,6 +61,8 @@ pub struct App {
     keeper: Option<Keeper>,
     /// The vehicle whose plan aboard the document is, and the document's version.
     mirrored: Option<(VehicleName, u64)>,
+    /// When the aircraft were looked at last, seconds of the window's clock.
+    looked_s: f64,
     /// The window closes, whatever was not saved.
     leaving: bool,
     screenshot: Option<Screenshot>,
@@ -97,6 +101,8 @@ const STORAGE_KEY: &str = "legwork";
 const REFRESH: Duration = Duration::from_millis(100);
 /// And so often while none is, as long as something is known of one.
 const SLOW_REFRESH: Duration = Duration::from_secs(1);
+/// Altitudes and ground are watched so often, seconds.
+const LOOK_OUT_S: f64 = 0.25;
 
 /// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
 #[derive(Debug, Clone, Copy)]
@@ -146,6 +152,7 @@ impl App {
             queue: Queue::default(),
             links,
             worker: Worker::spawn(terrain.clone(), wake.clone())?,
+            aboard: Aboard::spawn(terrain.clone(), wake.clone())?,
             terrain,
             files: Files::new(wake),
             saving: false,
@@ -153,6 +160,7 @@ impl App {
             connections: remembered.connections,
             keeper: None,
             mirrored: None,
+            looked_s: f64::NEG_INFINITY,
             leaving: false,
             screenshot: None,
         };
@@ -190,12 +198,18 @@ impl App {
         &self.analysis
     }
 
+    /// The path of the plan aboard the vehicle that is shown, if it was asked for and is known.
+    pub fn path_aboard(&self) -> Option<&Forecast> {
+        path_aboard(&self.aboard, self.vehicles.shown())
+    }
+
     fn scene(&self, now: Now) -> Scene<'_> {
         Scene {
             document: &self.document,
             can_undo: (self.shelf.can_undo(&self.document), self.shelf.can_redo(&self.document)),
             analysis: &self.analysis,
             vehicle: self.vehicles.shown(),
+            aboard: self.path_aboard(),
             vehicles: &self.vehicles,
             view: &self.view,
             recent: &self.recent,
@@ -228,10 +242,18 @@ impl App {
             let Some(message) = self.links.message() else { break };
             self.vehicles.receive(message, now_s);
         }
+        self.look_out(now_s);
         self.adopt_plan_aboard();
         for vehicle in self.vehicles.due_for_plan(now_s) {
             self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
         }
+        for vehicle in self.vehicles.due_for_landing(now_s) {
+            let ticket = self.call(&vehicle, LOOK_AHEAD, Call::Foresee(None), now_s);
+            if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
+                vehicle.outlook.asked_when_it_lands(ticket, now_s);
+            }
+        }
+        self.compare_with_aboard();
         if let Some(analysis) = self.worker.answer() {
             self.analysis = analysis;
         }
@@ -291,9 +313,26 @@ impl App {
         }
     }
 
-    /// Sends a question to a vehicle and notes it.
-    fn call(&mut self, vehicle: &VehicleName, label: &str, call: Call, now_s: f64) {
-        let Some(asked) = self.vehicles.get_mut(vehicle) else { return };
+    /// Watches altitude and ground, a few times a second.
+    fn look_out(&mut self, now_s: f64) {
+        if now_s - self.looked_s >= LOOK_OUT_S {
+            self.looked_s = now_s;
+            self.vehicles.look(self.terrain.as_ref(), now_s);
+        }
+    }
+
+    /// A proposal is shown beside the plan aboard.
+    fn compare_with_aboard(&mut self) {
+        self.aboard.receive();
+        let vehicle = self.vehicles.shown();
+        if let (Some(aboard), true) = (&vehicle.aboard, vehicle.proposal.is_some()) {
+            self.aboard.ask(aboard);
+        }
+    }
+
+    /// Sends a question to a vehicle and notes it; its number, if there is such a vehicle.
+    fn call(&mut self, vehicle: &VehicleName, label: &str, call: Call, now_s: f64) -> Option<Ticket> {
+        let asked = self.vehicles.get_mut(vehicle)?;
         let ticket = asked.requests.open(label, now_s);
         let failed = match asked.open_link() {
             None => Some("there is no link: connect first"),
@@ -303,6 +342,7 @@ impl App {
         if let Some(why) = failed {
             asked.requests.settle(ticket, Outcome::Refused(why.into()), now_s);
         }
+        Some(ticket)
     }
 
     /// A window with unsaved changes stays open until the operator has decided.
@@ -353,6 +393,11 @@ impl App {
         self.view.playing = next < end;
         ctx.request_repaint();
     }
+}
+
+/// The path of the plan aboard a vehicle, if it was asked for and is known.
+fn path_aboard<'a>(aboard: &'a Aboard, vehicle: &Vehicle) -> Option<&'a Forecast> {
+    aboard.path_of(&vehicle.aboard.as_ref()?.hash)
 }
 
 impl eframe::App for App {

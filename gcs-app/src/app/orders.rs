@@ -9,7 +9,7 @@ use crate::guide::Answer;
 use crate::link::Call;
 use crate::panels::Speed;
 use crate::panels::bar::PUSH;
-use crate::state::{Proposal, VehicleName};
+use crate::state::{LOOK_AHEAD, Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
@@ -254,8 +254,11 @@ impl App {
             }
             FlyCommand::Plan(command) => {
                 let label = plan_label(&command);
+                self.put_aside(vehicle);
                 self.call(vehicle, &label, Call::Plan(command), now_s);
             }
+            FlyCommand::Consider(command) => self.consider(vehicle, command, now_s),
+            FlyCommand::PutAside => self.put_aside(vehicle),
             FlyCommand::Gateway(request) => {
                 let label = gateway_label(&request);
                 self.call(vehicle, label, Call::Gateway(request), now_s);
@@ -263,6 +266,22 @@ impl App {
             FlyCommand::Launch => {
                 self.call(vehicle, "Start and take off", Call::Plan(PlanCommand::Start), now_s);
             }
+        }
+    }
+
+    fn put_aside(&mut self, vehicle: &VehicleName) {
+        if let Some(vehicle) = self.vehicles.get_mut(vehicle) {
+            vehicle.outlook.put_aside();
+        }
+    }
+
+    fn consider(&mut self, name: &VehicleName, command: PlanCommand, now_s: f64) {
+        let Some(vehicle) = self.vehicles.get_mut(name) else { return };
+        let leg = vehicle.current_leg().cloned();
+        vehicle.outlook.consider(command.clone(), leg);
+        let ticket = self.call(name, LOOK_AHEAD, Call::Foresee(Some(command)), now_s);
+        if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(name), ticket) {
+            vehicle.outlook.asked_what_follows(ticket);
         }
     }
 
@@ -291,7 +310,7 @@ impl App {
 }
 
 /// A command, for people.
-fn plan_label(command: &PlanCommand) -> String {
+pub(crate) fn plan_label(command: &PlanCommand) -> String {
     match command {
         PlanCommand::Start => "Start".into(),
         PlanCommand::Hold => "Hold".into(),

@@ -5,7 +5,7 @@ mod session;
 mod subscriptions;
 
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
-use flight_exec::{Command as PlanCommand, Event, ProposalReport, Status};
+use flight_exec::{Command as PlanCommand, Event, Foresight, ProposalReport, Status};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -57,6 +57,8 @@ pub enum Call {
     Gateway(GatewayRequest),
     /// To the FP Manager: which plan is active?
     PlanAboard,
+    /// To the FP Manager: what would follow this command, or, without one, follows now?
+    Foresee(Option<PlanCommand>),
 }
 
 /// A message of a link, and the vehicle it is about. A recording that is played is a link like any other.
@@ -117,6 +119,8 @@ pub enum Reply {
     Proposal(Box<ProposalReport>),
     /// The active plan, if there is one.
     Plan(Option<ActivePlan>),
+    /// What would follow.
+    Foresight(Box<Foresight>),
 }
 
 /// What services publish of the vehicle.

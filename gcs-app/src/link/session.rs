@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
-use usal::contract::{Empty, OPERATOR, OTHER_VERSION, Stamped};
+use usal::contract::{Empty, Foresee, OPERATOR, OTHER_VERSION, Stamped};
 use usal::topics::{self, Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
 use usal::{CallError, Occurrence, Session, Start};
 use wire::Convert;
@@ -317,6 +317,11 @@ async fn ask(session: &Session, call: Call, delivery: Duration) -> Result<Reply,
         Call::Gateway(request) => {
             let answer = session.call_within(gateway::REQUEST, &request, delivery, COMMAND_TIMEOUT);
             answer.await.map(|_| Reply::Done)
+        }
+        Call::Foresee(command) => {
+            let foresee = Foresee { command: command.convert() };
+            let answer = session.call_within(fp_manager::FORESEE, &foresee, delivery, PLAN_TIMEOUT);
+            Ok(Reply::Foresight(Box::new(answer.await?.convert())))
         }
         Call::PlanAboard => {
             let document = session.call(fp_manager::PLAN_DOCUMENT, &Empty {}, PLAN_TIMEOUT).await?;

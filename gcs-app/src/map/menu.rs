@@ -117,9 +117,9 @@ fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
     }
     if let Selection::Leg(leg) = thing
         && is_flown(scene, leg)
-        && ui.button("Go to it now").on_hover_text("The aircraft leaves what it flies").clicked()
+        && ui.button("Go to it…").on_hover_text("Shows what would follow, then asks").clicked()
     {
-        queue.plan(Command::GoTo { leg: leg.clone() });
+        queue.consider(Command::GoTo { leg: leg.clone() });
     }
     let variable = match thing {
         Selection::Fix(fix) => create::variable_of_fix(plan, fix),

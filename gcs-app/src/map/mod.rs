@@ -6,6 +6,7 @@ pub mod basemap;
 mod chips;
 mod clipboard;
 pub mod coverage;
+pub mod foreseen;
 pub mod furniture;
 pub mod hillshade;
 pub mod marks;
@@ -179,6 +180,7 @@ impl MapState {
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
         self.path.draw(&painter, view, scene, &self.sketch, p);
         self.aircraft.draw_trail(&painter, view, scene, p);
+        foreseen::draw(&painter, view, scene, p);
         aircraft::draw_ahead(&painter, view, scene, p);
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);

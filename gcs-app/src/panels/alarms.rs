@@ -1,6 +1,7 @@
 //! Alarms: warnings red, cautions amber, advisories neither; the symbol says it too.
 
 use super::Scene;
+use crate::state::GROUND_STATION;
 use crate::theme::{self, Palette};
 use egui::{Color32, CornerRadius, RichText, Stroke, Ui};
 use usal::contract::{Alarm, Severity};
@@ -37,6 +38,9 @@ fn one(ui: &mut Ui, alarm: &Alarm) {
                     .color(colour),
             );
             ui.label(RichText::new(&alarm.advice).size(12.0));
+            if alarm.source == GROUND_STATION {
+                ui.label(RichText::new("Seen by this ground station").size(11.0).color(p.weak));
+            }
         });
 }
 

@@ -3,6 +3,7 @@
 use super::Scene;
 use crate::command::Queue;
 use crate::theme;
+use crate::units;
 use egui::{Color32, ComboBox, Frame, Margin, Panel, RichText, Ui};
 use flight_exec::Command;
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
@@ -28,14 +29,16 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, because the engine failed, to runway 27`.
+/// `EMERGENCY: flying Return home, because the engine failed, to runway 27, lands in 6:20`.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
     let name = plan.map(|plan| plan.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(flown.as_str());
     let raised = scene.vehicle.raised.as_ref().filter(|raised| raised.plan == *flown);
     let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
-    format!("⛔ EMERGENCY: flying {name}{cause}{runway}")
+    let lands = scene.vehicle.outlook.lands_in_s(scene.now_s);
+    let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
+    format!("⛔ EMERGENCY: flying {name}{cause}{runway}{lands}")
 }
 
 fn plan_named<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a EmergencyPlan> {
@@ -65,13 +68,13 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
     let leg = chosen.as_ref().or(raised).filter(|leg| main().any(|id| id == *leg)).or(main().next());
     let Some(leg) = leg.cloned() else { return };
-    if ui.button(format!("Return to the main plan at {leg}")).clicked() {
-        queue.plan(Command::ReturnToMain { leg: leg.clone() });
+    if ui.button(format!("Return to the main plan at {}", scene.vehicle.leg_name(&leg))).clicked() {
+        queue.consider(Command::ReturnToMain { leg: leg.clone() });
     }
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
     combo.show_ui(ui, |ui| {
         for other in main() {
-            if ui.selectable_label(*other == leg, other.as_str()).clicked() {
+            if ui.selectable_label(*other == leg, scene.vehicle.leg_name(other)).clicked() {
                 ui.data_mut(|d| d.insert_temp(id, other.clone()));
             }
         }

@@ -109,6 +109,8 @@ fn air_rows(ui: &mut Ui, scene: &Scene<'_>) {
     let home =
         position.as_ref().map(|v| format!("{} above home", u.altitude().show(v.value.altitude_home_m)));
     value_with_age(ui, "Height", &home.unwrap_or_default(), age);
+    let agl = scene.vehicle.watch.agl_m.map(|m| format!("{} above the ground", u.altitude().show(m)));
+    value_with_age(ui, "AGL", agl.as_deref().unwrap_or("ground not known"), age);
     let ground = position.as_ref().map(|v| {
         format!("{} · track {}", u.speed().show(v.value.ground_speed_mps), units::bearing(v.value.track_deg))
     });
@@ -158,13 +160,16 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if phase == Phase::Holding && ui.add(super::primary_button("▶ Resume", p)).clicked() {
         queue.plan(Command::Resume);
     }
-    if flying && ui.button("⏭ Skip leg").clicked() {
-        queue.plan(Command::SkipLeg);
+    if flying && ui.button("⏭ Skip leg").on_hover_text("Shows what would follow, then asks").clicked() {
+        queue.consider(Command::SkipLeg);
     }
     if flying || phase == Phase::Holding {
         emergency(ui, scene, queue);
     }
     recover(ui, scene, queue);
+    if can_rewind(scene) && field::hold_button(ui, "Rewind to the start", p.caution, 0.0) {
+        queue.plan(Command::Rewind);
+    }
     if let Some(text) = nothing_to_do(scene) {
         ui.label(RichText::new(text).color(p.weak));
     }
@@ -193,6 +198,14 @@ pub fn can_launch(scene: &Scene<'_>) -> bool {
         Phase::Finished => false,
     };
     on_ground && may_start && scene.vehicle.active_hash().is_some()
+}
+
+/// It stands disarmed with a plan that was flown, or was being flown when the vehicle was switched off.
+fn can_rewind(scene: &Scene<'_>) -> bool {
+    let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
+    let gateway = scene.vehicle.gateway.as_ref();
+    let stands = gateway.is_some_and(|g| g.value.state == GatewayState::Stop && !g.value.armed);
+    on_ground && stands && scene.vehicle.phase() != Phase::Idle && scene.vehicle.active_hash().is_some()
 }
 
 /// Which emergency plan, then hold: named by its effect.

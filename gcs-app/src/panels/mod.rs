@@ -6,6 +6,7 @@ pub mod alarms;
 pub mod bar;
 pub mod browse;
 pub mod changed;
+pub mod consider;
 pub mod decision;
 pub mod emergency;
 pub mod field;
@@ -228,6 +229,8 @@ pub struct Scene<'a> {
     pub analysis: &'a Analysis,
     /// What is known of the vehicle that is shown.
     pub vehicle: &'a Vehicle,
+    /// The path of the plan aboard that vehicle, where it is wanted for a comparison and known.
+    pub aboard: Option<&'a Forecast>,
     /// All vehicles that are known.
     pub vehicles: &'a Vehicles,
     /// What the operator looks at.

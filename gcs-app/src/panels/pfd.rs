@@ -36,6 +36,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
     let unit = scene.units().altitude();
     tape::draw(&painter, right, Side::Right, altitude.map(|v| unit.from_si(v)), tape_step(unit), p);
     heads(&painter, scene, left, right, p);
+    if let Some(agl_m) = scene.vehicle.watch.agl_m {
+        let at = right.center_bottom() - vec2(0.0, 4.0);
+        label(&painter, at, Align2::CENTER_BOTTOM, &format!("AGL {}", unit.number(agl_m)), 9.5);
+    }
     heading(&painter, middle, level.map(|a| a.heading_deg));
     wind(&painter, middle, scene, level.map(|a| a.heading_deg));
 }

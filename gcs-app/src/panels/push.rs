@@ -39,6 +39,10 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     }
     ui.horizontal(|ui| buttons(ui, proposal, queue));
     ui.separator();
+    if scene.aboard.is_some() {
+        ui.label(RichText::new("── on the map: this plan").color(p.accent));
+        ui.label(RichText::new("╌╌ on the map: the plan aboard").color(p.contingency));
+    }
     next(ui, proposal, scene.units(), p);
     ui.separator();
     ScrollArea::vertical().id_salt("push").auto_shrink(false).show(ui, |ui| {

@@ -5,20 +5,24 @@
 mod aged;
 pub mod log;
 mod losses;
+mod outlook;
 mod recent;
 mod repeats;
 mod requests;
 mod trail;
 mod vehicle;
 mod vehicles;
+mod watch;
 
 pub use aged::Aged;
 pub use log::{Level, Line, Log};
 pub use losses::Losses;
+pub use outlook::{Considered, Outlook};
 pub use recent::RecentEvents;
-pub use requests::{Outcome, READ_ABOARD, Request, Requests, Ticket};
+pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, Ticket};
 pub use trail::Trail;
 pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Raised, Vehicle, VehicleName};
 pub use vehicles::Vehicles;
+pub use watch::GROUND_STATION;
 
 use repeats::Repeats;

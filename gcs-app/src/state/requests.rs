@@ -42,6 +42,8 @@ pub struct Requests {
 
 /// What the window asks by itself, to show what is aboard.
 pub const READ_ABOARD: &str = "Read the plan aboard";
+/// What the window asks before a command is given, and to know when the aircraft lands.
+pub const LOOK_AHEAD: &str = "Look ahead";
 /// Most requests remembered.
 const CAPACITY: usize = 64;
 
@@ -81,7 +83,7 @@ impl Requests {
 
     /// The newest request that somebody made, rather than the window for itself.
     pub fn last(&self) -> Option<&Request> {
-        self.list.iter().rev().find(|r| r.label != READ_ABOARD)
+        self.list.iter().rev().find(|r| ![READ_ABOARD, LOOK_AHEAD].contains(&r.label.as_str()))
     }
     /// All that are remembered, newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Request> {

@@ -1,6 +1,10 @@
 //! One vehicle: what is known of it, and how old that is.
 
-use super::{Aged, Level, Log, Losses, Outcome, RecentEvents, Repeats, Requests, Ticket, Trail, log};
+use super::watch::{GROUND_STATION, Sight, Watch};
+use super::{
+    Aged, LOOK_AHEAD, Level, Log, Losses, Outcome, Outlook, RecentEvents, Repeats, Requests, Ticket, Trail,
+    log,
+};
 use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
 };
@@ -8,6 +12,7 @@ use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{Cause, FlightPlan, Id};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
+use terrain::Terrain;
 use usal::contract::{
     Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanVariables,
     Position, Power, Recording, Severity, Stamped,
@@ -81,6 +86,8 @@ pub struct Vehicle {
     pub put_forward: Vec<flight_plan::Change>,
     /// What the last proposal would do, until committed or dropped.
     pub proposal: Option<Proposal>,
+    /// What is to come.
+    pub outlook: Outlook,
     /// Where it has been.
     pub trail: Trail,
     /// Commands on their way, and their answers.
@@ -93,6 +100,8 @@ pub struct Vehicle {
     pub raised: Option<Raised>,
     /// What was lost of its messages.
     pub losses: Losses,
+    /// What this ground station watches by itself.
+    pub watch: Watch,
     plan_events: Repeats,
     gateway_events: Repeats,
     asked_aboard_s: Option<f64>,
@@ -168,6 +177,7 @@ impl Vehicle {
     fn give_up_requests(&mut self, now_s: f64) {
         self.requests.settle_all("the link was closed before the answer came", now_s);
         self.proposal = None;
+        self.outlook = Outlook::default();
     }
 
     pub(super) fn link_changed(&mut self, link: LinkState, now_s: f64) {
@@ -267,6 +277,13 @@ impl Vehicle {
             Err(reason) => Outcome::Refused(reason.clone()),
         };
         let Some(label) = self.requests.settle(ticket, outcome.clone(), now_s) else { return };
+        if label == LOOK_AHEAD {
+            let foresight = result.and_then(|reply| match reply {
+                Reply::Foresight(foresight) => Ok(foresight),
+                _ => Err("it answered something else".into()),
+            });
+            return self.outlook.answered(ticket, foresight, now_s);
+        }
         if let Outcome::Refused(reason) = &outcome {
             self.log.add(now_s, Level::Caution, "command", &format!("{label}: refused, {reason}"));
         }
@@ -277,7 +294,7 @@ impl Vehicle {
                 self.proposal = Some(Proposal { report: *report, changes, entry });
             }
             Ok(Reply::Plan(aboard)) => self.aboard = aboard,
-            Ok(Reply::Done) | Err(_) => {}
+            Ok(Reply::Done | Reply::Foresight(_)) | Err(_) => {}
         }
     }
 
@@ -290,6 +307,12 @@ impl Vehicle {
             self.asked_aboard_s = Some(now_s);
         }
         should
+    }
+
+    /// It flies an emergency plan, and should be asked now when it lands.
+    pub(super) fn should_ask_when_it_lands(&self, now_s: f64) -> bool {
+        let in_emergency = self.status.as_ref().is_some_and(|s| s.value.emergency.is_some());
+        in_emergency && self.outlook.is_due(now_s) && self.open_link().is_some()
     }
 
     fn lacks_plan_aboard(&self) -> bool {
@@ -307,6 +330,13 @@ impl Vehicle {
         self.status.as_ref().map_or(Phase::Idle, |s| s.value.phase)
     }
 
+    /// What people call a leg of the plan aboard; its identifier, where nobody named it.
+    pub fn leg_name(&self, id: &Id) -> String {
+        let leg = self.aboard.as_ref().and_then(|aboard| aboard.plan.leg(id));
+        let name = leg.map(|context| context.leg.name.clone()).filter(|name| !name.is_empty());
+        name.unwrap_or_else(|| id.to_string())
+    }
+
     /// The leg being flown.
     pub fn current_leg(&self) -> Option<&Id> {
         Some(&self.status.as_ref()?.value.place.as_ref()?.leg)
@@ -322,10 +352,26 @@ impl Vehicle {
         self.received_s.map(|received_s| (now_s - received_s).max(0.0))
     }
 
-    /// Alarms, the most severe first: the gateway's, and those of the link itself.
+    /// Looks at the aircraft over the ground; what is raised anew is logged.
+    pub(super) fn look(&mut self, terrain: &dyn Terrain, now_s: f64) {
+        let before: Vec<String> = self.watch.alarms().map(|alarm| alarm.id).collect();
+        let sight = Sight {
+            position: live(&self.position, now_s).copied(),
+            ahead: live(&self.ahead, now_s),
+            state: live(&self.gateway, now_s).map(|status| status.state),
+        };
+        self.watch.look(sight, terrain, now_s);
+        for alarm in self.watch.alarms().filter(|alarm| !before.contains(&alarm.id)) {
+            let text = format!("{}: {}", alarm.id, alarm.advice);
+            self.log.add(now_s, alarm.severity.into(), GROUND_STATION, &text);
+        }
+    }
+
+    /// Alarms, the most severe first: the gateway's, and this ground station's own.
     pub fn alarms(&self, now_s: f64) -> Vec<Alarm> {
         let mut alarms = self.gateway.as_ref().map(|g| g.value.alarms.clone()).unwrap_or_default();
         alarms.extend(self.link_alarm(now_s));
+        alarms.extend(self.watch.alarms());
         alarms.sort_by(|a, b| b.severity.cmp(&a.severity).then_with(|| a.id.cmp(&b.id)));
         alarms
     }
@@ -336,7 +382,7 @@ impl Vehicle {
         Some(Alarm {
             id: "link-silent".into(),
             severity: if warning { Severity::Warning } else { Severity::Caution },
-            source: "ground station".into(),
+            source: GROUND_STATION.into(),
             advice: "Nothing is heard from the vehicle. It flies on by its plan; check the link.".into(),
             cause: None,
         })
@@ -345,6 +391,11 @@ impl Vehicle {
 
 /// More announcements than these are read in the log.
 const MOST_UNREAD: usize = 3;
+/// A value, as long as it is to be believed.
+fn live<T>(value: &Option<Aged<T>>, now_s: f64) -> Option<&T> {
+    value.as_ref().filter(|value| !value.is_expired(now_s)).map(|value| &value.value)
+}
+
 /// The plan aboard is asked for again at most so often, seconds.
 const ASK_ABOARD_S: f64 = 3.0;
 /// Silence after which the operator should know, seconds.

@@ -3,6 +3,7 @@
 use super::{Vehicle, VehicleName};
 use crate::link::{LinkId, LinkMessage, LinkState};
 use std::collections::BTreeMap;
+use terrain::Terrain;
 
 /// Most vehicles remembered. Beyond it goes the one that was silent longest, has no link and is not shown.
 const CAPACITY: usize = 256;
@@ -98,6 +99,17 @@ impl Vehicles {
     /// A link to some vehicle is wanted.
     pub fn any_link_wanted(&self) -> bool {
         self.by_name.values().any(|v| v.link.is_wanted())
+    }
+
+    /// Looks at every aircraft over the ground.
+    pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64) {
+        self.by_name.values_mut().for_each(|vehicle| vehicle.look(terrain, now_s));
+    }
+
+    /// Vehicles in an emergency that should be asked now when they land.
+    pub fn due_for_landing(&self, now_s: f64) -> Vec<VehicleName> {
+        let due = self.by_name.iter().filter(|(_, vehicle)| vehicle.should_ask_when_it_lands(now_s));
+        due.map(|(name, _)| name.clone()).collect()
     }
 
     /// Vehicles that fly a plan which is not known here and should be asked for it now.

@@ -162,6 +162,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             document: app.document(),
             analysis: app.analysis(),
             vehicle: app.vehicle(),
+            aboard: None,
             vehicles: app.vehicles(),
             view: app.view(),
             recent: &recent,

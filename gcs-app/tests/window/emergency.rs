@@ -1,17 +1,23 @@
 //! An emergency plan that is being flown.
 
+use super::considering::foresight;
 use super::flying::flying;
 use super::vehicle::place;
 use super::{SQUARE, Window};
 use flight_exec::{Branching, Command, Event};
 use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
-use gcs_app::state::ActivePlan;
+use gcs_app::state::{ActivePlan, Ticket};
 use std::sync::Arc;
 use usal::contract::Stamped;
 
-/// Flying the emergency plan of the square, raised on side3 because of the engine.
+/// Flying the emergency plan of the square.
 pub fn in_emergency() -> Window {
+    raised().0
+}
+
+/// It was raised on side3 because of the engine; the ticket of the question when it lands.
+fn raised() -> (Window, Ticket) {
     let (mut window, mut value) = flying();
     let plan = Arc::new(flight_plan::read(SQUARE.as_bytes()).plan);
     let hash = Arc::<str>::from("the plan that is aboard");
@@ -24,8 +30,9 @@ pub fn in_emergency() -> Window {
     window.steps(60 * 4);
     window.receive_position(false);
     window.receive_status(value);
-    let (ticket, call) = window.asked().unwrap();
-    assert_eq!(call, Call::PlanAboard);
+    let asked: Vec<_> = std::iter::from_fn(|| window.asked()).collect();
+    let ticket_of = |wanted: Call| asked.iter().find(|(_, call)| *call == wanted).unwrap().0;
+    let (ticket, landing) = (ticket_of(Call::PlanAboard), ticket_of(Call::Foresee(None)));
     window.answer(ticket, Ok(Reply::Plan(Some(ActivePlan { hash, plan }))));
     let started = Event::EmergencyStarted {
         cause: Cause::Engine,
@@ -34,18 +41,20 @@ pub fn in_emergency() -> Window {
     };
     let event = Stamped { time_s: 3.0, validity_s: f64::MAX, value: started };
     window.send(LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence: 1, event })));
-    window
+    (window, landing)
 }
 
 #[test]
 fn banner_says_which_plan_why_where_to_and_the_way_back() {
-    let mut window = in_emergency();
+    let (mut window, ticket) = raised();
     for text in ["EMERGENCY: flying", "because the engine failed", "to runway R05"] {
         assert!(window.shows(text), "{text}");
     }
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(window.shows("lands in 6"));
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(back)));
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
 }
 
 #[test]

@@ -169,12 +169,12 @@ fn a_proposal_without_the_current_leg_is_committed_only_with_an_entry() {
 #[test]
 fn a_refused_command_says_why() {
     let (mut window, _) = flying();
-    window.click("⏭ Skip leg");
+    window.click("⏸ Hold");
     let (ticket, call) = window.asked().unwrap();
-    assert_eq!(call, Call::Plan(Command::SkipLeg));
-    assert!(window.shows("Skip leg: pending"));
-    window.answer(ticket, Err("the last leg can't be skipped".into()));
-    assert!(window.shows("Skip leg: refused, the last leg can't be skipped"));
+    assert_eq!(call, Call::Plan(Command::Hold));
+    assert!(window.shows("Hold: pending"));
+    window.answer(ticket, Err("it holds already".into()));
+    assert!(window.shows("Hold: refused, it holds already"));
 }
 
 #[test]

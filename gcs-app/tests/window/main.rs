@@ -3,7 +3,9 @@
 #![cfg(test)]
 
 mod announcing;
+mod comparing;
 mod connecting;
+mod considering;
 mod creating;
 mod dock;
 mod drawing;
@@ -25,6 +27,7 @@ mod store;
 mod tools;
 mod tree;
 mod vehicle;
+mod watching;
 mod whatif;
 
 use egui::{Pos2, Vec2, vec2};

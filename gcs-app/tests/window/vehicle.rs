@@ -121,6 +121,21 @@ impl Window {
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
+    /// Standing disarmed, or flying armed.
+    pub fn receive_gateway_state(&mut self, state: GatewayState) {
+        let value = GatewayStatus {
+            state,
+            cause: "for the test".into(),
+            armed: state != GatewayState::Stop,
+            autopilot_mode: "AUTO".into(),
+            autopilot_age_s: 0.1,
+            fp_manager_age_s: Some(0.1),
+            safe_return_in_s: None,
+            alarms: Vec::new(),
+        };
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
     /// The next question that was asked, if there is one.
     pub fn asked(&mut self) -> Option<(Ticket, Call)> {
         match self.far.orders.try_recv() {

@@ -19,8 +19,8 @@ pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
         return;
     }
     ui.horizontal(|ui| {
-        if ui.button("Go to this leg").clicked() {
-            queue.plan(Command::GoTo { leg: id.clone() });
+        if ui.button("Go to this leg…").clicked() {
+            queue.consider(Command::GoTo { leg: id.clone() });
         }
         let emergency = scene
             .vehicle
@@ -29,7 +29,7 @@ pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
             .and_then(|s| s.value.place.as_ref())
             .is_some_and(|p| p.plan != flight_exec::Branching::Main);
         if emergency && ui.button("Return to the main plan here").clicked() {
-            queue.plan(Command::ReturnToMain { leg: id.clone() });
+            queue.consider(Command::ReturnToMain { leg: id.clone() });
         }
     });
     if let Some(place) = iteration_of(scene, id) {

@@ -1,0 +1,144 @@
+//! A command that leads elsewhere is looked at before it is given: what would follow, on the map and in words, then the
+//! command, named by its effect.
+
+use super::{Scene, field};
+use crate::command::{FlyCommand, Queue};
+use crate::state::{Considered, Vehicle};
+use crate::theme;
+use crate::units::{self, Units};
+use egui::{Panel, RichText, ScrollArea, Ui};
+use flight_exec::{Command, Foresight};
+use flight_plan::Id;
+
+/// Screen points.
+const WIDTH: f32 = 260.0;
+/// So many legs are named.
+const MOST_LEGS: usize = 12;
+
+/// Draws what would follow the command that is considered; false: none is.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+    let Some(considered) = scene.vehicle.outlook.considered() else { return false };
+    Panel::right("consider")
+        .exact_size(WIDTH)
+        .resizable(false)
+        .frame(theme::panel(ui).inner_margin(12.0))
+        .show(ui, |ui| body(ui, scene, considered, queue));
+    true
+}
+
+fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
+    let p = theme::of(ui);
+    ui.label(RichText::new(format!("{}?", effect(considered, scene.vehicle))).strong().size(16.0));
+    let gone_on =
+        considered.command == Command::SkipLeg && considered.on_leg.as_ref() != scene.vehicle.current_leg();
+    if gone_on {
+        let text = "⚠ The aircraft is on another leg by now: look again.";
+        ui.label(RichText::new(text).color(p.caution));
+    }
+    // the decision first: it is never scrolled away
+    ui.horizontal_wrapped(|ui| {
+        ui.add_enabled_ui(!gone_on && considered.foresight.is_some(), |ui| {
+            give(ui, scene, considered, queue)
+        });
+        if ui.button("Look again").clicked() {
+            queue.fly(FlyCommand::Consider(considered.command.clone()));
+        }
+        if ui.button("Cancel").clicked() {
+            queue.fly(FlyCommand::PutAside);
+        }
+    });
+    ui.separator();
+    match &considered.foresight {
+        None => {
+            ui.horizontal(|ui| {
+                ui.add(egui::Spinner::new().size(14.0));
+                ui.label("Looking ahead…");
+            });
+        }
+        Some(Err(why)) => {
+            ui.label(RichText::new(format!("⚠ What follows is not known: {why}")).color(p.caution));
+        }
+        Some(Ok(foresight)) => follows(ui, foresight, scene),
+    }
+}
+
+/// The command itself: a way with problems has to be held.
+fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let text = effect(considered, scene.vehicle);
+    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if foresight.problems.is_empty());
+    let given = if is_clean {
+        ui.add(super::primary_button(&text, p)).clicked()
+    } else {
+        field::hold_button(ui, &text, p.caution, 0.0)
+    };
+    if given {
+        queue.plan(considered.command.clone());
+    }
+}
+
+/// `Skip side2, fly side3 next`.
+fn effect(considered: &Considered, vehicle: &Vehicle) -> String {
+    let name = |leg: &Id| vehicle.leg_name(leg);
+    let next = match &considered.foresight {
+        Some(Ok(foresight)) => foresight.next_leg.as_ref(),
+        _ => None,
+    };
+    match &considered.command {
+        Command::SkipLeg => {
+            let leg = considered.on_leg.as_ref().map_or_else(|| "this leg".to_owned(), name);
+            let next = next.map_or_else(String::new, |next| format!(", fly {} next", name(next)));
+            format!("Skip {leg}{next}")
+        }
+        Command::GoTo { leg } => format!("Go to {}", name(leg)),
+        Command::ReturnToMain { leg } => format!("Return to the main plan at {}", name(leg)),
+        other => crate::app::plan_label(other),
+    }
+}
+
+/// What would follow, in words.
+fn follows(ui: &mut Ui, foresight: &Foresight, scene: &Scene<'_>) {
+    let p = theme::of(ui);
+    ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
+    ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
+        for line in cautions(foresight, scene.units()) {
+            ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
+        }
+        for line in facts(foresight, scene.vehicle, scene.units()) {
+            ui.label(line);
+        }
+    });
+}
+
+fn cautions(foresight: &Foresight, units: Units) -> Vec<String> {
+    let climb = foresight.short_of_altitude_m.map(|short_m| {
+        format!("Climb not done: it arrives {} below the leg's altitude", units.altitude().show(short_m))
+    });
+    let end = foresight.cut_short.clone();
+    let unfinished = (end.is_none() && !foresight.landed).then(|| "It does not end on the ground".to_owned());
+    climb.into_iter().chain(foresight.problems.iter().cloned()).chain(end).chain(unfinished).collect()
+}
+
+fn facts(foresight: &Foresight, vehicle: &Vehicle, units: Units) -> Vec<String> {
+    let next = foresight.next_leg.as_ref().map(|leg| format!("Flies next: {}", vehicle.leg_name(leg)));
+    let named = foresight.left_out.iter().take(MOST_LEGS).map(|leg| vehicle.leg_name(leg));
+    let named: Vec<String> = named.collect();
+    let left_out = match foresight.left_out.len().checked_sub(named.len()) {
+        _ if named.is_empty() => "Left out: nothing".to_owned(),
+        Some(more) if more > 0 => format!("Left out: {} and {more} more", named.join(", ")),
+        _ => format!("Left out: {}", named.join(", ")),
+    };
+    let clearance = foresight.clearance_m.map_or_else(
+        || "Height above the ground: not known".to_owned(),
+        |metres| {
+            format!("Least height above the ground until the approach: {}", units.altitude().show(metres))
+        },
+    );
+    let end = format!(
+        "Ends in {} after {}, with {:.0} % energy left",
+        units::duration(foresight.time_s),
+        units.distance().show(foresight.distance_m),
+        foresight.battery_left * 100.0
+    );
+    next.into_iter().chain([left_out, clearance, end]).collect()
+}

@@ -1,0 +1,304 @@
+//! What this ground station watches by itself: whether the aircraft keeps its altitude, and the ground under the way ahead.
+//! An alarm is raised when something has been wrong for a while, and cleared when it is clearly right again; not while the
+//! aircraft takes off, approaches or lands, or is flown by hand.
+
+use geometry::{LatLon, LocalFrame};
+use terrain::Terrain;
+use usal::contract::{Ahead, Alarm, GatewayState, Position, Severity, Token};
+
+/// Who raises these alarms.
+pub const GROUND_STATION: &str = "ground station";
+
+/// Off the altitude by more is wrong; by less is right again, metres.
+const OFF_ALTITUDE_M: (f64, f64) = (40.0, 25.0);
+/// Above the ground by less is wrong; by more is right again, metres.
+const NEAR_GROUND_M: (f64, f64) = (30.0, 45.0);
+/// Seconds for which it has to be wrong.
+const PATIENCE_S: (f64, f64) = (5.0, 2.0);
+/// So far ahead the ground is looked at, seconds of flight.
+const LOOK_AHEAD_S: f64 = 60.0;
+/// And so often, metres.
+const EVERY_M: f64 = 50.0;
+
+/// What is watched, at one instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Sight<'a> {
+    /// The aircraft, as long as that is to be believed.
+    pub position: Option<Position>,
+    /// What the plan has next, likewise.
+    pub ahead: Option<&'a Ahead>,
+    /// What the gateway does.
+    pub state: Option<GatewayState>,
+}
+
+/// The watch over one aircraft.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Height above the ground, where both are known, metres.
+    pub agl_m: Option<f64>,
+    altitude: Suspicion,
+    ground: Suspicion,
+    /// The waypoint steered to, its altitude, and the altitude it was steered to from.
+    target: Option<(Token, f64, f64)>,
+}
+
+#[derive(Debug, Default)]
+struct Suspicion {
+    since_s: Option<f64>,
+    raised: Option<String>,
+}
+
+impl Suspicion {
+    /// `wrong`: what is wrong now, measured with the limit for one that is raised or not.
+    fn follow(&mut self, wrong: Option<String>, patience_s: f64, now_s: f64) {
+        let Some(text) = wrong else {
+            *self = Self::default();
+            return;
+        };
+        let since_s = *self.since_s.get_or_insert(now_s);
+        if self.raised.is_some() || now_s - since_s >= patience_s {
+            self.raised = Some(text);
+        }
+    }
+
+    fn limit(&self, (raises, clears): (f64, f64)) -> f64 {
+        if self.raised.is_some() { clears } else { raises }
+    }
+}
+
+impl Watch {
+    /// Looks once.
+    pub fn look(&mut self, sight: Sight<'_>, terrain: &dyn Terrain, now_s: f64) {
+        let position = sight.position.filter(|p| p.position.is_valid() && p.altitude_amsl_m.is_finite());
+        let above = |p: &Position| Some(p.altitude_amsl_m - terrain.elevation_m(p.position)?);
+        self.agl_m = position.as_ref().and_then(above);
+        let enroute = position.filter(|p| !p.on_ground && sight.state.is_some_and(is_enroute));
+        // what lies ahead in the plan is flown in this state alone
+        let ahead = sight.ahead.filter(|_| sight.state == Some(GatewayState::Nav));
+        let off = enroute.and_then(|p| self.off_altitude(&p, ahead?));
+        self.altitude.follow(off, PATIENCE_S.0, now_s);
+        let near = enroute.and_then(|p| self.near_ground(&p, ahead, terrain));
+        self.ground.follow(near, PATIENCE_S.1, now_s);
+    }
+
+    /// The alarms that are raised.
+    pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
+        let altitude = ("altitude-deviation", Severity::Caution, &self.altitude.raised);
+        let ground = ("terrain-ahead", Severity::Warning, &self.ground.raised);
+        [altitude, ground].into_iter().filter_map(|(id, severity, raised)| {
+            let (id, source, advice) = (id.into(), GROUND_STATION.into(), raised.clone()?);
+            Some(Alarm { id, severity, source, advice, cause: None })
+        })
+    }
+
+    /// It is outside of what lies between the altitudes of the waypoint before and the one steered to.
+    fn off_altitude(&mut self, position: &Position, ahead: &Ahead) -> Option<String> {
+        let next = ahead.waypoints.first()?;
+        let to_m = next.altitude_amsl_m;
+        let from_m = match self.target {
+            Some((token, _, from_m)) if token == next.token => from_m,
+            // flown in order, it comes from the waypoint before
+            Some((token, before_m, _)) if token.0 + 1 == next.token.0 => before_m,
+            _ => position.altitude_amsl_m,
+        };
+        self.target = Some((next.token, to_m, from_m));
+        let (low_m, high_m) = (from_m.min(to_m), from_m.max(to_m));
+        let at_m = position.altitude_amsl_m;
+        let (off_m, side) = if at_m < low_m { (low_m - at_m, "below") } else { (at_m - high_m, "above") };
+        (off_m > self.altitude.limit(OFF_ALTITUDE_M)).then(|| {
+            format!("It flies {off_m:.0} m {side} the altitudes of its leg. Look at airspeed and engine; hold, or be ready to take over.")
+        })
+    }
+
+    /// The least height above the ground now and on the way ahead, where that is too little.
+    fn near_ground(
+        &self,
+        position: &Position,
+        ahead: Option<&Ahead>,
+        terrain: &dyn Terrain,
+    ) -> Option<String> {
+        let limit_m = self.ground.limit(NEAR_GROUND_M);
+        let heights = way(position, ahead).into_iter();
+        let heights = heights.filter_map(|(s, at, amsl_m)| Some((s, amsl_m - terrain.elevation_m(at)?)));
+        let (in_s, height_m) =
+            heights.filter(|(_, height_m)| *height_m < limit_m).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(format!(
+            "Only {height_m:.0} m above the ground in {in_s:.0} s. Climb, go to another leg, or be ready to take over."
+        ))
+    }
+}
+
+/// The gateway flies the plan's waypoints, away from runways, or brings the aircraft home.
+fn is_enroute(state: GatewayState) -> bool {
+    use GatewayState::*;
+    matches!(state, Nav | Hold | Directed | SafeHold | SafeReturn)
+}
+
+/// Points of the way from the aircraft to what is flown next: seconds from now, place, metres AMSL; up to the first waypoint
+/// at which it lands.
+fn way(position: &Position, ahead: Option<&Ahead>) -> Vec<(f64, LatLon, f64)> {
+    let speed_mps = position.ground_speed_mps.max(5.0);
+    let (mut at, mut altitude_m, mut time_s) = (position.position, position.altitude_amsl_m, 0.0);
+    let mut points = vec![(time_s, at, altitude_m)];
+    for next in ahead.iter().flat_map(|ahead| &ahead.waypoints).filter(|w| w.position.is_valid()) {
+        if matches!(next.action, usal::contract::Action::Land { .. }) || time_s >= LOOK_AHEAD_S {
+            break;
+        }
+        let frame = LocalFrame::new(at);
+        let to = frame.to_local(next.position);
+        let length_m = to.length();
+        let most_m = ((LOOK_AHEAD_S - time_s) * speed_mps).min(length_m);
+        for step in 1..=(most_m / EVERY_M).ceil() as usize {
+            let share = (step as f64 * EVERY_M / length_m.max(1.0)).min(1.0);
+            let amsl_m = altitude_m + (next.altitude_amsl_m - altitude_m) * share;
+            points.push((time_s + length_m * share / speed_mps, frame.to_geo(to * share), amsl_m));
+        }
+        (at, altitude_m, time_s) = (next.position, next.altitude_amsl_m, time_s + length_m / speed_mps);
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use terrain::Flat;
+    use usal::contract::{Action, Waypoint};
+
+    const HERE: LatLon = LatLon::new(36.3, -84.2);
+
+    /// A hill that begins a kilometre north, 480 m high.
+    struct Hill;
+
+    impl Terrain for Hill {
+        fn elevation_m(&self, p: LatLon) -> Option<f64> {
+            Some(if p.lat_deg > 36.309 { 480.0 } else { 300.0 })
+        }
+    }
+
+    fn position(altitude_amsl_m: f64) -> Position {
+        Position {
+            position: HERE,
+            altitude_amsl_m,
+            altitude_home_m: 0.0,
+            velocity_north_mps: 25.0,
+            velocity_east_mps: 0.0,
+            velocity_down_mps: 0.0,
+            track_deg: 0.0,
+            ground_speed_mps: 25.0,
+            on_ground: false,
+        }
+    }
+
+    fn ahead(token: u64, altitude_amsl_m: f64) -> Ahead {
+        let waypoint = Waypoint {
+            token: Token(token),
+            position: HERE.destination(0.0, 3000.0),
+            altitude_amsl_m,
+            airspeed_mps: 25.0,
+            action: Action::Fly,
+            fly_over: false,
+            leg: "a".into(),
+            end_of_plan: false,
+        };
+        Ahead { waypoints: vec![waypoint] }
+    }
+
+    fn look(
+        watch: &mut Watch,
+        altitude_m: f64,
+        ahead: &Ahead,
+        terrain: &dyn Terrain,
+        now_s: f64,
+    ) -> Vec<String> {
+        look_in(watch, altitude_m, ahead, terrain, now_s, GatewayState::Nav)
+    }
+
+    fn look_in(
+        watch: &mut Watch,
+        altitude_m: f64,
+        ahead: &Ahead,
+        terrain: &dyn Terrain,
+        now_s: f64,
+        state: GatewayState,
+    ) -> Vec<String> {
+        let sight = Sight { position: Some(position(altitude_m)), ahead: Some(ahead), state: Some(state) };
+        watch.look(sight, terrain, now_s);
+        watch.alarms().map(|alarm| alarm.id).collect()
+    }
+
+    #[test]
+    fn a_deviation_is_raised_after_a_while_and_cleared_when_it_is_clearly_over() {
+        let (mut watch, flat, at) = (Watch::default(), Flat(300.0), ahead(1, 500.0));
+        let none: Vec<String> = Vec::new();
+        for (now_s, altitude_m, expected) in [
+            (0.0, 500.0, false),
+            (1.0, 455.0, false),
+            (5.0, 455.0, false),
+            (6.0, 455.0, true),
+            (7.0, 470.0, true),
+            (8.0, 476.0, false),
+            (9.0, 470.0, false),
+            (20.0, 545.0, false),
+            (22.0, 500.0, false),
+            (26.0, 545.0, false),
+        ] {
+            let raised = look(&mut watch, altitude_m, &at, &flat, now_s);
+            let expected = if expected { vec!["altitude-deviation".to_owned()] } else { none.clone() };
+            assert_eq!(raised, expected, "at {now_s} s");
+        }
+    }
+
+    #[test]
+    fn a_climb_from_waypoint_to_waypoint_is_no_deviation() {
+        let (mut watch, flat) = (Watch::default(), Flat(300.0));
+        look(&mut watch, 500.0, &ahead(1, 500.0), &flat, 0.0);
+        for tenth in 0..600_u32 {
+            let altitude_m = 500.0 + f64::from(tenth) * 0.5;
+            let raised = look(&mut watch, altitude_m, &ahead(2, 800.0), &flat, 1.0 + f64::from(tenth) / 10.0);
+            assert!(raised.is_empty(), "at {altitude_m} m");
+        }
+        // sent somewhere else, it begins where it is
+        for now_s in [70.0, 80.0] {
+            assert!(look(&mut watch, 800.0, &ahead(40, 500.0), &flat, now_s).is_empty());
+        }
+    }
+
+    #[test]
+    fn ground_ahead_is_told_before_it_is_reached() {
+        let (mut watch, at) = (Watch::default(), ahead(1, 500.0));
+        assert!(look(&mut watch, 500.0, &at, &Hill, 0.0).is_empty(), "for a moment");
+        assert_eq!(look(&mut watch, 500.0, &at, &Hill, 2.0), ["terrain-ahead"]);
+        assert_eq!(watch.agl_m, Some(200.0));
+        let alarm = watch.alarms().next().unwrap();
+        assert_eq!((alarm.severity, alarm.source.as_str()), (Severity::Warning, GROUND_STATION));
+        assert!(alarm.advice.contains("20 m above the ground in 4"), "{}", alarm.advice);
+        // higher, but not yet clearly
+        assert_eq!(look(&mut watch, 520.0, &ahead(1, 520.0), &Hill, 3.0), ["terrain-ahead"]);
+        assert!(look(&mut watch, 530.0, &ahead(1, 530.0), &Hill, 4.0).is_empty());
+    }
+
+    #[test]
+    fn nothing_is_raised_near_a_runway_by_hand_or_where_nothing_is_known() {
+        use GatewayState::*;
+        for state in [TakeOff, Approach, Land, SafeApproach, SafeLand, Manual, Stop, Off] {
+            let mut watch = Watch::default();
+            for now_s in [0.0, 100.0] {
+                assert!(
+                    look_in(&mut watch, 310.0, &ahead(1, 500.0), &Hill, now_s, state).is_empty(),
+                    "{state:?}"
+                );
+            }
+        }
+        struct Unknown;
+        impl Terrain for Unknown {
+            fn elevation_m(&self, _: LatLon) -> Option<f64> {
+                None
+            }
+        }
+        let mut watch = Watch::default();
+        for now_s in [0.0, 100.0] {
+            assert!(look(&mut watch, 500.0, &ahead(1, 500.0), &Unknown, now_s).is_empty());
+        }
+        assert_eq!(watch.agl_m, None);
+    }
+}

@@ -1,0 +1,115 @@
+//! Commands that lead elsewhere are looked at before they are given.
+
+use super::Window;
+use super::flying::flying;
+use super::vehicle::{place, status};
+use flight_exec::{Command, Foresight, PathPoint, Phase};
+use gcs_app::link::{Call, Reply};
+use gcs_app::state::Ticket;
+use geometry::LatLon;
+use usal::contract::GatewayState;
+
+pub fn foresight() -> Foresight {
+    let point = |i: i32| PathPoint {
+        time_s: f64::from(i),
+        position: LatLon::new(36.319, -84.173 + 0.001 * f64::from(i)),
+        altitude_amsl_m: 500.0,
+    };
+    Foresight {
+        path: (0..20).map(point).collect(),
+        next_leg: Some("side3".into()),
+        left_out: vec!["side2".into()],
+        short_of_altitude_m: Some(120.0),
+        clearance_m: Some(85.0),
+        problems: Vec::new(),
+        time_s: 380.0,
+        distance_m: 9000.0,
+        battery_left: 0.43,
+        landed: true,
+        cut_short: None,
+    }
+}
+
+/// Skip is looked at; the ticket of the question.
+fn considered() -> (Window, Ticket) {
+    let (mut window, _) = flying();
+    window.click("⏭ Skip leg");
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(Command::SkipLeg)), "nothing is done yet");
+    (window, ticket)
+}
+
+#[test]
+fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
+    let (mut window, ticket) = considered();
+    assert!(window.shows("Looking ahead"));
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    for text in [
+        "Left out: side2",
+        "Climb not done: it arrives 120 m below",
+        "until the approach: 85 m",
+        "43 % energy left",
+        "on the map: the path that would be flown",
+    ] {
+        assert!(window.shows(text), "{text}");
+    }
+    window.click("Skip side2, fly side3 next");
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+    assert!(!window.shows("Left out"), "it was given");
+}
+
+#[test]
+fn a_command_that_was_cancelled_is_not_given() {
+    let (mut window, ticket) = considered();
+    window.hold("Skip side2 (hold)", 90);
+    assert!(window.asked().is_none(), "nothing is known of it yet");
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.click("Cancel");
+    assert!(!window.shows("Left out") && window.asked().is_none());
+}
+
+#[test]
+fn a_way_with_problems_has_to_be_held() {
+    let (mut window, ticket) = considered();
+    let problems = vec!["the path leads through keep-out zone village".to_owned()];
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(Foresight { problems, ..foresight() }))));
+    assert!(window.shows("through keep-out zone village"));
+    window.hold("Skip side2, fly side3 next (hold)", 20);
+    assert!(window.asked().is_none() && window.shows("Keep it pressed for 1 s"));
+    window.hold("Skip side2, fly side3 next (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+}
+
+#[test]
+fn a_leg_that_was_not_looked_at_is_not_skipped() {
+    let (mut window, ticket) = considered();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    let mut value = status(Phase::Flying);
+    value.place = Some(place("circuit", "side3"));
+    window.receive_status(value);
+    assert!(window.shows("on another leg by now") && !window.is_enabled("Skip side2, fly side3 next"));
+    window.click("Look again");
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(Command::SkipLeg))));
+}
+
+#[test]
+fn without_an_answer_the_command_can_still_be_given() {
+    let (mut window, ticket) = considered();
+    window.answer(ticket, Err("nobody answers".into()));
+    assert!(window.shows("What follows is not known: nobody answers"));
+    window.hold("Skip side2 (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+}
+
+#[test]
+fn a_plan_that_was_under_way_is_rewound_on_the_ground_only() {
+    let (mut window, value) = flying();
+    assert!(!window.shows("Rewind"));
+    window.receive_position(true);
+    window.receive_gateway_state(GatewayState::Stop);
+    window.receive_status(value);
+    window.hold("Rewind to the start (hold)", 20);
+    assert!(window.asked().is_none());
+    window.hold("Rewind to the start (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Rewind)));
+}
