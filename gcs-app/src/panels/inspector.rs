@@ -101,7 +101,7 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
     {
         kind = format!("{kind}, in procedure {}", procedure.id);
     }
-    let rest = if name == id { kind } else { format!("{kind} · {id}") };
+    let rest = if id.is_empty() || name == id { kind } else { format!("{kind} · {id}") };
     ui.horizontal(|ui| {
         ui.label(RichText::new(name).size(15.0).strong());
         ui.add(egui::Label::new(RichText::new(rest).color(p.weak)).truncate());

@@ -288,7 +288,7 @@ const BY_CAUSE: Description = Description {
     ]],
 };
 pub(super) const BY_CAUSES: Row = Row::Children(Children {
-    label: "Alternates by cause",
+    label: "By cause",
     help: "Emergency plans for single causes.",
     of: &[&BY_CAUSE],
     least: 0,
