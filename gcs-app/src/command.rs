@@ -2,6 +2,8 @@
 //! them out between two frames.
 
 use crate::guide::Answer;
+use crate::layers::LayerCommand;
+use crate::map::furniture::Edge;
 use crate::panels::PanelId;
 use crate::state::VehicleName;
 use crate::units::Units;
@@ -22,6 +24,8 @@ pub enum Command {
     View(ViewCommand),
     /// To the links, and which vehicle is shown.
     Link(LinkCommand),
+    /// To the maps and elevations that were brought.
+    Layer(LayerCommand),
     /// To the vehicle that is shown.
     Fly(FlyCommand),
 }
@@ -123,6 +127,10 @@ pub enum ViewCommand {
     Search,
     /// Show a panel, or hide it.
     ShowPanel(PanelId, bool),
+    /// Open the dialog of the maps, or close it.
+    Maps(bool),
+    /// Show other things on the map's edge.
+    Edge(Edge),
     /// Put all panels back to where they are by default.
     ResetLayout,
     /// Move the cursor along the preview, seconds from its start; `None` hides it.
@@ -265,6 +273,10 @@ impl Queue {
     /// To the view.
     pub fn view(&mut self, command: ViewCommand) {
         self.0.push(Command::View(command));
+    }
+    /// To the maps and elevations that were brought.
+    pub fn layer(&mut self, command: LayerCommand) {
+        self.0.push(Command::Layer(command));
     }
     /// To the links.
     pub fn link(&mut self, command: LinkCommand) {

@@ -58,6 +58,8 @@ pub enum FileEvent {
         /// Its state now; `None`: it is gone.
         stamp: Option<Stamp>,
     },
+    /// A map or a folder of elevations was chosen.
+    MapChosen(PathBuf),
     /// The desktop has no dialog to ask with.
     NoDialog(Purpose),
     /// What is in a folder, or why that can't be said.
@@ -194,6 +196,24 @@ impl Files {
         self.work(move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]);
             asked(desktop, Purpose::Open, || dialog.pick_file(), |path| open(&path))
+        });
+    }
+
+    /// Asks for a map, or for a folder of elevations.
+    pub fn ask_map(&self, folder: bool) {
+        let desktop = self.desktop;
+        self.work(move || {
+            let begin = Instant::now();
+            let dialog = rfd::FileDialog::new();
+            let chosen = desktop.then(|| if folder { dialog.pick_folder() } else { dialog.pick_file() });
+            match chosen.flatten() {
+                Some(path) => Some(FileEvent::MapChosen(path)),
+                None if desktop && begin.elapsed() >= UNSEEN => None,
+                None => Some(FileEvent::Failed(
+                    "This desktop has no file dialog: type the path, or drop the file onto the window."
+                        .into(),
+                )),
+            }
         });
     }
 

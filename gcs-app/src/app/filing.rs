@@ -3,6 +3,7 @@
 use super::App;
 use crate::document::Document;
 use crate::files::{Entry, FileEvent, Over, Purpose, Stamp, Writing};
+use crate::layers::LayerCommand;
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use std::path::{Path, PathBuf};
@@ -65,6 +66,7 @@ impl App {
                 ));
             }
             FileEvent::ChangedOutside { path, known, stamp } => self.changed_outside(&path, known, stamp),
+            FileEvent::MapChosen(path) => self.change_layers(LayerCommand::Add(path)),
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),
             FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
             FileEvent::Failed(why) => {

@@ -4,8 +4,9 @@
 use super::{App, Now, path_aboard};
 use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
 use crate::dock::Content;
+use crate::layers::{self, LayerCommand};
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, push, recover, start,
+    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, maps, push, recover, start,
     unsaved,
 };
 use crate::recovery::Keeper;
@@ -28,9 +29,9 @@ impl App {
             keeper,
             recent,
             connections,
-            terrain,
             palette,
             aboard,
+            layers,
             ..
         } = self;
         let vehicle = vehicles.shown();
@@ -42,10 +43,11 @@ impl App {
             aboard: path_aboard(aboard, vehicle),
             vehicles,
             view,
+            layers,
             recent,
             connections,
             left_behind: keeper.as_ref().and_then(Keeper::left_behind),
-            ground: Elevations(terrain.as_ref()),
+            ground: Elevations(layers.ground().as_ref()),
             now_s: now.window_s,
             utc: now.utc,
         };
@@ -75,6 +77,7 @@ impl App {
             }
             over_map(ui, floor, &scene, queue);
         });
+        maps::show(ui, &scene, queue);
         unsaved::show(ui, &scene, queue);
         changed::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
@@ -177,8 +180,11 @@ fn floating(ui: &Ui, id: &str, map: Rect, side: Align2, show: impl FnOnce(&mut U
 }
 
 fn dropped_files(ui: &Ui, queue: &mut Queue) {
-    let dropped = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
-    if let Some(path) = dropped {
+    let dropped =
+        ui.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect::<Vec<_>>());
+    let (maps, plans): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| layers::is_map(path));
+    maps.into_iter().for_each(|path| queue.layer(LayerCommand::Add(path)));
+    if let Some(path) = plans.into_iter().next() {
         queue.document(DocumentCommand::Replace(Replacement::Open(path)));
     }
 }

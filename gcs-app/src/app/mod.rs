@@ -2,6 +2,7 @@
 //! asked for. Nothing here waits for file, network or computation.
 
 mod filing;
+mod ground;
 mod keys;
 mod layout;
 mod orders;
@@ -20,8 +21,10 @@ use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
 use crate::forecast::{Aboard, Analysis, Forecast, Question, Worker};
+use crate::layers::{Kept, Layers};
 use crate::link::{BACKLOG, Call, Links, Order};
-use crate::map::{MapState, hillshade::Ground};
+use crate::map::MapState;
+use crate::map::furniture::Edge;
 use crate::panels::palette::CommandPalette;
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
@@ -51,7 +54,9 @@ pub struct App {
     links: Links,
     worker: Worker,
     aboard: Aboard,
-    terrain: Arc<dyn Terrain>,
+    layers: Layers,
+    /// Wakes the window.
+    wake: Arc<dyn Fn() + Send + Sync>,
     files: Files,
     /// The document's own file is being written.
     saving: bool,
@@ -79,6 +84,10 @@ impl std::fmt::Debug for App {
 struct Remembered {
     units: Units,
     #[serde(default)]
+    layers: Vec<Kept>,
+    #[serde(default)]
+    edge: Edge,
+    #[serde(default)]
     recent: Recent,
     #[serde(default)]
     connections: Connections,
@@ -92,7 +101,7 @@ impl Remembered {
     fn view(&self) -> ViewState {
         // what is stored may be damaged
         let scale = theme::Scale::new(self.scale.get()).unwrap_or_default();
-        ViewState { units: self.units, theme: self.theme, scale, ..ViewState::default() }
+        ViewState { units: self.units, edge: self.edge, theme: self.theme, scale, ..ViewState::default() }
     }
 }
 
@@ -153,7 +162,8 @@ impl App {
             links,
             worker: Worker::spawn(terrain.clone(), wake.clone())?,
             aboard: Aboard::spawn(terrain.clone(), wake.clone())?,
-            terrain,
+            layers: Layers::new(terrain, remembered.layers, wake.clone()),
+            wake: wake.clone(),
             files: Files::new(wake),
             saving: false,
             recent: remembered.recent,
@@ -166,11 +176,6 @@ impl App {
         };
         app.map.fit();
         Ok(app)
-    }
-
-    /// Paints the ground in the background, and shows it on the map when it is ready.
-    fn show_ground(&mut self, ground: Ground, ctx: &egui::Context) {
-        self.map.hillshade.begin(ground, ctx);
     }
 
     /// The plan being edited.
@@ -193,6 +198,14 @@ impl App {
     pub fn dock(&self) -> &Dock {
         &self.dock
     }
+    /// The maps and elevations that were brought.
+    pub fn layers(&self) -> &Layers {
+        &self.layers
+    }
+    /// What the map shows.
+    pub fn map(&self) -> &MapState {
+        &self.map
+    }
     /// What was found out about the plan.
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
@@ -212,10 +225,11 @@ impl App {
             aboard: self.path_aboard(),
             vehicles: &self.vehicles,
             view: &self.view,
+            layers: &self.layers,
             recent: &self.recent,
             connections: &self.connections,
             left_behind: self.keeper.as_ref().and_then(Keeper::left_behind),
-            ground: Elevations(self.terrain.as_ref()),
+            ground: Elevations(self.layers.ground().as_ref()),
             now_s: now.window_s,
             utc: now.utc,
         }
@@ -261,6 +275,7 @@ impl App {
         if self.analysis.document != document {
             self.analysis = Analysis::default();
         }
+        self.drain_layers(ctx);
         self.worker.ask(Question {
             document,
             version,
@@ -448,6 +463,8 @@ impl eframe::App for App {
             STORAGE_KEY,
             &Remembered {
                 units: self.view.units,
+                layers: self.layers.kept(),
+                edge: self.view.edge,
                 recent: self.recent.clone(),
                 connections: self.connections.clone(),
                 theme: self.view.theme,

@@ -23,6 +23,7 @@ impl App {
         match command {
             Command::Document(command) => self.change_document(command),
             Command::View(command) => self.change_view(command),
+            Command::Layer(command) => self.change_layers(command),
             Command::Link(command) => self.change_link(command, now_s),
             Command::Fly(command) => {
                 if let Some(vehicle) = shown {
@@ -76,7 +77,7 @@ impl App {
     }
 
     /// Says why an edit could not be done.
-    fn tell(&mut self, done: Result<(), String>) {
+    pub(super) fn tell(&mut self, done: Result<(), String>) {
         if let Err(why) = done {
             self.view.notice = Some(why);
         }
@@ -107,13 +108,13 @@ impl App {
     fn create(&mut self, mut outline: Outline) {
         let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
         outline.runway.elevation_amsl_m = self.ground_amsl_m(outline.runway.threshold).round();
-        self.document.replace(outline.plan(&profile, self.terrain.as_ref()));
+        self.document.replace(outline.plan(&profile, self.layers.ground().as_ref()));
         self.map.fit();
     }
 
     /// Says so where it is not known.
     fn ground_amsl_m(&mut self, at: LatLon) -> f64 {
-        let ground = self.terrain.elevation_m(at);
+        let ground = self.layers.ground().elevation_m(at);
         if ground.is_none() {
             let why = "The ground is not known here: the runway is taken to be at sea level. Add elevation tiles, or correct it.";
             self.view.notice = Some(why.into());
@@ -142,7 +143,7 @@ impl App {
         let plan = self.document.plan().clone();
         let Some(runway) = plan.runway(runway) else { return Ok(()) };
         let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-        let (id, edit) = create::emergency_plan(&plan, runway, &profile, self.terrain.as_ref());
+        let (id, edit) = create::emergency_plan(&plan, runway, &profile, self.layers.ground().as_ref());
         self.document.edit(&edit)?;
         self.view.select(Some(Selection::Emergency(id)));
         Ok(())
@@ -184,6 +185,8 @@ impl App {
                 self.view.search = true;
             }
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
+            ViewCommand::Maps(open) => self.view.maps = open,
+            ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
             ViewCommand::Scrub(cursor_s) => {
                 self.view.cursor_s = cursor_s;

@@ -4,7 +4,6 @@ use super::{App, Screenshot};
 use crate::assets;
 use crate::document::Document;
 use crate::link::Links;
-use crate::map::hillshade::Ground;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
@@ -90,14 +89,11 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     let ctx = creation.egui_ctx.clone();
     let links = Links::spawn(Arc::new(move || ctx.request_repaint()))?;
     let terrain = assets::demo_terrain();
-    let mut app = App::new(creation, options.document.unwrap_or_default(), links, terrain.clone())?;
+    let mut app = App::new(creation, options.document.unwrap_or_default(), links, terrain)?;
     if let Some((vehicle, endpoint)) = options.connect {
         app.connect(&endpoint, &vehicle.as_str().into(), creation.egui_ctx.input(|i| i.time));
     }
-    if let Ok(tile) = assets::demo_tile() {
-        let (south_west, north_east) = tile.known_box();
-        app.show_ground(Ground { terrain, south_west, north_east }, &creation.egui_ctx);
-    }
+    app.shade_ground(&creation.egui_ctx);
     if options.recover
         && let Some(folder) = eframe::storage_dir("legwork")
     {

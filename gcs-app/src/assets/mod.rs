@@ -5,6 +5,7 @@
 
 pub mod basemap;
 mod bytes;
+pub mod places;
 
 pub use basemap::{Basemap, BasemapError, Detail, Label, Land, Polyline};
 
@@ -12,7 +13,7 @@ use std::sync::{Arc, LazyLock};
 use terrain::{Flat, Terrain, Tile, TileError, Tiles};
 
 /// Sources of the bundled data, as the map shows them.
-pub const ATTRIBUTION: &str = "Natural Earth · USGS";
+pub const ATTRIBUTION: &str = "Natural Earth · OurAirports · USGS";
 
 /// The fire-watch mission over the Cumberland Mountains, XML.
 pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
@@ -28,6 +29,17 @@ pub fn basemap() -> Result<&'static Basemap, BasemapError> {
     static BASEMAP: LazyLock<Result<Basemap, BasemapError>> =
         LazyLock::new(|| Basemap::read(include_bytes!("../../../assets/basemap/world.lwbm")));
     BASEMAP.as_ref().map_err(Clone::clone)
+}
+
+/// Cities and airports, the most important group first.
+///
+/// # Errors
+/// The bundled file is damaged (never in a build that passed its tests).
+pub fn places() -> Result<&'static [places::Group<'static>], places::PlacesError> {
+    type Read = Result<Vec<places::Group<'static>>, places::PlacesError>;
+    static PLACES: LazyLock<Read> =
+        LazyLock::new(|| places::read(include_bytes!("../../../assets/basemap/places.lwpl")));
+    PLACES.as_deref().map_err(|error| *error)
 }
 
 /// The bundled elevation tile: the Cumberland Mountains, Tennessee, 3″, surrounded by voids.

@@ -1,7 +1,7 @@
 //! The bundled world: land, coasts, borders and country names.
 
-use super::polyline;
 use super::view::{Mercator, View};
+use super::{places, polyline};
 use crate::assets::{self, Basemap, Polyline, basemap::Bounds};
 use crate::chart::labels::Labels;
 use crate::theme::Palette;
@@ -19,7 +19,7 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Draws water, land, lines and names.
+    /// Draws water, land and lines.
     pub fn draw(&mut self, painter: &Painter, view: &View, p: &Palette) {
         painter.rect_filled(view.rect, 0.0, p.water);
         let Ok(map) = assets::basemap() else { return };
@@ -33,7 +33,14 @@ impl Layer {
         for part in &self.borders {
             painter.extend(Shape::dashed_line(part, Stroke::new(1.0, p.border), 6.0, 3.0));
         }
-        draw_names(painter, map, view, p);
+    }
+
+    /// Draws names of countries, cities and airports.
+    pub fn draw_names(&self, painter: &Painter, view: &View, p: &Palette) {
+        let Ok(map) = assets::basemap() else { return };
+        let mut placed = Labels::new(view.rect.into());
+        draw_countries(painter, map, view, &mut placed, p);
+        places::draw(painter, view, &mut placed, p);
     }
 
     fn build(&mut self, map: &Basemap, view: &View, p: &Palette) {
@@ -87,9 +94,8 @@ fn corners_of(corners: &[Pos2], [a, b, c]: [u32; 3]) -> Option<[Pos2; 3]> {
 }
 
 /// Names of countries big enough on the screen, without overlaps.
-fn draw_names(painter: &Painter, map: &Basemap, view: &View, p: &Palette) {
+fn draw_countries(painter: &Painter, map: &Basemap, view: &View, placed: &mut Labels, p: &Palette) {
     let most = (view.points_per_metre() * 4.0e6).clamp(4.0, 300.0) as u32;
-    let mut placed = Labels::new(view.rect.into());
     for label in map.labels().iter().filter(|l| l.rank < most) {
         let at = view.place(label.position);
         if !view.rect.contains(at) {

@@ -1,5 +1,6 @@
 //! What lies on the map's edge: scale, sources, legend, and the buttons.
 
+use super::graticule::{Round, round_length};
 use super::text;
 use super::tools::Toolbox;
 use super::view::View;
@@ -7,9 +8,19 @@ use crate::assets;
 use crate::command::{Queue, ViewCommand};
 use crate::panels::{Scene, start};
 use crate::theme::{self, Palette};
-use crate::units::Units;
+use crate::units::{self, Units};
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use serde::{Deserialize, Serialize};
 use walkers::MapMemory;
+
+/// What lies on the map's edge and over it, besides what always does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Edge {
+    /// Lines of latitude and longitude.
+    pub graticule: bool,
+    /// Rings around the aircraft, or else around home.
+    pub rings: bool,
+}
 
 /// On a map that is narrower there is no legend: the commands take several lines there, screen points.
 pub const NARROW: f32 = 600.0;
@@ -21,15 +32,41 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
         legend(painter, view.rect, p);
     }
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
-    text::haloed(painter, corner, Align2::RIGHT_BOTTOM, assets::ATTRIBUTION, 10.0, p.weak, p);
+    let sources = std::iter::once(assets::ATTRIBUTION).chain(scene.layers.attributions());
+    let sources = sources.collect::<Vec<_>>().join(" · ");
+    text::haloed(painter, corner, Align2::RIGHT_BOTTOM, &sources, 10.0, p.weak, p);
+    north(painter, view.rect.right_bottom() - vec2(26.0, 44.0), p);
+}
+
+/// North is up.
+fn north(painter: &Painter, at: Pos2, p: &Palette) {
+    let needle = vec![at + vec2(0.0, -16.0), at + vec2(5.0, 0.0), at + vec2(0.0, -4.0), at + vec2(-5.0, 0.0)];
+    painter.add(Shape::closed_line(needle.clone(), Stroke::new(3.0, p.halo)));
+    painter.add(Shape::closed_line(needle, Stroke::new(1.2, p.text)));
+    text::haloed(painter, at + vec2(0.0, -17.0), Align2::CENTER_BOTTOM, "N", 10.0, p.text, p);
+}
+
+/// Where the pointer is, and how high the ground is there.
+pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
+    let Some(at) = at.map(|at| view.geo(at)).filter(|at| at.is_valid()) else { return };
+    let ground = scene.layers.ground().elevation_m(at).map(|m| scene.units().altitude().show(m));
+    let ground = ground.map_or_else(|| "elevation unknown".into(), |m| format!("ground {m}"));
+    let text = format!("{} · {ground}", units::position(at));
+    let size = vec2(270.0, 16.0);
+    let corner = view.rect.right_bottom() - vec2(6.0, 18.0);
+    let rect = Rect::from_min_max(corner - size, corner);
+    let mut line = ui.new_child(
+        egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::right_to_left(egui::Align::Center)),
+    );
+    let p = theme::of(&line);
+    let text =
+        egui::RichText::new(text).size(11.0).color(p.text).background_color(p.panel.gamma_multiply(0.8));
+    line.add(egui::Label::new(text).selectable(false));
 }
 
 /// A bar of a round length, up to 90 points long.
 fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
-    let unit = units.distance();
-    let most = unit.from_si(90.0 / view.points_per_metre());
-    let decade = 10f64.powf(most.log10().floor());
-    let length = [5.0, 2.0, 1.0].map(|k| k * decade).into_iter().find(|l| *l <= most).unwrap_or(decade);
+    let (unit, length) = round_length(units, 90.0 / view.points_per_metre(), Round::Down);
     let points = (unit.to_si(length) * view.points_per_metre()) as f32;
     let start = view.rect.left_bottom() + vec2(12.0, -12.0);
     let end = start + vec2(points, 0.0);

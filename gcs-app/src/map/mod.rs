@@ -8,13 +8,15 @@ mod clipboard;
 pub mod coverage;
 pub mod foreseen;
 pub mod furniture;
-pub mod hillshade;
+pub mod graticule;
 pub mod marks;
 mod menu;
 pub mod navigate;
 pub mod path;
+pub mod places;
 pub mod plan;
 pub mod polyline;
+pub mod rasters;
 pub mod sketch;
 pub mod text;
 pub mod tools;
@@ -22,12 +24,18 @@ pub mod view;
 pub mod zones;
 
 use crate::command::{Queue, Selection, ViewCommand};
+use crate::layers::Opened;
 use crate::panels::{Scene, start};
 use crate::theme;
+use crate::tiles::{Reader, Relief};
 use egui::{DragPanButtons, Role, Ui};
 use flight_plan::Variables;
 use geometry::LatLon;
+use rasters::Raster;
 use sketch::Sketch;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use terrain::Terrain;
 use tools::{Canvas, Toolbox};
 use usal::contract::PlanVariables;
 use view::View;
@@ -53,8 +61,11 @@ pub struct MapState {
     /// Show where a new plan begins, likewise.
     begin: Option<LatLon>,
     basemap: basemap::Layer,
-    /// The shaded terrain.
-    pub hillshade: hillshade::Layer,
+    relief: Option<Raster>,
+    /// Maps that users brought, by the number of their layer.
+    rasters: BTreeMap<u64, Raster>,
+    /// A box to be shown in the next frame.
+    fit_to: Option<[LatLon; 2]>,
     path: path::Layer,
     aircraft: aircraft::Layer,
     tools: Toolbox,
@@ -127,11 +138,54 @@ impl MapState {
         }
     }
 
+    /// Shows a box in the next frame.
+    pub fn fit_to(&mut self, corners: [LatLon; 2]) {
+        self.fit_to = Some(corners);
+    }
+
+    /// Shades this ground, or none.
+    pub fn shade(&mut self, ground: Option<&Arc<dyn Terrain>>, ctx: &egui::Context) {
+        let relief = ground.map(|ground| Box::new(Relief::new(ground.clone())) as Box<dyn Reader>);
+        self.relief = relief.map(|relief| Raster::new(vec![relief], Relief::about(), &Arc::default(), ctx));
+    }
+
+    /// The ground is shaded.
+    pub fn is_shaded(&self) -> bool {
+        self.relief.is_some()
+    }
+
+    /// Shows a map's tiles from now on, as long as its layer is there.
+    pub fn add_raster(&mut self, opened: Opened, ctx: &egui::Context) {
+        let raster = Raster::new(vec![opened.reader], opened.about, &opened.health, ctx);
+        self.rasters.insert(opened.id, raster);
+    }
+
+    /// So many pictures of a layer's tiles are here.
+    pub fn pictures_of(&self, layer: u64) -> usize {
+        self.rasters.get(&layer).map_or(0, Raster::pictures)
+    }
+
+    /// The relief, then the maps from the lowest to the uppermost.
+    fn draw_rasters(&mut self, painter: &egui::Painter, view: &View, scene: &Scene<'_>, dark: bool) {
+        if let Some(relief) = &mut self.relief {
+            relief.draw(painter, view, 1.0, dark);
+        }
+        self.rasters.retain(|id, _| scene.layers.iter().any(|layer| layer.id == *id));
+        for layer in scene.layers.iter().rev().filter(|layer| layer.kept.shown) {
+            if let Some(raster) = self.rasters.get_mut(&layer.id) {
+                raster.draw(painter, view, layer.kept.opacity, dark);
+            }
+        }
+    }
+
     /// Draws the map and takes what the operator does on it.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         self.sketch(scene);
         if self.fit {
             self.fit_now(ui.available_size());
+        }
+        if let Some(corners) = self.fit_to.take() {
+            self.show_all(&corners, ui.available_size());
         }
         if let Some(at) = self.begin.take() {
             self.begin_now(at, ui.available_width());
@@ -174,7 +228,14 @@ impl MapState {
         let p = theme::of(ui);
         let painter = ui.painter_at(view.rect);
         self.basemap.draw(&painter, view, p);
-        self.hillshade.draw(&painter, view, ui.visuals().dark_mode);
+        self.draw_rasters(&painter, view, scene, ui.visuals().dark_mode);
+        self.basemap.draw_names(&painter, view, p);
+        if scene.view.edge.graticule {
+            graticule::draw(&painter, view, p);
+        }
+        if scene.view.edge.rings {
+            graticule::draw_rings(&painter, view, scene, p);
+        }
         zones::draw(&painter, view, scene, p);
         plan::draw_areas(&painter, view, &self.sketch, scene, p);
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
@@ -199,6 +260,9 @@ impl MapState {
         aircraft::draw(&painter, view, scene, p);
         furniture::draw(&painter, view, scene, p);
         chips::show(ui, view, scene, queue);
+        // over what can be grabbed, too
+        let over = ui.rect_contains_pointer(view.rect).then(|| ui.ctx().pointer_hover_pos()).flatten();
+        furniture::pointer(ui, view, over, scene);
     }
 
     /// Places the plan anew, when it or the variables aboard have changed.
@@ -229,14 +293,20 @@ impl MapState {
 
     fn fit_now(&mut self, size: egui::Vec2) {
         self.fit = false;
-        let Some((centre, zoom)) = View::fit(&self.sketch.places(), size) else {
+        let places = self.sketch.places();
+        if !self.show_all(&places, size) {
             self.memory.center_at(lat_lon(WORLD.lat_deg, WORLD.lon_deg));
             let _ = self.memory.set_zoom(WORLD_ZOOM);
-            return;
-        };
+        }
+    }
+
+    /// False: there is nothing to be shown.
+    fn show_all(&mut self, places: &[LatLon], size: egui::Vec2) -> bool {
+        let Some((centre, zoom)) = View::fit(places, size) else { return false };
         self.memory.center_at(centre);
         // fit keeps within the map's range of zooms
         let _ = self.memory.set_zoom(zoom);
+        true
     }
 }
 

@@ -57,6 +57,11 @@ impl View {
         }
     }
 
+    /// The zoom level: the whole world is `256 · 2^zoom` points wide.
+    pub fn zoom(&self) -> f64 {
+        (self.scale / 256.0).log2()
+    }
+
     /// How often the scale has doubled: views of the same octave differ by less than a factor of two.
     pub fn octave(&self) -> i32 {
         self.scale.max(1.0).log2().floor() as i32
@@ -78,12 +83,16 @@ impl View {
 
     /// The position under a point of the screen.
     pub fn geo(&self, at: Pos2) -> LatLon {
+        self.unit(at).to_geo()
+    }
+
+    /// The place in the unit square under a point of the screen.
+    pub fn unit(&self, at: Pos2) -> Mercator {
         let d = at - self.rect.center();
         Mercator {
             x: self.centre.x + f64::from(d.x) / self.scale,
             y: self.centre.y + f64::from(d.y) / self.scale,
         }
-        .to_geo()
     }
 
     /// The middle of the view that has another scale (`factor` times this one) and the same position at a point.

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::actions::{Action, Fittings, Group, Kind, all};
-use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
+use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement, ViewCommand};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
 use crate::theme::{self, Palette};
@@ -57,6 +57,7 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
         ui.separator();
         submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
         submenu(ui, "Panels", &actions, &[Group::Panel], queue);
+        map_menu(ui, scene, queue);
         ui.separator();
         section(ui, &actions, &[Group::Units], queue);
         ui.separator();
@@ -69,6 +70,18 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
             symbol_button(ui, action, symbol, queue);
         }
     }
+}
+
+/// The maps that users bring, and what lies over the map.
+fn map_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    ui.menu_button("Maps", |ui| {
+        if ui.button("Maps and elevations…").clicked() {
+            queue.view(ViewCommand::Maps(true));
+            ui.close();
+        }
+        ui.separator();
+        super::maps::edge(ui, scene, queue);
+    });
 }
 
 fn submenu(ui: &mut Ui, name: &str, actions: &[Action], groups: &[Group], queue: &mut Queue) {

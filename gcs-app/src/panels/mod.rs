@@ -14,6 +14,7 @@ pub mod flight;
 pub mod inspector;
 pub mod link;
 pub mod log;
+pub mod maps;
 pub mod palette;
 pub mod pfd;
 pub mod problems;
@@ -34,6 +35,8 @@ use crate::document::Document;
 use crate::files::Stamp;
 use crate::forecast::{Alarm, Analysis, Forecast};
 use crate::guide::Guide;
+use crate::layers::Layers;
+use crate::map::furniture::Edge;
 use crate::recent::Recent;
 use crate::recovery::LeftBehind;
 use crate::state::{Aged, Vehicle, Vehicles};
@@ -139,6 +142,10 @@ pub struct ViewState {
     pub selection: Option<Selection>,
     /// Legs that are selected besides a leg.
     pub also: BTreeSet<Id>,
+    /// The dialog of the maps is open.
+    pub maps: bool,
+    /// What lies on the map's edge and over it.
+    pub edge: Edge,
     /// The map follows the aircraft.
     pub follow: bool,
     /// Cursor in the preview, seconds from its start.
@@ -235,6 +242,8 @@ pub struct Scene<'a> {
     pub vehicles: &'a Vehicles,
     /// What the operator looks at.
     pub view: &'a ViewState,
+    /// The maps and elevations that were brought.
+    pub layers: &'a Layers,
     /// The files that were open last.
     pub recent: &'a Recent,
     /// The connections that were made last.

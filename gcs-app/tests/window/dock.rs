@@ -14,7 +14,7 @@ const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 800.0), vec2(1920.0, 
 
 /// What a window leaves behind for the next one.
 #[derive(Debug, Default, Clone)]
-struct Memory(BTreeMap<String, String>);
+pub struct Memory(BTreeMap<String, String>);
 
 impl eframe::Storage for Memory {
     fn get_string(&self, key: &str) -> Option<String> {
@@ -30,13 +30,13 @@ impl eframe::Storage for Memory {
 }
 
 impl Memory {
-    fn of(window: &mut Window) -> Self {
+    pub fn of(window: &mut Window) -> Self {
         let mut memory = Self::default();
         eframe::App::save(window.harness.state_mut(), &mut memory);
         memory
     }
     /// A window that remembers this.
-    fn window(&self) -> Window {
+    pub fn window(&self) -> Window {
         let storage: &'static Self = Box::leak(Box::new(self.clone()));
         Window::open_with(SQUARE, SIZES[1], Some(storage))
     }
@@ -165,6 +165,7 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             aboard: None,
             vehicles: app.vehicles(),
             view: app.view(),
+            layers: app.layers(),
             recent: &recent,
             connections: &connections,
             left_behind: None,

@@ -1,7 +1,11 @@
 //! The map itself: moving about it, and the maps and elevations that users bring.
 
+use super::dock::Memory;
+use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
+use std::path::Path;
+use std::sync::Arc;
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -77,4 +81,86 @@ fn a_double_click_does_not_move_the_map() {
     window.click_at(at);
     window.steps(20);
     assert!(window.centre("Fix A").distance(a) < 0.5);
+}
+
+fn drop_file(window: &mut Window, path: &Path) {
+    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
+    window.steps(2);
+}
+
+/// An HGT tile of 3″ where all ground is as high as this.
+fn hgt(height_m: i16) -> Vec<u8> {
+    height_m.to_be_bytes().repeat(1201 * 1201)
+}
+
+/// The map of the whole world as one tile.
+fn world(path: &Path) {
+    let database = rusqlite::Connection::open(path).unwrap();
+    let tables = "CREATE TABLE metadata (name TEXT, value TEXT);
+        CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, tile_data BLOB);
+        INSERT INTO metadata VALUES ('maxzoom', '0'), ('attribution', 'Somebody');";
+    database.execute_batch(tables).unwrap();
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbaImage::from_pixel(64, 64, image::Rgba([90, 0, 200, 255]))
+        .write_to(&mut png, image::ImageFormat::Png)
+        .unwrap();
+    database.execute("INSERT INTO tiles VALUES (0, 0, 0, ?1)", [png.into_inner()]).unwrap();
+}
+
+#[test]
+fn a_map_that_is_dropped_is_shown_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("world.mbtiles");
+    world(&path);
+    let mut window = window();
+    drop_file(&mut window, &path);
+    window.until("a tile", |app| app.layers().iter().any(|layer| app.map().pictures_of(layer.id) == 1));
+    let mut next = Memory::of(&mut window).window();
+    next.until("a tile", |app| app.layers().iter().any(|layer| app.map().pictures_of(layer.id) == 1));
+    next.click("Legwork");
+    next.click("Maps");
+    next.click("Maps and elevations…");
+    next.click("Remove world.mbtiles");
+    assert_eq!(next.app().layers().iter().count(), 0);
+    assert!(path.exists());
+}
+
+#[test]
+fn elevations_that_are_dropped_are_what_the_plan_is_looked_at_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let hills = folder.path().join("hills");
+    std::fs::create_dir(&hills).unwrap();
+    std::fs::write(hills.join("N36W085.hgt"), hgt(4000)).unwrap();
+    std::fs::write(hills.join("N37W085.hgt"), b"cut off").unwrap();
+    let mut window = window();
+    assert!(window.errors().is_empty(), "{:?}", window.errors());
+    drop_file(&mut window, &hills);
+    window.until("the new ground", |app| app.analysis().problems.iter().any(|p| p.is_error()));
+    assert!(!window.errors().is_empty(), "the path is below the ground");
+    window.click("Legwork");
+    window.click("Maps");
+    window.click("Maps and elevations…");
+    assert!(window.shows("1 tile, 1 unreadable and left out"));
+    window.click("hills");
+    window.until("the shipped ground", |app| app.analysis().problems.iter().all(|p| !p.is_error()));
+}
+
+#[test]
+fn a_file_that_is_no_map_gives_one_clear_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.pmtiles");
+    std::fs::write(&path, b"PMTiles\x03 and no more").unwrap();
+    let mut window = window();
+    drop_file(&mut window, &path);
+    window.until("a message", |app| app.view().notice.is_some());
+    let text = window.app().view().notice.clone().unwrap();
+    assert!(text.contains("bad.pmtiles is not used") && text.contains("get it again"), "{text}");
+}
+
+#[test]
+fn the_pointer_says_where_it_is_and_how_high_the_ground_is() {
+    let mut window = window();
+    window.harness.hover_at(window.centre("Fix A"));
+    window.steps(2);
+    assert!(window.shows("36.32") && window.shows("ground "), "position and elevation");
 }

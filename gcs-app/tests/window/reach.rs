@@ -41,7 +41,7 @@ fn is_button(node: &egui_kittest::Node<'_>) -> bool {
 
 /// A file that is dropped onto the window and can't be read.
 #[derive(Debug)]
-struct Missing(PathBuf);
+pub struct Missing(pub PathBuf);
 
 impl egui::DroppedFile for Missing {
     fn path(&self) -> &Path {

@@ -1,0 +1,292 @@
+//! The maps and elevations that users bring: which there are, in which order, and what became of each. Files are opened on
+//! threads of their own.
+
+mod open;
+
+use crate::tiles::{About, Health, Reader};
+use geometry::LatLon;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use terrain::{Stack, Terrain};
+
+/// So many are taken.
+const MOST: usize = 50;
+
+/// What is asked of the layers.
+#[derive(Debug, Clone)]
+pub enum LayerCommand {
+    /// Add a file or a folder, above all others.
+    Add(PathBuf),
+    /// Ask for a file, or for a folder.
+    Ask {
+        /// A folder of elevation tiles.
+        folder: bool,
+    },
+    /// Forget one; its file stays.
+    Remove(u64),
+    /// Use it, or leave it out.
+    Show(u64, bool),
+    /// How opaque a map is, 0..=1.
+    Opacity(u64, f32),
+    /// Put it above the one that is above it.
+    Raise(u64),
+    /// Show where it is.
+    GoTo(u64),
+}
+
+/// A map, or elevations.
+#[derive(Debug)]
+pub struct Layer {
+    /// Its number in this window.
+    pub id: u64,
+    /// What is remembered of it.
+    pub kept: Kept,
+    /// What became of it.
+    pub state: State,
+}
+
+/// What is remembered of a layer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// It is in use.
+    pub shown: bool,
+    /// How opaque a map is, 0..=1.
+    pub opacity: f32,
+}
+
+/// What became of a layer.
+pub enum State {
+    /// It is being opened.
+    Opening,
+    /// Tiles of a map.
+    Map(About, Arc<Health>),
+    /// Elevations, and what there is to say of them.
+    Ground {
+        /// The elevations.
+        terrain: Arc<dyn Terrain>,
+        /// South-west and north-east corner.
+        bounds: Option<(LatLon, LatLon)>,
+        /// In a few words.
+        detail: String,
+    },
+    /// Nothing can be made of it: why, and what to do.
+    Failed(String),
+}
+
+impl std::fmt::Debug for State {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Opening => "Opening",
+            Self::Map(..) => "Map",
+            Self::Ground { .. } => "Ground",
+            Self::Failed(_) => "Failed",
+        })
+    }
+}
+
+impl Layer {
+    /// What it is called.
+    pub fn name(&self) -> String {
+        let path = &self.kept.path;
+        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// South-west and north-east corner, where they are known.
+    pub fn bounds(&self) -> Option<(LatLon, LatLon)> {
+        match &self.state {
+            State::Map(about, _) => about.bounds,
+            State::Ground { bounds, .. } => *bounds,
+            State::Opening | State::Failed(_) => None,
+        }
+    }
+}
+
+/// Files of these kinds, and what has no kind and may be a folder, are maps and no plans.
+pub fn is_map(path: &Path) -> bool {
+    const KINDS: [&str; 5] = ["mbtiles", "pmtiles", "tif", "tiff", "hgt"];
+    path.extension().is_none_or(|kind| KINDS.iter().any(|known| kind.eq_ignore_ascii_case(known)))
+}
+
+/// What a file turned out to be.
+enum Content {
+    Map(Box<dyn Reader>, About),
+    Ground { terrain: Arc<dyn Terrain>, bounds: Option<(LatLon, LatLon)>, detail: String },
+}
+
+/// A map whose tiles can be read from now on.
+pub struct Opened {
+    /// Which layer.
+    pub id: u64,
+    /// Reads its tiles.
+    pub reader: Box<dyn Reader>,
+    /// What it says of itself.
+    pub about: About,
+    /// How it does.
+    pub health: Arc<Health>,
+}
+
+/// All layers, the uppermost first.
+pub struct Layers {
+    list: Vec<Layer>,
+    next: u64,
+    /// Below all of them.
+    shipped: Arc<dyn Terrain>,
+    ground: Arc<dyn Terrain>,
+    ground_changed: bool,
+    outbox: Sender<(u64, Result<Content, String>)>,
+    inbox: Receiver<(u64, Result<Content, String>)>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl std::fmt::Debug for Layers {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(&self.list).finish()
+    }
+}
+
+impl Layers {
+    /// The layers of an earlier window, over the shipped elevations; `wake` is called when something was opened.
+    pub fn new(shipped: Arc<dyn Terrain>, kept: Vec<Kept>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
+        let (outbox, inbox) = channel();
+        let ground = shipped.clone();
+        let mut layers =
+            Self { list: Vec::new(), next: 0, shipped, ground, ground_changed: false, outbox, inbox, wake };
+        for kept in kept.into_iter().take(MOST).rev() {
+            layers.put(kept);
+        }
+        layers
+    }
+
+    /// The uppermost first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Layer> {
+        self.list.iter()
+    }
+
+    /// What there is to remember, the uppermost first.
+    pub fn kept(&self) -> Vec<Kept> {
+        self.list.iter().map(|layer| layer.kept.clone()).collect()
+    }
+
+    /// The elevations in use: what users brought, the uppermost first, then what is shipped.
+    pub fn ground(&self) -> &Arc<dyn Terrain> {
+        &self.ground
+    }
+
+    /// True once after the elevations in use have changed.
+    pub fn take_ground_changed(&mut self) -> bool {
+        std::mem::take(&mut self.ground_changed)
+    }
+
+    /// Whom the map has to name.
+    pub fn attributions(&self) -> impl Iterator<Item = &str> {
+        let shown = self.list.iter().filter(|layer| layer.kept.shown);
+        shown.filter_map(|layer| match &layer.state {
+            State::Map(about, _) if !about.attribution.is_empty() => Some(about.attribution.as_str()),
+            _ => None,
+        })
+    }
+
+    /// Adds a file or folder above all others; one that is there already is opened again.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn add(&mut self, path: &Path) -> Result<(), String> {
+        // a relative path means something else in the next run
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let same = self.list.iter().position(|layer| layer.kept.path == path);
+        let kept = same.map(|at| self.list.remove(at).kept);
+        if self.list.len() >= MOST {
+            return Err(format!("There are {MOST} maps already: remove one first."));
+        }
+        self.put(Kept { shown: true, ..kept.unwrap_or(Kept { path, shown: true, opacity: 1.0 }) });
+        self.renew_ground();
+        Ok(())
+    }
+
+    fn put(&mut self, kept: Kept) {
+        self.next += 1;
+        let (id, path) = (self.next, kept.path.clone());
+        self.list.insert(0, Layer { id, kept, state: State::Opening });
+        let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
+        let work = move || {
+            // the window may be gone by then
+            let _ = outbox.send((id, open::open(&path)));
+            wake();
+        };
+        if let Err(error) = std::thread::Builder::new().name("maps".into()).spawn(work) {
+            tracing::warn!(%error, "no thread to open a map");
+        }
+    }
+
+    /// A change that needs nothing but the list.
+    pub fn change(&mut self, command: &LayerCommand) {
+        let at = |id: &u64| self.list.iter().position(|layer| layer.id == *id);
+        match command {
+            LayerCommand::Remove(id) => drop(at(id).map(|at| self.list.remove(at))),
+            LayerCommand::Raise(id) => {
+                if let Some(at) = at(id).filter(|at| *at > 0) {
+                    self.list.swap(at, at - 1);
+                }
+            }
+            LayerCommand::Show(id, shown) => self.with(*id, |kept| kept.shown = *shown),
+            LayerCommand::Opacity(id, opacity) => self.with(*id, |kept| kept.opacity = *opacity),
+            LayerCommand::Add(_) | LayerCommand::Ask { .. } | LayerCommand::GoTo(_) => return,
+        }
+        if !matches!(command, LayerCommand::Opacity(..)) {
+            self.renew_ground();
+        }
+    }
+
+    fn with(&mut self, id: u64, change: impl FnOnce(&mut Kept)) {
+        if let Some(layer) = self.list.iter_mut().find(|layer| layer.id == id) {
+            change(&mut layer.kept);
+        }
+    }
+
+    /// What was opened since: maps whose tiles are to be shown, or a sentence about one that can't be.
+    pub fn opened(&mut self) -> Option<Result<Opened, String>> {
+        loop {
+            let (id, content) = self.inbox.try_recv().ok()?;
+            // it may have been removed meanwhile
+            let Some(layer) = self.list.iter_mut().find(|layer| layer.id == id) else { continue };
+            match content {
+                Ok(Content::Map(reader, about)) => {
+                    let health = Arc::<Health>::default();
+                    layer.state = State::Map(about.clone(), health.clone());
+                    return Some(Ok(Opened { id, reader, about, health }));
+                }
+                Ok(Content::Ground { terrain, bounds, detail }) => {
+                    layer.state = State::Ground { terrain, bounds, detail };
+                    self.renew_ground();
+                }
+                Err(why) => {
+                    let sentence = format!("{} is not used: {why}.", layer.kept.path.display());
+                    layer.state = State::Failed(why);
+                    return Some(Err(sentence));
+                }
+            }
+        }
+    }
+
+    fn renew_ground(&mut self) {
+        let shown = self.list.iter().filter(|layer| layer.kept.shown);
+        let mut grounds: Vec<Arc<dyn Terrain>> = shown
+            .filter_map(|layer| match &layer.state {
+                State::Ground { terrain, .. } => Some(terrain.clone()),
+                _ => None,
+            })
+            .collect();
+        grounds.push(self.shipped.clone());
+        let ground: Arc<dyn Terrain> =
+            if grounds.len() == 1 { self.shipped.clone() } else { Arc::new(Stack(grounds)) };
+        // without elevations of the user's the shipped ones stay what they are
+        if !Arc::ptr_eq(&ground, &self.ground) {
+            self.ground = ground;
+            self.ground_changed = true;
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! What a file or folder is, by what is in it.
+
+use super::Content;
+use crate::tiles::{Mbtiles, PmTiles};
+use geometry::LatLon;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use terrain::{Raster, Tile, Tiles};
+
+/// Most entries of a folder that are looked at.
+const MOST_ENTRIES: usize = 20_000;
+/// Most bytes of elevation tiles that are taken from a folder.
+const MOST_BYTES: u64 = 512 << 20;
+/// Bytes of the larger kind of elevation tile.
+const LARGEST_TILE: u64 = 3601 * 3601 * 2;
+
+/// Opens it.
+pub(super) fn open(path: &Path) -> Result<Content, String> {
+    let unreadable = |error: std::io::Error| format!("it can't be read ({error})");
+    let meta = std::fs::metadata(path).map_err(unreadable)?;
+    if meta.is_dir() {
+        return folder(path);
+    }
+    if !meta.is_file() {
+        return Err("it is neither a file nor a folder".into());
+    }
+    let mut start = [0; 16];
+    let length = File::open(path).and_then(|mut file| file.read(&mut start)).map_err(unreadable)?;
+    match start.get(..length).unwrap_or_default() {
+        start if start.starts_with(b"SQLite format 3") => {
+            Mbtiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
+        }
+        start if start.starts_with(b"PMTiles") => {
+            PmTiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
+        }
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => raster(path),
+        _ if is_hgt(path) => tile(path).map(|tile| ground(vec![tile], 0)),
+        _ => {
+            Err("it is none of the known kinds: MBTiles, PMTiles, GeoTIFF elevations, HGT elevations".into())
+        }
+    }
+}
+
+fn raster(path: &Path) -> Result<Content, String> {
+    let file = File::open(path).map_err(|error| format!("it can't be read ({error})"))?;
+    let raster = Raster::from_geotiff(BufReader::new(file)).map_err(|error| error.to_string())?;
+    let (columns, rows) = raster.size();
+    let detail = format!("elevations, {columns} × {rows}");
+    Ok(Content::Ground { bounds: raster.known_box(), terrain: Arc::new(raster), detail })
+}
+
+fn is_hgt(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("hgt"))
+}
+
+fn tile(path: &Path) -> Result<Tile, String> {
+    let unreadable = |error: std::io::Error| format!("it can't be read ({error})");
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(LARGEST_TILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    Tile::from_hgt(&name, &bytes).map_err(|error| error.to_string())
+}
+
+/// The elevation tiles in a folder, as many as there is memory for.
+fn folder(path: &Path) -> Result<Content, String> {
+    let entries = std::fs::read_dir(path).map_err(|error| format!("it can't be read ({error})"))?;
+    let paths = entries.take(MOST_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
+    let mut paths: Vec<PathBuf> = paths.filter(|path| is_hgt(path)).collect();
+    paths.sort();
+    let (mut tiles, mut left_out, mut bytes) = (Vec::new(), 0, 0);
+    for path in &paths {
+        bytes += path.metadata().map_or(0, |meta| meta.len());
+        if bytes > MOST_BYTES {
+            return Err(format!(
+                "it holds more than {} MB of elevations: put those of the area that you fly in into a folder of their own",
+                MOST_BYTES >> 20
+            ));
+        }
+        match tile(path) {
+            Ok(tile) => tiles.push(tile),
+            Err(_) => left_out += 1,
+        }
+    }
+    match (tiles.is_empty(), left_out) {
+        (true, 0) => Err("there are no elevation tiles (N36W085.hgt and the like) in this folder".into()),
+        (true, _) => Err(format!("none of its {left_out} elevation tiles can be read: get them again")),
+        (false, _) => Ok(ground(tiles, left_out)),
+    }
+}
+
+fn ground(tiles: Vec<Tile>, left_out: usize) -> Content {
+    let mut all = Tiles::new();
+    let number = tiles.len();
+    let mut corners: Option<(LatLon, LatLon)> = None;
+    for tile in tiles {
+        let (south_west, north_east) = tile.known_box();
+        let (a, b) = corners.unwrap_or((south_west, north_east));
+        corners = Some((
+            LatLon::new(a.lat_deg.min(south_west.lat_deg), a.lon_deg.min(south_west.lon_deg)),
+            LatLon::new(b.lat_deg.max(north_east.lat_deg), b.lon_deg.max(north_east.lon_deg)),
+        ));
+        all.add(tile);
+    }
+    let unreadable =
+        if left_out > 0 { format!(", {left_out} unreadable and left out") } else { String::new() };
+    let detail = format!("elevations, {number} tile{}{unreadable}", if number == 1 { "" } else { "s" });
+    Content::Ground { terrain: Arc::new(all), bounds: corners, detail }
+}
