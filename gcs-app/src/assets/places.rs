@@ -111,7 +111,7 @@ mod tests {
         assert!(find(2, "KTYS").distance_m(LatLon::new(35.811, -83.994)) < 2_000.0);
         let near: Vec<&str> =
             groups[4].within(LatLon::new(36.2, -84.4), LatLon::new(36.5, -84.0)).map(|p| p.name).collect();
-        assert!(near.iter().any(|name| name.contains("Campbell")), "{near:?}");
+        assert!(near.iter().any(|name| name.starts_with("KJAU")), "{near:?}");
     }
 
     #[test]
