@@ -2,7 +2,7 @@
 
 use super::{Action, Group, Kind};
 use crate::command::{Command, Selection, ViewCommand};
-use flight_plan::{FlightPlan, Id};
+use flight_plan::FlightPlan;
 
 /// Everything of a plan that can be selected, each by its name and its identifier.
 pub fn of(plan: &FlightPlan) -> Vec<Action> {
@@ -17,17 +17,10 @@ pub fn of(plan: &FlightPlan) -> Vec<Action> {
     for emergency in &plan.emergency_plans {
         add("emergency plan", &emergency.name, Selection::Emergency(emergency.id.clone()));
     }
-    let unnamed: [(&str, Vec<&Id>, fn(Id) -> Selection); 4] = [
-        ("fix", plan.fixes.iter().map(|fix| &fix.id).collect(), Selection::Fix),
-        ("runway", plan.runways.iter().map(|runway| &runway.id).collect(), Selection::Runway),
-        ("zone", plan.zones.iter().map(|zone| &zone.id).collect(), Selection::Zone),
-        ("variable", plan.variables.iter().map(|variable| &variable.name).collect(), Selection::Variable),
-    ];
-    for (kind, ids, selection) in unnamed {
-        for id in ids {
-            add(kind, "", selection(id.clone()));
-        }
-    }
+    plan.fixes.iter().for_each(|fix| add("fix", "", Selection::Fix(fix.id.clone())));
+    plan.runways.iter().for_each(|runway| add("runway", "", Selection::Runway(runway.id.clone())));
+    plan.zones.iter().for_each(|zone| add("zone", "", Selection::Zone(zone.id.clone())));
+    plan.variables.iter().for_each(|v| add("variable", "", Selection::Variable(v.name.clone())));
     actions
 }
 

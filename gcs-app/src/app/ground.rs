@@ -1,7 +1,7 @@
 //! The maps and elevations that users bring: what is asked of them, and what follows when the ground becomes another.
 
 use super::App;
-use crate::forecast::Worker;
+use crate::forecast::{Aboard, Worker};
 use crate::layers::LayerCommand;
 use egui::Context;
 
@@ -39,13 +39,19 @@ impl App {
         }
         if self.layers.take_ground_changed() {
             // what was asked and found over the former ground ends with its worker
-            match Worker::spawn(self.layers.ground().clone(), self.wake.clone()) {
-                Ok(worker) => self.worker = worker,
-                Err(error) => tracing::warn!(%error, "no thread to look at the plan over the new ground"),
+            if let Err(error) = self.begin_anew() {
+                tracing::warn!(%error, "no thread to look at the plan over the new ground");
             }
             if self.map.is_shaded() {
                 self.shade_ground(ctx);
             }
         }
+    }
+
+    fn begin_anew(&mut self) -> std::io::Result<()> {
+        let ground = self.layers.ground();
+        self.worker = Worker::spawn(ground.clone(), self.wake.clone())?;
+        self.aboard = Aboard::spawn(ground.clone(), self.wake.clone())?;
+        Ok(())
     }
 }

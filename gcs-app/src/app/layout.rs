@@ -6,8 +6,8 @@ use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewComma
 use crate::dock::Content;
 use crate::layers::{self, LayerCommand};
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, maps, push, recover, start,
-    unsaved,
+    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, maps, push, recover,
+    start, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;

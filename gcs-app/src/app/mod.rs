@@ -332,7 +332,7 @@ impl App {
     fn look_out(&mut self, now_s: f64) {
         if now_s - self.looked_s >= LOOK_OUT_S {
             self.looked_s = now_s;
-            self.vehicles.look(self.terrain.as_ref(), now_s);
+            self.vehicles.look(self.layers.ground().as_ref(), now_s);
         }
     }
 

@@ -127,7 +127,7 @@ fn work(
 mod tests {
     use super::*;
     use crate::tiles::TileId;
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
     struct Counting(Arc<Mutex<Vec<u32>>>);
     impl Reader for Counting {
@@ -150,11 +150,16 @@ mod tests {
         desk.want((0..100).map(wanted).collect());
         let first = desk.done.recv_timeout(Duration::from_secs(10)).unwrap();
         assert_eq!(first.wanted, wanted(0));
-        // nothing takes the others: the thread waits with the queue full
+        // nothing takes the others: the thread waits with the queue full, and one more in its hand
+        let held = QUEUE + 2;
+        let deadline = Instant::now() + Duration::from_secs(10);
+        while read.lock().unwrap().len() < held && Instant::now() < deadline {
+            std::thread::yield_now();
+        }
         desk.want(vec![wanted(200)]);
         let rest: Vec<Done> =
             std::iter::from_fn(|| desk.done.recv_timeout(Duration::from_secs(1)).ok()).collect();
-        assert!(rest.len() <= QUEUE + 2, "{}", rest.len());
+        assert_eq!(rest.len(), held, "the first was taken, the last is wanted now");
         assert_eq!(rest.last().map(|done| done.wanted), Some(wanted(200)));
         assert_eq!(read.lock().unwrap()[..4], [0, 1, 2, 3]);
         assert_eq!(health.unreadable(), 1);

@@ -43,9 +43,12 @@ const CIRCLE: [Vec2; 2] = [vec2(0.0, 0.0), vec2(90.0, 0.0)];
 const LINE: [Vec2; 3] = [vec2(0.0, 0.0), vec2(150.0, 0.0), vec2(150.0, 60.0)];
 const AREA: [Vec2; 4] = [vec2(0.0, 0.0), vec2(150.0, 0.0), vec2(150.0, 100.0), vec2(0.0, 100.0)];
 
+/// A tool, what is drawn with it, what that becomes, and its handles with their numbers.
+type Case = (Key, &'static [Vec2], LegChoice, &'static [(&'static str, &'static str)]);
+
 #[test]
 fn every_handle_sets_its_number_in_one_step_and_no_altitude() {
-    let cases: [(Key, &[Vec2], LegChoice, &[(&str, &str)]); 11] = [
+    let cases: [Case; 11] = [
         (
             Key::A,
             &AREA,

@@ -8,9 +8,12 @@ use flight_plan::describe::{Description, Draft, Row, Subject};
 use flight_plan::{Act, Element, FlightPlan, Id, Leg, LegKind, Trigger, Value};
 use gcs_app::command::{Command, DocumentCommand, Queue, Selection, ViewCommand};
 use gcs_app::document::Document;
+use gcs_app::layers::Layers;
 use gcs_app::panels::inspector::Inspector;
 use gcs_app::panels::{Elevations, Panel, Scene, ViewState};
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use terrain::Flat;
 
 /// Every element of the language; the tests of the description compare it with the schema.
 const EVERYTHING: &str = include_str!("../../../shared/flight-plan/tests/data/everything.xml");
@@ -20,7 +23,7 @@ struct Sheet {
     document: Document,
     view: ViewState,
     notice: Option<String>,
-    terrain: terrain::Flat,
+    terrain: Flat,
 }
 
 impl Sheet {
@@ -28,12 +31,15 @@ impl Sheet {
         let mut queue = Queue::default();
         let (analysis, vehicle, vehicles) = (Default::default(), Default::default(), Default::default());
         let (recent, connections) = (Default::default(), Default::default());
+        let layers = Layers::new(Arc::new(Flat(0.0)), Vec::new(), Arc::new(|| {}));
         let scene = Scene {
             document: &self.document,
             can_undo: (false, false),
             analysis: &analysis,
             vehicle: &vehicle,
+            aboard: None,
             vehicles: &vehicles,
+            layers: &layers,
             view: &self.view,
             recent: &recent,
             connections: &connections,
@@ -63,8 +69,7 @@ struct Panels(Harness<'static, Sheet>);
 impl Panels {
     fn open(selection: Option<Selection>) -> Self {
         let document = Document::read(EVERYTHING.as_bytes(), None);
-        let sheet =
-            Sheet { document, view: ViewState::default(), notice: None, terrain: terrain::Flat(300.0) };
+        let sheet = Sheet { document, view: ViewState::default(), notice: None, terrain: Flat(300.0) };
         let builder = Harness::builder()
             .with_size(vec2(420.0, 4000.0))
             .with_step_dt(1.0 / 60.0)
