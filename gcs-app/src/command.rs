@@ -123,6 +123,8 @@ pub enum ViewCommand {
     Scale(crate::theme::Scale),
     /// Open the command palette, or close it.
     Palette(bool),
+    /// Show this topic of the help, by its key; `None` closes it.
+    Help(Option<String>),
     /// Show the plan and type what to search in it.
     Search,
     /// Show a panel, or hide it.

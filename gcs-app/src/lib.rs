@@ -20,6 +20,7 @@ pub mod files;
 pub mod forecast;
 pub mod guide;
 pub mod headless;
+pub mod help;
 pub mod layers;
 pub mod link;
 pub mod map;

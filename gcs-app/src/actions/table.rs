@@ -4,6 +4,7 @@ use super::{Action, Group, Kind};
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
+use crate::help::topic_of;
 use crate::panels::{Scene, bar, flight};
 use crate::theme::Scale;
 use crate::units::Units;
@@ -126,6 +127,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Flight, "leave-safe", "Leave Safe mode", &[], leave_safe),
     entry(Group::Flight, "disconnect", "Disconnect", &[], disconnect),
 
+    choice(Group::Help, "help", "Help about what is selected", |s| Kind::Switch(s.view.help.is_some()), help).with_keys(&[plain(Key::F1)]),
     entry(Group::Help, "palette", "All commands…", &[ctrl(Key::K), ctrl_shift(Key::P)], |_| view(ViewCommand::Palette(true))),
 ];
 
@@ -193,6 +195,11 @@ fn theme_is(scene: &Scene<'_>, theme: ThemePreference) -> Kind {
 
 fn scale(scene: &Scene<'_>, tenths: f32, why_not: &'static str) -> Asked {
     scene.view.scale.larger(tenths).ok_or(why_not).and_then(|scale| view(ViewCommand::Scale(scale)))
+}
+
+fn help(scene: &Scene<'_>) -> Asked {
+    let topic = if scene.view.help.is_some() { None } else { Some(topic_of(scene)) };
+    view(ViewCommand::Help(topic))
 }
 
 fn plan(command: PlanCommand) -> Asked {

@@ -32,6 +32,7 @@ impl App {
             palette,
             aboard,
             layers,
+            help,
             ..
         } = self;
         let vehicle = vehicles.shown();
@@ -82,6 +83,7 @@ impl App {
         changed::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);
+        help.show(ui, &scene, queue);
         palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
     }

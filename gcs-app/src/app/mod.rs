@@ -25,6 +25,7 @@ use crate::layers::{Kept, Layers};
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::MapState;
 use crate::map::furniture::Edge;
+use crate::panels::help::Help;
 use crate::panels::palette::CommandPalette;
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
@@ -46,6 +47,7 @@ pub struct App {
     vehicles: Vehicles,
     view: ViewState,
     palette: CommandPalette,
+    help: Help,
     analysis: Analysis,
     map: MapState,
     panels: Vec<Box<dyn Panel>>,
@@ -154,6 +156,7 @@ impl App {
             vehicles: Vehicles::default(),
             view: remembered.view(),
             palette: CommandPalette::default(),
+            help: Help::default(),
             analysis: Analysis::default(),
             map: MapState::default(),
             dock: Dock::new(&panels, creation.storage),

@@ -180,6 +180,7 @@ impl App {
             ViewCommand::Theme(theme) => self.view.theme = theme,
             ViewCommand::Scale(scale) => self.view.scale = scale,
             ViewCommand::Palette(open) => self.view.palette = open,
+            ViewCommand::Help(topic) => self.view.help = topic,
             ViewCommand::Search => {
                 self.dock.show_panel(crate::panels::tree::ID, true);
                 self.view.search = true;

@@ -11,6 +11,7 @@ pub mod decision;
 pub mod emergency;
 pub mod field;
 pub mod flight;
+pub mod help;
 pub mod inspector;
 pub mod link;
 pub mod log;
@@ -136,6 +137,8 @@ pub struct ViewState {
     pub scale: theme::Scale,
     /// The command palette is open.
     pub palette: bool,
+    /// The topic of the help that is read, by its key.
+    pub help: Option<String>,
     /// The plan's search is about to get the keyboard.
     pub search: bool,
     /// What is selected.

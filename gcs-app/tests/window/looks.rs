@@ -1,11 +1,61 @@
-//! What the window looks like, compared with pictures that are kept.
+//! What the window looks like, compared with pictures that are kept; those of the guide among them.
 
+use super::flying::flying;
 use super::*;
+use egui::Key;
+
+const SMALL: Vec2 = vec2(960.0, 600.0);
+
+/// A window with a plan, everything about it found out.
+fn opened(text: &str, size: Vec2) -> Window {
+    let mut window = Window::open_with(text, size, None);
+    window.until_analysed();
+    window.steps(30);
+    window
+}
+
+fn with_theme(mut window: Window, letters: &str) -> Window {
+    window.ask_for(letters);
+    window.press(Key::Enter);
+    window.steps(10);
+    window
+}
 
 #[test]
 fn plan_that_was_opened() {
-    let mut window = Window::open(SQUARE);
-    window.until_analysed();
+    opened(SQUARE, vec2(1280.0, 800.0)).picture("plan");
+    let mut light = with_theme(opened(SQUARE, SMALL), "theme light");
+    light.picture("plan-light");
+    light.guide_picture("guide-plan");
+}
+
+#[test]
+fn window_without_a_plan() {
+    let mut window = Window::open_with("", SMALL, None);
     window.steps(30);
-    window.picture("plan");
+    let mut window = with_theme(window, "theme light");
+    window.picture("new-light");
+    window.guide_picture("guide-new");
+}
+
+#[test]
+fn palette_and_help() {
+    let mut window = with_theme(opened(SQUARE, SMALL), "theme light");
+    window.ask_for("fl");
+    window.steps(10);
+    window.guide_picture("guide-palette");
+    window.press(Key::Escape);
+    window.press(Key::F1);
+    window.steps(20);
+    window.picture("help-light");
+}
+
+#[test]
+fn in_flight() {
+    let (mut window, _) = flying();
+    window.receive_attitude();
+    window.steps(20);
+    window.picture("flying");
+    let mut light = with_theme(window, "theme light");
+    light.guide_picture("guide-flying");
 }

@@ -68,8 +68,13 @@ impl Window {
     /// What the window looks like now, compared with the kept picture of that name; `LEGWORK_BLESS=1` keeps this one.
     fn picture(&mut self, name: &str) {
         let picture = pictures::halved(&self.harness.render().unwrap());
-        let path = format!("{}/tests/pictures/{name}.png", env!("CARGO_MANIFEST_DIR"));
-        pictures::check(&picture, path.as_ref(), env!("CARGO_TARGET_TMPDIR").as_ref()).unwrap();
+        check_picture(&picture, &format!("tests/pictures/{name}.png"));
+    }
+
+    /// The same in full size, for the guide.
+    fn guide_picture(&mut self, name: &str) {
+        let picture = self.harness.render().unwrap();
+        check_picture(&picture, &format!("../assets/docs/pictures/{name}.png"));
     }
 
     fn app(&self) -> &App {
@@ -183,5 +188,12 @@ impl Window {
         self.steps(frames);
         self.harness.drop_at(at);
         self.steps(3);
+    }
+}
+
+fn check_picture(picture: &image::RgbaImage, path: &str) {
+    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    if let Err(mismatch) = pictures::check(picture, path.as_ref(), env!("CARGO_TARGET_TMPDIR").as_ref()) {
+        panic!("{mismatch}");
     }
 }

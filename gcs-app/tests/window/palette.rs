@@ -103,3 +103,23 @@ fn keys_change_the_size_and_a_key_of_the_palette_is_shown() {
     window.steps(3);
     assert!(window.app().view().palette);
 }
+
+#[test]
+fn f1_opens_the_topic_of_what_is_selected_and_links_lead_on() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.press(Key::F1);
+    assert!(window.shows("From an empty map to a flight"));
+    window.press(Key::F1);
+    window.ask_for("go to leg side1");
+    window.press(Key::Enter);
+    window.press(Key::F1);
+    assert_eq!(window.app().view().help.as_deref(), Some("plan-language.md#tf-track-to-fix"));
+    window.click("Search the help");
+    window.harness.get_by_label("Search the help").type_text("teardrop");
+    window.steps(3);
+    window.click("HF, hold to fix");
+    assert_eq!(window.app().view().help.as_deref(), Some("plan-language.md#hf-hold-to-fix"));
+    window.press(Key::F1);
+    assert_eq!(window.app().view().help, None);
+}
