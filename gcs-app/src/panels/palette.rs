@@ -83,18 +83,22 @@ impl CommandPalette {
         }
         let height = (ui.ctx().content_rect().height() - 160.0).clamp(ROW_HEIGHT, 14.0 * ROW_HEIGHT);
         let mut clicked = None;
-        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 1.0;
-            for (i, action) in found.iter().enumerate() {
-                let row = row(ui, action, i == self.current);
-                if i == self.current && moved {
-                    row.scroll_to_me(None);
+        ScrollArea::vertical()
+            .max_height(height)
+            .min_scrolled_height(height)
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                for (i, action) in found.iter().enumerate() {
+                    let row = row(ui, action, i == self.current);
+                    if i == self.current && moved {
+                        row.scroll_to_me(None);
+                    }
+                    if row.clicked() {
+                        clicked = Some(i);
+                    }
                 }
-                if row.clicked() {
-                    clicked = Some(i);
-                }
-            }
-        });
+            });
         clicked
     }
 

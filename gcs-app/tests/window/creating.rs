@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use flight_plan::template::Template;
 use flight_plan::{LegKind, Pattern};
 
-const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
+pub const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
 
 /// A window without a plan, at the example's hills.
 fn begun(size: egui::Vec2) -> Window {

@@ -1,5 +1,6 @@
 //! What the window looks like, compared with pictures that are kept; those of the guide among them.
 
+use super::creating::EMPTY;
 use super::flying::flying;
 use super::*;
 use egui::Key;
@@ -31,7 +32,7 @@ fn plan_that_was_opened() {
 
 #[test]
 fn window_without_a_plan() {
-    let mut window = Window::open_with("", SMALL, None);
+    let mut window = Window::open_with(EMPTY, SMALL, None);
     window.steps(30);
     let mut window = with_theme(window, "theme light");
     window.picture("new-light");
