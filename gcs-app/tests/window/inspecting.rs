@@ -265,7 +265,7 @@ fn a_number_becomes_a_formula_with_its_result_and_back() {
 #[test]
 fn a_fault_is_said_with_its_column_while_typing() {
     let mut panels = Panels::leg("hm");
-    panels.write(Role::TextInput, "Until", "go && sise > 3.0");
+    panels.write(Role::TextInput, "Until", "go && side > 3.0");
     assert!(panels.shows("Column 7: "), "an unknown name");
     panels.write(Role::TextInput, "Until", "size > 3.0");
     assert!(!panels.shows("Column ") && panels.shows("= true at the start"));

@@ -150,7 +150,7 @@ mod tests {
         let (plan, leg) = (plan(), Subject::Leg("a".into()));
         let number = |x| Ok(Formula::Value(VariableValue::Number(x)));
         assert_eq!(look(&plan, &leg, "size + 1.0", Use::Number), number(301.0));
-        let fault = look(&plan, &leg, "size + sise", Use::Number).unwrap_err();
+        let fault = look(&plan, &leg, "size + side", Use::Number).unwrap_err();
         assert_eq!((fault.code, fault.column), ("unknown-name", 8));
         assert_eq!(look(&plan, &leg, "size", Use::Condition).unwrap_err().code, "wrong-type");
         assert_eq!(look(&plan, &leg, "size +", Use::Number).unwrap_err().code, "expression-syntax");
