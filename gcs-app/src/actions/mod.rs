@@ -22,6 +22,10 @@ pub enum Group {
     Edit,
     /// What is shown, and how.
     View,
+    /// The maps that users bring, and what lies over the map.
+    Maps,
+    /// The preview in another world.
+    WhatIf,
     /// In which units.
     Units,
     /// Light or dark.
@@ -47,6 +51,8 @@ impl Group {
             Self::File => "File",
             Self::Edit => "Edit",
             Self::View => "View",
+            Self::Maps => "Maps",
+            Self::WhatIf => "What if",
             Self::Units => "Units",
             Self::Theme => "Theme",
             Self::Size => "Size",

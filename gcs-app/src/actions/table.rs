@@ -5,6 +5,7 @@ use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::help::topic_of;
+use crate::map::furniture::Edge;
 use crate::panels::{Scene, bar, flight};
 use crate::theme::Scale;
 use crate::units::Units;
@@ -98,12 +99,21 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "delete", "Delete the selected legs", &[plain(Key::Delete)], delete),
     entry(Group::Edit, "earlier", "Move the leg before its neighbour", &[ctrl(Key::ArrowUp)], |scene| shift(scene, -1)),
     entry(Group::Edit, "later", "Move the leg after its neighbour", &[ctrl(Key::ArrowDown)], |scene| shift(scene, 1)),
-    entry(Group::Edit, "select-nothing", "Select nothing", &[plain(Key::Escape)], |_| view(ViewCommand::Select(None))),
+    entry(Group::Edit, "select-nothing", "Close the help, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
     entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
     choice(Group::View, "follow", "Follow the aircraft", |s| Kind::Switch(s.view.follow), follow),
     choice(Group::View, "play", "Play the preview", |s| Kind::Switch(s.view.playing), play).with_keys(&[plain(Key::Space)]),
+    choice(Group::WhatIf, "coverage", "Coverage: the path by its worst alarm", |s| Kind::Switch(s.view.coverage), |s| view(ViewCommand::Coverage(!s.view.coverage))),
+    choice(Group::WhatIf, "what-if-engine", "The engine fails here", |s| alarm_is(s, Cause::Engine), |s| raise(s, Cause::Engine)),
+    choice(Group::WhatIf, "what-if-energy", "The energy is too low here", |s| alarm_is(s, Cause::Energy), |s| raise(s, Cause::Energy)),
+    choice(Group::WhatIf, "what-if-link", "The link is lost here", |s| alarm_is(s, Cause::Link), |s| raise(s, Cause::Link)),
+    choice(Group::WhatIf, "what-if-gps", "GPS is lost here", |s| alarm_is(s, Cause::Gps), |s| raise(s, Cause::Gps)),
+    entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| view(ViewCommand::WhatIf(Box::default()))),
+    entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
+    choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
+    choice(Group::Maps, "rings", "Range rings", |s| Kind::Switch(s.view.edge.rings), |s| view(ViewCommand::Edge(Edge { rings: !s.view.edge.rings, ..s.view.edge }))),
     entry(Group::Panel, "default-layout", "Default layout", &[], |_| view(ViewCommand::ResetLayout)),
 
     choice(Group::Units, "units-si", Units::Si.label(), |s| Kind::Choice(s.units() == Units::Si), |_| view(ViewCommand::Units(Units::Si))),
@@ -144,6 +154,19 @@ fn document(command: DocumentCommand) -> Asked {
 
 fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
+}
+
+/// The help lies over everything: it goes first.
+fn escape(scene: &Scene<'_>) -> Asked {
+    view(if scene.view.help.is_some() { ViewCommand::Help(None) } else { ViewCommand::Select(None) })
+}
+
+fn alarm_is(scene: &Scene<'_>, cause: Cause) -> Kind {
+    Kind::Switch(scene.view.alarm == Some(cause))
+}
+
+fn raise(scene: &Scene<'_>, cause: Cause) -> Asked {
+    view(ViewCommand::Raise(Some(cause).filter(|_| scene.view.alarm != Some(cause))))
 }
 
 fn take_aboard(scene: &Scene<'_>) -> Asked {

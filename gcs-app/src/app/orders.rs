@@ -13,7 +13,7 @@ use crate::state::{LOOK_AHEAD, Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
-use flight_plan::{Edit, Id, Thing, create, diff};
+use flight_plan::{Cause, Edit, Id, Thing, create, diff};
 use geometry::LatLon;
 use usal::contract::{GatewayRequest, Propose};
 
@@ -154,13 +154,7 @@ impl App {
             ViewCommand::Select(selection) => self.view.select(selection),
             ViewCommand::Toggle(leg) => self.view.toggle(leg),
             ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
-            ViewCommand::JumpTo(selection) => {
-                if let Some(at) = self.map.place_of(&selection, self.document.plan()) {
-                    self.view.follow = false;
-                    self.map.jump_to(at);
-                }
-                self.view.select(Some(selection));
-            }
+            ViewCommand::JumpTo(selection) => self.jump_to(selection),
             ViewCommand::Fit => {
                 self.view.follow = false;
                 self.map.fit();
@@ -195,20 +189,9 @@ impl App {
             }
             ViewCommand::Speed(speed) => self.view.speed = Speed(speed),
             ViewCommand::WhatIf(what_if) => self.view.what_if = *what_if,
-            ViewCommand::Raise(cause) => {
-                self.view.alarm = cause;
-                if cause.is_some() {
-                    let middle_s = self.analysis.forecast.duration_s() / 2.0;
-                    self.view.cursor_s.get_or_insert(middle_s);
-                }
-            }
+            ViewCommand::Raise(cause) => self.raise(cause),
             ViewCommand::Coverage(shown) => self.view.coverage = shown,
-            ViewCommand::Play(playing) => {
-                self.view.playing = playing;
-                if self.view.cursor_s.is_some_and(|c| c >= self.analysis.forecast.duration_s()) {
-                    self.view.cursor_s = Some(0.0);
-                }
-            }
+            ViewCommand::Play(playing) => self.run_cursor(playing),
             ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::DismissNotice => self.view.notice = None,
             ViewCommand::NameFile(name) => {
@@ -218,6 +201,31 @@ impl App {
             }
             ViewCommand::StopBrowsing => self.view.browsing = None,
             ViewCommand::KeepUnsaved => self.view.unsaved = None,
+        }
+    }
+
+    fn jump_to(&mut self, selection: Selection) {
+        if let Some(at) = self.map.place_of(&selection, self.document.plan()) {
+            self.view.follow = false;
+            self.map.jump_to(at);
+        }
+        self.view.select(Some(selection));
+    }
+
+    /// An alarm is raised at the cursor; without one, halfway.
+    fn raise(&mut self, cause: Option<Cause>) {
+        self.view.alarm = cause;
+        if cause.is_some() {
+            let middle_s = self.analysis.forecast.duration_s() / 2.0;
+            self.view.cursor_s.get_or_insert(middle_s);
+        }
+    }
+
+    /// From where it is, or from the start where it stands at the end.
+    fn run_cursor(&mut self, playing: bool) {
+        self.view.playing = playing;
+        if self.view.cursor_s.is_some_and(|c| c >= self.analysis.forecast.duration_s()) {
+            self.view.cursor_s = Some(0.0);
         }
     }
 

@@ -57,7 +57,8 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
         ui.separator();
         submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
         submenu(ui, "Panels", &actions, &[Group::Panel], queue);
-        map_menu(ui, scene, queue);
+        submenu(ui, "What if", &actions, &[Group::WhatIf], queue);
+        submenu(ui, "Maps", &actions, &[Group::Maps], queue);
         ui.separator();
         section(ui, &actions, &[Group::Units], queue);
         ui.separator();
@@ -70,18 +71,6 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
             symbol_button(ui, action, symbol, queue);
         }
     }
-}
-
-/// The maps that users bring, and what lies over the map.
-fn map_menu(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    ui.menu_button("Maps", |ui| {
-        if ui.button("Maps and elevations…").clicked() {
-            queue.view(ViewCommand::Maps(true));
-            ui.close();
-        }
-        ui.separator();
-        super::maps::edge(ui, scene, queue);
-    });
 }
 
 fn submenu(ui: &mut Ui, name: &str, actions: &[Action], groups: &[Group], queue: &mut Queue) {

@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 /// What lies over the map.
-pub(super) fn edge(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn edge(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let mut edge = scene.view.edge;
     ui.horizontal(|ui| {
         let graticule = ui.checkbox(&mut edge.graticule, "Graticule").clicked();

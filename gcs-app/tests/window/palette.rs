@@ -123,3 +123,26 @@ fn f1_opens_the_topic_of_what_is_selected_and_links_lead_on() {
     window.press(Key::F1);
     assert_eq!(window.app().view().help, None);
 }
+
+#[test]
+fn escape_closes_the_help_before_it_selects_nothing() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side2");
+    window.press(Key::F1);
+    assert!(window.app().view().help.is_some());
+    window.press(Key::Escape);
+    assert!(window.app().view().help.is_none() && window.selected() == "side2");
+    window.press(Key::Escape);
+    assert_eq!(window.selected(), "");
+}
+
+#[test]
+fn engine_failure_is_raised_from_the_palette() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("engine fails");
+    window.press(Key::Enter);
+    assert_eq!(window.app().view().alarm, Some(flight_plan::Cause::Engine));
+    assert!(window.app().view().cursor_s.is_some());
+}
