@@ -25,6 +25,7 @@ impl Manager {
     /// The gateway's state, as it publishes it.
     pub fn gateway_status(&mut self, now: Time, status: &GatewayStatus, out: &mut Vec<Effect>) {
         let controlled = self.gateway_session.is_controlled();
+        self.gateway_session.armed(status.armed);
         self.gateway_session.state(now, status.state);
         if !controlled && self.gateway_session.is_controlled() {
             self.feeder.clear();

@@ -19,6 +19,7 @@ pub struct GatewaySession {
     not_before: Option<Time>,
     joined_at: Option<Time>,
     state: Option<GatewayState>,
+    armed: bool,
     controlled: bool,
     wanted: Option<Pending>,
     /// The storing of runways; it waits for nothing and stands in nobody's way.
@@ -91,10 +92,20 @@ impl GatewaySession {
         self.state.is_some_and(|state| !is_down(state))
     }
 
+    /// The gateway says that the aircraft stands disarmed on the ground.
+    pub fn stands_disarmed(&self) -> bool {
+        self.is_on_ground() && !self.armed
+    }
+
     /// The gateway may have forgotten us, or does not know what we know.
     pub fn lost(&mut self) {
         self.joined = false;
         self.not_before = None;
+    }
+
+    /// Whether the aircraft is armed, as published.
+    pub fn armed(&mut self, armed: bool) {
+        self.armed = armed;
     }
 
     /// Its state, as published.

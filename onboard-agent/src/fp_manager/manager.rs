@@ -186,7 +186,7 @@ impl Manager {
         out: &mut Vec<Effect>,
     ) -> Result<(), Refusal> {
         let (starts, rewinds) = (command == Command::Start, command == Command::Rewind);
-        if rewinds && self.gateway_session.is_airborne() {
+        if rewinds && !self.gateway_session.stands_disarmed() {
             let reason =
                 "the gateway does not say that the aircraft stands disarmed on the ground: wait for that";
             return Err(Refusal { code: "in-the-air".into(), reason: reason.into() });

@@ -137,6 +137,12 @@ impl Gateway {
     }
 
     fn take(&mut self, feed: Feed, out: &mut Vec<Output>) {
+        if self.state == GatewayState::Stop
+            && feed.cancel_after == Some(Token(0))
+            && feed.waypoints.is_empty()
+        {
+            return self.stand_down(out);
+        }
         let last = feed.waypoints.last().map(|w| w.token);
         self.highest = self.highest.max(last.unwrap_or(Token(0)));
         self.feed_driver(feed.cancel_after, feed.waypoints, out);
@@ -149,6 +155,13 @@ impl Gateway {
             self.control.set_intent(Intent::Fly, self.telemetry.mode);
             self.change(Trigger::Recovered, "the FP Manager sent waypoints", out);
         }
+        out.push(Output::Save);
+    }
+
+    /// Nothing is to be flown any more: a take-off that was granted is not begun.
+    fn stand_down(&mut self, out: &mut Vec<Output>) {
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        self.forget_waypoints(out);
         out.push(Output::Save);
     }
 }

@@ -1,7 +1,7 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use super::Executor;
-use crate::api::{Action, Command, Output, Phase, Refusal};
+use crate::api::{Action, Command, Output, Phase, Refusal, Token};
 use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
 use crate::layout::cursor::{Cursor, Step};
@@ -69,7 +69,11 @@ impl Executor {
             let reason = "the aircraft is not known to stand on the ground: in flight, go to a leg instead";
             return Err(refusal("in-the-air", reason));
         }
+        // a take-off that was granted already must not fly what was fed for it
+        out.push(Output::Feed { cancel_after: Some(Token(0)), waypoints: Vec::new() });
         self.flight = Flight::default();
+        // it was reviewed ahead of the aircraft alone: from the start, all of it has to be
+        self.proposed = None;
         self.life.mode.forget_place();
         self.enter_phase(Phase::Idle, out);
         Ok(())

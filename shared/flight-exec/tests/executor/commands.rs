@@ -387,6 +387,7 @@ fn on_the_ground_the_plan_is_rewound_and_starts_anew() {
     rig.command(Command::Rewind).unwrap();
     let status = rig.executor.status();
     assert_eq!((status.phase, status.place, status.outstanding), (Phase::Idle, None, 0));
+    assert!(rig.buffer.is_empty(), "what was fed is taken back");
     let last = rig.executor.last_token();
     rig.command(Command::Start).unwrap();
     assert!(rig.buffer.iter().all(|w| w.token > last), "no token is used twice");

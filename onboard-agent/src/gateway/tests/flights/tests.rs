@@ -362,6 +362,27 @@ fn fp_manager_killed_during_the_take_off_holds_once_clear_of_the_ground() {
     assert!((40.0..50.0).contains(&height_m), "{height_m}");
 }
 
+/// A plan that is rewound on the ground takes its waypoints back: the take-off that was granted is not begun.
+#[test]
+fn a_take_off_whose_waypoints_are_taken_back_on_the_ground_is_not_begun() {
+    let mut flight = Flight::new(18, &[]);
+    flight.run_until(20.0, "heard", |f| {
+        f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
+    });
+    assert!(flight.join("plan").accepted);
+    let mut plan = vec![take_off()];
+    plan.extend(zigzag(0, 10, 300.0));
+    assert_eq!(flight.feed(None, plan), FeedAnswer::Accepted);
+    flight.ask(GatewayRequest::Launch).unwrap();
+    assert_eq!(flight.feed(Some(0), vec![]), FeedAnswer::Accepted);
+    flight.run(60.0);
+    assert_eq!(flight.state(), GatewayState::Stop);
+    assert!(!flight.sim.autopilot.is_armed());
+    assert!(flight.ask(GatewayRequest::Launch).is_err(), "there is nothing to fly");
+    // and the next flight is free
+    flight.launch(vec![take_off(), zigzag(0, 1, 300.0).remove(0)]);
+}
+
 #[test]
 fn a_landing_cancelled_on_the_approach_does_not_circle_for_ever() {
     let mut flight = Flight::new(17, &[]);
