@@ -103,6 +103,11 @@ fn samples<R: Read + Seek>(
     if across == 0 || down == 0 {
         return Err(RasterError::Unreadable("its tiles are empty".into()));
     }
+    // what is allocated for a chunk before its data are looked at
+    let tall = if tiff.get_chunk_type() == ChunkType::Strip { down.min(height) } else { down };
+    if u64::from(across) * u64::from(tall) * 8 > MAX_CHUNK as u64 {
+        return Err(RasterError::Unreadable(format!("its parts of {across} by {down} are too large")));
+    }
     let number = width.div_ceil(across);
     let mut all = vec![f32::NEG_INFINITY; width as usize * height as usize];
     for chunk in 0..chunks.min(number * height.div_ceil(down)) {
@@ -235,13 +240,17 @@ impl Keys {
             return unknown("a transverse Mercator on another ellipsoid than WGS84");
         }
         let number = |key, default: f64| self.double(key).unwrap_or(default);
-        Ok(Projection::Transverse(Transverse {
+        let transverse = Transverse {
             meridian_deg: number(3080, 0.0),
             latitude_deg: number(3081, 0.0),
             scale: number(3092, 1.0),
             false_east_m: number(3082, 0.0),
             false_north_m: number(3083, 0.0),
-        }))
+        };
+        if !transverse.is_plausible() {
+            return unknown("a transverse Mercator of impossible numbers");
+        }
+        Ok(Projection::Transverse(transverse))
     }
 
     /// Metres unless it says feet: international or of the US survey.

@@ -84,6 +84,13 @@ impl Projection {
 }
 
 impl Transverse {
+    /// Its numbers are finite, and of this world.
+    pub(crate) fn is_plausible(&self) -> bool {
+        let all = [self.meridian_deg, self.latitude_deg, self.scale, self.false_east_m, self.false_north_m];
+        let is_on_earth = self.meridian_deg.abs() <= 180.0 && self.latitude_deg.abs() <= 89.0;
+        all.iter().all(|x| x.is_finite()) && is_on_earth && self.scale > 0.0
+    }
+
     /// Krüger's series, to the third order of the third flattening: millimetres within [`REACH_DEG`].
     fn forward(&self, p: LatLon) -> Option<(f64, f64)> {
         let away = (p.lon_deg - self.meridian_deg + 540.0).rem_euclid(360.0) - 180.0;
