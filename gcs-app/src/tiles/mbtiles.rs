@@ -3,11 +3,19 @@
 use super::picture::{self, MAX_BYTES};
 use super::{About, Answer, MAX_ZOOM, Reader, Wanted};
 use geometry::LatLon;
+use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 use std::path::Path;
 
 /// Most bytes of a value of its metadata that are looked at.
 const MAX_VALUE: usize = 4096;
+
+/// Longest row or value, bytes: a tile and what belongs to it.
+const MAX_LENGTH: i32 = 32 << 20;
+/// Steps of SQLite's machine between two looks, and most looks of a query.
+const STEPS: i32 = 10_000;
+/// See [`STEPS`].
+const MAX_ROUNDS: u32 = 2_000;
 
 /// A database of tiles.
 pub struct Mbtiles(Connection);
@@ -21,10 +29,11 @@ impl Mbtiles {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let unreadable =
             |error: rusqlite::Error| format!("it can't be read as MBTiles ({error}): get it again");
-        let database = Connection::open_with_flags(path, flags).map_err(unreadable)?;
-        limit(&database).map_err(unreadable)?;
+        let mut database = Connection::open_with_flags(path, flags).map_err(unreadable)?;
+        limit(&mut database).map_err(unreadable)?;
         let mut about = About::default();
-        let value = |name: &str| value(&database, name).map_err(unreadable);
+        let mut value =
+            |name: &str| bounded(&mut database).and_then(|()| value(&database, name)).map_err(unreadable);
         if let Some(format) = value("format")?.filter(|f| f == "pbf" || f == "mvt") {
             return Err(format!(
                 "its tiles are drawings ({format}) and no pictures: convert it to tiles of PNG, JPEG or WebP"
@@ -49,6 +58,9 @@ impl Reader for Mbtiles {
         let tile = wanted.tile;
         // its rows are counted from the south
         let row = (1u32 << tile.zoom.min(31)).saturating_sub(1).saturating_sub(tile.y);
+        if bounded(&mut self.0).is_err() {
+            return Answer::Unreadable;
+        }
         let found = self.0.prepare(SELECT).and_then(|mut select| {
             let place = (tile.zoom, tile.x, row, MAX_BYTES as i64);
             select.query_row(place, |row| row.get::<_, Vec<u8>>(0)).optional()
@@ -62,10 +74,22 @@ impl Reader for Mbtiles {
 }
 
 /// Nothing is written, the memory is bounded, and what a foreign schema defines is not trusted.
-fn limit(database: &Connection) -> rusqlite::Result<()> {
+fn limit(database: &mut Connection) -> rusqlite::Result<()> {
+    database.set_limit(Limit::SQLITE_LIMIT_LENGTH, MAX_LENGTH)?;
     database.execute_batch(
-        "PRAGMA trusted_schema = OFF; PRAGMA query_only = ON; PRAGMA cache_size = -4096; PRAGMA mmap_size = 0;",
+        "PRAGMA trusted_schema = OFF; PRAGMA query_only = ON; PRAGMA cache_size = -4096; PRAGMA mmap_size = 0;
+         PRAGMA temp_store = MEMORY;",
     )
+}
+
+/// A query ends after so many steps: tables may be views that never end.
+fn bounded(database: &mut Connection) -> rusqlite::Result<()> {
+    let mut rounds = 0;
+    let is_enough = move || {
+        rounds += 1;
+        rounds > MAX_ROUNDS
+    };
+    database.progress_handler(STEPS, Some(is_enough))
 }
 
 /// A value of the table of metadata.
@@ -139,6 +163,22 @@ mod tests {
         assert!(matches!(read(1, 0), Answer::Unreadable));
         assert!(matches!(read(2, 0), Answer::Nothing), "too large to be a tile");
         assert!(matches!(read(0, 3), Answer::Nothing));
+    }
+
+    #[test]
+    fn tables_that_never_end_are_left() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let endless = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c)";
+        Connection::open(file.path())
+            .unwrap()
+            .execute_batch(&format!(
+                "CREATE TABLE metadata (name TEXT, value TEXT);
+                 CREATE VIEW tiles AS {endless} SELECT -1 AS zoom_level, x AS tile_column, x AS tile_row, x'00' AS tile_data FROM c;"
+            ))
+            .unwrap();
+        let (mut tiles, _) = Mbtiles::open(file.path()).unwrap();
+        let wanted = Wanted { tile: TileId { zoom: 2, x: 1, y: 1 }, dark: false };
+        assert!(matches!(tiles.read(wanted), Answer::Unreadable));
     }
 
     #[test]
