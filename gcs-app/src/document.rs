@@ -75,8 +75,8 @@ impl Document {
     /// A plan that was never saved to its file; it differs from that.
     pub fn recovered(bytes: &[u8], path: Option<PathBuf>) -> Self {
         let reading = flight_plan::read(bytes);
-        let mut document = Self::new(new_plan(), path, Vec::new());
-        document.replace(reading.plan);
+        let mut document = Self::new(reading.plan, path, Vec::new());
+        document.history.mark_unsaved();
         document
     }
 
@@ -186,6 +186,9 @@ impl Document {
         (self.path, self.text, self.stamp) = (Some(path), Some(text), stamp);
         if version == self.version {
             self.history.mark_saved();
+        } else {
+            // what is shown now may be what the file had before
+            self.history.mark_unsaved();
         }
     }
 

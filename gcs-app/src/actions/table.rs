@@ -11,7 +11,7 @@ use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 use flight_exec::{Command as PlanCommand, Phase};
-use flight_plan::{Cause, Edit, edit::Spot};
+use flight_plan::{Cause, Edit, create, edit::Spot};
 use usal::contract::{GatewayRequest, GatewayState};
 
 /// What an action asks for; or why it is not possible now.
@@ -189,8 +189,7 @@ fn delete(scene: &Scene<'_>) -> Asked {
     if legs.is_empty() {
         return Err(NO_LEG);
     }
-    let edits = legs.into_iter().map(|leg| Edit::DeleteLeg { leg });
-    document(DocumentCommand::Edit(Edit::All(edits.collect())))
+    document(DocumentCommand::Edit(create::delete_legs(scene.document.plan(), &legs)))
 }
 
 /// Moves the selected leg among its neighbours.

@@ -107,7 +107,7 @@ impl App {
         }
         self.view.changed_outside = now;
         if now.is_none() {
-            self.document.set_stamp(None);
+            // its stamp stays: what comes back in its place is not overwritten unseen
             self.document.differs_from_file();
             let why = "was deleted or moved by another program. Save to write it again.";
             self.view.notice = Some(format!("{} {why}", path.display()));
@@ -129,6 +129,8 @@ impl App {
 
     pub(super) fn save(&mut self) {
         match self.document.path() {
+            // a held key asks again and again
+            Some(_) if self.saving => {}
             Some(path) => {
                 let over = self.document.stamp().map_or(Over::Anything, Over::As);
                 self.saving = true;

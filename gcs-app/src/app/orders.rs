@@ -294,6 +294,9 @@ impl App {
         let ticket = self.call(name, LOOK_AHEAD, Call::Foresee(Some(command)), now_s);
         if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(name), ticket) {
             vehicle.outlook.asked_what_follows(ticket);
+            if vehicle.open_link().is_none() {
+                vehicle.outlook.answered(ticket, Err("there is no link: connect first".into()), now_s);
+            }
         }
     }
 

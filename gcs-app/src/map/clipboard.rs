@@ -6,8 +6,8 @@ use crate::command::{Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
 use egui::{Context, Event, Key, Modifiers, Response, Ui};
 use flight_plan::clipboard::{self, Pasted};
-use flight_plan::create::{Drawn, LegChoice};
-use flight_plan::{Edit, Place, Value};
+use flight_plan::create::{self, Drawn, LegChoice};
+use flight_plan::{Place, Value};
 use geometry::LatLon;
 use new_leg::Side;
 
@@ -51,7 +51,7 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
 fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
     let legs = canvas.scene.selected_legs();
     if !legs.is_empty() && copy(ctx, canvas).is_some() {
-        queue.edit(Edit::All(legs.into_iter().map(|leg| Edit::DeleteLeg { leg }).collect()));
+        queue.edit(create::delete_legs(canvas.scene.document.plan(), &legs));
     }
 }
 

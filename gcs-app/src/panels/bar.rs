@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::actions::{Action, Fittings, Group, Kind, all};
-use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement, ViewCommand};
+use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
 use crate::theme::{self, Palette};

@@ -12,6 +12,8 @@ use flight_plan::Id;
 
 /// Screen points.
 const WIDTH: f32 = 260.0;
+/// Nearer to the ground is a caution, metres.
+const LOW_M: f64 = 30.0;
 /// So many legs are named.
 const MOST_LEGS: usize = 12;
 
@@ -37,9 +39,8 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     }
     // the decision first: it is never scrolled away
     ui.horizontal_wrapped(|ui| {
-        ui.add_enabled_ui(!gone_on && considered.foresight.is_some(), |ui| {
-            give(ui, scene, considered, queue)
-        });
+        // who is in a hurry holds the button, whatever is known by then
+        ui.add_enabled_ui(!gone_on, |ui| give(ui, scene, considered, queue));
         if ui.button("Look again").clicked() {
             queue.fly(FlyCommand::Consider(considered.command.clone()));
         }
@@ -62,11 +63,13 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     }
 }
 
-/// The command itself: a way with problems has to be held.
+/// The command itself: a way with problems, or one that is not known, has to be held.
 fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
-    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if foresight.problems.is_empty());
+    let units = scene.units();
+    let is_clean =
+        matches!(&considered.foresight, Some(Ok(foresight)) if cautions(foresight, units).is_empty());
     let given = if is_clean {
         ui.add(super::primary_button(&text, p)).clicked()
     } else {
@@ -116,7 +119,17 @@ fn cautions(foresight: &Foresight, units: Units) -> Vec<String> {
     });
     let end = foresight.cut_short.clone();
     let unfinished = (end.is_none() && !foresight.landed).then(|| "It does not end on the ground".to_owned());
-    climb.into_iter().chain(foresight.problems.iter().cloned()).chain(end).chain(unfinished).collect()
+    let low = foresight
+        .clearance_m
+        .filter(|m| *m < LOW_M)
+        .map(|m| format!("Only {} above the ground where it is lowest", units.altitude().show(m)));
+    climb
+        .into_iter()
+        .chain(low)
+        .chain(foresight.problems.iter().cloned())
+        .chain(end)
+        .chain(unfinished)
+        .collect()
 }
 
 fn facts(foresight: &Foresight, vehicle: &Vehicle, units: Units) -> Vec<String> {

@@ -83,6 +83,8 @@ pub fn number_between(
         .max_decimals(unit.decimals.max(1))
         .speed(unit.from_si(1.0).max(0.05))
         .range(unit.from_si(*range_si.start())..=unit.from_si(*range_si.end()))
+        // what is only looked at stays as it is, however wrong
+        .clamp_existing_to_range(false)
         .update_while_editing(false);
     let response = ui.add_sized([78.0, 24.0], drag);
     named(&response, name, shown);

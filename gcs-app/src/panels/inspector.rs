@@ -52,7 +52,7 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             legs.iter().filter_map(|leg| Draft::of(plan, &Subject::Leg(leg.clone()))).collect();
         together::head(ui, scene, &legs, queue);
         ui.push_id("several legs", |ui| form(ui, scene, &drafts, queue));
-        together::foot(ui, &legs, queue);
+        together::foot(ui, scene.document.plan(), &legs, queue);
         return;
     }
     let subject = page::subject(scene.view.selection.as_ref());

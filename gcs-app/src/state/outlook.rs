@@ -56,6 +56,11 @@ impl Outlook {
         self.considered = None;
     }
 
+    /// No emergency plan is flown: what was found out of the last one says nothing of the next.
+    pub fn no_emergency(&mut self) {
+        (self.landing_s, self.asked) = (None, None);
+    }
+
     /// Whether it should be asked now when the flight lands.
     pub fn is_due(&self, now_s: f64) -> bool {
         self.asked.is_none_or(|(_, asked_s)| now_s - asked_s > ASK_LANDING_S)

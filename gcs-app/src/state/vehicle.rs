@@ -209,7 +209,12 @@ impl Vehicle {
             Telemetry::Power(v) => remember!(self.power, v, now_s),
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
             Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
-            Telemetry::Status(v) => remember!(self.status, *v, now_s),
+            Telemetry::Status(v) => {
+                if v.value.emergency.is_none() {
+                    self.outlook.no_emergency();
+                }
+                remember!(self.status, *v, now_s);
+            }
             Telemetry::Ahead(v) => remember!(self.ahead, v, now_s),
             Telemetry::Variables(v) => remember!(self.variables, v, now_s),
             Telemetry::PlanEvent(event) => self.plan_event(&event, now_s),

@@ -15,6 +15,8 @@ const OFF_ALTITUDE_M: (f64, f64) = (40.0, 25.0);
 const NEAR_GROUND_M: (f64, f64) = (30.0, 45.0);
 /// Seconds for which it has to be wrong.
 const PATIENCE_S: (f64, f64) = (5.0, 2.0);
+/// What was wrong is believed for so long without news, seconds.
+const UNKNOWN_S: f64 = 10.0;
 /// So far ahead the ground is looked at, seconds of flight.
 const LOOK_AHEAD_S: f64 = 60.0;
 /// And so often, metres.
@@ -46,6 +48,8 @@ pub struct Watch {
 struct Suspicion {
     since_s: Option<f64>,
     raised: Option<String>,
+    /// When it was last known whether something is wrong.
+    known_s: Option<f64>,
 }
 
 impl Suspicion {
@@ -55,9 +59,17 @@ impl Suspicion {
             *self = Self::default();
             return;
         };
+        self.known_s = Some(now_s);
         let since_s = *self.since_s.get_or_insert(now_s);
         if self.raised.is_some() || now_s - since_s >= patience_s {
             self.raised = Some(text);
+        }
+    }
+
+    /// Nothing is known now: that clears nothing until it has lasted.
+    fn unknown(&mut self, now_s: f64) {
+        if self.known_s.is_some_and(|known_s| now_s - known_s > UNKNOWN_S) {
+            *self = Self::default();
         }
     }
 
@@ -72,11 +84,20 @@ impl Watch {
         let position = sight.position.filter(|p| p.position.is_valid() && p.altitude_amsl_m.is_finite());
         let above = |p: &Position| Some(p.altitude_amsl_m - terrain.elevation_m(p.position)?);
         self.agl_m = position.as_ref().and_then(above);
+        if position.is_none() || sight.state.is_none() {
+            self.altitude.unknown(now_s);
+            self.ground.unknown(now_s);
+            return;
+        }
         let enroute = position.filter(|p| !p.on_ground && sight.state.is_some_and(is_enroute));
         // what lies ahead in the plan is flown in this state alone
         let ahead = sight.ahead.filter(|_| sight.state == Some(GatewayState::Nav));
-        let off = enroute.and_then(|p| self.off_altitude(&p, ahead?));
-        self.altitude.follow(off, PATIENCE_S.0, now_s);
+        if enroute.is_some() && ahead.is_none() && sight.state == Some(GatewayState::Nav) {
+            self.altitude.unknown(now_s);
+        } else {
+            let off = enroute.and_then(|p| self.off_altitude(&p, ahead?));
+            self.altitude.follow(off, PATIENCE_S.0, now_s);
+        }
         let near = enroute.and_then(|p| self.near_ground(&p, ahead, terrain));
         self.ground.follow(near, PATIENCE_S.1, now_s);
     }
@@ -224,6 +245,24 @@ mod tests {
         let sight = Sight { position: Some(position(altitude_m)), ahead: Some(ahead), state: Some(state) };
         watch.look(sight, terrain, now_s);
         watch.alarms().map(|alarm| alarm.id).collect()
+    }
+
+    #[test]
+    fn no_news_clears_nothing_until_it_has_lasted() {
+        let (mut watch, flat, at) = (Watch::default(), Flat(300.0), ahead(1, 500.0));
+        look(&mut watch, 500.0, &at, &flat, 0.0);
+        let silent = Sight { position: None, ahead: None, state: None };
+        // a link that drops a second of every two
+        for second in 0..8 {
+            let now_s = 1.0 + 2.0 * f64::from(second);
+            look(&mut watch, 440.0, &at, &flat, now_s);
+            watch.look(silent, &flat, now_s + 1.0);
+        }
+        assert_eq!(watch.alarms().count(), 1, "it is raised although news is missing");
+        watch.look(silent, &flat, 24.0);
+        assert_eq!(watch.alarms().count(), 1);
+        watch.look(silent, &flat, 26.0);
+        assert_eq!(watch.alarms().count(), 0);
     }
 
     #[test]

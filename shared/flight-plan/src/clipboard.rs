@@ -109,8 +109,17 @@ pub fn paste(plan: &FlightPlan, text: &str, at: &Spot, around: Option<LatLon>) -
 /// A sentence that says why that can't be.
 pub fn duplicate(plan: &FlightPlan, legs: &[Id]) -> Result<Pasted, String> {
     let text = copy(plan, legs).ok_or("Select legs first.")?;
-    let last = legs.last().map_or_else(|| Id::new(""), Clone::clone);
+    let last = outermost(plan, legs).last().map_or_else(|| Id::new(""), |leg| (*leg).clone());
     paste(plan, &text, &Spot::After(last), None)
+}
+
+/// Of these legs, those that are not in a loop that is one of them, too; in the order given.
+pub(crate) fn outermost<'a>(plan: &FlightPlan, legs: &'a [Id]) -> Vec<&'a Id> {
+    let chosen: HashSet<&Id> = legs.iter().collect();
+    let contexts = plan.all_legs();
+    let inner = contexts.iter().filter(|c| c.loops.iter().any(|l| chosen.contains(&l.id)));
+    let inner: HashSet<&Id> = inner.map(|context| &context.leg.id).collect();
+    legs.iter().filter(|leg| !inner.contains(leg)).collect()
 }
 
 fn document(text: &str) -> Result<FlightPlan, String> {

@@ -8,7 +8,7 @@ use crate::theme;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, RichText, Ui};
 use flight_plan::describe::{Kind, Property, Range, add as add_to};
-use flight_plan::{Altitude, Edit, Id, Value};
+use flight_plan::{Altitude, Edit, FlightPlan, Id, Value, create};
 
 /// Above the properties that they have in common.
 pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
@@ -21,10 +21,10 @@ pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
 }
 
 /// Below them.
-pub fn foot(ui: &mut Ui, legs: &[Id], queue: &mut Queue) {
+pub fn foot(ui: &mut Ui, plan: &FlightPlan, legs: &[Id], queue: &mut Queue) {
     ui.add_space(2.0);
     if ui.button("Delete them").clicked() {
-        queue.edit(Edit::All(legs.iter().map(|leg| Edit::DeleteLeg { leg: leg.clone() }).collect()));
+        queue.edit(create::delete_legs(plan, legs));
     }
 }
 

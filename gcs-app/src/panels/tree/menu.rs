@@ -91,11 +91,10 @@ fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
 
 /// Of several legs that are selected together.
 fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
-    let delete = legs.iter().map(|leg| Edit::DeleteLeg { leg: leg.clone() }).collect();
     vec![
         Entry::making("Put them into a loop", create::loop_around(plan, legs), Selection::Leg),
         Entry::making("Make a procedure of them", create::procedure_of(plan, legs), Selection::Procedure),
-        Entry::new("Delete them", "Del", Some(Edit::All(delete))),
+        Entry::new("Delete them", "Del", Some(create::delete_legs(plan, legs))),
     ]
 }
 

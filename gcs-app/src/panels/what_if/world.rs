@@ -121,8 +121,13 @@ fn problems(ui: &mut Ui, scene: &Scene<'_>) {
     let known = |message: &str| scene.analysis.problems.iter().any(|p| p.message == message);
     let new: Vec<_> = found.iter().filter(|problem| !known(&problem.message)).collect();
     let p = theme::of(ui);
-    if new.is_empty() {
+    let world = &scene.view.what_if;
+    let is_reviewed = world.aloft.is_none() && world.energy_share >= 1.0 && world.decisions.is_empty();
+    if new.is_empty() && is_reviewed {
         return remark(ui, "✔ The review finds nothing more in this world.");
+    }
+    if !is_reviewed {
+        remark(ui, "Another wind aloft, less energy and other decisions are previewed, not reviewed.");
     }
     for problem in new {
         let colour = if problem.is_error() { p.warning } else { p.caution };

@@ -6,6 +6,12 @@ use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, 
 use aircraft::Profile;
 use std::sync::Arc;
 
+/// Takes these legs out; those in a loop that is one of them go with it.
+pub fn delete_legs(plan: &FlightPlan, legs: &[Id]) -> Edit {
+    let outer = crate::clipboard::outermost(plan, legs).into_iter();
+    Edit::All(outer.map(|leg| Edit::DeleteLeg { leg: leg.clone() }).collect())
+}
+
 /// A copy of a leg behind it.
 pub fn duplicate(plan: &FlightPlan, id: &Id) -> Option<Edit> {
     let (list, index) = list_of(plan, id)?;

@@ -8,7 +8,7 @@ mod kind;
 mod leg;
 mod thing;
 
-pub use arrange::{duplicate, fork, loop_around, procedure_of, shift, unloop};
+pub use arrange::{delete_legs, duplicate, fork, loop_around, procedure_of, shift, unloop};
 pub use bind::{bind, bound_to, unbind, variable_of_fix, variable_of_leg};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
