@@ -173,7 +173,7 @@ mod tests {
             .unwrap()
             .execute_batch(&format!(
                 "CREATE TABLE metadata (name TEXT, value TEXT);
-                 CREATE VIEW tiles AS {endless} SELECT -1 AS zoom_level, x AS tile_column, x AS tile_row, x'00' AS tile_data FROM c;"
+                 CREATE VIEW tiles AS {endless} SELECT -x AS zoom_level, 1 AS tile_column, 2 AS tile_row, x'00' AS tile_data FROM c;"
             ))
             .unwrap();
         let (mut tiles, _) = Mbtiles::open(file.path()).unwrap();
