@@ -19,7 +19,7 @@ pub fn foresight() -> Foresight {
         path: (0..20).map(point).collect(),
         next_leg: Some("side3".into()),
         left_out: vec!["side2".into()],
-        short_of_altitude_m: Some(120.0),
+        short_of_altitude_m: None,
         clearance_m: Some(85.0),
         problems: Vec::new(),
         time_s: 380.0,
@@ -46,7 +46,6 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     for text in [
         "Left out: side2",
-        "Climb not done: it arrives 120 m below",
         "until the approach: 85 m",
         "43 % energy left",
         "on the map: the path that would be flown",
@@ -61,11 +60,31 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
 #[test]
 fn a_command_that_was_cancelled_is_not_given() {
     let (mut window, ticket) = considered();
-    window.hold("Skip side2 (hold)", 90);
-    assert!(window.asked().is_none(), "nothing is known of it yet");
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     window.click("Cancel");
     assert!(!window.shows("Left out") && window.asked().is_none());
+}
+
+#[test]
+fn who_is_in_a_hurry_holds_the_button_before_the_answer() {
+    let (mut window, _) = considered();
+    window.hold("Skip side2 (hold)", 20);
+    assert!(window.asked().is_none() && window.shows("Keep it pressed for 1 s"));
+    window.hold("Skip side2 (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+}
+
+#[test]
+fn a_climb_that_is_not_done_or_a_low_way_has_to_be_held() {
+    let low = Foresight { clearance_m: Some(12.0), ..foresight() };
+    let late = Foresight { short_of_altitude_m: Some(120.0), ..foresight() };
+    for (foresight, text) in [(low, "Only 12 m above the ground"), (late, "Climb not done: it arrives 120 m")]
+    {
+        let (mut window, ticket) = considered();
+        window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
+        assert!(window.shows(text), "{text}");
+        assert!(window.shows("Skip side2, fly side3 next (hold)"));
+    }
 }
 
 #[test]
