@@ -1,6 +1,7 @@
 //! From positions to the coordinates of a raster: degrees, transverse Mercator (UTM), Web Mercator.
 
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 
 /// WGS84: equatorial radius, metres, and flattening. NAD83 and ETRS89 lie within 2 m of it.
 const RADIUS_M: f64 = 6_378_137.0;
@@ -113,7 +114,8 @@ impl Transverse {
             let (west, limit) = (self.meridian_deg - REACH_DEG, self.meridian_deg + REACH_DEG);
             p = LatLon::new(lat_deg, lon_deg.clamp(west, limit));
         }
-        Some(p)
+        // a zone at the antimeridian reaches over it
+        Some(LatLon::new(p.lat_deg, normalise_180(p.lon_deg)))
     }
 }
 
