@@ -7,20 +7,20 @@
 //!
 //! [`Aircraft::settle`]: aircraft::Aircraft::settle
 
-use super::scenario::Act;
 use super::situation::{Renumbering, Situation, microseconds, seconds};
 use super::{
     Advance, FlownWaypoint, LegPassage, Options, Preview, PreviewError, Scenario, Start, TrackPoint,
 };
 use crate::api::{
-    Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, RequestId, Time,
-    Token, Waypoint,
+    Action, AircraftState, Answer, Command, Event, Input, Output, Phase, PlacePointer, Time, Token, Waypoint,
 };
 use crate::executor::Executor;
 use aircraft::{Guided, Profile, Target, Wind, Winds};
-use flight_plan::{Id, Program};
+use flight_plan::Program;
 use std::sync::Arc;
 use terrain::Terrain;
+
+mod orders;
 
 /// The executor gets the aircraft's state so often, microseconds.
 const REPORT_EVERY_US: u64 = 500_000;
@@ -366,50 +366,6 @@ impl<'a> Flight<'a> {
             passage: self.at.passage_index(),
             iteration: innermost.map_or(0, |i| i.iteration),
         });
-    }
-
-    /// Triggers whose time has come.
-    fn fire(&mut self) {
-        for index in 0..self.at.fired.len() {
-            let Some(trigger) = self.given.scenario.triggers.get(index) else { continue };
-            let due = self.at.fired.get(index) == Some(&false) && trigger.at.is_now(&self.at.moment);
-            if !due {
-                continue;
-            }
-            if let Some(fired) = self.at.fired.get_mut(index) {
-                *fired = true;
-            }
-            for act in &trigger.then {
-                match act {
-                    Act::Command(command) => self.command(command.clone()),
-                    Act::Update { program, entry } => self.update(program, entry.clone()),
-                    Act::Propose { program } => self.propose(program),
-                    Act::End => self.at.ended = true,
-                }
-            }
-        }
-    }
-
-    fn update(&mut self, program: &Arc<Program>, entry: Option<Id>) {
-        self.propose(program);
-        self.command(Command::Commit { hash: program.hash().clone(), entry });
-    }
-
-    fn propose(&mut self, program: &Arc<Program>) {
-        self.at.requests += 1;
-        let request = RequestId(self.at.requests);
-        self.input(Input::Propose {
-            request,
-            program: program.clone(),
-            based_on: None,
-            objections: Vec::new(),
-        });
-    }
-
-    fn command(&mut self, command: Command) {
-        self.at.requests += 1;
-        let request = RequestId(self.at.requests);
-        self.input(Input::Command { request, by: "operator".into(), command });
     }
 
     fn check_limits(&mut self) -> Result<(), PreviewError> {
