@@ -1,10 +1,12 @@
 //! Places as people write them: decimal degrees, degrees and minutes, degrees, minutes and seconds, UTM, MGRS, plus codes,
-//! the name of something in the plan, a bearing and a distance from any of these, and where the aircraft is.
+//! the name of something in the plan or of a city or airport, a bearing and a distance from any of these, and where the aircraft is.
 
 mod degrees;
 mod grid;
 mod plus_code;
+mod world;
 
+use crate::assets::places::Group;
 use flight_plan::{FlightPlan, Id, Place, Value};
 use geometry::LatLon;
 
@@ -21,6 +23,8 @@ pub struct Known<'a> {
     pub aircraft: Option<LatLon>,
     /// Short plus codes mean the place that is nearest to here.
     pub near: Option<LatLon>,
+    /// Cities and airports have names; without them a word is never taken for a place far away.
+    pub world: Option<&'a [Group<'a>]>,
 }
 
 /// The place that a text means.
@@ -56,7 +60,16 @@ fn plain(text: &str, known: &Known<'_>) -> Result<LatLon, String> {
         .or_else(|| grid::read(text))
         .or_else(|| plus_code::read(text, known.near))
         .or_else(|| known.plan.and_then(|plan| named(text, plan)));
-    place.filter(|at| at.is_valid()).ok_or_else(|| format!("“{text}” {UNREADABLE}."))
+    let place = place.or_else(|| world::named(text, known.world?));
+    place.filter(|at| at.is_valid()).ok_or_else(|| unreadable(text, known))
+}
+
+fn unreadable(text: &str, known: &Known<'_>) -> String {
+    let alike = known.world.map(|world| world::like(text, world)).unwrap_or_default();
+    match alike.is_empty() {
+        true => format!("“{text}” {UNREADABLE}."),
+        false => format!("There are several places like “{text}”: write {}.", alike.join(", or ")),
+    }
 }
 
 /// Where something of the plan is.

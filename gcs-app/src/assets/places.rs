@@ -50,6 +50,11 @@ impl<'a> Group<'a> {
         self.0.is_empty()
     }
 
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Place<'a>> {
+        self.0.iter()
+    }
+
     /// The places of a box.
     pub fn within(&self, south_west: LatLon, north_east: LatLon) -> impl Iterator<Item = &Place<'a>> {
         let milli = |deg: f64| (deg * 1000.0).round() as i32;

@@ -108,7 +108,8 @@ fn a_place_may_be_named_or_be_a_way_from_one() {
     let a = LatLon::new(36.5, -84.2);
     let fix = Fix { id: "A".into(), position: a, name: String::new(), description: String::new() };
     let plan = FlightPlan { fixes: vec![fix], ..FlightPlan::default() };
-    let known = Known { plan: Some(&plan), aircraft: Some(LatLon::new(36.6, -84.3)), near: None };
+    let known =
+        Known { plan: Some(&plan), aircraft: Some(LatLon::new(36.6, -84.3)), near: None, world: None };
     assert_eq!(read("A", &known), Ok(a));
     assert_eq!(read("Aircraft", &known), Ok(LatLon::new(36.6, -84.3)));
     for text in ["045° 1.2 km from A", "45/1200m from A", "45 1200 m FROM 36.5, -84.2"] {
@@ -119,6 +120,25 @@ fn a_place_may_be_named_or_be_a_way_from_one() {
     assert!((far.distance_m(LatLon::new(36.6, -84.3)) - 1852.0).abs() < 1e-6);
     assert!(read("45 x from A", &known).unwrap_err().contains("bearing and distance"));
     assert!(read("B", &known).unwrap_err().contains("“B”"));
+}
+
+#[test]
+fn cities_and_airports_have_names() {
+    let known = Known { world: crate::assets::places().ok(), ..Known::default() };
+    for (name, lat, lon) in [
+        ("Paris", 48.86, 2.35),
+        ("sao paulo", -23.55, -46.63),
+        ("KTYS", 35.81, -83.99),
+        ("Knoxville Downtown Island", 35.96, -83.87),
+    ] {
+        let at = read(name, &known).unwrap();
+        assert!(at.distance_m(LatLon::new(lat, lon)) < 15_000.0, "{name}: {at:?}");
+    }
+    let north = read("0° 10 km from KTYS", &known).unwrap();
+    assert!(north.distance_m(read("ktys", &known).unwrap()) > 9_900.0);
+    assert!(read("Knoxvil", &known).unwrap_err().contains("Knoxville Downtown"));
+    assert!(read("Xqzzy", &known).unwrap_err().contains("is no place"));
+    assert!(read("Paris", &Known::default()).is_err(), "only where it is asked for");
 }
 
 proptest! {

@@ -64,7 +64,7 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
             .view(ViewCommand::Notice("Make a new mission first: it has a stage to paste into.".into()));
     };
     let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
-    let known = Known { plan: Some(plan), aircraft, near: under };
+    let known = Known { plan: Some(plan), aircraft, near: under, world: None };
     match coordinates::read(text, &known) {
         Ok(place) => {
             let drawn = Drawn::Place(Place::Position(Value::Constant(place)));

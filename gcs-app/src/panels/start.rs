@@ -1,8 +1,9 @@
 //! The beginning of a plan: a card over the map of an empty document. A few answers give a plan that can be flown.
 
 use super::{Scene, field, primary_button};
+use crate::assets;
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
-use crate::coordinates;
+use crate::coordinates::{self, Known};
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
 use crate::map::furniture::NARROW;
 use crate::map::text;
@@ -71,12 +72,15 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.label("Where do you fly?");
-    ui.label(RichText::new("Zoom in and click the map, or type it:").color(p.weak));
+    ui.label(
+        RichText::new("Zoom in and click the map, or type it: a position, a city, an airport or its code.")
+            .color(p.weak),
+    );
     let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", "", false));
     if let Some(typed) = typed {
-        match coordinates::position(&typed) {
-            Some(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
-            None => refuse(&typed, queue),
+        match read(&typed) {
+            Ok(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
+            Err(reason) => queue.view(ViewCommand::Notice(reason)),
         }
     }
     if let Some(position) = &scene.vehicle.position
@@ -90,9 +94,9 @@ fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-fn refuse(typed: &str, queue: &mut Queue) {
-    let text = format!("“{typed}” is no position: write it like 36.31900, -84.17300.");
-    queue.view(ViewCommand::Notice(text));
+/// A position, or the name of a city or an airport.
+fn read(typed: &str) -> Result<LatLon, String> {
+    coordinates::read(typed, &Known { world: assets::places().ok(), ..Known::default() })
 }
 
 fn templates(ui: &mut Ui, guide: &mut Guide) {
@@ -184,7 +188,7 @@ fn place(
     let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown, false)));
     row.response.on_hover_text(hint);
     if let Some(typed) = row.inner {
-        coordinates::position(&typed).map_or_else(|| refuse(&typed, queue), &mut set);
+        read(&typed).map_or_else(|reason| queue.view(ViewCommand::Notice(reason)), &mut set);
     }
 }
 

@@ -1,0 +1,57 @@
+//! Cities and airports by their names.
+
+use crate::assets::places::{Group, Place};
+use geometry::LatLon;
+
+/// Shorter beginnings of a name suggest nothing: half the world begins with them.
+const SHORTEST: usize = 3;
+/// So many names are suggested.
+const SUGGESTED: usize = 3;
+
+/// Where the place of that name is: a city by its name, an airport by its code or its name. Capitals and accents don't
+/// matter; of several the most important one is meant.
+pub(super) fn named(name: &str, world: &[Group<'_>]) -> Option<LatLon> {
+    let name = plain(name);
+    let is_meant = |place: &&Place<'_>| {
+        let full = plain(place.name);
+        full == name || full.split_once(' ').is_some_and(|(code, rest)| code == name || rest == name)
+    };
+    // a city's second word is no name of it
+    let (cities, airports) = world.split_first()?;
+    let city = cities.iter().find(|place| plain(place.name) == name);
+    city.or_else(|| airports.iter().flat_map(Group::iter).find(is_meant)).map(Place::position)
+}
+
+/// Names in which a word begins like that, the most important ones first.
+pub(super) fn like<'a>(name: &str, world: &[Group<'a>]) -> Vec<&'a str> {
+    let name = plain(name);
+    if name.chars().count() < SHORTEST {
+        return Vec::new();
+    }
+    let begins = |place: &&Place<'_>| {
+        let full = plain(place.name);
+        full.starts_with(&name) || full.contains(&format!(" {name}"))
+    };
+    world.iter().flat_map(Group::iter).filter(begins).map(|place| place.name).take(SUGGESTED).collect()
+}
+
+/// Small letters without the accents of Latin scripts.
+fn plain(name: &str) -> String {
+    let without = |c: char| match c {
+        'à'..='å' | 'ā' | 'ă' | 'ą' => 'a',
+        'ç' | 'ć' | 'č' => 'c',
+        'è'..='ë' | 'ē' | 'ę' | 'ě' => 'e',
+        'ì'..='ï' | 'ī' | 'ı' => 'i',
+        'ł' => 'l',
+        'ñ' | 'ń' | 'ň' => 'n',
+        'ò'..='ö' | 'ø' | 'ō' | 'ő' => 'o',
+        'ř' => 'r',
+        'ś' | 'š' | 'ş' => 's',
+        'ţ' => 't',
+        'ù'..='ü' | 'ū' | 'ů' | 'ű' => 'u',
+        'ý' | 'ÿ' => 'y',
+        'ź' | 'ż' | 'ž' => 'z',
+        other => other,
+    };
+    name.trim().to_lowercase().chars().map(without).collect()
+}
