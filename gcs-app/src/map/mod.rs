@@ -9,6 +9,7 @@ pub mod coverage;
 pub mod foreseen;
 pub mod furniture;
 pub mod graticule;
+mod items;
 pub mod marks;
 mod menu;
 pub mod navigate;
@@ -71,6 +72,7 @@ pub struct MapState {
     tools: Toolbox,
     navigation: navigate::Navigation,
     menu: menu::Menu,
+    items: items::Items,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
 }
@@ -252,6 +254,7 @@ impl MapState {
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
+        self.items.run(ui, &canvas, !self.tools.offers_handles(), queue, p);
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);
         clipboard::run(ui, response, &mut self.menu, &canvas, queue);
@@ -279,6 +282,7 @@ impl MapState {
             let _ = variables.set(plan, &v.name.clone().convert(), v.value.clone().convert());
         }
         self.sketch = Sketch::new(plan, &variables);
+        self.items = items::Items::default();
         self.sketched = Some((version, live.cloned()));
     }
 

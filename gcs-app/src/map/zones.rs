@@ -84,7 +84,7 @@ impl Surface for Screen<'_> {
 }
 
 /// `Keep out: quarry, 0 ft AGL to 1500 ft AMSL`.
-fn label(zone: &Zone, units: Units) -> String {
+pub fn label(zone: &Zone, units: Units) -> String {
     let kind = match zone.kind {
         ZoneKind::KeepIn => "Keep in",
         ZoneKind::KeepOut => "Keep out",

@@ -11,8 +11,8 @@ use crate::theme::{self, Palette};
 use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use flight_plan::{FlightPlan, Problem};
 use make::Group;
-pub use rows::leg_tag;
 use rows::{Row, rows};
+pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
 

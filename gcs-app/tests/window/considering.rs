@@ -31,7 +31,7 @@ pub fn foresight() -> Foresight {
 }
 
 /// Skip is looked at; the ticket of the question.
-fn considered() -> (Window, Ticket) {
+pub fn considered() -> (Window, Ticket) {
     let (mut window, _) = flying();
     window.click("⏭ Skip leg");
     let (ticket, call) = window.asked().unwrap();

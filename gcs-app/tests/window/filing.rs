@@ -10,7 +10,7 @@ fn window(text: &str) -> Window {
     window
 }
 
-fn until_listed(window: &mut Window) {
+pub fn until_listed(window: &mut Window) {
     window.until("folder", |app| app.view().browsing.as_ref().is_some_and(|b| b.entries.is_some()));
 }
 

@@ -24,7 +24,7 @@ fn connected(window: &mut Window, vehicle: &str, link: LinkId, altitude_m: f64) 
 }
 
 /// Two vehicles in flight; the second one was connected by hand and is shown.
-fn two() -> Window {
+pub fn two() -> Window {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
     window.click("○ Connect");
@@ -249,7 +249,7 @@ fn lost_events_are_counted_and_shown() {
     assert_eq!(window.app().vehicles().get(&"uav2".into()).unwrap().losses.events, 0);
 }
 
-fn tab(window: &mut Window, name: &str) {
+pub fn tab(window: &mut Window, name: &str) {
     window.harness.get_all_by_label(name).next().unwrap().click();
     window.steps(3);
 }

@@ -22,6 +22,7 @@ mod pasting;
 mod planning;
 mod pointing;
 mod reach;
+mod reading;
 mod recovering;
 mod store;
 mod tools;

@@ -12,9 +12,9 @@ use gcs_app::app::App;
 use gcs_app::forecast::Coverage;
 use std::sync::Arc;
 
-const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
+pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
 
-fn opened(text: &str) -> Window {
+pub fn opened(text: &str) -> Window {
     let mut window = Window::open(text);
     window.until_analysed();
     window.harness.get_all_by_label("What if").next().unwrap().click();

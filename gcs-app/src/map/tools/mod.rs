@@ -16,6 +16,7 @@ mod sweep;
 mod thing;
 mod track;
 
+use super::items::ring;
 use super::sketch::{Handled, Sketch};
 use super::view::View;
 use crate::command::{Queue, Selection};
@@ -227,6 +228,11 @@ impl Toolbox {
         self.tools.iter().enumerate().map(move |(i, tool)| (tool.card(), Some(i) == current))
     }
 
+    /// The plan's places can be grabbed now.
+    pub fn offers_handles(&self) -> bool {
+        !self.is_guided && self.current == 0
+    }
+
     fn in_use(&self) -> Option<&dyn Tool> {
         if self.is_guided {
             return Some(&self.guided);
@@ -312,6 +318,9 @@ impl Toolbox {
             }
             if response.dragged() {
                 touch.dragged = Some(grip.key);
+            }
+            if response.has_focus() {
+                ring(ui.painter(), grip.at, p);
             }
             asks |= response.secondary_clicked();
             react(tool, &mut self.offset, &response, &grip, canvas, queue);

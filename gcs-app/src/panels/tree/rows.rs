@@ -208,7 +208,8 @@ impl Builder<'_> {
     }
 }
 
-fn title(name: &str, id: &str) -> String {
+/// What people call it, or else its identifier.
+pub fn title(name: &str, id: &str) -> String {
     if name.is_empty() { id.to_owned() } else { name.to_owned() }
 }
 

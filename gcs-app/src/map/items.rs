@@ -1,0 +1,198 @@
+//! What can be selected on the map, as widgets that draw nothing: screen readers, the keyboard and tests find them by their
+//! names. The pointer does not meet them: what is under it is found by the lines themselves.
+
+use super::polyline;
+use super::tools::Canvas;
+use super::tools::pick::selection;
+use super::view::View;
+use super::{sketch::Handled, zones};
+use crate::chart::zones as chart;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::forecast::{Forecast, Passage};
+use crate::panels::tree::title;
+use crate::theme::Palette;
+use crate::units::{self, Units};
+use egui::accesskit::Action;
+use egui::{Key, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo};
+use flight_plan::{FlightPlan, Id};
+use geometry::LatLon;
+use std::collections::HashSet;
+
+/// Most of them; more could not be told apart.
+const MOST: usize = 300;
+/// So many legs are looked at for those in view.
+const MOST_LEGS: usize = 5000;
+/// The side of a widget, screen points.
+const SIDE: f32 = 18.0;
+
+/// A thing on the map.
+#[derive(Debug, Clone, PartialEq)]
+struct Item {
+    name: String,
+    /// A place of it on the screen.
+    at: Pos2,
+    what: Selection,
+}
+
+/// What the list was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Made {
+    view: View,
+    version: u64,
+    forecast: u64,
+    units: Units,
+    fixes: bool,
+}
+
+/// What is in view; looked for again when the view or the plan changes.
+#[derive(Debug, Default)]
+pub struct Items {
+    made: Option<Made>,
+    list: Vec<Item>,
+}
+
+impl Items {
+    /// Offers what is in view to be selected. `fixes`: the tool in use offers no handles of fixes and waypoints.
+    pub fn run(&mut self, ui: &Ui, canvas: &Canvas<'_>, fixes: bool, queue: &mut Queue, p: &Palette) {
+        let scene = canvas.scene;
+        let made = Made {
+            view: *canvas.view,
+            version: scene.document.version(),
+            forecast: scene.analysis.forecast_version,
+            units: scene.units(),
+            fixes,
+        };
+        if self.made != Some(made) {
+            self.made = Some(made);
+            self.list = in_view(canvas, fixes);
+        }
+        for item in &self.list {
+            let selected = scene.is_selected(&item.what);
+            if offer(ui, item, selected, p) {
+                queue.view(ViewCommand::Select(Some(item.what.clone())));
+            }
+        }
+        aircraft(ui, canvas);
+    }
+}
+
+/// True: it was chosen by key or by a screen reader.
+fn offer(ui: &Ui, item: &Item, selected: bool, p: &Palette) -> bool {
+    let id = ui.scope_id().with(("map item", &item.what));
+    let rect = Rect::from_center_size(item.at, Vec2::splat(SIDE));
+    let response = ui.interact(rect, id, Sense::focusable_noninteractive());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &item.name));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.add_action(Action::Click));
+    let has_focus = response.has_focus();
+    if has_focus {
+        ring(ui.painter(), item.at, p);
+    }
+    ui.input(|i| {
+        let pressed = i.key_pressed(Key::Enter) || i.key_pressed(Key::Space);
+        (has_focus && pressed) || i.has_accesskit_action_request(response.id, Action::Click)
+    })
+}
+
+/// Around what has the keyboard on the map.
+pub fn ring(painter: &Painter, at: Pos2, p: &Palette) {
+    for (width, colour) in [(5.0, p.halo), (2.0, p.accent)] {
+        painter.circle_stroke(at, 0.75 * SIDE, Stroke::new(width, colour));
+    }
+}
+
+/// The aircraft that is shown; there is nothing to be selected of it.
+fn aircraft(ui: &Ui, canvas: &Canvas<'_>) {
+    let scene = canvas.scene;
+    let (Some(position), Some(name)) = (&scene.vehicle.position, scene.vehicles.shown_name()) else { return };
+    let (at, here) = (canvas.view.place(position.value.position), position.value.position.is_valid());
+    if !here || !canvas.view.rect.contains(at) {
+        return;
+    }
+    let (height, age_s) = (position.value.altitude_amsl_m, position.age_s(scene.now_s));
+    let state = match position.is_expired(scene.now_s) {
+        true => format!("last seen {} ago", units::age(age_s)),
+        false => format!("{} AMSL", scene.units().altitude().show(height)),
+    };
+    let rect = Rect::from_center_size(at, Vec2::splat(2.0 * SIDE));
+    let response = ui.interact(rect, ui.scope_id().with("aircraft"), Sense::focusable_noninteractive());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Aircraft {name}, {state}")));
+    if response.has_focus() {
+        ring(ui.painter(), at, crate::theme::of(ui));
+    }
+}
+
+/// Zones, runways, emergency plans, legs and areas: what is in view of them.
+fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let plan = scene.document.plan();
+    let outline = |line: &[LatLon], name: String, what: Selection| {
+        on_outline(line, view).map(|at| Item { name, at, what })
+    };
+    let runways = plan.runways.iter().filter_map(|runway| {
+        let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
+        let (id, name) = (&runway.id, format!("Runway {}", runway.id));
+        outline(&[runway.threshold, end], name, Selection::Runway(id.clone()))
+    });
+    let zones = plan.zones.iter().filter_map(|zone| {
+        let name = zones::label(zone, scene.units());
+        outline(&closed(&chart::outline(zone)), name, Selection::Zone(zone.id.clone()))
+    });
+    let emergencies = sketch.emergencies.iter().filter_map(|(id, line)| {
+        let name = plan.emergency_plan(id).map_or_else(|| id.to_string(), |e| title(&e.name, id.as_str()));
+        outline(line, format!("Path of emergency plan {name}"), Selection::Emergency(id.clone()))
+    });
+    let areas = sketch.polygons.iter().filter_map(|(leg, rings)| {
+        let name = format!("Area of {}", name_of_leg(plan, leg));
+        outline(&closed(rings.first()?), name, Selection::Leg(leg.clone()))
+    });
+    let handles = sketch.handles.iter().filter(|handle| {
+        fixes && matches!(handle.what, Handled::Fix(_) | Handled::Waypoint(_) | Handled::Centre(_))
+    });
+    let handles = handles.filter_map(|handle| {
+        let (at, what) = (view.place(handle.at), selection(plan, &handle.what));
+        inside(at, view).then(|| Item { name: handle.what.name(), at, what })
+    });
+    let mut once = HashSet::new();
+    let all = runways.chain(zones).chain(legs(canvas)).chain(areas).chain(emergencies).chain(handles);
+    all.filter(|item| once.insert(item.what.clone())).take(MOST).collect()
+}
+
+/// Each leg where its path is in view.
+fn legs<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
+    let Canvas { view, scene, .. } = *canvas;
+    let (plan, forecast) = (scene.document.plan(), scene.forecast());
+    let mut flown = HashSet::new();
+    let passages = forecast.passages.iter().take(MOST_LEGS).filter(move |passage| flown.insert(&passage.leg));
+    passages.filter_map(move |passage| {
+        let leg = scene.document.written(&passage.leg);
+        let at = on_path(forecast, passage, view)?;
+        let name = format!("Path of {}", name_of_leg(plan, &leg));
+        Some(Item { name, at, what: Selection::Leg(leg) })
+    })
+}
+
+fn name_of_leg(plan: &FlightPlan, leg: &Id) -> String {
+    plan.leg(leg).map_or_else(|| leg.to_string(), |context| title(&context.leg.name, leg.as_str()))
+}
+
+/// A place of a path in view, in its middle if that is.
+fn on_path(forecast: &Forecast, passage: &Passage, view: &View) -> Option<Pos2> {
+    let points = forecast.part(passage)?;
+    let place = |sixteenth: usize| points.get(points.len() * sixteenth / 16).map(|q| view.place(q.position));
+    [8, 4, 12, 2, 6, 10, 14].into_iter().filter_map(place).find(|at| inside(*at, view))
+}
+
+/// A place of a line in view that is no corner of it, in its middle if that is.
+fn on_outline(line: &[LatLon], view: &View) -> Option<Pos2> {
+    let points: Vec<Pos2> = line.iter().filter(|at| at.is_valid()).map(|at| view.place(*at)).collect();
+    let middles = points.windows(2).filter_map(polyline::middle);
+    polyline::middle(&points).into_iter().chain(middles).find(|at| inside(*at, view))
+}
+
+fn closed(ring: &[LatLon]) -> Vec<LatLon> {
+    ring.iter().chain(ring.first()).copied().collect()
+}
+
+fn inside(at: Pos2, view: &View) -> bool {
+    view.rect.shrink(0.5 * SIDE).contains(at)
+}
