@@ -12,7 +12,7 @@ pub struct Foreign {
     /// Format of the file, instead of guessing it from its name and content.
     #[arg(long, value_name = "FORMAT", value_parser = format)]
     pub from: Option<FileFormat>,
-    /// Name of the aircraft profile that the plan is for.
+    /// Name of the aircraft profile that the plan is for [default: the one that suits what the file says of its vehicle].
     #[arg(long, value_name = "NAME")]
     pub plan_for: Option<String>,
     /// Runway to take off from and to land on.
@@ -128,7 +128,7 @@ impl Foreign {
         let usual = Assumptions::default();
         let stem = path.file_stem().and_then(|s| s.to_str()).filter(|s| *s != super::output::DASH);
         Assumptions {
-            aircraft: self.plan_for.clone().unwrap_or(usual.aircraft),
+            aircraft: self.plan_for.clone(),
             name: stem.map_or(usual.name, str::to_owned),
             height_agl_m: self.height.unwrap_or(usual.height_agl_m),
             spacing_m: self.spacing.unwrap_or(usual.spacing_m),

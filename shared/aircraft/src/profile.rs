@@ -60,12 +60,35 @@ pub enum ProfileError {
     },
 }
 
-const BUILT_IN: [(&str, &str); 1] = [("trainer", include_str!("../../../assets/aircraft/trainer.json"))];
+const BUILT_IN: [(&str, &str); 5] = [
+    ("trainer", include_str!("../../../assets/aircraft/trainer.json")),
+    ("foam-wing", include_str!("../../../assets/aircraft/foam-wing.json")),
+    ("long-range-wing", include_str!("../../../assets/aircraft/long-range-wing.json")),
+    ("fast-wing", include_str!("../../../assets/aircraft/fast-wing.json")),
+    (VTOL, include_str!("../../../assets/aircraft/vtol-wing.json")),
+];
+/// The profile of what takes off and lands upright and is flown as a wing.
+const VTOL: &str = "vtol-wing";
 
 impl Profile {
     /// Names of the profiles that come with the product.
     pub fn names() -> Vec<&'static str> {
         BUILT_IN.iter().map(|(name, _)| *name).collect()
+    }
+
+    /// The name of the built-in profile that suits an aircraft of which only this is known: the one with the nearest cruise
+    /// speed, by ratio; the trainer if that isn't known either.
+    pub fn suiting(cruise_mps: Option<f64>, is_vtol: bool) -> &'static str {
+        if is_vtol {
+            return VTOL;
+        }
+        let Some(cruise_mps) = cruise_mps.filter(|v| is_positive(*v)) else { return "trainer" };
+        let wings = Self::names().into_iter().filter(|name| *name != VTOL);
+        let off_by = |name: &&str| {
+            let profile = Self::by_name(name).unwrap_or_default();
+            (profile.cruise_airspeed_mps / cruise_mps).ln().abs()
+        };
+        wings.min_by(|a, b| off_by(a).total_cmp(&off_by(b))).unwrap_or("trainer")
     }
 
     /// A profile that comes with the product.
@@ -179,6 +202,23 @@ mod tests {
             assert_eq!(Profile::by_name(name).unwrap().name, name);
         }
         assert_eq!(Profile::by_name("trainer").unwrap(), Profile::default());
+    }
+
+    #[test]
+    fn profile_is_chosen_by_cruise_speed_and_kind() {
+        for (cruise_mps, is_vtol, expected) in [
+            (None, false, "trainer"),
+            (Some(f64::NAN), false, "trainer"),
+            (Some(3.0), false, "foam-wing"),
+            (Some(15.0), false, "foam-wing"),
+            (Some(19.0), false, "long-range-wing"),
+            (Some(25.0), false, "trainer"),
+            (Some(90.0), false, "fast-wing"),
+            (Some(15.0), true, "vtol-wing"),
+            (None, true, "vtol-wing"),
+        ] {
+            assert_eq!(Profile::suiting(cruise_mps, is_vtol), expected, "{cruise_mps:?} {is_vtol}");
+        }
     }
 
     #[test]

@@ -29,7 +29,7 @@ fn outline(template: Template, threshold: LatLon, elevation_amsl_m: f64, heading
 }
 
 fn problems(outline: &Outline, terrain: Arc<dyn Terrain>) -> Vec<String> {
-    let profile = Profile::default();
+    let profile = Profile::by_name(&outline.aircraft).unwrap();
     let document = flight_plan::write(&outline.plan(&profile, terrain.as_ref()));
     let reviewed = compile_and_review(document.as_bytes(), &profile, &terrain, Conditions::default());
     let found = reviewed.map_or_else(|problems| problems, |program| program.warnings.clone());
@@ -42,9 +42,12 @@ fn every_template_can_be_flown_among_hills() {
     let mut tiles = Tiles::new();
     tiles.add(Tile::from_hgt("N36W085.hgt", &std::fs::read(tile).unwrap()).unwrap());
     let ground: Arc<dyn Terrain> = Arc::new(tiles);
-    for template in Template::ALL {
-        let outline = outline(template, LatLon::new(36.319, -84.173), 349.0, 52.0);
-        assert_eq!(problems(&outline, ground.clone()), Vec::<String>::new(), "{template:?}");
+    for (template, aircraft) in
+        Template::ALL.iter().flat_map(|t| Profile::names().into_iter().map(|n| (*t, n)))
+    {
+        let ours = outline(template, LatLon::new(36.319, -84.173), 349.0, 52.0);
+        let outline = Outline { aircraft: aircraft.into(), ..ours };
+        assert_eq!(problems(&outline, ground.clone()), Vec::<String>::new(), "{template:?} by {aircraft}");
     }
 }
 
@@ -63,7 +66,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
     fn every_template_can_be_flown_anywhere(
-        which in 0..Template::ALL.len(),
+        (which, aircraft) in (0..Template::ALL.len(), prop::sample::select(Profile::names())),
         (lat_deg, lon_deg) in (5.0..65.0, -170.0..170.0),
         elevation_amsl_m in 0.0..1500.0,
         (heading_deg, bearing_deg) in (0.0..360.0, 0.0..360.0),
@@ -71,9 +74,14 @@ proptest! {
     ) {
         let threshold = LatLon { lat_deg, lon_deg };
         let centre = threshold.destination(bearing_deg, away_m);
+        let profile = Profile::by_name(aircraft).unwrap();
+        let range_m = profile.energy_j / profile.cruise_power_w * profile.cruise_airspeed_mps;
+        // of a size for the aircraft
+        let radius_m = f64::min(radius_m, range_m / 80.0);
         let outline = Outline {
             extent: Extent::Around { centre, radius_m },
             height_m,
+            aircraft: aircraft.into(),
             ..outline(Template::ALL[which], threshold, elevation_amsl_m, heading_deg)
         };
         prop_assert_eq!(problems(&outline, Arc::new(Flat(elevation_amsl_m))), Vec::<String>::new());

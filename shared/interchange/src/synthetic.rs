@@ -1,14 +1,15 @@
 //! What other formats leave open and a plan needs: aircraft, runways, heights and spacings.
 
 use crate::note::Notes;
+use aircraft::Profile;
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Runway, Stage, StageKind, Value};
 use geometry::LatLon;
 
 /// What is taken where a file says nothing; each use of one is a note.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumptions {
-    /// The aircraft of the plan: name of a profile.
-    pub aircraft: String,
+    /// The aircraft of the plan: name of a profile. `None`: the one that suits what the file says of its vehicle.
+    pub aircraft: Option<String>,
     /// Name of the plan, where the file has none.
     pub name: String,
     /// Height above ground of what has no altitude, metres.
@@ -27,7 +28,7 @@ pub struct Assumptions {
 impl Default for Assumptions {
     fn default() -> Self {
         Self {
-            aircraft: "trainer".into(),
+            aircraft: None,
             name: "Imported plan".into(),
             height_agl_m: 100.0,
             runway_length_m: 600.0,
@@ -89,11 +90,32 @@ pub fn stage(id: Id, name: &str, kind: StageKind) -> Stage {
     }
 }
 
-/// A plan without content.
-pub fn plan(assumptions: &Assumptions) -> FlightPlan {
-    FlightPlan {
-        name: assumptions.name.clone(),
-        aircraft: assumptions.aircraft.clone(),
-        ..FlightPlan::default()
-    }
+/// What a file says of the aircraft that flies it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Vehicle {
+    /// Its usual airspeed, m/s.
+    pub cruise_mps: Option<f64>,
+    /// It takes off or lands upright.
+    pub is_vtol: bool,
+}
+
+/// A plan without content; says for which aircraft.
+pub fn plan(assumptions: &Assumptions, vehicle: Vehicle, notes: &mut Notes) -> FlightPlan {
+    let aircraft = assumptions.aircraft.clone().unwrap_or_else(|| suiting(vehicle, notes).to_owned());
+    FlightPlan { name: assumptions.name.clone(), aircraft, ..FlightPlan::default() }
+}
+
+fn suiting(vehicle: Vehicle, notes: &mut Notes) -> &'static str {
+    let name = Profile::suiting(vehicle.cruise_mps, vehicle.is_vtol);
+    let why = match vehicle {
+        Vehicle { is_vtol: true, .. } => "it takes off or lands upright".to_owned(),
+        Vehicle { cruise_mps: Some(speed), .. } => format!("it flies at {speed:.0} m/s"),
+        Vehicle { .. } => "the file doesn't say how fast it flies".to_owned(),
+    };
+    let message = format!(
+        "the plan is for the aircraft `{name}`: {why}; choose another with --plan-for, or in the plan's `aircraft` (there are {})",
+        Profile::names().join(", ")
+    );
+    notes.push("aircraft-assumed", "file", message);
+    name
 }

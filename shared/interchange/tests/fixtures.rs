@@ -12,8 +12,10 @@ fn import(format: Format, bytes: &[u8]) -> Import {
     read(format, bytes, &Assumptions::default()).unwrap()
 }
 
+/// All notes but that of the aircraft, which every import has.
 fn codes(import: &Import) -> Vec<(&str, &str)> {
-    import.notes.iter().map(|n| (n.code, n.place.as_str())).collect()
+    let notes = import.notes.iter().filter(|n| n.code != "aircraft-assumed");
+    notes.map(|n| (n.code, n.place.as_str())).collect()
 }
 
 #[test]
@@ -42,7 +44,6 @@ fn a_qgc_plan() {
     assert_eq!(
         codes(&import),
         [
-            ("cruise-speed", "mission"),
             ("pattern-setting", "item 5"),
             ("pattern-setting", "item 5"),
             ("entry-point", "item 6"),
@@ -94,7 +95,8 @@ fn a_waypoint_list() {
             ("after-landing", "line 21"),
         ]
     );
-    assert!(import.notes[4].message.contains("183 (DO_SET_SERVO)"), "{}", import.notes[4]);
+    let servo = import.notes.iter().find(|n| n.place == "line 15").unwrap();
+    assert!(servo.message.contains("183 (DO_SET_SERVO)"), "{servo}");
 }
 
 #[test]
@@ -257,6 +259,36 @@ fn with_a_runway_a_drawing_can_be_flown() {
 }
 
 /// What is read is a document of ours: written and read again it is the same, without an error.
+#[test]
+fn aircraft_suits_what_the_file_says_of_its_vehicle() {
+    let plan = |vehicle: &str| {
+        format!(r#"{{"fileType":"Plan","version":1,"mission":{{{vehicle}"items":[],"version":2}}}}"#)
+    };
+    let list = |line: &str| format!("QGC WPL 110\n{line}");
+    for (format, text, expected) in [
+        (Format::Plan, plan(r#""cruiseSpeed":15,"vehicleType":1,"#), "foam-wing"),
+        (Format::Plan, plan(r#""cruiseSpeed":15,"vehicleType":22,"#), "vtol-wing"),
+        (Format::Plan, plan(""), "trainer"),
+        (Format::Waypoints, list("1 0 3 178 0 40 -1 0 0 0 0 1"), "fast-wing"),
+        (Format::Waypoints, list("1 0 3 178 2 9 -1 0 0 0 0 1"), "trainer"),
+        (Format::Waypoints, list("1 0 3 84 0 0 0 0 36.3 -84.1 50 1"), "vtol-wing"),
+    ] {
+        let import = import(format, text.as_bytes());
+        assert_eq!(import.plan.aircraft, expected, "{text}");
+        let told = import.notes.iter().find(|n| n.code == "aircraft-assumed").unwrap();
+        assert!(
+            told.message.contains(expected)
+                && told.message.contains("--plan-for")
+                && told.message.contains("long-range-wing"),
+            "{told}"
+        );
+    }
+    let chosen = Assumptions { aircraft: Some("foam-wing".into()), ..Assumptions::default() };
+    let import = read(Format::Plan, plan("").as_bytes(), &chosen).unwrap();
+    assert_eq!(import.plan.aircraft, "foam-wing");
+    assert!(import.notes.iter().all(|n| n.code != "aircraft-assumed"), "it was said");
+}
+
 #[test]
 fn imports_are_good_documents() {
     let files: [(Format, &[u8]); 5] = [

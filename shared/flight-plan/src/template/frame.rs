@@ -15,6 +15,8 @@ const CLEARANCE_M: f64 = 150.0;
 const LOWEST_M: f64 = 60.0;
 /// Descent on the final, metres down per metre forward.
 const GLIDE_SLOPE: f64 = 0.075;
+/// Share of what an aircraft can fly that its mission's tracks may take; the rest is for climbs, turns and the way there.
+const TRACKS: f64 = 0.25;
 /// The ground is looked at in a grid of so many by so many places.
 const GRID: u32 = 24;
 
@@ -27,6 +29,8 @@ pub(crate) fn climb_out() -> Altitude {
 pub(super) struct Frame<'a> {
     pub(super) runway: &'a Runway,
     pub(super) turn_radius_m: f64,
+    /// The length of tracks that the energy allows, metres.
+    pub(super) tracks_m: f64,
     /// From the threshold to the departure's fix, metres.
     ahead_m: f64,
     /// From the threshold back to the beginning and to the gate of the final, metres.
@@ -47,6 +51,7 @@ impl<'a> Frame<'a> {
         let mut frame = Self {
             runway: &outline.runway,
             turn_radius_m,
+            tracks_m: TRACKS * profile.energy_j / profile.cruise_power_w * profile.cruise_airspeed_mps,
             ahead_m: outline.runway.length_m + (8.0 * turn_radius_m).max(1000.0),
             final_m: (20.0 * turn_radius_m).max(2600.0),
             gate_m: (9.0 * turn_radius_m).max(1200.0),

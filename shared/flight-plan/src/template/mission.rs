@@ -11,14 +11,13 @@ use std::sync::Arc;
 
 /// Width of the strip along a line that was drawn, metres.
 const STRIP_M: f64 = 200.0;
+/// How often a fire is scanned.
+const PASSES: f64 = 2.0;
 
 impl Outline {
     /// The mission's legs; the fixes that they need are added.
     pub(super) fn mission(&self, frame: &Frame<'_>, fixes: &mut Vec<Fix>) -> Vec<Leg> {
-        // neighbouring tracks are a turn apart
-        let least_m = 2.2 * frame.turn_radius_m;
-        let half_m = self.extent.half_width_m();
-        let spacing = Spacing::Metres(Value::Constant((half_m / 5.0).max(least_m).ceil()));
+        let spacing = self.spacing(frame);
         let heading_deg = self.runway.heading_deg;
         match self.template {
             Template::Circuit => frame.circuit(fixes),
@@ -41,14 +40,32 @@ impl Outline {
         }
     }
 
+    /// Neighbouring tracks are a turn apart, and not so many that the energy doesn't last.
+    fn spacing(&self, frame: &Frame<'_>) -> Spacing {
+        let least_m = 2.2 * frame.turn_radius_m;
+        let (half_m, radius_m) = (self.extent.half_width_m(), self.extent.radius_m());
+        let scanned_m2 = match self.template {
+            Template::Survey | Template::Search => 4.0 * half_m * radius_m,
+            Template::FireWatch => PASSES * 4.0 * half_m * radius_m,
+            Template::Corridor => 2.0 * radius_m * self.strip_m(),
+            Template::Circuit | Template::Patrol => 0.0,
+        };
+        let affordable_m = scanned_m2 / frame.tracks_m;
+        Spacing::Metres(Value::Constant((half_m / 5.0).max(least_m).max(affordable_m).ceil()))
+    }
+
     fn corridor(&self, spacing: Spacing) -> LegKind {
         let route = self.extent.line(self.runway.heading_deg);
-        let width_m = match &self.extent {
+        let route = route.into_iter().map(|at: LatLon| Place::Position(Value::Constant(at))).collect();
+        LegKind::Pattern(Pattern::Corridor { route, width_m: Value::Constant(self.strip_m()), spacing })
+    }
+
+    /// Width of the strip along a line, metres.
+    fn strip_m(&self) -> f64 {
+        match &self.extent {
             Extent::Around { radius_m, .. } => (radius_m / 2.0).clamp(100.0, 1000.0).round(),
             Extent::Drawn(_) => STRIP_M,
-        };
-        let route = route.into_iter().map(|at: LatLon| Place::Position(Value::Constant(at))).collect();
-        LegKind::Pattern(Pattern::Corridor { route, width_m: Value::Constant(width_m), spacing })
+        }
     }
 
     fn search(&self, spacing: Spacing) -> LegKind {
@@ -93,7 +110,7 @@ fn fire_watch(spacing: Spacing) -> Vec<Leg> {
     ];
     let watch = LegKind::Iterative {
         form: IterativeForm::Forward,
-        count: Some(Value::Constant(2.0)),
+        count: Some(Value::Constant(PASSES)),
         until: None,
         turn,
         body: body.into_iter().map(Arc::new).collect(),

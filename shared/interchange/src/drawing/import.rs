@@ -4,7 +4,7 @@ use super::{Drawing, Feature, LABEL, Shape, Vertex, ends};
 use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
-use crate::synthetic::{self, Assumptions};
+use crate::synthetic::{self, Assumptions, Vehicle};
 use crate::xml::held;
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
@@ -20,14 +20,14 @@ const MAX_RUNWAYS: usize = 100;
 ///
 /// # Errors
 /// More legs or runways than are read.
-pub fn read(drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error> {
+pub fn read(mut drawing: Drawing, assumptions: &Assumptions) -> Result<Import, Error> {
     let legs: usize =
         drawing.features.iter().map(|f| if let Shape::Line(l) = &f.shape { l.len() } else { 1 }).sum();
     if legs > MAX_ITEMS {
         return Err(Error::TooMany { what: "points of lines", limit: MAX_ITEMS });
     }
     let mut names = Names::default();
-    let mut plan = synthetic::plan(assumptions);
+    let mut plan = synthetic::plan(assumptions, Vehicle::default(), &mut drawing.notes);
     if !drawing.name.is_empty() {
         plan.name = held(&drawing.name);
     }

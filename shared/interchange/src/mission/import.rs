@@ -19,6 +19,7 @@ pub const FLY_OVER_M: f64 = 5.0;
 pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
     let mut names = Names::default();
     let runways = Runways::new(assumptions, &mut names);
+    let mut plan = synthetic::plan(assumptions, mission.vehicle(), &mut notes);
     let has_take_off = takes_off(&mission);
     let home_amsl_m = mission.home_amsl_m.or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
     let mut importer = Importer {
@@ -40,7 +41,7 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
     for (entry, ahead) in mission.entries.iter().zip(ahead(&mission.entries)) {
         importer.entry(entry, ahead);
     }
-    let mut plan = importer.finish();
+    importer.finish(&mut plan);
     for mut zone in mission.zones {
         zone.id = names.take(zone.id.as_str(), "zone");
         plan.zones.push(zone);
@@ -300,9 +301,8 @@ impl Importer<'_> {
         }
     }
 
-    fn finish(mut self) -> FlightPlan {
+    fn finish(mut self, plan: &mut FlightPlan) {
         self.flush_at_end();
-        let mut plan = synthetic::plan(self.assumptions);
         if !self.legs.is_empty() {
             let mut mission =
                 synthetic::stage(self.names.take("mission", "mission"), "Mission", StageKind::Mission);
@@ -319,7 +319,6 @@ impl Importer<'_> {
         plan.stages.splice(0..0, self.take_off);
         plan.stages.extend(self.land);
         plan.runways = self.runways.into_vec();
-        plan
     }
 }
 

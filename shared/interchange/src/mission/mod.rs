@@ -16,6 +16,7 @@ mod runways;
 pub use export::{Flown, home, items};
 pub use import::read;
 
+use crate::synthetic::Vehicle;
 use flight_plan::{Leg, Zone};
 use geometry::LatLon;
 
@@ -112,4 +113,24 @@ pub struct Mission {
     pub zones: Vec<Zone>,
     /// Rally points: place in the file, position, metres above home.
     pub rally: Vec<(String, LatLon, Option<f64>)>,
+    /// What flies it.
+    pub vehicle: Vehicle,
+}
+
+impl Mission {
+    /// What flies it, as far as the file or its items say.
+    fn vehicle(&self) -> Vehicle {
+        let items =
+            || self.entries.iter().filter_map(|e| if let Entry::Item(item) = e { Some(item) } else { None });
+        // parameter 1: 0 airspeed, 1 ground speed; others are no cruise
+        let speed = |item: &Item| {
+            (item.command == commands::CHANGE_SPEED && item.param(1) <= 1.0).then(|| item.param(2))
+        };
+        let commanded = || items().filter_map(speed).find(|speed| *speed > 0.0);
+        let upright = |item: &Item| matches!(item.command, commands::VTOL_TAKEOFF | commands::VTOL_LAND);
+        Vehicle {
+            cruise_mps: self.vehicle.cruise_mps.or_else(commanded),
+            is_vtol: self.vehicle.is_vtol || items().any(upright),
+        }
+    }
 }

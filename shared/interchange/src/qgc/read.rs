@@ -4,7 +4,7 @@ use super::json::{flag, list, number, position_3d};
 use super::{fence, old, pattern, way};
 use crate::mission::{self, Approach, Entry, Item, Mission, commands};
 use crate::note::Notes;
-use crate::synthetic::Assumptions;
+use crate::synthetic::{Assumptions, Vehicle};
 use crate::{Error, Import, MAX_ITEMS, text_of};
 use serde_json::Value;
 
@@ -50,11 +50,7 @@ pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
     let mission = file.get("mission").unwrap_or(&Value::Null);
     unknown(&file, KEYS, "file", &mut notes);
     unknown(mission, MISSION_KEYS, "mission", &mut notes);
-    if number(mission, "cruiseSpeed").is_some() {
-        let message = "the cruise speed is left out: QGC plans with it, but no item commands it";
-        notes.push("cruise-speed", "mission", message);
-    }
-    vehicle(mission, &mut notes);
+    let vehicle = vehicle(mission, &mut notes);
     let items = list(mission, "items");
     if items.len() > MAX_ITEMS {
         return Err(Error::TooMany { what: "items", limit: MAX_ITEMS });
@@ -69,6 +65,7 @@ pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
         home_amsl_m: home.and_then(|h| h.1),
         entries: reader.entries,
         zones: fence::read(file.get("geoFence").unwrap_or(&Value::Null), &mut notes)?,
+        vehicle,
         rally: rally(file.get("rallyPoints").unwrap_or(&Value::Null), &mut notes),
     };
     Ok(mission::read(mission, assumptions, notes))
@@ -83,14 +80,16 @@ fn unknown(object: &Value, known: &[&str], place: &str, notes: &mut Notes) {
 }
 
 /// Legwork flies aeroplanes: what another vehicle flies by turning on the spot comes out with turns.
-fn vehicle(mission: &Value, notes: &mut Notes) {
-    let Some(kind) = mission.get("vehicleType").and_then(Value::as_u64) else { return };
+/// QGC's cruise speed chooses the aircraft; no item commands it, so no leg gets it.
+fn vehicle(mission: &Value, notes: &mut Notes) -> Vehicle {
+    let kind = mission.get("vehicleType").and_then(Value::as_u64).unwrap_or(0);
     if kind != 0 && kind != FIXED_WING && !VTOL.contains(&kind) {
         let message = format!(
             "the mission is for another kind of vehicle (MAV_TYPE {kind}): its take-off, landing and turns become those of an aeroplane"
         );
         notes.push("vehicle-type", "mission", message);
     }
+    Vehicle { cruise_mps: number(mission, "cruiseSpeed"), is_vtol: VTOL.contains(&kind) }
 }
 
 fn rally(points: &Value, notes: &mut Notes) -> Vec<(String, geometry::LatLon, Option<f64>)> {
