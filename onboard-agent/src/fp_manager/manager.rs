@@ -199,6 +199,8 @@ impl Manager {
         answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
         if starts {
             self.gateway_session.want(GatewayRequest::Launch);
+            // whatever became of them since the commit
+            self.want_runways();
             self.alarms.new_flight();
             self.plan_history.new_flight();
         } else if rewinds {
@@ -253,7 +255,7 @@ impl Manager {
             BatchResult::Refused(first, reason) => {
                 tracing::warn!(first = first.0, reason, "the gateway refused waypoints");
                 self.step(now, Input::Rejected { first: first.convert(), reason }, out);
-                if self.is_in_emergency() {
+                if self.is_in_emergency() && self.executor.status_phase() == Phase::Holding {
                     // its plan can't be flown: a gateway that takes no waypoints has to bring the aircraft home
                     self.gateway_session.want(GatewayRequest::Safe);
                 }

@@ -195,6 +195,12 @@ impl<S: Storage> Plans<'_, S> {
 }
 
 impl Manager {
+    /// What a restart goes on from. A plan that the gateway may still refuse can't be gone back on by then, nor from now on.
+    pub fn state_to_keep(&mut self) -> (Saved, Vec<Arc<Program>>) {
+        self.executor.forget_plan_before();
+        self.saved()
+    }
+
     /// Everything needed to go on from here, and the plans it names.
     pub fn saved(&self) -> (Saved, Vec<Arc<Program>>) {
         let plans = [self.executor.program(), self.executor.proposed()];

@@ -366,8 +366,8 @@ impl FpManager {
         PlanDocument { info: publish::plan_info(executor), xml }
     }
 
-    fn save_state(&self, out: &mut Out) {
-        let (saved, plans) = self.manager.saved();
+    fn save_state(&mut self, out: &mut Out) {
+        let (saved, plans) = self.manager.state_to_keep();
         out.push(Output::State(Box::new(saved), plans));
     }
 }

@@ -196,3 +196,31 @@ async fn straight_way_to_a_leg_through_a_zone_is_taken_at_once_and_told() {
     flight.step_until(|g| g.finished()).await;
     assert!(!legs(&flight.gateway).contains(&"south".to_owned()));
 }
+
+/// What the reviews could not know, the gateway refuses all the same: the plan before the commit is flown on, and that is told.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_plan_that_the_gateway_refuses_leaves_the_one_before_it_flying() {
+    let mut flight = Flight::new(None).await;
+    let mut events = flight.client.listen(topic::EVENTS, Start::Now).unwrap();
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "take-off")).await;
+    flight.gateway.refuse_leg = Some("detour".into());
+    flight.load(&SQUARE.replace("side3", "detour")).await;
+    flight.step_until(|g| g.finished()).await;
+    let flown = legs(&flight.gateway);
+    assert!(flown.iter().any(|leg| leg == "side3") && !flown.iter().any(|leg| leg == "detour"), "{flown:?}");
+    assert!(!flight.gateway.requests.contains(&GatewayRequest::Hold), "{:?}", flight.gateway.requests);
+    let mut told = None;
+    while let Some(occurrence) = events.try_recv() {
+        if let Occurrence::Event {
+            event: Stamped { value: PlanEvent::WaypointsRejected { reason, .. }, .. },
+            ..
+        } = occurrence
+        {
+            told = Some(reason);
+        }
+    }
+    let told = told.expect("the refusal is told");
+    assert!(told.contains("not there") && told.contains("the plan before the commit is flown on"), "{told}");
+}

@@ -6,6 +6,7 @@
 mod acting;
 mod commands;
 mod emergency;
+mod plan_before;
 mod progress;
 mod proposal;
 mod refresh;
@@ -25,6 +26,7 @@ use crate::layout::world::{World, seconds_between};
 use crate::value::Config;
 use aircraft::Profile;
 use flight_plan::{Program, Variables};
+use plan_before::PlanBefore;
 use setup::Setup;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -34,6 +36,7 @@ use terrain::Terrain;
 pub struct Executor {
     setup: Setup,
     proposed: Option<Arc<Program>>,
+    plan_before: Option<Box<PlanBefore>>,
     life: Life,
     flight: Flight,
     last_step: Option<Time>,
@@ -43,12 +46,15 @@ impl Executor {
     /// An executor without a plan.
     pub fn new(config: Config, terrain: Arc<dyn Terrain>, profile: Profile) -> Self {
         let setup = Setup { config, terrain, profile, program: Arc::default(), seen: None };
-        Self { setup, proposed: None, life: Life::default(), flight: Flight::default(), last_step: None }
+        let (life, flight) = (Life::default(), Flight::default());
+        Self { setup, proposed: None, plan_before: None, life, flight, last_step: None }
     }
 
     /// One thing happened at `now`; what has to be done about it is appended to `out`.
     pub fn step(&mut self, now: Time, input: Input, out: &mut Vec<Output>) {
         self.advance_clock(now);
+        self.weigh_plan_before(&input);
+        let before = out.len();
         match input {
             Input::Tick => {}
             Input::Aircraft(state) if state.is_sound() => self.life.put_aircraft(Some(state)),
@@ -68,6 +74,10 @@ impl Executor {
             Input::GatewayControls(controls) => self.gateway_controls(controls, out),
         }
         self.do_what_is_due(out);
+        // what is done once is not to be done again by going back
+        if out.iter().skip(before).any(|output| matches!(output, Output::Act { .. })) {
+            self.forget_plan_before();
+        }
     }
 
     /// When to call [`Executor::step`] with a tick, if nothing else happens before.

@@ -386,3 +386,20 @@ fn a_flight_that_holds_waits_or_answers_an_emergency_is_looked_at_to_its_end() {
     homeward.command(Command::Emergency { cause: flight_plan::Cause::Energy, plan: None });
     assert_eq!(homeward.errors_of_writing("c", d3), NONE, "there it doesn't go any more");
 }
+
+/// The gateway judges the first waypoint from where the aircraft is: so does the review.
+#[test]
+fn a_plan_that_leads_straight_to_where_the_gateway_refuses_to_go() {
+    let direct = |to: LatLon| {
+        let legs = format!(
+            r#"<TF id="a" fix="A1"/><DF id="b" lat="{}" lon="{}"/><TF id="c" fix="C1"/>"#,
+            to.lat_deg, to.lon_deg
+        );
+        document(&legs, "")
+    };
+    let flight = Flight::on("b", &direct(fix("B1")));
+    assert_eq!(flight.errors_of_plan(&direct(fix("B2")), Conditions::default()), NONE);
+    let far = direct(fix("B1").destination(180.0, 60_000.0));
+    let found = flight.errors_of_plan(&far, Conditions::default());
+    assert!(found.contains(&("gateway-refuses", "b".to_owned())), "{found:?}");
+}

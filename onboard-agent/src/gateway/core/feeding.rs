@@ -5,8 +5,9 @@ use super::batch;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_safe};
 use crate::gateway::order::Time;
-use flight_exec::review::plausibility::Context;
-use usal::contract::{Action, Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
+use flight_exec::review::plausibility::{self, Context};
+use usal::contract::{Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
+use wire::Convert;
 
 impl Gateway {
     /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the plan of the flight or an
@@ -132,8 +133,8 @@ impl Gateway {
     /// Where the aircraft is, as a waypoint that the batch follows on; in flight only.
     fn here(&self, feed: &Feed) -> Option<Waypoint> {
         let position = self.place().filter(|_| self.telemetry.is_airborne())?;
-        let first = feed.waypoints.first()?;
-        Some(Waypoint { position, action: Action::Fly, fly_over: true, ..first.clone() })
+        let first = feed.waypoints.first()?.clone().convert();
+        Some(plausibility::from_here(position, &first).convert())
     }
 
     fn take(&mut self, feed: Feed, out: &mut Vec<Output>) {

@@ -1,12 +1,13 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use super::Executor;
-use crate::api::{Action, Command, Output, Phase, Refusal, Token};
+use crate::api::{Action, Command, FARTHEST_M, Output, Phase, Refusal, Token};
 use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
 use crate::layout::cursor::{Cursor, Step};
 use crate::layout::path::{PathState, distance_m};
 use crate::layout::stretch::IssuedWaypoint;
+use crate::layout::world::World;
 use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
 impl Executor {
@@ -176,6 +177,7 @@ impl Executor {
         if matches!(probe.next(&self.world()), Step::Ended { .. }) {
             return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
         }
+        self.check_in_reach(&cursor, &self.world())?;
         // skipped before it was entered, it is passed all the same, and what led to it with it
         let choices = self.flight.horizon.take_choices();
         for choice in &choices {
@@ -232,6 +234,16 @@ impl Executor {
         Ok(())
     }
 
+    /// The first waypoint that a cursor gives is not farther from the aircraft than a gateway takes it.
+    pub(super) fn check_in_reach(&self, cursor: &Cursor, world: &World) -> Result<(), Refusal> {
+        let (Step::Waypoint(first), Some(aircraft)) = (cursor.clone().next(world), self.life.aircraft())
+        else {
+            return Ok(());
+        };
+        let far_m = aircraft.position.distance_m(first.position);
+        if far_m > FARTHEST_M { Err(refusal("too-far", too_far(far_m))) } else { Ok(()) }
+    }
+
     /// A cursor at the beginning of a leg of a section, its path starting at the aircraft.
     pub(super) fn cursor_at(&self, leg: &Id, section: Option<usize>) -> Result<Cursor, Refusal> {
         let program = self.flying_program()?;
@@ -244,6 +256,7 @@ impl Executor {
         let now = self.place_reached();
         let mut cursor = now.moved_to(&target, &self.world());
         cursor.move_path_to(self.here_at_level_of(&now));
+        self.check_in_reach(&cursor, &self.world())?;
         Ok(cursor)
     }
 
@@ -323,4 +336,12 @@ impl Executor {
         self.life.clock.ask_for_refresh(self.setup.config.debounce_s);
         Ok(())
     }
+}
+
+/// Why a way is not begun.
+pub(super) fn too_far(far_m: f64) -> String {
+    let (far, most) = (far_m / 1e3, FARTHEST_M / 1e3);
+    format!(
+        "it begins {far:.0} km from the aircraft and the gateway takes at most {most:.0} km: enter at a nearer leg, or put one on the way"
+    )
 }

@@ -183,14 +183,19 @@ impl Executor {
         (!matches!(tail.next(world), Step::Ended { .. })).then_some(last)
     }
 
-    /// A batch was refused: the aircraft holds rather than to run dry.
+    /// A batch was refused. If it is the beginning of a plan that was committed, the plan before it flies on; else the aircraft holds
+    /// rather than to run dry.
     pub(super) fn rejected(&mut self, first: Token, reason: String, out: &mut Vec<Output>) {
         let horizon = &self.flight.horizon;
         let index = horizon.iter().position(|h| h.waypoint.token >= first);
-        let refused = index.and_then(|i| horizon.get(i));
-        let leg = refused.map(|h| h.place.leg.clone());
-        out.push(Output::Event(Event::WaypointsRejected { leg, reason }));
-        let (Some(index), Some(refused)) = (index, refused) else { return };
+        let leg = index.and_then(|i| horizon.get(i)).map(|h| h.place.leg.clone());
+        let said = out.len();
+        let goes_back = self.go_back_to_plan_before(first, out);
+        let advice = "; the plan before the commit is flown on: correct the new one and propose it again";
+        let reason = if goes_back { reason + advice } else { reason };
+        out.insert(said, Output::Event(Event::WaypointsRejected { leg, reason }));
+        let refused = index.and_then(|i| self.flight.horizon.get(i));
+        let (Some(index), Some(refused), false) = (index, refused, goes_back) else { return };
         let mut cursor = self.bookmark(index);
         let of_leg = refused.passage == cursor.passage;
         // the leg at whose end it circles is over, as in a refresh

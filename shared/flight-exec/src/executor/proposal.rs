@@ -1,7 +1,8 @@
 //! A plan put forward: whether it may be committed, what it changes, and where the aircraft would go.
 
 use super::Executor;
-use crate::api::{Answer, Command, EntryReport, ProposalReport, Refusal};
+use super::commands::too_far;
+use crate::api::{Answer, Command, EntryReport, FARTHEST_M, ProposalReport, Refusal};
 use crate::flight::refusal;
 use flight_plan::diff::changes;
 use flight_plan::{Change, ChangeKind, Id, Problem, Program};
@@ -49,7 +50,13 @@ impl Executor {
             ..differences(&self.setup.program, program)
         };
         match self.outcome(program, None) {
-            Ok(after) => self.report_outcome(&after, &mut report),
+            Ok(after) => {
+                self.report_outcome(&after, &mut report);
+                if let Some(reason) = self.begins_out_of_reach(&after) {
+                    report.acceptable = false;
+                    report.problems.push(reason);
+                }
+            }
             Err(refused) => {
                 report.entry_needed = refused.code == "entry-needed";
                 report.entries = self.entries(program);
@@ -82,6 +89,13 @@ impl Executor {
             Some(EntryReport { leg: leg.id.clone(), position, in_m, in_s: in_m / self.ground_speed_mps() })
         });
         tried.collect()
+    }
+
+    /// Why the gateway would not take the first waypoint of what follows, if it is a new one that is too far from the aircraft.
+    fn begins_out_of_reach(&self, after: &Executor) -> Option<String> {
+        let first = &after.flight.horizon.front()?.waypoint;
+        let far_m = self.life.aircraft()?.position.distance_m(first.position);
+        (self.is_flying() && first.token > self.last_token() && far_m > FARTHEST_M).then(|| too_far(far_m))
     }
 
     fn ground_speed_mps(&self) -> f64 {

@@ -117,7 +117,7 @@ impl Executor {
     /// From here on it goes on as another one does, but for an offset in numbers and time.
     pub(crate) fn is_equivalent(&self, other: &Self, offset: &Offset) -> bool {
         // a rehearsal flies plan after plan with the same settings; its instants are compared where it is stepped
-        let Self { setup: _, proposed: _, life, flight, last_step: _ } = self;
+        let Self { setup: _, proposed: _, plan_before: _, life, flight, last_step: _ } = self;
         life.is_equivalent(&other.life, offset) && flight.is_equivalent(&other.flight, offset)
     }
 }

@@ -1,6 +1,7 @@
 //! A plan update in flight: committed by hash, taken over at the place where the aircraft is.
 
 use super::Executor;
+use super::plan_before::PlanBefore;
 use crate::api::{Event, Output, Phase, Refusal};
 use crate::flight::refusal;
 use crate::layout::cursor::{Cursor, CursorPhase};
@@ -27,7 +28,9 @@ impl Executor {
             self.enter_phase(Phase::Idle, out);
             return Ok(());
         }
-        match self.carried_over(&proposed, entry)? {
+        let (carried, before, put_out) =
+            (self.carried_over(&proposed, entry)?, PlanBefore::of(self), out.len());
+        match carried {
             Carried::Enter(cursor) => {
                 self.activate(proposed, out);
                 self.jump(*cursor, out);
@@ -37,6 +40,7 @@ impl Executor {
                 self.go_on_in(proposed, &bookmarks, keep, out);
             }
         }
+        self.plan_before = before.until_taken(out.get(put_out..).unwrap_or_default());
         Ok(())
     }
 
@@ -135,6 +139,9 @@ impl Executor {
         }
         let mut cursor = now.placed_at(&target, &now.loop_ids(&world), new);
         cursor.move_path_to(self.here_at_level_of(&now));
+        let mut values = self.life.values.clone();
+        values.carry_over(&new.plan, &mut Vec::new());
+        self.check_in_reach(&cursor, &World { program: new, variables: values.current(), ..world })?;
         Ok(Carried::Enter(Box::new(cursor)))
     }
 

@@ -42,6 +42,8 @@ pub(super) struct Flown {
     pub emergency: Option<usize>,
     /// When it starts, seconds since the start of the main plan.
     pub start_s: f64,
+    /// So many of the waypoints are aboard already.
+    pub kept: usize,
     /// Index of the first waypoint that a real flight may come to later than this one.
     pub hurried_from: Option<usize>,
 }
@@ -51,6 +53,13 @@ impl Flown {
     pub fn enters(&self, point: &Point) -> bool {
         let passage = |index: usize| self.waypoints.get(index).map(|w| w.passage);
         self.emergency.is_some() && passage(point.waypoint) == passage(0)
+    }
+
+    /// In the air, where the aircraft is when its first waypoint is put to the gateway.
+    pub fn begins_at(&self) -> Option<LatLon> {
+        let first = self.waypoints.first().filter(|_| self.kept == 0)?;
+        let takes_off = matches!(first.waypoint.action, Action::TakeOff { .. });
+        self.points.first().filter(|_| !takes_off).map(|point| point.position)
     }
 
     /// When a real flight is at a point.
@@ -86,9 +95,9 @@ pub(super) fn fly(
     emergency: Option<usize>,
     start_s: f64,
 ) -> Flown {
-    let Layout { waypoints, hurried_from, .. } = layout;
+    let Layout { waypoints, hurried_from, kept, .. } = layout;
     let (points, reached) = (Vec::new(), Vec::new());
-    let flown = Flown { waypoints, points, reached, emergency, start_s, hurried_from };
+    let flown = Flown { waypoints, points, reached, emergency, start_s, kept, hurried_from };
     let guidance = Guidance::new(aircraft.profile().clone());
     Flight { aircraft, guidance, wind, steps: 0, steered_s: 0.0, flown }.flown()
 }

@@ -37,6 +37,8 @@ pub(super) struct Layout {
     pub without_ground: Vec<(Id, String)>,
     /// It came to the plan's end.
     pub complete: bool,
+    /// So many of the waypoints are aboard already.
+    pub kept: usize,
     /// Index of the first waypoint that a real flight may come to later than this one: a loop was left early, a holding or a wait.
     pub hurried_from: Option<usize>,
 }
@@ -135,7 +137,7 @@ pub(super) fn lay_out(
     counts: &[LoopCount],
     decisions: &[Decision],
 ) -> Layout {
-    let mut layout = Layout { waypoints: kept, ..Layout::default() };
+    let mut layout = Layout { kept: kept.len(), waypoints: kept, ..Layout::default() };
     let mut world = World { counts, decisions, ..executor.world() };
     let from_s = cursor.path.time_s;
     let endless = shortened(world.program);

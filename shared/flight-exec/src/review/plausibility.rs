@@ -45,6 +45,11 @@ const NUMBERS: [Rule; 2] = [number, place];
 /// Rules on one waypoint and the one before it.
 const RULES: [Rule; 6] = [altitude, speed, loiter, distance, gradient, above_terrain];
 
+/// Where the aircraft is, as the waypoint that `first` follows on when nothing is flown before it.
+pub fn from_here(here: LatLon, first: &Waypoint) -> Waypoint {
+    Waypoint { position: here, action: Action::Fly, fly_over: true, ..first.clone() }
+}
+
 /// Everything that is wrong with a waypoint that follows on `previous`, whose own predecessor is at `before_previous`.
 /// Empty: it may be flown.
 pub fn faults(

@@ -1,7 +1,7 @@
 //! `gateway-refuses`: a waypoint of the path that the gateway would not take.
 
 use super::View;
-use super::plausibility::{Context, faults};
+use super::plausibility::{Context, faults, from_here};
 use flight_plan::Problem;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
@@ -11,8 +11,11 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         wind_mps: view.conditions.wind.speed_mps(),
     };
     for flown in view.flights.all() {
-        for index in 0..flown.waypoints.len() {
-            let at = |back: usize| Some(&flown.waypoints.get(index.checked_sub(back)?)?.waypoint);
+        let first = flown.waypoints.first().map(|first| &first.waypoint);
+        let here = flown.begins_at().zip(first).map(|(here, first)| from_here(here, first));
+        let path: Vec<_> = here.iter().chain(flown.waypoints.iter().map(|w| &w.waypoint)).collect();
+        for index in usize::from(here.is_some())..path.len() {
+            let at = |back: usize| path.get(index.checked_sub(back)?).copied();
             let Some(waypoint) = at(0) else { continue };
             for fault in faults(&context, at(2).map(|w| w.position), at(1), waypoint) {
                 let message = format!(

@@ -400,6 +400,8 @@ fn a_leg_that_goes_on_as_another_kind_of_leg_can_be_skipped() {
     rig.update(&program(&with(r#"<TF id="k" fix="D2"/>"#))).unwrap();
     let new = rig.buffer.iter().find(|w| w.position.distance_m(fix("D2")) < 1.0).unwrap().token;
     rig.buffer.retain(|w| w.token < new);
+    // as after a restart: the plan before is no way back
+    rig.executor.forget_plan_before();
     rig.step(flight_exec::Input::Rejected { first: new, reason: "too steep".into() });
     rig.command(Command::SkipLeg).unwrap();
     rig.command(Command::Resume).unwrap();

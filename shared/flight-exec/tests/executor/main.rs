@@ -21,6 +21,7 @@ mod legs_refused;
 mod legs_turned;
 mod loops;
 mod questions;
+mod refused_by_gateway;
 mod reports;
 mod rig;
 mod updates;

@@ -239,8 +239,13 @@ fn refused_batch(trace: &Trace, found: &mut Findings) {
         if !step.before.tokens().contains(first) {
             continue;
         }
-        let told =
-            step.events().any(|e| matches!(e, Event::WaypointsRejected { reason: r, .. } if r == reason));
+        let told = step
+            .events()
+            .any(|e| matches!(e, Event::WaypointsRejected { reason: r, .. } if r.starts_with(reason)));
+        if step.goes_back() {
+            found.expect(step, told && !step.moment.outputs.contains(&Output::Hold), || "it holds".into());
+            continue;
+        }
         let holds = step.after.status.phase == Phase::Holding && step.moment.outputs.contains(&Output::Hold);
         found.expect(step, told && holds, || format!("{:?}", step.moment.outputs));
     }

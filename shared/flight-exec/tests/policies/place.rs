@@ -79,7 +79,15 @@ fn survives_resume(trace: &Trace, found: &mut Findings) {
 
 fn survives_refusal(trace: &Trace, found: &mut Findings) {
     let refused = |s: &Step| matches!(s.input(), Some(Input::Rejected { .. }));
-    trace.steps().filter(refused).for_each(|s| stays(s, found));
+    for step in trace.steps().filter(refused) {
+        if step.goes_back() {
+            // to where it was before the commit
+            let (before, after) = (trace.step(step.at - 1).before.place(), step.after.place());
+            found.expect(step, before == after, || format!("{before:?} became {after:?}"));
+        } else {
+            stays(step, found);
+        }
+    }
 }
 
 fn survives_control(trace: &Trace, found: &mut Findings) {

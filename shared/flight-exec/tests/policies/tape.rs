@@ -138,7 +138,7 @@ fn order<'a>(
             let plan = flown_alternate(step, None)?;
             return (alternate != Some(plan)).then_some(Observed::Jump(Jump::Emergency(plan)));
         }
-        Command::Commit { entry, .. } if step.before.is_flying() => {
+        Command::Commit { entry, .. } if step.before.is_flying() && !step.is_undone() => {
             let current = step.before.place().map(|p| &p.leg);
             Observed::Jump(match (entry, current) {
                 (Some(entry), current) if Some(entry) != current => Jump::Enter(program, entry),

@@ -165,7 +165,19 @@ impl<'a> Step<'a> {
                     | Command::Commit { .. }
             )
         };
-        self.accepted().is_some_and(goes)
+        self.accepted().is_some_and(goes) && !self.is_undone()
+    }
+
+    /// The gateway refuses a batch with which a plan began that was committed: the plan before is gone on with.
+    pub fn goes_back(&self) -> bool {
+        let activates = || self.events().any(|e| matches!(e, Event::PlanActivated { .. }));
+        matches!(self.input(), Some(Input::Rejected { .. })) && activates()
+    }
+
+    /// A commit that is gone back on at once.
+    pub fn is_undone(&self) -> bool {
+        let next = || self.trace.steps().nth(self.at + 1);
+        matches!(self.accepted(), Some(Command::Commit { .. })) && next().is_some_and(|next| next.goes_back())
     }
 
     /// The leg steered to before this step has been entered: announced, and nobody has gone elsewhere since.

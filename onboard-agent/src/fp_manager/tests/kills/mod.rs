@@ -101,7 +101,7 @@ impl Flight {
     }
 
     fn hand_in_state(&mut self) {
-        let (saved, plans) = self.process.manager.saved();
+        let (saved, plans) = self.process.manager.state_to_keep();
         self.process.writer.perform(self.time, vec![Job::State(Box::new(saved), plans)]);
         if self.alive().is_ok() {
             self.all_is_synced();
