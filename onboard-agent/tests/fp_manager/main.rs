@@ -420,14 +420,15 @@ async fn killed_and_restarted_it_goes_on_at_its_place() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn runways_of_the_plan_are_stored_when_it_becomes_active_and_after_each_join() {
+async fn runways_of_the_plan_are_stored_when_it_becomes_active_at_the_start_and_after_each_join() {
     let mut flight = Flight::new(None).await;
     flight.load(SQUARE).await;
     flight.step_until(|g| g.runways.len() == 1).await;
     flight.start().await;
+    flight.step_until(|g| g.runways.len() == 2).await;
     flight.step_until(|g| g.flown.len() >= 2).await;
     flight.gateway.safe_hold();
-    flight.step_until(|g| g.runways.len() == 2).await;
+    flight.step_until(|g| g.runways.len() == 3).await;
     let plan = flight_plan::read(SQUARE).plan;
     let ids: Vec<String> = plan.runways.iter().map(|r| r.id.to_string()).collect();
     for stored in &flight.gateway.runways {

@@ -30,10 +30,11 @@ enum Watch {
     PositionStale,
     Disobeys,
     NoSafeRunway,
+    NoRunwayStored,
     NotStored,
 }
 
-const WATCHES: [Watch; 8] = [
+const WATCHES: [Watch; 9] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EnergyLow,
@@ -41,6 +42,7 @@ const WATCHES: [Watch; 8] = [
     Watch::PositionStale,
     Watch::Disobeys,
     Watch::NoSafeRunway,
+    Watch::NoRunwayStored,
     Watch::NotStored,
 ];
 
@@ -96,6 +98,13 @@ impl Watch {
                 "Safe mode knows no runway within reach; the autopilot returns by its own means. Store runways before flight.",
                 None,
             ),
+            Watch::NoRunwayStored => (
+                "no-runway-stored",
+                Severity::Caution,
+                "safe",
+                "Safe mode has no runway to return to. Commit or start a plan that has one, or store runways by hand.",
+                None,
+            ),
             Watch::NotStored => (
                 "not-stored",
                 Severity::Caution,
@@ -112,6 +121,8 @@ impl Watch {
         match self {
             Watch::GpsLost | Watch::EngineOut => Duration::from_secs(1),
             Watch::EnergyLow => Duration::from_secs(2),
+            // those of a plan come a moment after it
+            Watch::NoRunwayStored => Duration::from_secs(3),
             _ => Duration::ZERO,
         }
     }
@@ -126,6 +137,8 @@ pub struct AlarmInputs {
     pub sinks_below_target: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
+    /// A plan is to be flown, and Safe mode would have no runway.
+    pub no_runway_stored: bool,
     /// What must survive a restart can't be written.
     pub not_stored: bool,
 }
@@ -194,6 +207,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::PositionStale => t.is_airborne() && is_stale(now, t),
         Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
         Watch::NoSafeRunway => inputs.no_safe_runway,
+        Watch::NoRunwayStored => inputs.no_runway_stored,
         Watch::NotStored => inputs.not_stored,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Gateway;
 use super::io::{Intent, Output};
-use super::safe::is_usable;
+use super::safe::{choose, is_usable};
 use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Order, Time};
 use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
@@ -157,6 +157,11 @@ impl Gateway {
                 "Runway {} can't be used: its numbers have to be in range and its length at least {least:.0} m.",
                 bad.id
             ));
+        }
+        let in_use = is_flying(self.state) || self.telemetry.armed;
+        let in_reach = || self.situation().is_some_and(|here| choose(&runways, &here).is_some());
+        if in_use && !in_reach() {
+            return Err("Safe mode needs a runway within reach from here, and the list has none: add one, or change the list on the ground.".into());
         }
         self.runways = runways;
         out.push(Output::Save);

@@ -142,15 +142,7 @@ impl Gateway {
 
     fn return_home(&mut self, out: &mut Vec<Output>) {
         self.control.safe_since = None;
-        let Some((_, fix)) = self.telemetry.fix else { return self.return_by_itself(out) };
-        let situation = Situation {
-            position: fix.position,
-            altitude_amsl_m: fix.altitude_amsl_m,
-            air: self.telemetry.air.map(|(_, a)| a),
-            battery: self.telemetry.battery(),
-            profile: &self.settings.profile,
-            terrain: self.settings.terrain.as_deref(),
-        };
+        let Some(situation) = self.situation() else { return self.return_by_itself(out) };
         let Some(runway) = safe::choose(&self.runways, &situation) else {
             return self.return_by_itself(out);
         };
@@ -160,6 +152,19 @@ impl Gateway {
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
         self.change(Trigger::ReturnDue, &cause, out);
         out.push(Output::Save);
+    }
+
+    /// Where the aircraft is, for the choice of a runway.
+    pub(super) fn situation(&self) -> Option<Situation<'_>> {
+        let (_, fix) = self.telemetry.fix?;
+        Some(Situation {
+            position: fix.position,
+            altitude_amsl_m: fix.altitude_amsl_m,
+            air: self.telemetry.air.map(|(_, a)| a),
+            battery: self.telemetry.battery(),
+            profile: &self.settings.profile,
+            terrain: self.settings.terrain.as_deref(),
+        })
     }
 
     /// No runway is known within reach (or no position): the autopilot's own return.

@@ -219,15 +219,7 @@ impl Flight {
 
     /// Tells the gateway of the runway at home.
     pub fn store_runway(&mut self) {
-        let runway = SafeRunway {
-            id: "R05".into(),
-            threshold: HOME,
-            elevation_amsl_m: GROUND_M,
-            heading_deg: HEADING_DEG,
-            length_m: 600.0,
-            priority: 1,
-        };
-        self.ask(GatewayRequest::SetRunways { runways: vec![runway] }).unwrap();
+        self.ask(GatewayRequest::SetRunways { runways: vec![runway_at(HOME)] }).unwrap();
     }
 
     /// It has been steered to this waypoint or to one after it.
@@ -244,6 +236,17 @@ impl Flight {
         assert_eq!(self.feed(None, waypoints), FeedAnswer::Accepted);
         self.ask(GatewayRequest::Launch).unwrap();
         self.run_until(120.0, "launch", |f| f.state() == GatewayState::Nav);
+    }
+}
+
+pub fn runway_at(threshold: LatLon) -> SafeRunway {
+    SafeRunway {
+        id: "R05".into(),
+        threshold,
+        elevation_amsl_m: GROUND_M,
+        heading_deg: HEADING_DEG,
+        length_m: 600.0,
+        priority: 1,
     }
 }
 
@@ -288,4 +291,5 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod runways;
 mod tests;

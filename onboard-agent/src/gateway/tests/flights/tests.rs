@@ -248,6 +248,7 @@ fn at_a_fifth_of_packets_lost_every_launch_succeeds_and_nothing_is_alarming() {
     for seed in 0..60 {
         println!("seed {seed}");
         let mut flight = Flight::new(seed, &["packet-loss=0.2"]);
+        flight.store_runway();
         let mut plan = vec![take_off()];
         plan.extend(zigzag(0, 8, 250.0));
         plan.extend(landing());
