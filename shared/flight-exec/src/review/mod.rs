@@ -19,6 +19,7 @@
 mod ahead;
 mod alternates;
 mod altitudes;
+mod arcs;
 mod ceiling;
 mod emergency_coverage;
 mod emergency_routes;
@@ -108,7 +109,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 16] = [
+const RULES: [Rule; 17] = [
     refused::check,
     unseen::check,
     wind::check,
@@ -118,6 +119,7 @@ const RULES: [Rule; 16] = [
     ceiling::check,
     altitudes::check,
     turns::check,
+    arcs::check,
     tracks::check,
     waypoints::check,
     endurance::check,
