@@ -80,7 +80,8 @@ impl Forecaster {
         if plan.stages.is_empty() {
             return Err("Nothing to be flown yet: add stages and legs to the plan.".into());
         }
-        let start = if plan.home().is_some() { Start::Runway } else { in_flight(plan)? };
+        let start = Start::of(program, self.terrain.as_ref());
+        let start = start.ok_or("Add a take-off stage: the preview does not know where to start.")?;
         let outcome = self.rehearsal.fly(program, start, &mut |_| true);
         let Some(preview) = self.rehearsal.preview() else {
             return Err(outcome.err().map_or_else(String::new, |why| why.to_string()));
@@ -109,13 +110,6 @@ fn cut_short(preview: &Preview, outcome: Result<(), PreviewError>) -> Option<Str
         Err(why) => Some(why.to_string()),
         Ok(()) => (!preview.landed).then(|| "The flight does not end on the ground.".to_owned()),
     }
-}
-
-/// A plan without take-off is entered at its first fix.
-fn in_flight(plan: &FlightPlan) -> Result<Start, String> {
-    let position = plan.fixes.first().map(|f| f.position).filter(|p| p.is_valid());
-    let position = position.ok_or("Add a take-off stage: the preview does not know where to start.")?;
-    Ok(Start::InFlight { position, altitude_amsl_m: 1000.0, heading_deg: 0.0 })
 }
 
 /// The points of a track; those that were in the former one have the same ground below them and the same distances between them.

@@ -3,8 +3,9 @@
 use super::source::Loaded;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
 use aircraft::{Profile, Wind};
+use flight_exec::Event;
 use flight_exec::rehearse::{Options, Preview, PreviewError, Scenario, Start, preview_with};
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Place, Program, Value};
+use flight_plan::{FlightPlan, Id, Program};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -63,26 +64,22 @@ pub fn why(error: &PreviewError) -> String {
 
 /// On the runway, or before the first place of a plan that doesn't take off.
 fn start(program: &Program, terrain: &dyn Terrain) -> Start {
-    let plan = program.flown();
-    let first = plan.stages.iter().flat_map(|s| &s.legs).next();
-    let place = first.and_then(|leg| match leg.place()? {
-        Place::Fix(id) => plan.fix(id).map(|f| f.position),
-        Place::Position(Value::Constant(position)) => Some(*position),
-        Place::Position(Value::Expression(_)) => None,
-    });
-    match (plan.home(), place) {
-        (None, Some(place)) => {
-            let position = place.destination(180.0, BEFORE_FIRST_M);
-            let ground_m = terrain.elevation_m(position).unwrap_or(0.0);
-            let altitude_amsl_m = match first.and_then(|l| l.altitude.as_ref()) {
-                Some(Altitude { metres: Value::Constant(m), reference: AltitudeReference::Amsl }) => *m,
-                Some(Altitude { metres: Value::Constant(m), .. }) => ground_m + m,
-                _ => ground_m + 100.0,
-            };
-            Start::InFlight { position, altitude_amsl_m, heading_deg: 0.0 }
+    match Start::of(program, terrain) {
+        Some(Start::InFlight { position, altitude_amsl_m, heading_deg }) => {
+            let position = position.destination(180.0, BEFORE_FIRST_M);
+            Start::InFlight { position, altitude_amsl_m, heading_deg }
         }
-        _ => Start::Runway,
+        Some(Start::Runway) | None => Start::Runway,
     }
+}
+
+/// Legs that were left out because they can't be laid out, and why.
+pub fn left_out(preview: &Preview) -> Vec<(&Id, &str)> {
+    let refused = preview.events.iter().filter_map(|(_, event)| match event {
+        Event::PatternRefused { leg, reason } => Some((leg, reason.as_str())),
+        _ => None,
+    });
+    refused.collect()
 }
 
 /// The previewed track, cut into passages. `plans`: the plan and its updates, as they are flown: with the legs of calls.

@@ -11,12 +11,14 @@ mod rehearsal;
 mod scenario;
 mod shift;
 mod situation;
+mod start;
 mod what_if;
 
 pub use glide::GlidePoint;
 pub(crate) use glide::{GlideStart, glide, names_engine, route, turn_rad};
 pub use rehearsal::{Diversion, Glide, Kept, Powered, Reach, Rehearsal};
 pub use scenario::{Act, Scenario, Trigger, When};
+pub use start::Start;
 pub use what_if::WhatIf;
 
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
@@ -29,22 +31,6 @@ use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use terrain::Terrain;
-
-/// Where the flight starts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// On the runway of the plan's take-off stage.
-    Runway,
-    /// In cruise.
-    InFlight {
-        /// Where.
-        position: LatLon,
-        /// Metres AMSL.
-        altitude_amsl_m: f64,
-        /// Degrees true.
-        heading_deg: f64,
-    },
-}
 
 /// How far and how finely.
 #[derive(Debug, Clone, PartialEq)]

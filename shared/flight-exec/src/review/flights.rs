@@ -20,7 +20,7 @@ use crate::rehearse::{
 };
 use crate::value::{Config, Decision};
 use aircraft::{Aircraft, Profile, Wind};
-use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Variables};
+use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program};
 use geometry::LatLon;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -357,19 +357,10 @@ fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
             used_j: 0.0,
         };
     }
-    let variables = Variables::initial(program.flown());
-    let flight = flight_plan::FlightState::on_ground(LatLon::new(0.0, 0.0));
-    let env = flight_plan::Env { variables: &variables, flight };
-    let legs = program.flown().all_legs();
-    let first = legs.iter().find_map(|c| program.eval_place(c.leg.place()?, &env).ok());
-    let position = first.unwrap_or(LatLon::new(0.0, 0.0));
-    let own = legs.iter().find_map(|c| c.leg.altitude.as_ref().or(c.stage.altitude.as_ref()));
-    let metres = own.and_then(|a| program.eval_number(&a.metres, &env).ok()).unwrap_or(0.0);
-    let ground_m = match own.map(|a| a.reference) {
-        Some(AltitudeReference::Agl) => terrain.elevation_m(position).unwrap_or(0.0),
-        _ => 0.0,
+    let (position, altitude_amsl_m) = match Start::of(program, terrain) {
+        Some(Start::InFlight { position, altitude_amsl_m, .. }) => (position, altitude_amsl_m),
+        Some(Start::Runway) | None => (LatLon::new(0.0, 0.0), 0.0),
     };
-    let altitude_amsl_m = metres + ground_m;
     Beginning { position, altitude_amsl_m, heading_deg: 0.0, on_ground: false, used_j: 0.0 }
 }
 
