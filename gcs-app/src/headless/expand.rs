@@ -130,6 +130,9 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
             eprintln!("{}: the flight never reaches the named leg", source.file.display());
             Ok(Err(ExitCode::from(1)))
         }
+        (None, true) if !selection.goes_without(&forecast::left_out(&preview), &source.file) => {
+            Ok(Err(ExitCode::from(1)))
+        }
         (None, true) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
     }
 }
@@ -171,5 +174,46 @@ mod tests {
             assert_eq!(a[1..8], b[1..8], "row {row}");
             assert_eq!((a.len(), b.len()), (9, 9));
         }
+    }
+
+    /// A mission in the air, whose only altitude is its stage's.
+    const IN_THE_AIR: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="In the air" aircraft="trainer"><mainPlan>
+        <stage id="m" type="mission" altitude="300" altitudeReference="amsl">
+        <TF id="a" lat="0.5" lon="0.5"/><TF id="b" lat="0.5" lon="0.536"/><TF id="c" lat="0.536" lon="0.536"/></stage>
+        </mainPlan></flightPlan>"#;
+
+    fn flown(plan: &str, selection: &Selection) -> Result<Flown, ExitCode> {
+        let (_file, source) = source(plan.as_bytes());
+        fly(&source, Air::default(), selection).unwrap()
+    }
+
+    #[test]
+    fn a_plan_without_take_off_begins_at_the_altitude_of_its_first_stage() {
+        let anyway = Selection { anyway: true, ..Selection::default() };
+        let of_leg =
+            IN_THE_AIR.replace(r#"<TF id="a" "#, r#"<TF id="a" altitude="300" altitudeReference="amsl" "#);
+        for plan in [IN_THE_AIR, &of_leg] {
+            let flown = flown(plan, &anyway).unwrap_or_else(|_| panic!("not flown"));
+            let altitudes: Vec<_> =
+                flown.preview.waypoints.iter().map(|w| w.waypoint.altitude_amsl_m).collect();
+            assert_eq!(altitudes, [300.0; 3]);
+        }
+    }
+
+    /// Their altitudes count from ground that nothing is known of.
+    #[test]
+    fn legs_that_can_not_be_laid_out_are_not_passed_over_in_silence() {
+        let agl = r#"altitude="100" altitudeReference="agl" "#;
+        let plan = IN_THE_AIR.replace(r#"<TF id="b" "#, &format!(r#"<TF id="b" {agl}"#));
+        let anyway = Selection { anyway: true, ..Selection::default() };
+        assert!(flown(&plan, &anyway).is_err());
+        let without = Selection { leave_out_legs: true, ..anyway };
+        let flown = flown(&plan, &without).unwrap_or_else(|_| panic!("not flown"));
+        let left_out = forecast::left_out(&flown.preview);
+        assert!(
+            left_out.iter().any(|(leg, why)| leg.as_str() == "b" && why.contains("elevation")),
+            "{left_out:?}"
+        );
+        assert!(flown.preview.waypoints.iter().all(|w| w.waypoint.leg.as_str() != "b"));
     }
 }

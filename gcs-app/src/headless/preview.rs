@@ -66,6 +66,9 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         eprintln!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
         return Ok(ExitCode::from(1));
     }
+    if !selection.goes_without(&forecast::left_out(&preview), &source.file) {
+        return Ok(ExitCode::from(1));
+    }
     let pictures = target.diagram.as_ref().unwrap_or(&target.out);
     match &target.diagram {
         Some(picture) => {

@@ -7,6 +7,7 @@ use flight_exec::{Branching, Command};
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;
 use interchange::Step;
+use std::path::Path;
 
 /// Decisions given on the command line.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -27,6 +28,10 @@ pub struct Selection {
     /// Even if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
     #[arg(long)]
     pub anyway: bool,
+    /// Leave out legs that can't be laid out (above ground whose elevation is not known), each with a note; without this option nothing
+    /// is written then.
+    #[arg(long)]
+    pub leave_out_legs: bool,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -96,6 +101,21 @@ impl Selection {
         let Some(name) = &self.emergency else { return true };
         let leg = passage.and_then(|p| preview.legs.get(p));
         leg.is_some_and(|l| matches!(&l.place.plan, Branching::Emergency(id) if id.as_str() == name))
+    }
+
+    /// Legs of a flight that could not be laid out are told, each with its reason; true if the flight may be written without them.
+    pub fn goes_without(&self, left_out: &[(&Id, &str)], file: &Path) -> bool {
+        for (leg, reason) in left_out {
+            eprintln!("{}: {leg} is left out: {reason}", file.display());
+        }
+        let allowed = left_out.is_empty() || self.leave_out_legs;
+        if !allowed {
+            let file = file.display();
+            eprintln!(
+                "{file}: nothing is written without them; mend the plan, or write the rest with --leave-out-legs"
+            );
+        }
+        allowed
     }
 
     /// The waypoints of the way selected, in the order in which they are flown; those replaced before they were reached are none.
