@@ -129,7 +129,15 @@ impl Hub {
         let last_token = incoming.request.last_token;
         let highest = last_token;
         let (reason, current, last) = (String::new(), None, None);
-        incoming.answer(Ok(JoinAnswer { accepted: true, reason, current, last, highest, finished: false }));
+        incoming.answer(Ok(JoinAnswer {
+            instance: None,
+            accepted: true,
+            reason,
+            current,
+            last,
+            highest,
+            finished: false,
+        }));
         last_token
     }
 }

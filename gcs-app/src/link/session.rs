@@ -213,7 +213,7 @@ impl Open {
                 }
                 outlet
                     .send(match occurrence {
-                        Occurrence::Event { sequence, event } => {
+                        Occurrence::Event { sequence, event, .. } => {
                             LinkEvent::Telemetry(telemetry(Numbered { sequence, event }))
                         }
                         Occurrence::Gap { missed } => LinkEvent::Lost(Loss::Events(missed)),

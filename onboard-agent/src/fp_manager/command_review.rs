@@ -107,7 +107,7 @@ impl CommandReview {
 
 impl From<Request<contract::Command, Empty>> for Asked {
     fn from(request: Request<contract::Command, Empty>) -> Self {
-        let Request { request, caller, id, reply } = request;
+        let Request { request, caller, id, reply, .. } = request;
         // a command without a name is refused before it gets here
         let by = caller.unwrap_or_else(|| contract::ANONYMOUS.to_owned());
         Self { command: request.convert(), by, id, reply }

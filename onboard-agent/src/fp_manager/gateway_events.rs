@@ -1,16 +1,68 @@
 //! Pure: what is received from the gateway, and what its alarms lead to.
 
 use super::alarms;
+use super::gateway_session::Hearing;
 use super::manager::{Effect, Manager};
-use flight_exec::{Command, Input, Token};
+use flight_exec::{Command, Event, Input, Token};
 use service::Time;
-use usal::contract::{GatewayEvent, GatewayRequest, GatewayStatus, Navigation};
+use usal::Instance;
+use usal::contract::{Air, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation, Position, Power};
 use wire::Convert;
+
+/// What comes from a gateway.
+#[derive(Debug, Clone)]
+pub enum Report {
+    /// Where the aircraft is.
+    Position(Position),
+    /// How it flies through the air.
+    Air(Air),
+    /// The energy left.
+    Power(Power),
+    /// The satellites, and their time.
+    Gps(Gps),
+    /// Its state.
+    State(GatewayStatus),
+    /// Its buffer and place.
+    Navigation(Navigation),
+    /// Something happened.
+    Event(GatewayEvent),
+}
 
 /// Who asks for what an alarm of the gateway leads to.
 const GATEWAY: &str = "gateway";
 
 impl Manager {
+    /// Something comes from a gateway; only the one that we joined counts.
+    pub fn report(&mut self, now: Time, from: Option<Instance>, report: Report, out: &mut Vec<Effect>) {
+        match self.gateway_session.hears(now, from) {
+            Hearing::Ours => {}
+            Hearing::Stranger { first } => {
+                if first {
+                    tracing::warn!(
+                        ?from,
+                        ?report,
+                        "another program than the gateway that we joined reports as it"
+                    );
+                    let reason = "another program than the gateway that was joined reports as it; it does not count: find it and stop it";
+                    out.push(Effect::Event(Event::NotGranted {
+                        request: "report".into(),
+                        reason: reason.into(),
+                    }));
+                }
+                return;
+            }
+        }
+        match report {
+            Report::Position(position) => self.aircraft().position(position),
+            Report::Air(air) => self.aircraft().air(air),
+            Report::Power(power) => self.aircraft().power(power),
+            Report::Gps(gps) => gps.unix_s.into_iter().for_each(|unix_s| self.time_of_day(now, unix_s)),
+            Report::State(status) => self.gateway_status(now, &status, out),
+            Report::Navigation(navigation) => self.navigation(now, &navigation, out),
+            Report::Event(event) => self.gateway_event(now, event, out),
+        }
+    }
+
     /// The gateway's buffer and place, as it publishes them.
     pub fn navigation(&mut self, now: Time, navigation: &Navigation, out: &mut Vec<Effect>) {
         if let Some(current) = navigation.current {

@@ -2,12 +2,15 @@
 
 use service::Time;
 use std::time::Duration;
+use usal::Instance;
 use usal::contract::{GatewayRequest, GatewayState, JoinAnswer, SafeRunway};
 
 /// Pause between two attempts to join, or to have a request granted.
 const RETRY: Duration = Duration::from_secs(1);
 /// After a join, states from before it may still come in for so long.
 const SETTLING: Duration = Duration::from_secs(1);
+/// A gateway that was joined and is not heard for so long is joined anew.
+const SILENT: Duration = Duration::from_secs(3);
 /// A request (but for the launch and Safe mode) is given up after so many refusals.
 const ATTEMPTS: u32 = 5;
 
@@ -26,6 +29,24 @@ pub struct GatewaySession {
     runways: Option<Pending>,
     asking: bool,
     last_reason: String,
+    /// The session of the gateway that answered our last join, if it said so: others do not count.
+    gateway: Option<Instance>,
+    /// When it was heard last.
+    heard: Option<Time>,
+    /// Reports of others since the join.
+    strange: u64,
+}
+
+/// Whose report something is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hearing {
+    /// Of the gateway that we joined, or may join.
+    Ours,
+    /// Of somebody else.
+    Stranger {
+        /// It is the first since we joined.
+        first: bool,
+    },
 }
 
 /// Something wanted of the gateway and not granted yet.
@@ -123,6 +144,24 @@ impl GatewaySession {
         }
     }
 
+    /// Something is reported by a session.
+    pub fn hears(&mut self, now: Time, from: Option<Instance>) -> Hearing {
+        if self.gateway.is_none() || from == self.gateway {
+            self.heard = Some(now);
+            return Hearing::Ours;
+        }
+        self.strange += 1;
+        Hearing::Stranger { first: self.strange == 1 }
+    }
+
+    /// Time has passed: a gateway that is not heard any more may have been followed by another one, which has to be joined.
+    pub fn tick(&mut self, now: Time) {
+        let silent = self.gateway.is_some() && self.heard.is_some_and(|at| now > at + SILENT);
+        if silent && self.joined {
+            self.lost();
+        }
+    }
+
     /// Whether to join now; if so, it is under way. Its state has to be known before.
     pub fn should_join(&mut self, now: Time) -> bool {
         let known = self.state.is_some();
@@ -139,6 +178,8 @@ impl GatewaySession {
         self.joining = false;
         self.not_before = Some(now + RETRY);
         let answer = answer.ok_or(None)?;
+        self.gateway = answer.instance.as_deref().and_then(|instance| instance.parse().ok());
+        (self.heard, self.strange) = (Some(now), 0);
         if !answer.accepted {
             let new = self.last_reason != answer.reason;
             self.last_reason.clone_from(&answer.reason);
@@ -258,6 +299,45 @@ mod tests {
             gateway_session.wanted(),
             Some(&GatewayRequest::Hold),
             "on the ground nobody waits for it"
+        );
+    }
+
+    fn answer(instance: Option<&str>) -> Option<JoinAnswer> {
+        Some(JoinAnswer {
+            instance: instance.map(Into::into),
+            accepted: true,
+            reason: String::new(),
+            current: None,
+            last: None,
+            highest: usal::contract::Token(0),
+            finished: false,
+        })
+    }
+
+    #[test]
+    fn only_the_gateway_that_was_joined_is_heard() {
+        let [ours, other]: [Instance; 2] = ["a1", "b2"].map(|text| text.parse().unwrap());
+        let mut session = GatewaySession::default();
+        let now = Duration::from_secs;
+        assert_eq!(session.hears(now(0), Some(other)), Hearing::Ours, "nobody was joined yet");
+        session.joined(now(0), answer(Some("a1"))).unwrap();
+        assert_eq!(session.hears(now(1), Some(ours)), Hearing::Ours);
+        assert_eq!(session.hears(now(1), Some(other)), Hearing::Stranger { first: true });
+        assert_eq!(session.hears(now(1), None), Hearing::Stranger { first: false });
+        session.tick(now(3));
+        assert!(session.is_joined());
+        session.tick(now(5));
+        assert!(!session.is_joined(), "whatever others say, ours is silent: join anew");
+        assert_eq!(
+            session.hears(now(5), Some(other)),
+            Hearing::Stranger { first: false },
+            "nor do they count until then"
+        );
+        session.joined(now(5), answer(None)).unwrap();
+        assert_eq!(
+            session.hears(now(6), Some(other)),
+            Hearing::Ours,
+            "an older gateway doesn't say who it is"
         );
     }
 }

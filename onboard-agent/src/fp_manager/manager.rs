@@ -140,6 +140,7 @@ impl Manager {
     /// Time has passed.
     pub fn tick(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.timeline.begin(now, self.executor.last_step());
+        self.gateway_session.tick(now);
         let input = self.aircraft.state().map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
         self.send(now, out);

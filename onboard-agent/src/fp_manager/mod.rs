@@ -7,6 +7,7 @@ mod alarms;
 mod background_review;
 mod command_review;
 mod feeder;
+mod foreseeing;
 mod gateway_events;
 mod gateway_session;
 mod joining;

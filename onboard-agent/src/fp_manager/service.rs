@@ -3,6 +3,8 @@
 use super::Config;
 use super::background_review::BackgroundReview;
 use super::command_review::{Asked, CommandReview, Verdict};
+use super::foreseeing::{Foreseeing, Foreseen};
+use super::gateway_events::Report;
 use super::journal::{Entry, Saved};
 use super::manager::{Effect, Manager};
 use super::proposals::{
@@ -11,20 +13,18 @@ use super::proposals::{
 use super::publish;
 use flight_exec::{Command, Event, Refusal};
 use flight_plan::{Problem, Program};
-use service::{Board, Reply, Request, Service, Time, Wiring};
+use serde::de::DeserializeOwned;
+use service::{Board, Request, Service, Time, Wiring};
 use std::sync::Arc;
 use std::time::Duration;
 use usal::contract;
 use usal::contract::*;
-use usal::topics::{GATEWAY, fp_manager, gateway};
-use usal::{CallError, Occurrence, Spec, Start};
+use usal::topics::{GATEWAY, Variable, fp_manager, gateway};
+use usal::{CallError, Instance, Occurrence, Spec, Start};
 use wire::Convert;
 
 /// The gateway answers at once or not at all, wall-clock.
 const CALL_TIMEOUT: Duration = Duration::from_millis(1500);
-
-/// Looks ahead at a time.
-const MAX_FORESEEING: usize = 2;
 
 /// All that can happen to it.
 pub enum Input {
@@ -34,30 +34,20 @@ pub enum Input {
     Tick,
     /// It ends.
     Ended,
-    /// Of the gateway.
-    Position(Position),
-    /// Of the gateway.
-    Air(Air),
-    /// Of the gateway.
-    Power(Power),
-    /// Of the gateway.
-    Gps(Gps),
-    /// Of the gateway.
-    State(GatewayStatus),
-    /// Of the gateway.
-    Navigation(Navigation),
+    /// Of a gateway, and whose it is.
+    Report(Option<Instance>, Report),
     /// The gateway is there, or there again.
     GatewayAppeared,
-    /// Something happened to the gateway.
-    Gateway(Occurrence<TimedGatewayEvent>),
+    /// So many events of the gateway were lost.
+    EventsLost(u64),
     /// A plan is put forward.
     Propose(Request<Propose, ProposalReport>),
     /// A command is given.
     Command(Request<contract::Command, Empty>),
     /// What would follow is asked for.
     Foresee(Request<Foresee, Foresight>),
-    /// That is known now.
-    Foreseen(Result<Foreseen, String>),
+    /// That is known now, and who asked for it.
+    Foreseen(String, Result<Foreseen, String>),
     /// The plan's document is asked for.
     Plan(Request<Empty, PlanDocument>),
     /// The gateway's answer.
@@ -79,9 +69,6 @@ pub enum Input {
     /// The journal wants a new state.
     StateWanted,
 }
-
-/// What would follow, and who wants to know.
-type Foreseen = (Reply<Foresight>, Result<flight_exec::Foresight, Refusal>);
 
 /// What it wants of the journal.
 pub enum Output {
@@ -118,8 +105,7 @@ pub struct FpManager {
     proposal_review: ProposalReview,
     command_review: CommandReview,
     background_review: BackgroundReview,
-    /// Looks ahead that are under way.
-    foreseeing: usize,
+    foreseeing: Foreseeing,
     heartbeats: u64,
 }
 
@@ -130,15 +116,18 @@ impl Service for FpManager {
 
     fn wire(wiring: &mut Wiring<Input>) {
         wiring.started(|| Input::Started);
-        wiring.follow(gateway::POSITION, |received| Input::Position(received.stamped.value));
-        wiring.follow(gateway::AIR, |received| Input::Air(received.stamped.value));
-        wiring.follow(gateway::POWER, |received| Input::Power(received.stamped.value));
-        wiring.follow(gateway::GPS, |received| Input::Gps(received.stamped.value));
+        follow(wiring, gateway::POSITION, Report::Position);
+        follow(wiring, gateway::AIR, Report::Air);
+        follow(wiring, gateway::POWER, Report::Power);
+        follow(wiring, gateway::GPS, Report::Gps);
         wiring.appeared(GATEWAY, || Input::GatewayAppeared);
-        wiring.follow(gateway::STATE, |received| Input::State(received.stamped.value.clone()));
-        wiring.follow(gateway::NAVIGATION, |received| Input::Navigation(received.stamped.value.clone()));
+        follow(wiring, gateway::STATE, Report::State);
+        follow(wiring, gateway::NAVIGATION, Report::Navigation);
         // old progress and old alarms are of no interest to one who comes back
-        wiring.listen(gateway::EVENTS, Start::Now, Input::Gateway);
+        wiring.listen(gateway::EVENTS, Start::Now, |occurrence| match occurrence {
+            Occurrence::Event { from, event, .. } => Input::Report(from, Report::Event(event.value)),
+            Occurrence::Gap { missed } => Input::EventsLost(missed),
+        });
         wiring.serve(fp_manager::COMMAND, Input::Command);
         wiring.serve(fp_manager::PROPOSE, Input::Propose);
         wiring.serve(fp_manager::FORESEE, Input::Foresee);
@@ -153,8 +142,8 @@ impl Service for FpManager {
             Input::Ended | Input::StateWanted => self.save_state(out),
             Input::Propose(asked) => self.proposed(now, asked, out),
             Input::Command(request) => self.asked(now, Asked::from(request), out),
-            Input::Foresee(request) => self.foresee(now, request, out),
-            Input::Foreseen(foreseen) => self.foreseen(foreseen, out),
+            Input::Foresee(request) => self.foreseeing.begin(&self.manager, now, request, out),
+            Input::Foreseen(caller, foreseen) => self.foreseeing.end(&caller, foreseen, out),
             Input::Plan(request) => out.answer(request.reply, Ok(self.document())),
             Input::ProposalReviewed(reviewed) => {
                 if let Some(conclusion) = self.proposal_review.reviewed(reviewed, out) {
@@ -191,7 +180,7 @@ impl FpManager {
             proposal_review: ProposalReview::default(),
             command_review: CommandReview::default(),
             background_review: BackgroundReview::default(),
-            foreseeing: 0,
+            foreseeing: Foreseeing::default(),
             heartbeats: 0,
         }
     }
@@ -219,19 +208,9 @@ impl FpManager {
                 manager.tick(now, &mut effects);
                 out.push(Output::PollJournal);
             }
-            Input::Position(position) => manager.aircraft().position(position),
-            Input::Air(air) => manager.aircraft().air(air),
-            Input::Power(power) => manager.aircraft().power(power),
-            Input::Gps(gps) => {
-                gps.unix_s.into_iter().for_each(|unix_s| manager.time_of_day(now, unix_s));
-            }
-            Input::State(status) => manager.gateway_status(now, &status, &mut effects),
-            Input::Navigation(navigation) => manager.navigation(now, &navigation, &mut effects),
+            Input::Report(from, report) => manager.report(now, from, report, &mut effects),
             Input::GatewayAppeared => manager.gateway_appeared(now, &mut effects),
-            Input::Gateway(Occurrence::Event { event, .. }) => {
-                manager.gateway_event(now, event.value, &mut effects);
-            }
-            Input::Gateway(Occurrence::Gap { missed }) => manager.events_lost(now, missed, &mut effects),
+            Input::EventsLost(missed) => manager.events_lost(now, missed, &mut effects),
             Input::Fed(answer) => manager.fed(now, logged(answer, "feed"), &mut effects),
             Input::Joined(answer) => manager.joined(now, logged(answer, "join"), &mut effects),
             Input::Requested(request, answer) => {
@@ -334,32 +313,6 @@ impl FpManager {
         answer
     }
 
-    /// Looks ahead on a thread: nothing of the flight waits for it.
-    fn foresee(&mut self, now: Time, request: Request<Foresee, Foresight>, out: &mut Out) {
-        if self.foreseeing >= MAX_FORESEEING {
-            let reason = "others are being looked ahead for: ask again in a moment";
-            return out.answer(
-                request.reply,
-                Err(Refusal { code: "busy".into(), reason: reason.into() }.convert()),
-            );
-        }
-        self.foreseeing += 1;
-        let (flight, conditions) = (self.manager.executor().clone(), self.manager.conditions(now));
-        let command: Option<Command> = request.request.command.convert();
-        let (reply, by) = (request.reply, request.caller.unwrap_or_else(|| ANONYMOUS.to_owned()));
-        let look = move || (reply, flight_exec::foresee(&flight, &by, command.as_ref(), conditions));
-        out.work(look, Input::Foreseen);
-    }
-
-    /// Who asked for one that broke off has his answer: it was dropped.
-    fn foreseen(&mut self, foreseen: Result<Foreseen, String>, out: &mut Out) {
-        self.foreseeing = self.foreseeing.saturating_sub(1);
-        match foreseen {
-            Ok((reply, foresight)) => out.answer(reply, foresight.convert()),
-            Err(error) => tracing::error!("looking ahead: {error} (please report this as a bug)"),
-        }
-    }
-
     fn document(&self) -> PlanDocument {
         let executor = self.manager.executor();
         let xml = executor.program().map(|p| flight_plan::write(&p.plan)).unwrap_or_default();
@@ -370,6 +323,16 @@ impl FpManager {
         let (saved, plans) = self.manager.state_to_keep();
         out.push(Output::State(Box::new(saved), plans));
     }
+}
+
+/// Follows a variable of the gateway.
+fn follow<T>(wiring: &mut Wiring<Input>, variable: Variable<T>, report: impl Fn(T) -> Report + Send + 'static)
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    wiring.follow(variable, move |received| {
+        Input::Report(received.from, report(received.stamped.value.clone()))
+    });
 }
 
 fn report(events: impl IntoIterator<Item = Event>, out: &mut Out) {

@@ -9,7 +9,7 @@ use service::{Board, Request, Service, Time, Wiring};
 use std::time::Duration;
 use usal::contract::{Empty, Feed, FeedAnswer, GatewayRequest, Heartbeat, Join, JoinAnswer, Refusal};
 use usal::topics::{fp_manager, gateway};
-use usal::{Spec, spec};
+use usal::{Instance, Spec, spec};
 
 /// A simulator that asks for no step for so long is spoken to, and missed after the second time.
 const STEP_LATE: Duration = Duration::from_millis(500);
@@ -31,8 +31,8 @@ pub enum Input {
     Join(Request<Join, JoinAnswer>),
     /// A person or a service asks.
     Request(Request<GatewayRequest, Empty>),
-    /// The FP Manager's sign of life.
-    Heartbeat(Heartbeat),
+    /// The FP Manager's sign of life, and whose it is.
+    Heartbeat(Heartbeat, Option<Instance>),
     /// Whether what is kept comes to the disk.
     Kept(bool),
     /// The simulator asks for no step.
@@ -60,7 +60,9 @@ impl Service for FcsGateway {
     const SPEC: Spec = spec::GATEWAY;
 
     fn wire(wiring: &mut Wiring<Input>) {
-        wiring.follow(fp_manager::HEARTBEAT, |received| Input::Heartbeat(received.stamped.value.clone()));
+        wiring.follow(fp_manager::HEARTBEAT, |received| {
+            Input::Heartbeat(received.stamped.value.clone(), received.from)
+        });
         wiring.serve(gateway::JOIN, Input::Join);
         wiring.serve(gateway::FEED, Input::Feed);
         wiring.serve(gateway::REQUEST, Input::Request);
@@ -80,8 +82,8 @@ impl Service for FcsGateway {
             Input::Feed(asked) => self.feed(now, asked, out),
             Input::Join(asked) => self.join(now, asked, out),
             Input::Request(asked) => self.request(now, asked, out),
-            Input::Heartbeat(Heartbeat { count, plan }) => {
-                self.station.input(now, CoreInput::Heartbeat { count, plan });
+            Input::Heartbeat(Heartbeat { count, plan }, from) => {
+                self.station.input(now, CoreInput::Heartbeat { count, plan, from });
             }
             Input::Kept(stored) => self.station.input(now, CoreInput::Stored(stored)),
             Input::Waiting(late) => self.wait(late),
@@ -123,9 +125,12 @@ impl FcsGateway {
         out.answer(reply, answer);
     }
 
-    fn join(&mut self, now: Time, Request { request, reply, .. }: Request<Join, JoinAnswer>, out: &mut Out) {
-        let answer = match self.station.ask(now, |id| CoreInput::Join(id, request)) {
-            Some(Answer::Join(joined)) => Ok(joined),
+    fn join(&mut self, now: Time, asked: Request<Join, JoinAnswer>, out: &mut Out) {
+        let Request { request, reply, instance, served_by, .. } = asked;
+        let answer = match self.station.ask(now, |id| CoreInput::Join(id, request, instance)) {
+            Some(Answer::Join(joined)) => {
+                Ok(JoinAnswer { instance: served_by.map(|own| own.to_string()), ..joined })
+            }
             _ => Err(unanswered()),
         };
         out.answer(reply, answer);

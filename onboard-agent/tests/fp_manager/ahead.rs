@@ -202,14 +202,20 @@ async fn straight_way_to_a_leg_through_a_zone_is_taken_at_once_and_told() {
 async fn a_plan_that_the_gateway_refuses_leaves_the_one_before_it_flying() {
     let mut flight = Flight::new(None).await;
     let mut events = flight.client.listen(topic::EVENTS, Start::Now).unwrap();
-    flight.load(SQUARE).await;
+    // rounds enough for the commit to come while they are flown
+    let rounds = SQUARE
+        .replace(r#"<TF id="side2""#, r#"<iterative id="rounds" form="forward" count="9"><TF id="side2""#)
+        .replace(r#"<TF id="side4""#, r#"</iterative><TF id="side4""#);
+    let detour = r#"<TF id="detour" lat="36.3110" lon="-84.1600"/></iterative>"#;
+    flight.load(&rounds).await;
     flight.start().await;
-    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "take-off")).await;
+    flight.step_until(|g| g.flown.iter().any(|w| w.leg.as_str() == "side2")).await;
     flight.gateway.refuse_leg = Some("detour".into());
-    flight.load(&SQUARE.replace("side3", "detour")).await;
+    flight.load(&rounds.replace("</iterative>", detour)).await;
     flight.step_until(|g| g.finished()).await;
-    let flown = legs(&flight.gateway);
-    assert!(flown.iter().any(|leg| leg == "side3") && !flown.iter().any(|leg| leg == "detour"), "{flown:?}");
+    let flown: Vec<&str> = flight.gateway.flown.iter().map(|w| w.leg.as_str()).collect();
+    assert_eq!(flown.iter().filter(|leg| **leg == "side3").count(), 9, "{flown:?}");
+    assert!(flown.contains(&"land") && !flown.contains(&"detour"), "{flown:?}");
     assert!(!flight.gateway.requests.contains(&GatewayRequest::Hold), "{:?}", flight.gateway.requests);
     let mut told = None;
     while let Some(occurrence) = events.try_recv() {

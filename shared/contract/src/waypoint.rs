@@ -108,6 +108,9 @@ pub struct Join {
 /// Answer to `join`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JoinAnswer {
+    /// The gateway's session: what comes from another one is not this gateway's. Not told by older ones.
+    #[serde(default)]
+    pub instance: Option<String>,
     /// It may feed waypoints.
     pub accepted: bool,
     /// Why not.

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use std::fmt;
 use tokio::sync::oneshot;
-use usal::Incoming;
 use usal::contract::Refusal;
+use usal::{Incoming, Instance};
 
 /// A request that wants its one answer.
 #[derive(Debug)]
@@ -15,6 +15,10 @@ pub struct Request<Q, A> {
     pub caller: Option<String>,
     /// The request's own name: the same for each repetition of it.
     pub id: Option<String>,
+    /// Which of the sessions of that name asks, if it says so.
+    pub instance: Option<Instance>,
+    /// The service's own session.
+    pub served_by: Option<Instance>,
     /// Takes the answer.
     pub reply: Reply<A>,
 }
@@ -40,14 +44,18 @@ impl<Q, A: Send + 'static> Request<Q, A> {
         let (sender, receiver) = oneshot::channel();
         // a test that doesn't look at the answer doesn't want it
         let reply = Reply(Box::new(move |answer| drop(sender.send(answer))));
-        (Self { request, caller: Some(caller.into()), id: None, reply }, receiver)
+        (
+            Self { request, caller: Some(caller.into()), id: None, instance: None, served_by: None, reply },
+            receiver,
+        )
     }
 }
 
 impl<Q: 'static, A: Serialize + 'static> From<Incoming<Q, A>> for Request<Q, A> {
     fn from(incoming: Incoming<Q, A>) -> Self {
         let (caller, id) = (incoming.from().map(str::to_owned), incoming.id().map(str::to_owned));
+        let (instance, served_by) = (incoming.instance(), Some(incoming.served_by()));
         let (request, reply) = incoming.split();
-        Self { request, caller, id, reply: Reply(Box::new(reply)) }
+        Self { request, caller, id, instance, served_by, reply: Reply(Box::new(reply)) }
     }
 }

@@ -19,6 +19,7 @@ use zenoh::Wait;
 use zenoh::bytes::ZBytes;
 use zenoh::qos::CongestionControl;
 use zenoh::query::{ConsolidationMode, Reply};
+use zenoh::sample::SourceInfo;
 
 /// Pause before a request that reached nobody is tried again.
 const RETRY: Duration = Duration::from_millis(50);
@@ -27,6 +28,8 @@ const ANSWER_TIME: Duration = Duration::from_millis(50);
 /// Part of a call's time that its last attempt needs: with less, a busy machine could not hear
 /// that nobody is there, and the caller would have to believe that somebody took the request.
 const LAST_ATTEMPT: u32 = 4;
+/// Who knows that nobody is there says so at once: a request that was out for longer was with somebody.
+const HELD: Duration = Duration::from_secs(1);
 /// Our deadline comes first; only then the network gives up.
 const GRACE: Duration = Duration::from_millis(500);
 
@@ -155,6 +158,22 @@ struct Request {
     delivery: Duration,
 }
 
+/// A request that is out.
+struct Attempt {
+    reply: mpsc::Receiver<Reply>,
+    begun: Instant,
+    was_connected: bool,
+}
+
+impl Attempt {
+    /// It ended without a reply, and not because nobody was there: the connection that it went out on is gone, or somebody had it
+    /// for a while.
+    fn may_have_been_taken(&self, inner: &Weak<Inner>) -> bool {
+        let is_connected = inner.upgrade().is_some_and(|inner| inner.is_connected());
+        self.was_connected && (!is_connected || self.begun.elapsed() > HELD)
+    }
+}
+
 impl Request {
     fn taken_within(self, delivery: Duration) -> Self {
         Self { delivery: delivery.min(self.timeout), ..self }
@@ -165,12 +184,14 @@ impl Request {
         self.deadline - (self.timeout - self.delivery)
     }
 
-    /// Sends it once. The channel ends without a reply when the network knows that none will come.
-    fn attempt(&self) -> Result<mpsc::Receiver<Reply>, CallError> {
+    /// Sends it once. The channel of the attempt ends without a reply when the network knows that none will come.
+    fn attempt(&self) -> Result<Attempt, CallError> {
         let inner = self.inner.upgrade().ok_or(CallError::Closed)?;
-        let (sender, receiver) = mpsc::channel(1);
+        let (sender, reply) = mpsc::channel(1);
+        let was_connected = inner.is_connected();
         // what is executed should still be answered in time
         let now = Instant::now();
+        let attempt = Attempt { reply, begun: now, was_connected };
         let left = self.deadline.saturating_duration_since(now);
         let taken_within = self.delivery_until().saturating_duration_since(now);
         let execute_within = taken_within - (taken_within / 10).min(ANSWER_TIME);
@@ -184,6 +205,7 @@ impl Request {
                 execute_within.as_millis()
             ))
             .payload(self.payload.clone())
+            .source_info(SourceInfo::new(inner.zenoh.id(), 0))
             .encoding(Format::Cbor.encoding())
             .consolidation(ConsolidationMode::None)
             .congestion_control(CongestionControl::Block)
@@ -196,22 +218,26 @@ impl Request {
                 tracing::debug!("{}", SessionError::network(e));
                 CallError::Closed
             })?;
-        Ok(receiver)
+        Ok(attempt)
     }
 
-    async fn run<A: DeserializeOwned>(
-        self,
-        first: Result<mpsc::Receiver<Reply>, CallError>,
-    ) -> Result<A, CallError> {
+    async fn run<A: DeserializeOwned>(self, first: Result<Attempt, CallError>) -> Result<A, CallError> {
         let mut attempt = first?;
         let last_attempt = self.delivery_until() - self.delivery / LAST_ATTEMPT;
+        let mut lost = false;
         loop {
-            match tokio::time::timeout_at(self.deadline, attempt.recv()).await {
+            match tokio::time::timeout_at(self.deadline, attempt.reply.recv()).await {
                 Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
                 Ok(Some(reply)) => return self.read(&reply),
                 Ok(None) => {
+                    lost |= attempt.may_have_been_taken(&self.inner);
                     if Instant::now() + RETRY >= last_attempt {
-                        return Err(CallError::Unreachable { name: self.name });
+                        let name = self.name;
+                        return Err(if lost {
+                            CallError::Lost { name }
+                        } else {
+                            CallError::Unreachable { name }
+                        });
                     }
                     tokio::time::sleep(RETRY).await;
                     attempt = self.attempt()?;

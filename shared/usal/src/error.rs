@@ -43,6 +43,14 @@ pub enum CallError {
         /// The invocation.
         name: String,
     },
+    /// The connection was lost while it was out; it may or may not have been done.
+    #[error(
+        "the connection was lost before `{name}` was answered: it may have been done; look at the state before trying again"
+    )]
+    Lost {
+        /// The invocation.
+        name: String,
+    },
     /// It was taken, but no answer came in time; it may or may not have been done.
     #[error("no answer to `{name}` within {after:?}; look at the state before trying again")]
     Timeout {

@@ -5,7 +5,7 @@ use crate::contract::Kind;
 use crate::session::{Inner, Session};
 use crate::topics::Events;
 use crate::variable::{PRIORITY, Untyped};
-use crate::{Format, SessionError, codec};
+use crate::{Format, Instance, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -46,6 +46,8 @@ pub enum Occurrence<T> {
     Event {
         /// The publisher's number of it: counts up by one.
         sequence: u32,
+        /// Whose event it is, if the publisher says so.
+        from: Option<Instance>,
         /// What.
         event: T,
     },
@@ -216,7 +218,9 @@ impl<T: DeserializeOwned> Inlet<T> {
         // a stranger's plain put has no number
         let sequence = sample.source_info().map_or(0, |info| info.source_sn());
         match codec::decode(sample.payload(), sample.encoding()) {
-            Ok(event) => self.push(Occurrence::Event { sequence, event }),
+            Ok(event) => {
+                self.push(Occurrence::Event { sequence, from: Instance::behind(sample.source_info()), event })
+            }
             Err(reason) => {
                 if let Some(inner) = self.inner.upgrade() {
                     inner.health.undecodable(sample.key_expr().as_str(), &reason);

@@ -11,13 +11,13 @@
 //!
 //! A refusal is an error reply of the form `{code, reason}`. Answers come in the format of the request.
 
-use crate::SessionError;
 use crate::audit::{AuditHook, Audited, Document};
 use crate::codec::{self, Format};
 use crate::contract::{ANONYMOUS, Description, Empty, Kind, Refusal, check_caller, check_version};
 use crate::health::Health;
 use crate::session::Session;
 use crate::topics::{self, Invocation};
+use crate::{Instance, SessionError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{HashMap, VecDeque};
@@ -99,6 +99,16 @@ impl<Q, A: Serialize> Incoming<Q, A> {
         self.reply.from.as_deref()
     }
 
+    /// Which of the sessions of this name asks, if it says so.
+    pub fn instance(&self) -> Option<Instance> {
+        Instance::behind(self.reply.query.source_info())
+    }
+
+    /// The session that serves it.
+    pub fn served_by(&self) -> Instance {
+        self.reply.serving.instance
+    }
+
     /// Answers it.
     pub fn answer(mut self, answer: Result<A, Refusal>) {
         self.reply.answer(&answer);
@@ -140,6 +150,7 @@ impl Session {
             memory: Arc::default(),
             health: self.inner.health.clone(),
             audit: self.inner.audit.clone(),
+            instance: self.instance(),
         };
         let wake = self.inner.wake.clone();
         let queryable = self
@@ -264,6 +275,7 @@ struct Serving {
     memory: Arc<Mutex<Memory>>,
     health: Arc<Health>,
     audit: Arc<OnceLock<AuditHook>>,
+    instance: Instance,
 }
 
 /// The duty to answer one request, and those that repeat it.

@@ -1,14 +1,15 @@
 //! A session: one vehicle's services, over explicit endpoints.
 
-use crate::SessionError;
 use crate::audit::{AuditHook, Audited};
 use crate::contract::{Key, KeyError, Kind};
 use crate::health::{Health, HealthCount};
+use crate::{Instance, SessionError};
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
+use zenoh::Wait;
 
 /// Where a vehicle's hub listens unless told otherwise: this machine only.
 pub const DEFAULT_ENDPOINT: &str = "tcp/127.0.0.1:7447";
@@ -104,8 +105,16 @@ pub(crate) struct Inner {
     pub(crate) runtime: Handle,
     pub(crate) wake: Wake,
     pub(crate) audit: Arc<OnceLock<AuditHook>>,
-    instance: String,
+    instance: Instance,
     requests: AtomicU64,
+}
+
+impl Inner {
+    /// As [`Session::is_connected`].
+    pub(crate) fn is_connected(&self) -> bool {
+        let info = self.zenoh.info();
+        info.routers_zid().wait().next().is_some() || info.peers_zid().wait().next().is_some()
+    }
 }
 
 impl fmt::Debug for Session {
@@ -129,7 +138,7 @@ impl Session {
             return Err(SessionError::Runtime);
         }
         let zenoh = open_zenoh(&config.role).await?;
-        let instance = zenoh.zid().to_string();
+        let instance = Instance::of(&zenoh);
         Ok(Self {
             inner: Arc::new(Inner {
                 zenoh,
@@ -150,6 +159,11 @@ impl Session {
         &self.inner.vehicle
     }
 
+    /// Which session it is: for others that of what it publishes and asks.
+    pub fn instance(&self) -> Instance {
+        self.inner.instance
+    }
+
     /// What went wrong so far.
     pub fn health(&self) -> HealthCount {
         self.inner.health.count()
@@ -157,8 +171,7 @@ impl Session {
 
     /// Whether it has a connection now: a client to its hub, a hub to anybody.
     pub async fn is_connected(&self) -> bool {
-        let info = self.inner.zenoh.info();
-        info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
+        self.inner.is_connected()
     }
 
     /// Whether it has been closed: nothing will come any more.
@@ -239,6 +252,9 @@ fn zenoh_config(mode: &str, listen: &[&str], connect: &[&str]) -> zenoh::Result<
         ("scouting/gossip/enabled", serde_json::json!(false)),
         ("scouting/delay", serde_json::json!(0)),
         ("open/return_conditions/connect_scouted", serde_json::json!(false)),
+        // connections that say nothing are closed soon, and room is left for those that do
+        ("transport/unicast/accept_timeout", serde_json::json!(2000)),
+        ("transport/unicast/accept_pending", serde_json::json!(500)),
         // a frozen peer is noticed after two seconds instead of ten
         ("transport/link/tx/lease", serde_json::json!(2000)),
         // payloads carry their own time

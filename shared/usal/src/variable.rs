@@ -8,11 +8,11 @@ use crate::contract::Kind;
 use crate::contract::Stamped;
 use crate::session::{Inner, Session};
 use crate::topics::Variable;
-use crate::{Format, SessionError, codec};
+use crate::{Format, Instance, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
@@ -23,7 +23,7 @@ use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::{Publisher, Subscriber};
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::{ConsolidationMode, Query, Queryable, Reply};
-use zenoh::sample::{Sample, SampleKind};
+use zenoh::sample::{Sample, SampleKind, SourceInfo};
 
 /// One priority for all that must stay in order on a connection: variables, events, requests
 /// and the simulated clock.
@@ -35,12 +35,14 @@ const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 const QUERY_ATTEMPTS: u32 = 40;
 const QUERY_PAUSE: Duration = Duration::from_millis(50);
 
-type Last = Arc<Mutex<Option<ZBytes>>>;
+type Last = Arc<Mutex<Option<(ZBytes, SourceInfo)>>>;
 
 /// Publishes a variable.
 pub struct VariablePublisher<T> {
     session: Session,
     publisher: Publisher<'static>,
+    /// Values published so far.
+    count: AtomicU32,
     last: Last,
     _queryable: Queryable<()>,
     _token: LivelinessToken,
@@ -74,8 +76,9 @@ impl<T> VariablePublisher<T> {
             Ok(bytes) => ZBytes::from(bytes),
             Err(reason) => return self.session.inner.health.unsent(key, &reason),
         };
-        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes.clone());
-        if let Err(e) = self.publisher.put(bytes).wait() {
+        let source = SourceInfo::new(self.publisher.id(), self.count.fetch_add(1, Ordering::Relaxed));
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some((bytes.clone(), source.clone()));
+        if let Err(e) = self.publisher.put(bytes).source_info(source).wait() {
             self.session.inner.health.unsent(key, &e.to_string());
         }
     }
@@ -88,6 +91,8 @@ pub struct Received<T> {
     pub stamped: Stamped<T>,
     /// When it came in.
     pub at: Instant,
+    /// Whose value it is, if the publisher says so.
+    pub from: Option<Instance>,
 }
 
 impl<T> Received<T> {
@@ -179,6 +184,7 @@ impl Session {
         Ok(VariablePublisher {
             session: self.clone(),
             publisher,
+            count: AtomicU32::new(0),
             last,
             _queryable: queryable,
             _token: token,
@@ -245,9 +251,12 @@ fn token_name(variable: &str) -> String {
 }
 
 fn answer_last(query: &Query, last: &Last) {
-    let bytes = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let sent = match bytes {
-        Some(bytes) => query.reply(query.key_expr().clone(), bytes).encoding(Format::Cbor.encoding()).wait(),
+    let last = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let sent = match last {
+        Some((bytes, source)) => {
+            let reply = query.reply(query.key_expr().clone(), bytes).source_info(source);
+            reply.encoding(Format::Cbor.encoding()).wait()
+        }
         None => query.reply_err("no value yet").wait(),
     };
     if let Err(e) = sent {
@@ -317,7 +326,11 @@ where
     match codec::decode::<Stamped<T>>(sample.payload(), sample.encoding()) {
         Err(reason) => inner.health.undecodable(sample.key_expr().as_str(), &reason),
         Ok(stamped) => {
-            let received = Arc::new(Received { stamped, at: Instant::now() });
+            let received = Arc::new(Received {
+                stamped,
+                at: Instant::now(),
+                from: Instance::behind(sample.source_info()),
+            });
             let changed = cell.send_if_modified(|held| {
                 let newer = |held: &Arc<Received<T>>| asked.is_some_and(|asked| held.at >= asked);
                 if held.as_ref().is_some_and(newer) {

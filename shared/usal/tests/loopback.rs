@@ -549,3 +549,65 @@ async fn closing_is_quick_whoever_comes_late_and_whoever_goes_first() {
         assert!(started.elapsed() < Duration::from_millis(1900), "late {hub_late}, first {hub_first}");
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_is_published_and_asked_says_which_session_it_is_of() {
+    let net = Net::open().await;
+    let (a, b) = (net.client().await, net.client().await);
+    let mut air_of = b.follow(gateway::AIR).unwrap();
+    let mut events = b.listen(gateway::EVENTS, Start::Remembered).unwrap();
+    let publisher = a.publish(gateway::AIR).unwrap();
+    publisher.set(0.0, 1.0, &air(5.0));
+    a.emitter(gateway::EVENTS).unwrap().emit(&low(1));
+    let value = within(air_of.changed()).await.unwrap();
+    assert_eq!(value.from, Some(a.instance()));
+    let Some(Occurrence::Event { from, .. }) = within(events.recv()).await else { panic!("an event") };
+    assert_eq!(from, Some(a.instance()));
+    // who comes late and asks for the last value
+    let late = net.client().await.follow(gateway::AIR).unwrap();
+    until(async || late.latest().is_some_and(|value| value.from == Some(a.instance()))).await;
+    let mut server = a.serve(gateway::REQUEST).unwrap();
+    let call = b.call(gateway::REQUEST, &GatewayRequest::Hold, DEADLINE);
+    let incoming = within(server.recv()).await.unwrap();
+    assert_eq!((incoming.instance(), incoming.served_by()), (Some(b.instance()), a.instance()));
+    incoming.answer(Ok(Empty {}));
+    within(call).await.unwrap();
+    // a stranger's plain put
+    let stranger = outside_client(&net.endpoint).await;
+    let json = br#"{"time_s": 1, "validity_s": 1, "value": {"count": 7, "plan": null}}"#;
+    let mut heartbeat = b.follow(fp_manager::HEARTBEAT).unwrap();
+    until(async || {
+        put(&stranger, "fp-manager/variable/heartbeat", json, Encoding::APPLICATION_JSON).await;
+        tokio::time::timeout(Duration::from_millis(100), heartbeat.changed()).await.is_ok()
+    })
+    .await;
+    assert_ne!(heartbeat.latest().unwrap().from, Some(a.instance()));
+}
+
+/// It may have been done: to say that it was dropped would be a lie.
+#[tokio::test(flavor = "multi_thread")]
+async fn connection_lost_while_a_request_is_out_leaves_it_in_doubt() {
+    let endpoint = free_endpoint();
+    let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+    let client = client(&endpoint).await;
+    let mut server = hub.serve(gateway::REQUEST).unwrap();
+    let call = client.call_within(gateway::REQUEST, &GatewayRequest::Hold, Duration::from_secs(2), DEADLINE);
+    let taken = within(server.recv()).await.unwrap();
+    hub.close().await;
+    let error = within(call).await.unwrap_err();
+    assert!(matches!(error, CallError::Lost { .. }), "{error:?}");
+    drop(taken);
+}
+
+/// Who says nothing on a connection locks nobody out for long.
+#[tokio::test(flavor = "multi_thread")]
+async fn idle_connections_keep_nobody_from_connecting() {
+    let net = Net::open().await;
+    let address = net.endpoint.trim_start_matches("tcp/").to_owned();
+    let idle: Vec<_> = (0..150).map(|_| std::net::TcpStream::connect(&address).unwrap()).collect();
+    let _server = net.hub.serve(gateway::REQUEST).unwrap();
+    let begun = std::time::Instant::now();
+    let client = net.client().await;
+    assert!(client.is_connected().await && begun.elapsed() < Duration::from_secs(8), "{:?}", begun.elapsed());
+    drop(idle);
+}

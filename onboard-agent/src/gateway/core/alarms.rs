@@ -31,10 +31,11 @@ enum Watch {
     Disobeys,
     NoSafeRunway,
     NoRunwayStored,
+    OtherFpManager,
     NotStored,
 }
 
-const WATCHES: [Watch; 9] = [
+const WATCHES: [Watch; 10] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EnergyLow,
@@ -43,6 +44,7 @@ const WATCHES: [Watch; 9] = [
     Watch::Disobeys,
     Watch::NoSafeRunway,
     Watch::NoRunwayStored,
+    Watch::OtherFpManager,
     Watch::NotStored,
 ];
 
@@ -105,6 +107,13 @@ impl Watch {
                 "Safe mode has no runway to return to. Commit or start a plan that has one, or store runways by hand.",
                 None,
             ),
+            Watch::OtherFpManager => (
+                "other-fp-manager",
+                Severity::Caution,
+                "fp-manager",
+                "Another program than the FP Manager that joined sends its heartbeats; they do not count. Find it and stop it.",
+                None,
+            ),
             Watch::NotStored => (
                 "not-stored",
                 Severity::Caution,
@@ -123,6 +132,8 @@ impl Watch {
             Watch::EnergyLow => Duration::from_secs(2),
             // those of a plan come a moment after it
             Watch::NoRunwayStored => Duration::from_secs(3),
+            // a new process has heartbeats before it joins
+            Watch::OtherFpManager => Duration::from_secs(3),
             _ => Duration::ZERO,
         }
     }
@@ -137,6 +148,8 @@ pub struct AlarmInputs {
     pub sinks_below_target: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
+    /// Heartbeats come from another program than the one that joined.
+    pub other_fp_manager: bool,
     /// A plan is to be flown, and Safe mode would have no runway.
     pub no_runway_stored: bool,
     /// What must survive a restart can't be written.
@@ -208,6 +221,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
         Watch::NoSafeRunway => inputs.no_safe_runway,
         Watch::NoRunwayStored => inputs.no_runway_stored,
+        Watch::OtherFpManager => inputs.other_fp_manager,
         Watch::NotStored => inputs.not_stored,
     }
 }

@@ -6,17 +6,25 @@ use super::io::{Intent, Output};
 use super::states::{Trigger, is_safe};
 use crate::gateway::order::Time;
 use flight_exec::review::plausibility::{self, Context};
+use usal::Instance;
 use usal::contract::{Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
 use wire::Convert;
 
 impl Gateway {
     /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the plan of the flight or an
     /// update of it, knows the flight's tokens, and the approach has not begun.
-    pub(super) fn join(&mut self, now: Time, join: Join, out: &mut Vec<Output>) -> JoinAnswer {
+    pub(super) fn join(
+        &mut self,
+        now: Time,
+        join: Join,
+        from: Option<Instance>,
+        out: &mut Vec<Output>,
+    ) -> JoinAnswer {
         if let Err(reason) = self.may_join(&join) {
+            self.fp_manager.asked_to_join(now);
             return self.join_answer(false, reason);
         }
-        self.fp_manager.joined(now, join.plan);
+        self.fp_manager.joined(now, join.plan, from);
         if self.state == GatewayState::Stop && join.last_token < self.highest {
             // a new FP Manager on the ground: a new flight
             self.highest = join.last_token;
@@ -61,6 +69,7 @@ impl Gateway {
     fn join_answer(&self, accepted: bool, reason: String) -> JoinAnswer {
         let own = |t: Token| (t.0 > 0).then_some(t);
         JoinAnswer {
+            instance: None,
             accepted,
             reason,
             current: self.buffer.current().and_then(|w| own(w.token)),

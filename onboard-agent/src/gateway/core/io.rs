@@ -5,6 +5,7 @@ use aircraft::Profile;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use terrain::Terrain;
+use usal::Instance;
 use usal::contract::{
     Feed, FeedAnswer, GatewayEvent, GatewayRequest, Join, JoinAnswer, SafeParameters, SafeRunway, Token,
     Waypoint,
@@ -36,9 +37,11 @@ pub enum Input {
         count: u64,
         /// Hash of the plan.
         plan: Option<String>,
+        /// Who sends it, if that is said.
+        from: Option<Instance>,
     },
-    /// The FP Manager presents itself.
-    Join(u64, Join),
+    /// The FP Manager presents itself; who it is, if that is said.
+    Join(u64, Join, Option<Instance>),
     /// The FP Manager sends waypoints.
     Feed(u64, Feed),
     /// Somebody asks for something.

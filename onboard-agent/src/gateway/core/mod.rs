@@ -98,9 +98,9 @@ impl Gateway {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
             Input::Stored(stored) => self.not_stored = !stored,
-            Input::Heartbeat { count, plan } => self.fp_manager.heartbeat(now, count, plan),
-            Input::Join(request, join) => {
-                let answer = self.join(now, join, out);
+            Input::Heartbeat { count, plan, from } => self.fp_manager.heartbeat(now, count, plan, from),
+            Input::Join(request, join, from) => {
+                let answer = self.join(now, join, from, out);
                 out.push(Output::Answer(request, Answer::Join(answer)));
             }
             Input::Feed(request, feed) => {
@@ -197,6 +197,7 @@ impl Gateway {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
+            other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),
             not_stored: self.not_stored,
         };

@@ -140,7 +140,10 @@ impl Gateway {
             ));
         }
         if self.fp_manager.is_silent(now, &self.safe) {
-            return Err("The FP Manager is silent; start it first.".into());
+            if !self.fp_manager.waits_to_join(now, &self.safe) {
+                return Err("The FP Manager is silent; start it first.".into());
+            }
+            self.fp_manager.expect(now);
         }
         self.recover(now, out);
         out.push(Output::Save);

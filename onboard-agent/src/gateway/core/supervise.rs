@@ -5,10 +5,15 @@ use super::safe::{self, Situation};
 use super::states::Trigger;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
+use std::time::Duration;
+use usal::Instance;
 use usal::contract::{GatewayState, SafeParameters, Token};
 
 /// Height above the take-off place from which a climbing aircraft may circle, metres.
 const CLEAR_M: f64 = 40.0;
+
+/// Another FP Manager that was heard so lately is there.
+const OTHER_HEARD: Duration = Duration::from_secs(2);
 
 /// What is known of the FP Manager.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +28,12 @@ pub struct FpManager {
     beats: u64,
     /// The one that sends heartbeats is the one that joined.
     joined: bool,
+    /// The session of the one that joined last, if it said so: the heartbeats of others do not count.
+    instance: Option<Instance>,
+    /// When another one was heard last.
+    other_heard: Option<Time>,
+    /// When one was refused that wanted to join.
+    refused: Option<Time>,
     /// Since when its waypoints are waited for: it was given the aircraft back with an empty buffer.
     pub awaited_since: Option<Time>,
 }
@@ -30,7 +41,11 @@ pub struct FpManager {
 impl FpManager {
     /// A heartbeat, numbered from the start of its process. One that comes after a silence does not end Safe mode: that
     /// takes a join. And what a process says that did not join is not what is being flown.
-    pub fn heartbeat(&mut self, now: Time, beats: u64, plan: Option<String>) {
+    pub fn heartbeat(&mut self, now: Time, beats: u64, plan: Option<String>, from: Option<Instance>) {
+        if self.instance.is_some() && from != self.instance {
+            self.other_heard = Some(now);
+            return;
+        }
         self.last_received = Some(now);
         self.joined &= beats >= self.beats;
         self.beats = beats;
@@ -40,7 +55,9 @@ impl FpManager {
     }
 
     /// It presented itself and was accepted.
-    pub fn joined(&mut self, now: Time, plan: Option<String>) {
+    pub fn joined(&mut self, now: Time, plan: Option<String>, from: Option<Instance>) {
+        self.instance = from;
+        (self.other_heard, self.refused) = (None, None);
         self.last_received = Some(now);
         self.joined = true;
         // its heartbeats may be older than this, and are numbered from one if it is new
@@ -48,6 +65,26 @@ impl FpManager {
         if plan.is_some() {
             self.plan = plan;
         }
+    }
+
+    /// One presented itself and was refused: it lives, and waits.
+    pub fn asked_to_join(&mut self, now: Time) {
+        self.refused = Some(now);
+    }
+
+    /// One waits that was refused: it asks again each second.
+    pub fn waits_to_join(&self, now: Time, safe: &SafeParameters) -> bool {
+        self.refused.is_some_and(|at| now < at + seconds(safe.t1_s))
+    }
+
+    /// It is given back the aircraft, and has to show within T1 that it is there.
+    pub fn expect(&mut self, now: Time) {
+        self.expected_since = Some(now);
+    }
+
+    /// Heartbeats of another one than the one that joined come in.
+    pub fn has_heard_another(&self, now: Time) -> bool {
+        self.other_heard.is_some_and(|at| now < at + OTHER_HEARD)
     }
 
     /// Age of the last sign of life, seconds.

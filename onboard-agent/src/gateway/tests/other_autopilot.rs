@@ -218,7 +218,8 @@ impl Rig {
             self.station.receive(FromLink::Stream(piece));
             assert_eq!(self.station.process(self.now), None);
         }
-        let heartbeat = Input::Heartbeat { count: self.now.as_millis() as u64, plan: Some("plan".into()) };
+        let heartbeat =
+            Input::Heartbeat { count: self.now.as_millis() as u64, plan: Some("plan".into()), from: None };
         self.station.input(self.now, heartbeat);
         self.station.tick(self.now);
         self.outbox.clear();
@@ -272,7 +273,7 @@ fn an_autopilot_with_a_protocol_of_its_own_is_flown_by_the_same_core() {
     rig.run_until("heard", |r| r.state() == GatewayState::Stop);
     let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
     assert!(
-        matches!(rig.station.ask(rig.now, |id| Input::Join(id, join)), Some(Answer::Join(a)) if a.accepted)
+        matches!(rig.station.ask(rig.now, |id| Input::Join(id, join, None)), Some(Answer::Join(a)) if a.accepted)
     );
     let mut plan: Vec<_> = std::iter::once(take_off()).chain(zigzag(0, 9, 300.0)).collect();
     plan.iter_mut().zip(1..).for_each(|(w, n)| w.token = Token(n));

@@ -92,6 +92,7 @@ impl Gateway {
             self.state = if self.awaits_waypoints { GatewayState::Hold } else { GatewayState::Nav };
         }
         JoinAnswer {
+            instance: None,
             accepted,
             reason: if accepted { String::new() } else { "it does not know the flight".into() },
             current: self.buffer.front().map(|w| w.token),

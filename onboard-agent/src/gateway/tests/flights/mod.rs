@@ -8,6 +8,7 @@ use autopilot_link::Outbox;
 use geometry::LatLon;
 use sim::core::{Peer, Simulator};
 use std::time::Duration;
+use usal::Instance;
 use usal::contract::*;
 
 const PEER: Peer = Peer(1);
@@ -23,6 +24,8 @@ pub struct Flight {
     pub events: Vec<(f64, GatewayEvent)>,
     /// The FP Manager sends heartbeats.
     pub alive: bool,
+    /// Its session, if it says so.
+    pub instance: Option<Instance>,
     /// It says in them that it flies this plan.
     pub plan: &'static str,
     /// So many were sent by its process.
@@ -59,6 +62,7 @@ impl Flight {
             now: Time::ZERO,
             events: vec![],
             alive: true,
+            instance: None,
             plan: "plan",
             beats: 0,
             steered: vec![],
@@ -83,7 +87,8 @@ impl Flight {
         if self.alive && self.now.as_millis().is_multiple_of(500) {
             self.beats += 1;
             let (count, plan) = (self.beats, Some(self.plan.into()));
-            self.station.input(self.now, Input::Heartbeat { count, plan });
+            let from = self.instance;
+            self.station.input(self.now, Input::Heartbeat { count, plan, from });
         }
         self.station.tick(self.now);
         self.station.answer_step(step.expect("every step asks for the time"));
@@ -159,7 +164,8 @@ impl Flight {
     pub fn join_after(&mut self, earlier: &[&str], plan: &str, last_token: u64) -> JoinAnswer {
         let earlier = earlier.iter().map(|&plan| plan.into()).collect();
         let join = Join { plan: Some(plan.into()), earlier, last_token: Token(last_token) };
-        match self.station.ask(self.now, |id| Input::Join(id, join)) {
+        let from = self.instance;
+        match self.station.ask(self.now, |id| Input::Join(id, join, from)) {
             Some(Answer::Join(answer)) => answer,
             other => panic!("{other:?}"),
         }
@@ -292,4 +298,5 @@ pub fn landing() -> Vec<Waypoint> {
 }
 
 mod runways;
+mod strangers;
 mod tests;

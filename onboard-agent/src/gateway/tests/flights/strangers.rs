@@ -1,0 +1,61 @@
+//! Programs that speak in the FP Manager's name.
+
+use super::*;
+
+fn instance(text: &str) -> Option<Instance> {
+    Some(text.parse().unwrap())
+}
+
+/// One that joined as a session of its own, in flight.
+fn flying() -> Flight {
+    let mut flight = Flight::on_zigzag(51, &[], 30, 300.0);
+    flight.store_runway();
+    flight.instance = instance("a1");
+    assert!(flight.join("plan").accepted);
+    flight.run(5.0);
+    flight
+}
+
+fn raised(flight: &Flight) -> bool {
+    flight.station.gateway().status(flight.now).alarms.iter().any(|alarm| alarm.id == "other-fp-manager")
+}
+
+#[test]
+fn heartbeats_of_a_stranger_do_not_hide_that_the_fp_manager_is_dead() {
+    for stranger in [instance("b2"), None] {
+        let mut flight = flying();
+        assert!(!raised(&flight));
+        // the heartbeats go on, but they are another's
+        flight.instance = stranger;
+        flight.run_until(3.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+        flight.run_until(5.0, "told", raised);
+        flight.instance = instance("a1");
+        flight.run(4.0);
+        assert!(!raised(&flight));
+    }
+}
+
+#[test]
+fn a_new_process_counts_once_it_has_joined() {
+    let mut flight = flying();
+    flight.instance = instance("b2");
+    flight.run(1.0);
+    assert!(flight.join("plan").accepted);
+    flight.run(10.0);
+    assert_eq!(flight.state(), GatewayState::Nav);
+}
+
+#[test]
+fn one_that_waits_to_be_let_in_is_no_silent_one() {
+    let mut flight = flying();
+    flight.ask(GatewayRequest::Safe).unwrap();
+    flight.run(1.0);
+    flight.instance = instance("b2");
+    flight.run(5.0);
+    assert!(flight.ask(GatewayRequest::Recover).is_err(), "nobody has asked to join");
+    assert!(!flight.join("plan").accepted, "Safe mode was commanded");
+    flight.ask(GatewayRequest::Recover).unwrap();
+    assert!(flight.join("plan").accepted);
+    flight.run(5.0);
+    assert_eq!(flight.state(), GatewayState::Nav);
+}
