@@ -3,7 +3,7 @@
 use crate::gateway::driver::{self, Registration};
 use crate::registry::{Entry, SERVICES};
 use crate::services::storage;
-use crate::{fp_manager, gateway, supervisor};
+use crate::{exposure, fp_manager, gateway, supervisor};
 use aircraft::Profile;
 use anyhow::{Context, bail};
 use clap::error::ErrorKind;
@@ -92,6 +92,9 @@ pub struct Options {
     /// Where the gateway listens for the other services and for ground stations [default: tcp/127.0.0.1:7447].
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Option<String>,
+    /// Listen where others than this machine can connect, although nothing protects it: whoever connects can command.
+    #[arg(long)]
+    pub insecure: bool,
     /// Where the FP Manager and storage find the gateway [default: as --listen].
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
@@ -142,6 +145,7 @@ impl Options {
         Ok(Self {
             vehicle: self.vehicle.or(file.vehicle),
             listen: self.listen.or(file.listen),
+            insecure: self.insecure || file.insecure,
             connect: self.connect.or(file.connect),
             autopilot: self.autopilot.or(file.autopilot),
             driver: self.driver.or(file.driver),
@@ -169,6 +173,7 @@ impl Options {
     /// # Errors
     /// An address, profile or tile can't be used.
     pub fn gateway(&self) -> anyhow::Result<gateway::Config> {
+        exposure::allow(self.listen(), self.insecure)?;
         let autopilot = self.autopilot.as_deref().unwrap_or(DEFAULT_AUTOPILOT);
         Ok(gateway::Config {
             vehicle: self.vehicle().to_owned(),
@@ -259,9 +264,8 @@ impl Options {
         for tile in &self.terrain {
             arguments.extend(["--terrain".into(), tile.into()]);
         }
-        if self.simulated {
-            arguments.push("--simulated".into());
-        }
+        let flags = [("--insecure", self.insecure), ("--simulated", self.simulated)];
+        arguments.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| name.into()));
         arguments
     }
 
@@ -326,7 +330,7 @@ mod tests {
     #[test]
     fn every_option_reaches_the_children() {
         let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --driver d \
-                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --simulated";
+                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --insecure --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
             ["onboard-agent".into(), "gateway".into()]
@@ -375,6 +379,7 @@ mod tests {
             assert!(format!("{error:#}").contains(told), "{error:#}");
         }
         assert!(parse("onboard-agent run --autopilot carrier-pigeon").gateway().is_err());
+        assert!(parse("onboard-agent run --listen tcp/0.0.0.0:7447").gateway().is_err());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Shell: FCS Gateway, FP Manager, storage and their supervisor.
 
 pub mod config;
+pub mod exposure;
 pub mod fp_manager;
 pub mod gateway;
 pub mod registry;

@@ -5,6 +5,7 @@ use super::core::Settings;
 use super::driver::Registration;
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
+use crate::exposure::{WHAT_A_STRANGER_CAN_DO, is_loopback};
 use anyhow::Context;
 use autopilot_link::Link;
 use service::{Adapter, Beginning, Shutdown, Tasks, Time, Timing};
@@ -39,7 +40,15 @@ async fn open(config: Config, beginning: Beginning) -> anyhow::Result<(FcsGatewa
     if let Some(at) = link.local_address() {
         tracing::info!(%at, "listening for the autopilot");
     }
-    let settings = Settings { vehicle: config.vehicle, profile: config.profile, terrain: config.terrain };
+    let exposed = !is_loopback(&config.listen);
+    if exposed {
+        tracing::warn!(
+            "listening on {} without protection: whoever connects can {WHAT_A_STRANGER_CAN_DO}",
+            config.listen
+        );
+    }
+    let Config { vehicle, profile, terrain, .. } = config;
+    let settings = Settings { vehicle, profile, terrain, exposed };
     let Registration { recognises, make, .. } = config.driver;
     let station = Station::new(settings, restored, make(config.simulated));
     Ok((FcsGateway::new(station), AutopilotLink { link, recognises, received: Vec::new() }))

@@ -32,10 +32,11 @@ enum Watch {
     NoSafeRunway,
     NoRunwayStored,
     OtherFpManager,
+    Exposed,
     NotStored,
 }
 
-const WATCHES: [Watch; 10] = [
+const WATCHES: [Watch; 11] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EnergyLow,
@@ -45,6 +46,7 @@ const WATCHES: [Watch; 10] = [
     Watch::NoSafeRunway,
     Watch::NoRunwayStored,
     Watch::OtherFpManager,
+    Watch::Exposed,
     Watch::NotStored,
 ];
 
@@ -114,6 +116,13 @@ impl Watch {
                 "Another program than the FP Manager that joined sends its heartbeats; they do not count. Find it and stop it.",
                 None,
             ),
+            Watch::Exposed => (
+                "exposed",
+                Severity::Caution,
+                "gateway",
+                "The agent listens where strangers can connect, and nothing protects it: whoever does can read everything, commit plans and give every command.",
+                None,
+            ),
             Watch::NotStored => (
                 "not-stored",
                 Severity::Caution,
@@ -148,6 +157,8 @@ pub struct AlarmInputs {
     pub sinks_below_target: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
+    /// It listens where strangers can connect.
+    pub exposed: bool,
     /// Heartbeats come from another program than the one that joined.
     pub other_fp_manager: bool,
     /// A plan is to be flown, and Safe mode would have no runway.
@@ -222,6 +233,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::NoSafeRunway => inputs.no_safe_runway,
         Watch::NoRunwayStored => inputs.no_runway_stored,
         Watch::OtherFpManager => inputs.other_fp_manager,
+        Watch::Exposed => inputs.exposed,
         Watch::NotStored => inputs.not_stored,
     }
 }

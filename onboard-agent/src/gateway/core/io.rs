@@ -20,6 +20,8 @@ pub struct Settings {
     pub profile: Profile,
     /// The ground, if known.
     pub terrain: Option<Arc<dyn Terrain>>,
+    /// It listens where strangers can connect.
+    pub exposed: bool,
 }
 
 /// Everything that can happen to the core.

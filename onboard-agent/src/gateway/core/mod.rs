@@ -197,6 +197,7 @@ impl Gateway {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             no_safe_runway: self.control.intent == Intent::Return,
+            exposed: self.settings.exposed,
             other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),
             not_stored: self.not_stored,

@@ -39,7 +39,7 @@ pub struct Flight {
 }
 
 pub fn settings() -> Settings {
-    Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None }
+    Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None, exposed: false }
 }
 
 /// A station that starts, in lockstep with the simulator.
