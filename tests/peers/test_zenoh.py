@@ -20,11 +20,16 @@ def opened(config):
 
 
 @pytest.fixture
-def agent(start, tmp_path):
+def endpoint():
+    """Where the agent listens."""
+    return f"tcp/127.0.0.1:{free_port()}"
+
+
+@pytest.fixture
+def agent(start, tmp_path, endpoint):
     """Simulator and agent, as their users start them; gives an open Zenoh session."""
     simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", HOME)
     port = simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1]
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
     start(
         "onboard-agent", "run", "--vehicle", "peer", "--listen", endpoint, "--simulated",
         "--autopilot", f"tcp:127.0.0.1:{port}", "--state-dir", tmp_path / "state",
