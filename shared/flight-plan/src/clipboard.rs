@@ -1,5 +1,6 @@
 //! Legs on the clipboard: a small document of their own, so that another window takes it, and an editor.
 
+use crate::create::{every_leg, legs_in};
 use crate::edit::lists;
 use crate::transform::{Motion, places};
 use crate::{
@@ -116,9 +117,8 @@ pub fn duplicate(plan: &FlightPlan, legs: &[Id]) -> Result<Pasted, String> {
 /// Of these legs, those that are not in a loop that is one of them, too; in the order given.
 pub(crate) fn outermost<'a>(plan: &FlightPlan, legs: &'a [Id]) -> Vec<&'a Id> {
     let chosen: HashSet<&Id> = legs.iter().collect();
-    let contexts = plan.all_legs();
-    let inner = contexts.iter().filter(|c| c.loops.iter().any(|l| chosen.contains(&l.id)));
-    let inner: HashSet<&Id> = inner.map(|context| &context.leg.id).collect();
+    let chosen = every_leg(plan).into_iter().filter(|leg| chosen.contains(&leg.id));
+    let inner: HashSet<&Id> = chosen.flat_map(|leg| legs_in(leg.body())).map(|leg| &leg.id).collect();
     legs.iter().filter(|leg| !inner.contains(leg)).collect()
 }
 

@@ -1,5 +1,6 @@
 //! Pure: the flight plan document: model, XML, problems and checks, edits, compilation to a program.
 
+pub mod alternate;
 pub mod checks;
 pub mod clipboard;
 pub mod create;
@@ -20,6 +21,7 @@ pub mod variables;
 pub mod walk;
 pub mod xml;
 
+pub use alternate::{Alternates, InForce};
 pub use checks::{IncrementalCache, check, check_again};
 pub use diff::{Change, ChangeKind, Difference};
 pub use edit::{Edit, EditError, Spot, Thing};

@@ -186,6 +186,12 @@ pub enum Cause {
     Engine,
 }
 
+impl Cause {
+    /// The most severe first.
+    pub const ALL: [Self; 7] =
+        [Self::Engine, Self::Energy, Self::Gps, Self::Link, Self::Traffic, Self::Payload, Self::Operator];
+}
+
 /// What a stage is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -105,7 +105,7 @@ fn in_order(plan: &FlightPlan, legs: &[Id]) -> Option<Vec<Id>> {
 }
 
 /// The list that a leg is in, and its index there.
-fn list_of<'a>(plan: &'a FlightPlan, id: &Id) -> Option<(&'a [Arc<Leg>], usize)> {
+pub(super) fn list_of<'a>(plan: &'a FlightPlan, id: &Id) -> Option<(&'a [Arc<Leg>], usize)> {
     fn within<'a>(list: &'a [Arc<Leg>], id: &Id) -> Option<(&'a [Arc<Leg>], usize)> {
         let here = list.iter().position(|leg| leg.id == *id).map(|index| (list, index));
         here.or_else(|| list.iter().find_map(|leg| within(leg.body(), id)))

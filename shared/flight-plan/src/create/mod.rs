@@ -6,6 +6,7 @@ mod bind;
 mod course;
 mod kind;
 mod leg;
+mod rearrange;
 mod thing;
 
 pub use arrange::{delete_legs, duplicate, fork, loop_around, procedure_of, shift, unloop};
@@ -13,10 +14,11 @@ pub use bind::{bind, bound_to, unbind, variable_of_fix, variable_of_leg};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, convert, leg};
-pub(crate) use thing::every_leg;
+pub use rearrange::{StageSpot, into_branch, relocate, relocate_stage};
 pub use thing::{
     add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
 };
+pub(crate) use thing::{every_leg, legs_in};
 
 use crate::edit::lists;
 use crate::{FlightPlan, Id};

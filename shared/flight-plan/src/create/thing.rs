@@ -182,16 +182,16 @@ pub(super) fn replace_fix(plan: &FlightPlan, id: &Id, with: &Place) -> Edit {
 
 /// Every leg, in emergency plans and procedures too.
 pub(crate) fn every_leg(plan: &FlightPlan) -> Vec<&Arc<Leg>> {
-    fn collect<'a>(legs: &'a [Arc<Leg>], found: &mut Vec<&'a Arc<Leg>>) {
-        for leg in legs {
-            found.push(leg);
-            collect(leg.body(), found);
-        }
-    }
-    let mut found = Vec::new();
-    plan.all_stages().for_each(|(_, stage)| collect(&stage.legs, &mut found));
-    plan.procedures.iter().for_each(|procedure| collect(&procedure.legs, &mut found));
-    found
+    let stages = plan.all_stages().map(|(_, stage)| &stage.legs);
+    stages
+        .chain(plan.procedures.iter().map(|procedure| &procedure.legs))
+        .flat_map(|legs| legs_in(legs))
+        .collect()
+}
+
+/// Legs, and those in them.
+pub(crate) fn legs_in(legs: &[Arc<Leg>]) -> Vec<&Arc<Leg>> {
+    legs.iter().flat_map(|leg| std::iter::once(leg).chain(legs_in(leg.body()))).collect()
 }
 
 /// Takes an emergency plan from whatever is associated with it.

@@ -1,0 +1,325 @@
+//! Legs and stages that are there, taken elsewhere, several at once: what a drag in the tree of the plan does.
+
+use super::arrange::list_of;
+use super::{every_leg, legs_in};
+use crate::clipboard::outermost;
+use crate::{Edit, FlightPlan, Id, Leg, LegKind, Spot};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// A place in a list of stages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StageSpot {
+    /// Before a stage.
+    Before(Id),
+    /// At the end of an emergency plan; `None`: of the main plan.
+    EndOf(Option<Id>),
+}
+
+/// Takes legs elsewhere in one step, in their order in the plan; those in a loop that is one of them go with it. `None`: they are there
+/// already.
+///
+/// # Errors
+/// A sentence that says why they can't be there, and what to do.
+pub fn relocate(plan: &FlightPlan, legs: &[Id], at: &Spot) -> Result<Option<Edit>, String> {
+    let moved = in_order(plan, legs);
+    let (list, index) = list_at(plan, at).ok_or("There is no such place any more: choose another.")?;
+    if let Some(around) = moved.iter().find(|leg| is_inside(leg, at)) {
+        return Err(format!("{} can't be put into itself: choose a place outside it.", label(around)));
+    }
+    let ids: HashSet<&Id> = moved.iter().map(|leg| &leg.id).collect();
+    let stays = |leg: &&Arc<Leg>| !ids.contains(&leg.id);
+    let (before, after) = list.split_at(index.min(list.len()));
+    let order = before.iter().filter(stays).chain(moved.iter().copied()).chain(after.iter().filter(stays));
+    if order.map(|leg| &leg.id).eq(list.iter().map(|leg| &leg.id)) {
+        return Ok(None);
+    }
+    let mut edits = leave(plan, &moved, list)?;
+    let next = after.iter().find(stays).map(|leg| Spot::Before(leg.id.clone()));
+    let last = || before.iter().rfind(stays).map(|leg| Spot::After(leg.id.clone()));
+    let mut spot = next.or_else(last).unwrap_or_else(|| at.clone());
+    for leg in moved {
+        let behind = Spot::After(leg.id.clone());
+        edits.push(Edit::MoveLeg { leg: leg.id.clone(), at: std::mem::replace(&mut spot, behind) });
+    }
+    Ok(Some(Edit::All(edits)))
+}
+
+/// The same to the beginning of a fork's branch, which leads on as before; the other ways stay as they are.
+///
+/// # Errors
+/// As for [`relocate`].
+pub fn into_branch(plan: &FlightPlan, legs: &[Id], fork: &Id, branch: &Id) -> Result<Option<Edit>, String> {
+    let moved = in_order(plan, legs);
+    let (Some((list, index)), Some(first)) = (list_of(plan, fork), moved.first()) else { return Ok(None) };
+    let is_moved = |leg: &Leg| moved.iter().any(|moved| moved.id == leg.id);
+    let Some(whole) = list.get(index).filter(|leg| !is_moved(leg)) else {
+        return Err("A fork can't be put into its own branch: choose another place.".into());
+    };
+    let Some(way) = whole.as_fork().and_then(|f| f.branches.iter().find(|b| b.id == *branch)) else {
+        return Ok(None);
+    };
+    let on = || list.get(index + 1).map(|leg| &leg.id);
+    let Some(target) = way.next.as_ref().or_else(on) else {
+        return relocate(plan, legs, &Spot::After(fork.clone()));
+    };
+    let Some(at) = list.iter().position(|leg| leg.id == *target) else {
+        return Err("The branch leads nowhere: give it a leg first.".into());
+    };
+    if moved.iter().any(|leg| leg.id == *target) {
+        return Ok(None);
+    }
+    let Some(relocated) = relocate(plan, legs, &Spot::Before(target.clone()))? else { return Ok(None) };
+    let mut edits = Vec::new();
+    // what came to the branch's leg from before it in the list says so, or it would come to the new one
+    let before = list.get(..at).and_then(|before| before.iter().rfind(|leg| !is_moved(leg)));
+    if let Some(before) = before.filter(|before| before.id != *fork) {
+        edits.extend(pinned(before, target, None));
+    }
+    edits.extend(pinned(whole, on().unwrap_or(target), Some((branch, &first.id))));
+    edits.push(relocated);
+    Ok(Some(Edit::All(edits)))
+}
+
+/// Takes a stage elsewhere. `None`: it is there already.
+pub fn relocate_stage(plan: &FlightPlan, stage: &Id, at: &StageSpot) -> Option<Edit> {
+    let mut lists = std::iter::once(&plan.stages).chain(plan.emergency_plans.iter().map(|e| &e.stages));
+    let (list, index) = lists.find_map(|l| Some((l, l.iter().position(|s| s.id == *stage)?)))?;
+    let next = list.get(index + 1);
+    match at {
+        StageSpot::Before(other) if other == stage || next.is_some_and(|next| next.id == *other) => None,
+        StageSpot::Before(before) => Some(Edit::MoveStage { stage: stage.clone(), before: before.clone() }),
+        StageSpot::EndOf(to) => {
+            let there = match to {
+                None => &plan.stages,
+                Some(id) => &plan.emergency_plan(id)?.stages,
+            };
+            let is_last = there.last().is_some_and(|last| last.id == *stage);
+            let moved = Box::new(list.get(index)?.clone());
+            let append = Edit::AppendStage { to: to.clone(), stage: moved };
+            (!is_last).then(|| Edit::All(vec![Edit::Remove { id: stage.clone() }, append]))
+        }
+    }
+}
+
+/// The legs that are meant, in the order of the plan.
+fn in_order<'a>(plan: &'a FlightPlan, legs: &[Id]) -> Vec<&'a Arc<Leg>> {
+    let outer: HashSet<&Id> = outermost(plan, legs).into_iter().collect();
+    every_leg(plan).into_iter().filter(|leg| outer.contains(&leg.id)).collect()
+}
+
+/// The list of a place, and the index there.
+fn list_at<'a>(plan: &'a FlightPlan, at: &Spot) -> Option<(&'a [Arc<Leg>], usize)> {
+    match at {
+        Spot::Before(id) => list_of(plan, id),
+        Spot::After(id) => list_of(plan, id).map(|(list, index)| (list, index + 1)),
+        Spot::EndOf(id) => {
+            let list = match (plan.stage(id), plan.procedure(id)) {
+                (Some(stage), _) => stage.legs.as_slice(),
+                (None, Some(procedure)) => procedure.legs.as_slice(),
+                (None, None) => plan.any_leg(id)?.body(),
+            };
+            Some((list, list.len()))
+        }
+    }
+}
+
+fn is_inside(leg: &Leg, at: &Spot) -> bool {
+    let (Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) = at;
+    let itself = matches!(at, Spot::EndOf(_)) && leg.id == *id;
+    itself || legs_in(leg.body()).iter().any(|inner| inner.id == *id)
+}
+
+/// What must change for legs to leave their lists for another one: what follows a leg is of its own list. A way that would lead
+/// from one list into another is refused.
+fn leave(plan: &FlightPlan, moved: &[&Arc<Leg>], to: &[Arc<Leg>]) -> Result<Vec<Edit>, String> {
+    let is_moved = |id: &Id| moved.iter().any(|leg| leg.id == *id);
+    let mut edits = Vec::new();
+    for leg in moved {
+        let Some((from, _)) = list_of(plan, &leg.id).filter(|(from, _)| !std::ptr::eq(*from, to)) else {
+            continue;
+        };
+        let stay = |other: &&Arc<Leg>| !is_moved(&other.id);
+        if let Some(other) = from.iter().filter(stay).find(|other| leads_to(other).contains(&&leg.id)) {
+            return Err(format!(
+                "{} leads to {}, and both must be in one list: lead it elsewhere first, or take both along.",
+                label(other),
+                label(leg)
+            ));
+        }
+        let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+        if let Some(way) = ways.iter().find(|way| way.next.as_ref().is_some_and(|next| !is_moved(next))) {
+            return Err(format!(
+                "The branch {} of {} leads to a leg that would stay behind: take it along.",
+                if way.label.is_empty() { way.id.as_str() } else { &way.label },
+                label(leg)
+            ));
+        }
+        if leg.next.as_ref().is_some_and(|next| !is_moved(next)) {
+            let with = Box::new(Leg { next: None, ..leg.as_ref().clone() });
+            edits.push(Edit::ReplaceLeg { leg: leg.id.clone(), with });
+        }
+    }
+    Ok(edits)
+}
+
+/// The legs that a leg names as what follows it.
+fn leads_to(leg: &Leg) -> Vec<&Id> {
+    let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+    ways.iter().filter_map(|way| way.next.as_ref()).chain(&leg.next).collect()
+}
+
+/// A leg of which every way that goes on in the list goes on to `target` by name; one branch to a leg of its own.
+fn pinned(leg: &Arc<Leg>, target: &Id, branch: Option<(&Id, &Id)>) -> Option<Edit> {
+    let mut pinned = leg.as_ref().clone();
+    if let LegKind::Intersection { branches, .. } = &mut pinned.kind {
+        for way in branches {
+            match branch {
+                Some((id, to)) if way.id == *id => way.next = Some(to.clone()),
+                _ => drop(way.next.get_or_insert_with(|| target.clone())),
+            }
+        }
+    } else {
+        pinned.next.get_or_insert_with(|| target.clone());
+    }
+    (pinned != **leg).then(|| Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(pinned) })
+}
+
+/// What people call a leg.
+fn label(leg: &Leg) -> &str {
+    if leg.name.is_empty() { leg.id.as_str() } else { &leg.name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: &str = r#"<flightPlan version="1" id="p">
+      <fixes><fix id="A" at="46.0 8.0"/></fixes>
+      <mainPlan>
+        <stage id="one" type="mission">
+          <TF id="a" fix="A"/><TF id="b" fix="A"/>
+          <iterative id="loop" form="forward" count="2"><TF id="in1" fix="A"/><TF id="in2" fix="A"/></iterative>
+          <TF id="c" fix="A"/>
+        </stage>
+        <stage id="two" type="mission">
+          <intersection id="fork"><branch id="on"/><branch id="past" next="z"/></intersection>
+          <TF id="x" fix="A"/><TF id="y" fix="A"/><TF id="z" fix="A"/>
+        </stage>
+        <stage id="empty" type="mission"></stage>
+      </mainPlan></flightPlan>"#;
+
+    fn plan() -> FlightPlan {
+        let plan = crate::read(PLAN.as_bytes()).plan;
+        assert_eq!(every_leg(&plan).len(), 10, "{plan:?}");
+        plan
+    }
+
+    fn ids(legs: &[&str]) -> Vec<Id> {
+        legs.iter().map(|id| Id::new(id)).collect()
+    }
+
+    /// The legs of every list after it, as `a b loop(in1 in2) c / fork …`; or why not.
+    fn after(legs: &[&str], at: &Spot) -> String {
+        shown(relocate(&plan(), &ids(legs), at))
+    }
+
+    fn shown(edit: Result<Option<Edit>, String>) -> String {
+        fn list(legs: &[Arc<Leg>]) -> String {
+            let leg = |leg: &Arc<Leg>| match leg.as_loop() {
+                Some(_) => format!("{}({})", leg.id, list(leg.body())),
+                None => leg.id.to_string(),
+            };
+            legs.iter().map(leg).collect::<Vec<_>>().join(" ")
+        }
+        match edit {
+            Err(why) => why,
+            Ok(None) => "nothing".into(),
+            Ok(Some(edit)) => {
+                let plan = edit.apply(&plan()).unwrap();
+                plan.stages.iter().map(|stage| list(&stage.legs)).collect::<Vec<_>>().join(" / ")
+            }
+        }
+    }
+
+    #[test]
+    fn legs_go_where_they_are_dropped_in_their_own_order() {
+        let before = |id: &str| Spot::Before(id.into());
+        let behind = |id: &str| Spot::After(id.into());
+        let end = |id: &str| Spot::EndOf(id.into());
+        let two = "fork x y z";
+        let cases = [
+            (&["c", "a"][..], before("b"), format!("a c b loop(in1 in2) / {two} / ")),
+            (&["a", "b"], before("b"), "nothing".into()),
+            (&["a"], before("a"), "nothing".into()),
+            (&["a", "c"], behind("loop"), format!("b loop(in1 in2) a c / {two} / ")),
+            (&["a", "b"], before("in2"), format!("loop(in1 a b in2) c / {two} / ")),
+            (&["in1", "loop"], end("empty"), format!("a b c / {two} / loop(in1 in2)")),
+            (&["in1", "in2"], end("one"), format!("a b loop() c in1 in2 / {two} / ")),
+            (&["c"], end("one"), "nothing".into()),
+            (&["fork", "x", "y", "z"], end("loop"), "a b loop(in1 in2 fork x y z) c /  / ".into()),
+        ];
+        for (legs, at, expected) in cases {
+            assert_eq!(after(legs, &at), expected, "{legs:?} {at:?}");
+        }
+    }
+
+    #[test]
+    fn a_drop_that_would_break_the_plan_says_why() {
+        let into_itself = after(&["a", "loop"], &Spot::After("in1".into()));
+        assert!(into_itself.contains("loop can't be put into itself"), "{into_itself}");
+        let target = after(&["z"], &Spot::EndOf("one".into()));
+        assert!(target.contains("fork leads to z"), "{target}");
+        let fork = after(&["fork"], &Spot::EndOf("one".into()));
+        assert!(fork.contains("branch past of fork"), "{fork}");
+        assert!(after(&["a"], &Spot::Before("gone".into())).contains("choose another"));
+    }
+
+    #[test]
+    fn a_branch_begins_with_what_is_dropped_on_it_and_the_other_ways_stay() {
+        let plan = plan();
+        let put =
+            |legs: &[&str], branch: &str| into_branch(&plan, &ids(legs), &"fork".into(), &branch.into());
+        assert_eq!(shown(put(&["a", "b"], "past")), "loop(in1 in2) c / fork x y a b z / ");
+        let edited = put(&["a", "b"], "past").unwrap().unwrap().apply(&plan).unwrap();
+        let next = |plan: &FlightPlan, leg: &str| {
+            plan.leg(&leg.into()).unwrap().successor().map(|l| l.id.to_string())
+        };
+        assert_eq!(next(&edited, "y").as_deref(), Some("z"), "the other way does not come by");
+        let ways = |plan: &FlightPlan| {
+            let fork = plan.leg(&"fork".into()).unwrap().leg;
+            leads_to(fork).iter().map(|id| id.to_string()).collect::<Vec<_>>()
+        };
+        assert_eq!(ways(&edited), ["x", "a"]);
+        assert_eq!(next(&edited, "b").as_deref(), Some("z"));
+
+        let edited = put(&["c"], "on").unwrap().unwrap().apply(&plan).unwrap();
+        assert_eq!(ways(&edited), ["c", "z"]);
+        assert_eq!(next(&edited, "c").as_deref(), Some("x"));
+        assert_eq!(put(&["z"], "past"), Ok(None), "it is there");
+        assert!(put(&["fork"], "on").unwrap_err().contains("its own branch"));
+    }
+
+    #[test]
+    fn stages_go_before_others_and_to_the_end() {
+        let order = |stage: &str, at: StageSpot| {
+            let edit = relocate_stage(&plan(), &stage.into(), &at)?;
+            Some(
+                edit.apply(&plan())
+                    .unwrap()
+                    .stages
+                    .iter()
+                    .map(|s| s.id.to_string())
+                    .collect::<Vec<_>>()
+                    .join(" "),
+            )
+        };
+        let before = |id: &str| StageSpot::Before(id.into());
+        assert_eq!(order("two", before("one")).as_deref(), Some("two one empty"));
+        assert_eq!(order("one", StageSpot::EndOf(None)).as_deref(), Some("two empty one"));
+        assert_eq!(order("one", before("two")), None);
+        assert_eq!(order("one", before("one")), None);
+        assert_eq!(order("empty", StageSpot::EndOf(None)), None);
+        assert_eq!(order("gone", StageSpot::EndOf(None)), None);
+    }
+}
