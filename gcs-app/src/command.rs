@@ -127,6 +127,8 @@ pub enum ViewCommand {
     Help(Option<String>),
     /// Show the plan and type what to search in it.
     Search,
+    /// Show it in the plan and type another name for it.
+    Rename(Selection),
     /// Show a panel, or hide it.
     ShowPanel(PanelId, bool),
     /// Open the dialog of the maps, or close it.

@@ -11,7 +11,7 @@ use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 use flight_exec::{Command as PlanCommand, Phase};
-use flight_plan::{Cause, Edit, create, edit::Spot};
+use flight_plan::{Cause, create};
 use usal::contract::{GatewayRequest, GatewayState};
 
 /// What an action asks for; or why it is not possible now.
@@ -57,6 +57,10 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
+const fn alt(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::ALT, key)
+}
+
 const DO: fn(&Scene<'_>) -> Kind = |_| Kind::Do;
 const HOLD: fn(&Scene<'_>) -> Kind = |_| Kind::Hold;
 
@@ -96,9 +100,10 @@ pub const ENTRIES: &[Entry] = &[
 
     entry(Group::Edit, "undo", "Undo", &[ctrl(Key::Z)], undo),
     entry(Group::Edit, "redo", "Redo", &[ctrl_shift(Key::Z), ctrl(Key::Y)], redo),
-    entry(Group::Edit, "delete", "Delete the selected legs", &[plain(Key::Delete)], delete),
-    entry(Group::Edit, "earlier", "Move the leg before its neighbour", &[ctrl(Key::ArrowUp)], |scene| shift(scene, -1)),
-    entry(Group::Edit, "later", "Move the leg after its neighbour", &[ctrl(Key::ArrowDown)], |scene| shift(scene, 1)),
+    entry(Group::Edit, "delete", "Delete what is selected", &[plain(Key::Delete)], delete),
+    entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
+    entry(Group::Edit, "earlier", "Move the selected legs or stage up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
+    entry(Group::Edit, "later", "Move the selected legs or stage down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "select-nothing", "Close the help, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
@@ -182,24 +187,41 @@ fn redo(scene: &Scene<'_>) -> Asked {
     if scene.can_undo.1 { document(DocumentCommand::Redo) } else { Err("Nothing was undone") }
 }
 
-const NO_LEG: &str = "Select a leg first";
+const NOTHING: &str = "Select something of the plan first";
+const NO_LEG: &str = "Select a leg or a stage first";
 
 fn delete(scene: &Scene<'_>) -> Asked {
-    let legs = scene.selected_legs();
-    if legs.is_empty() {
-        return Err(NO_LEG);
-    }
-    document(DocumentCommand::Edit(create::delete_legs(scene.document.plan(), &legs)))
+    let plan = scene.document.plan();
+    let edit = match &scene.view.selection {
+        Some(Selection::Leg(first)) => {
+            let mut legs = scene.selected_legs();
+            // those of procedures are selected one by one
+            legs.extend(plan.procedure_leg(first).filter(|_| legs.is_empty()).map(|_| first.clone()));
+            create::delete_legs(plan, if legs.is_empty() { return Err(NOTHING) } else { &legs })
+        }
+        Some(other) => create::remove(plan, other.id()),
+        None => return Err(NOTHING),
+    };
+    document(DocumentCommand::Edit(edit))
 }
 
-/// Moves the selected leg among its neighbours.
+fn rename(scene: &Scene<'_>) -> Asked {
+    view(ViewCommand::Rename(scene.view.selection.clone().ok_or(NOTHING)?))
+}
+
+/// Moves the selected legs, or the stage, among their neighbours.
 fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
-    let Some(Selection::Leg(id)) = &scene.view.selection else { return Err(NO_LEG) };
-    let context = scene.document.plan().leg(id).ok_or(NO_LEG)?;
-    let neighbour = context.index.checked_add_signed(offset).and_then(|i| context.siblings.get(i));
-    let neighbour = neighbour.ok_or("It has no neighbour there")?.id.clone();
-    let at = if offset < 0 { Spot::Before(neighbour) } else { Spot::After(neighbour) };
-    document(DocumentCommand::Edit(Edit::MoveLeg { leg: id.clone(), at }))
+    const NO_NEIGHBOUR: &str = "It has no neighbour there";
+    let plan = scene.document.plan();
+    let moved = match &scene.view.selection {
+        Some(Selection::Stage(stage)) => create::shift_stage(plan, stage, offset),
+        Some(Selection::Leg(leg)) => match scene.selected_legs() {
+            legs if legs.len() > 1 => create::shift_legs(plan, &legs, offset),
+            _ => create::shift(plan, leg, offset),
+        },
+        _ => return Err(NO_LEG),
+    };
+    document(DocumentCommand::Edit(moved.ok_or(NO_NEIGHBOUR)?))
 }
 
 fn follow(scene: &Scene<'_>) -> Asked {

@@ -2,7 +2,7 @@
 
 use crate::actions::{Action, Fittings, all};
 use crate::command::Queue;
-use crate::panels::Scene;
+use crate::panels::{Scene, table};
 use egui::{Context, Event, Key, KeyboardShortcut};
 
 /// Turns keys into commands.
@@ -34,6 +34,8 @@ fn is_pressed(ctx: &Context, key: &KeyboardShortcut) -> bool {
         Key::Escape => ctx.input(|i| i.key_pressed(Key::Escape)),
         // a focused button takes the space bar for itself
         Key::Space if ctx.memory(|m| m.focused().is_some()) => false,
+        // a cell of the table is renamed where it stands
+        Key::F2 if table::has_focus(ctx) => false,
         _ => ctx.input_mut(|i| i.consume_shortcut(key)),
     }
 }

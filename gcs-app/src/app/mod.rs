@@ -397,6 +397,9 @@ impl App {
         if std::mem::take(&mut self.view.search) {
             tree::focus_search(ctx);
         }
+        if let Some(what) = self.view.rename.take() {
+            tree::rename(ctx, what);
+        }
     }
 
     /// The cursor runs so many times as fast as the flight.

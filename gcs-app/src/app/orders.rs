@@ -179,6 +179,10 @@ impl App {
                 self.dock.show_panel(crate::panels::tree::ID, true);
                 self.view.search = true;
             }
+            ViewCommand::Rename(what) => {
+                self.dock.show_panel(crate::panels::tree::ID, true);
+                self.view.rename = Some(what);
+            }
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,

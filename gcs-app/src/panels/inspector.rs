@@ -4,7 +4,7 @@
 mod aboard;
 mod form;
 mod formula;
-mod inherited;
+pub mod inherited;
 mod level;
 mod list;
 mod page;

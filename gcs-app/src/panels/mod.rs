@@ -12,6 +12,7 @@ pub mod emergency;
 pub mod field;
 pub mod flight;
 pub mod help;
+pub mod in_place;
 pub mod inspector;
 pub mod link;
 pub mod log;
@@ -61,7 +62,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(inspector::Inspector),
         Box::new(flight::Flight),
         Box::new(profile::Profile::default()),
-        Box::new(table::Table),
+        Box::new(table::Table::default()),
         Box::new(what_if::WhatIfPanel),
         Box::new(log::EventLog),
         Box::new(services::Services),
@@ -141,6 +142,8 @@ pub struct ViewState {
     pub help: Option<String>,
     /// The plan's search is about to get the keyboard.
     pub search: bool,
+    /// What is about to be renamed in the plan's tree.
+    pub rename: Option<Selection>,
     /// What is selected.
     pub selection: Option<Selection>,
     /// Legs that are selected besides a leg.

@@ -1,7 +1,7 @@
 //! The command palette: everything that can be done, found by a few letters.
 
 use super::{Scene, field};
-use crate::actions::{Action, Fittings, Kind, all, fuzzy, places};
+use crate::actions::{Action, Fittings, Kind, all, alternates, fuzzy, places};
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
 use egui::{Align2, Area, Id, Key, Modifiers, Order, RichText, ScrollArea, Ui, vec2};
@@ -134,6 +134,7 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     if query.trim().is_empty() {
         return actions;
     }
+    actions.extend(alternates::of(scene));
     actions.extend(places::of(scene.document.plan()));
     let score = |action: &Action| fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
     let mut scored: Vec<(i32, Action)> =

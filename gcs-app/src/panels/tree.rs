@@ -1,16 +1,25 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
+pub mod alternates;
+mod drag;
+mod drop;
+mod keyboard;
 mod make;
 pub mod menu;
+mod rename;
+mod row;
 mod rows;
 mod search;
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::theme::{self, Palette};
-use egui::{Align2, FontId, Rect, Role, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use drag::{Asking, Drag, STEP, View};
+use egui::{EventFilter, Rect, ScrollArea, Ui, pos2, vec2};
 use flight_plan::{FlightPlan, Problem};
-use make::Group;
+use keyboard::Step;
+use rename::Renaming;
+pub use rename::begin as rename;
+use row::{Done, HEIGHT, Look};
 use rows::{Row, rows};
 pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
@@ -24,12 +33,37 @@ pub struct Tree {
     folded: BTreeSet<String>,
     /// What is searched for, as it was typed.
     sought: String,
+    problems: Problems,
+    cursor: Cursor,
+    /// What was selected when it was last drawn.
+    selected: Option<Selection>,
+    /// Where its rows were then.
+    view: Option<View>,
+    /// How far it is to be scrolled.
+    scroll: Option<f32>,
+    renaming: Option<Renaming>,
+    drag: Option<Drag>,
+    asking: Option<Asking>,
+}
+
+/// The row that the keyboard is at.
+#[derive(Debug, Default)]
+struct Cursor {
+    key: String,
+    index: usize,
+    opens_menu: bool,
+}
+
+/// The worst problem of each subject: true for an error.
+#[derive(Debug, Default)]
+struct Problems {
+    worst: BTreeMap<String, bool>,
+    /// Of which plan, and found in which state of the analysis.
+    of: (u64, u64, bool, u64),
 }
 
 /// Of the panel.
 pub const ID: PanelId = "plan";
-
-const HEIGHT: f32 = 23.0;
 
 impl Panel for Tree {
     fn id(&self) -> PanelId {
@@ -46,36 +80,56 @@ impl Panel for Tree {
         if typed.changed {
             self.version = None;
         }
-        if self.version != Some(scene.document.version()) {
-            self.rows = self.rows_of(scene.document.plan());
-            self.version = Some(scene.document.version());
-        }
+        self.refresh(ui, scene, queue);
         search::outcome(ui, &self.sought, typed.entered, &self.rows, queue);
-        let problems = worst(scene);
-        let mut toggled = None;
-        ui.spacing_mut().item_spacing.y = 1.0;
-        ScrollArea::vertical().id_salt("tree").auto_shrink(false).show_rows(
-            ui,
-            HEIGHT,
-            self.rows.len(),
-            |ui, shown| {
-                for row in self.rows.get(shown).unwrap_or_default() {
-                    if draw(ui, row, scene, &problems, &self.folded, queue) {
-                        toggled.clone_from(&row.folds);
-                    }
-                }
-            },
-        );
-        if let Some(fold) = toggled {
-            if !self.folded.remove(&fold) {
-                self.folded.insert(fold);
+        self.problems.refresh(scene);
+        self.follow(ui, scene);
+        self.keys(ui, queue);
+        self.renaming = rename::asked(ui, &self.rows).or(self.renaming.take());
+        ui.spacing_mut().item_spacing.y = STEP - HEIGHT;
+        let mut area = ScrollArea::vertical().id_salt("tree").auto_shrink(false);
+        if let Some(offset) = self.scroll.take() {
+            area = area.vertical_scroll_offset(offset);
+        }
+        let mut done = None;
+        let shown = area.show_rows(ui, HEIGHT, self.rows.len(), |ui, range| {
+            for index in range {
+                done = self.row(ui, index, scene, queue).map(|d| (index, d)).or(done.take());
             }
-            self.version = None;
+        });
+        self.view = Some(View { rect: shown.inner_rect, offset: shown.state.clamped_offset().y });
+        self.cursor.opens_menu = false;
+        self.keep_focus(ui);
+        if let Some((index, done)) = done {
+            self.take(ui, index, done, scene, queue);
+        }
+        self.dragging(ui, scene, queue);
+        if self.asking.as_ref().is_some_and(|asking| !asking.show(ui, scene.document.plan(), queue)) {
+            self.asking = None;
         }
     }
 }
 
 impl Tree {
+    /// Works the rows out again, if they may have changed.
+    fn refresh(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        if self.version == Some(scene.document.version()) {
+            return;
+        }
+        let had_focus = self.has_focus(ui);
+        self.rows = self.rows_of(scene.document.plan());
+        self.version = Some(scene.document.version());
+        let index = match self.rows.iter().position(|row| row.key == self.cursor.key) {
+            Some(index) => index,
+            None => self.cursor.index.min(self.rows.len().saturating_sub(1)),
+        };
+        let is_gone = self.rows.get(index).is_some_and(|row| row.key != self.cursor.key);
+        self.put_cursor(index);
+        if is_gone && had_focus {
+            self.go(ui, index, false, queue);
+        }
+    }
+
     /// All rows but the folded ones, or those that match what is searched for.
     fn rows_of(&self, plan: &FlightPlan) -> Vec<Row> {
         match self.sought.trim() {
@@ -83,57 +137,193 @@ impl Tree {
             sought => search::matching(rows(plan, &BTreeSet::new()), sought),
         }
     }
-}
 
-/// The worst problem of each subject.
-fn worst(scene: &Scene<'_>) -> BTreeMap<String, bool> {
-    let mut worst = BTreeMap::new();
-    for problem in scene.problems() {
-        if let Some(id) = &problem.subject {
-            *worst.entry(id.to_string()).or_insert(false) |= Problem::is_error(problem);
+    /// Shows what was selected elsewhere, unfolding what hides it.
+    fn follow(&mut self, ui: &Ui, scene: &Scene<'_>) {
+        if self.selected == scene.view.selection {
+            return;
+        }
+        self.selected.clone_from(&scene.view.selection);
+        if self.selected.is_none() {
+            return;
+        }
+        let is_it = |row: &Row, selected: &Option<Selection>| row.selection == *selected;
+        let found = self.rows.iter().position(|row| is_it(row, &self.selected)).or_else(|| {
+            self.unfold(scene.document.plan());
+            self.rows.iter().position(|row| is_it(row, &self.selected))
+        });
+        if let Some(index) = found {
+            let had_focus = self.has_focus(ui);
+            self.put_cursor(index);
+            self.reveal(index);
+            if had_focus {
+                self.focus(ui);
+            }
         }
     }
-    worst
+
+    /// Unfolds everything around what is selected.
+    fn unfold(&mut self, plan: &FlightPlan) {
+        let all = rows(plan, &BTreeSet::new());
+        let Some(index) = all.iter().position(|row| row.selection == self.selected) else { return };
+        let around = std::iter::successors(keyboard::parent(&all, index), |at| keyboard::parent(&all, *at));
+        around.filter_map(|at| all.get(at)).for_each(|row| self.folded.retain(|key| *key != row.key));
+        self.rows = self.rows_of(plan);
+    }
+
+    /// Scrolls to a row that is out of view.
+    fn reveal(&mut self, index: usize) {
+        let Some(view) = self.view else { return };
+        let (top, height) = (index as f32 * STEP, view.rect.height());
+        let above = view.offset - top;
+        let below = top + STEP - (view.offset + height);
+        if above > 0.0 || below > 0.0 {
+            // a step further at its edge; from far away into its middle
+            let far = above.max(below) > height / 2.0;
+            let offset = if far {
+                top - height / 2.0
+            } else if above > 0.0 {
+                top
+            } else {
+                view.offset + below
+            };
+            self.scroll = Some(offset.max(0.0));
+        }
+    }
+
+    fn keys(&mut self, ui: &Ui, queue: &mut Queue) {
+        if !self.has_focus(ui) || self.renaming.is_some() {
+            return;
+        }
+        let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(row::id(&self.cursor.key), filter));
+        let page = self.view.map_or(1, |view| (view.rect.height() / STEP) as usize).max(1);
+        let at = self.cursor.index;
+        match ui.input_mut(|i| keyboard::read(i, &self.rows, at, &self.folded, page)) {
+            Some(Step::To(index, extends)) => self.go(ui, index, extends, queue),
+            Some(Step::Fold) => self.fold(at),
+            Some(Step::Menu) => self.cursor.opens_menu = true,
+            None => {}
+        }
+    }
+
+    /// To another row, which is selected.
+    fn go(&mut self, ui: &Ui, index: usize, extends: bool, queue: &mut Queue) {
+        self.put_cursor(index);
+        self.focus(ui);
+        self.reveal(index);
+        let Some(row) = self.rows.get(index) else { return };
+        match row.leg().filter(|_| extends) {
+            Some(leg) => queue.view(ViewCommand::Extend(leg.clone())),
+            None => {
+                self.selected.clone_from(&row.selection);
+                queue.view(ViewCommand::Select(row.selection.clone()));
+            }
+        }
+    }
+
+    fn put_cursor(&mut self, index: usize) {
+        let key = self.rows.get(index).map_or_else(String::new, |row| row.key.clone());
+        self.cursor = Cursor { key, index, opens_menu: false };
+    }
+
+    fn focus(&self, ui: &Ui) {
+        ui.memory_mut(|m| m.request_focus(row::id(&self.cursor.key)));
+    }
+
+    fn has_focus(&self, ui: &Ui) -> bool {
+        ui.memory(|m| m.has_focus(row::id(&self.cursor.key)))
+    }
+
+    /// A row that was scrolled out of view stays where the keyboard is.
+    fn keep_focus(&self, ui: &Ui) {
+        let id = row::id(&self.cursor.key);
+        if self.has_focus(ui) && ui.ctx().read_response(id).is_none() {
+            let nowhere = Rect::from_min_size(ui.min_rect().min, vec2(0.0, 0.0));
+            ui.interact(nowhere, id, egui::Sense::focusable_noninteractive());
+        }
+    }
+
+    fn fold(&mut self, index: usize) {
+        let Some(key) = self.rows.get(index).map(|row| row.key.clone()) else { return };
+        if !self.folded.remove(&key) {
+            self.folded.insert(key);
+        }
+        self.version = None;
+    }
+
+    /// Draws a row, and the field for its name where that is being typed.
+    fn row(&mut self, ui: &mut Ui, index: usize, scene: &Scene<'_>, queue: &mut Queue) -> Option<Done> {
+        let row = self.rows.get(index)?;
+        let renames = self.renaming.as_ref().is_some_and(|renaming| renaming.is_of(row));
+        let look = Look {
+            scene,
+            folded: &self.folded,
+            problems: &self.problems.worst,
+            cursor: &self.cursor.key,
+            opens_menu: self.cursor.opens_menu,
+            renames,
+        };
+        let top = ui.next_widget_position();
+        let done = row::show(ui, row, &look, queue);
+        if renames {
+            let rect = Rect::from_min_max(top, pos2(ui.max_rect().right(), top.y + HEIGHT));
+            let renaming = self.renaming.as_mut()?;
+            if renaming.show(ui, row::name_rect(row, rect), scene.document.plan(), queue) {
+                self.renaming = None;
+                self.focus(ui);
+            }
+        }
+        done
+    }
+
+    /// What was done with a row.
+    fn take(&mut self, ui: &Ui, index: usize, done: Done, scene: &Scene<'_>, queue: &mut Queue) {
+        match done {
+            Done::Folded => self.fold(index),
+            Done::Dragged => self.drag = self.rows.get(index).and_then(|row| Drag::begin(row, scene)),
+            Done::Chosen => {
+                self.put_cursor(index);
+                self.focus(ui);
+                let Some(row) = self.rows.get(index) else { return };
+                let chosen = chosen(ui, row);
+                if let ViewCommand::Select(selection) = &chosen {
+                    self.selected.clone_from(selection);
+                }
+                queue.view(chosen);
+            }
+        }
+    }
+
+    fn dragging(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let (Some(drag), Some(view)) = (&mut self.drag, self.view) else { return };
+        let was_dropped = drag.show(ui, &self.rows, view, scene.document.plan());
+        if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+            self.drag = None;
+        } else if was_dropped {
+            self.asking = self.drag.take().and_then(|drag| drag.drop(ui, scene, queue));
+        } else if let Some(offset) = Drag::scrolls(ui, view) {
+            self.scroll = Some(offset);
+            ui.request_repaint();
+        }
+    }
 }
 
-/// Draws a row; true if it is to be folded or unfolded.
-fn draw(
-    ui: &mut Ui,
-    row: &Row,
-    scene: &Scene<'_>,
-    problems: &BTreeMap<String, bool>,
-    folded: &BTreeSet<String>,
-    queue: &mut Queue,
-) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    let selected = row.selection.as_ref().is_some_and(|s| scene.is_selected(s));
-    let name = format!("{} {}", row.tag, row.text).trim().to_owned();
-    response.widget_info(|| egui::WidgetInfo::selected(Role::TreeItem, true, selected, &name));
-    if ui.is_rect_visible(rect) {
-        let p = theme::of(ui);
-        let active =
-            matches!(&row.selection, Some(Selection::Leg(id)) if scene.vehicle.current_leg() == Some(id));
-        background(ui, rect, selected, response.hovered(), p);
-        contents(ui, rect, row, active, folded, problems, p);
+impl Problems {
+    fn refresh(&mut self, scene: &Scene<'_>) {
+        let analysis = scene.analysis;
+        let of = (scene.document.version(), analysis.version, analysis.reviewed, analysis.forecast_version);
+        if self.of == of {
+            return;
+        }
+        self.of = of;
+        self.worst.clear();
+        for problem in scene.problems() {
+            if let Some(id) = &problem.subject {
+                *self.worst.entry(id.to_string()).or_insert(false) |= Problem::is_error(problem);
+            }
+        }
     }
-    if let Some(selection) = &row.selection {
-        response.context_menu(|ui| menu::show(ui, scene, selection, queue));
-    }
-    if let Some(group) = row.group {
-        response.context_menu(|ui| make::show(ui, scene, group, queue));
-        add_button(ui, rect, group, scene, queue);
-    }
-    let on_triangle = response.interact_pointer_pos().is_some_and(|at| at.x < indent(rect, row) + 14.0);
-    if response.clicked() && row.selection.is_some() && !(row.folds.is_some() && on_triangle) {
-        queue.view(chosen(ui, row));
-        return false;
-    }
-    if response.double_clicked()
-        && let Some(selection) = row.selection.clone()
-    {
-        queue.view(ViewCommand::JumpTo(selection));
-    }
-    response.clicked() && row.folds.is_some()
 }
 
 /// What a click does: with Ctrl or Shift, legs are selected together.
@@ -144,84 +334,4 @@ fn chosen(ui: &Ui, row: &Row) -> ViewCommand {
         Some(Selection::Leg(id)) if modifiers.shift => ViewCommand::Extend(id.clone()),
         other => ViewCommand::Select(other.clone()),
     }
-}
-
-/// At the end of a heading: what can be made there.
-fn add_button(ui: &Ui, row: Rect, group: Group, scene: &Scene<'_>, queue: &mut Queue) {
-    // clear of the scroll bar
-    let rect =
-        Rect::from_min_max(pos2(row.right() - 42.0, row.top()), pos2(row.right() - 12.0, row.bottom()));
-    let button = ui.interact(rect, ui.scope_id().with(group.name()), Sense::click());
-    button.widget_info(|| {
-        egui::WidgetInfo::labeled(Role::Button, true, format!("Add to {}", group.name().to_lowercase()))
-    });
-    let p = theme::of(ui);
-    let colour = if button.hovered() || button.has_focus() { p.text } else { p.weak };
-    ui.painter().text(rect.center(), Align2::CENTER_CENTER, "+", FontId::proportional(16.0), colour);
-    egui::Popup::menu(&button).show(|ui| make::show(ui, scene, group, queue));
-    button.on_hover_text(group.hint());
-}
-
-fn indent(rect: Rect, row: &Row) -> f32 {
-    rect.left() + 2.0 + row.depth as f32 * 13.0
-}
-
-fn background(ui: &Ui, rect: Rect, selected: bool, hovered: bool, p: &Palette) {
-    if selected {
-        ui.painter().rect_filled(rect, 4.0, ui.visuals().selection.bg_fill);
-    } else if hovered {
-        ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
-    }
-}
-
-fn contents(
-    ui: &Ui,
-    rect: Rect,
-    row: &Row,
-    active: bool,
-    folded: &BTreeSet<String>,
-    problems: &BTreeMap<String, bool>,
-    p: &Palette,
-) {
-    let painter = ui.painter_at(rect);
-    let y = rect.center().y;
-    let mut x = indent(rect, row);
-    if let Some(fold) = &row.folds {
-        let symbol = if folded.contains(fold) { "▸" } else { "▾" };
-        painter.text(pos2(x + 5.0, y), Align2::CENTER_CENTER, symbol, FontId::proportional(12.0), p.weak);
-    }
-    x += 14.0;
-    if !row.tag.is_empty() {
-        x = tag(&painter, pos2(x, y), row.tag, active, p);
-    }
-    let colour = if active { p.active } else { p.text };
-    let size = if row.tag.is_empty() { 12.0 } else { 13.0 };
-    let text = painter.layout_no_wrap(row.text.clone(), FontId::proportional(size), colour);
-    let end = x + text.size().x;
-    painter.galley(pos2(x, y - text.size().y / 2.0), text, colour);
-    let mut right = rect.right() - 6.0;
-    let subject = row.selection.as_ref().map(|s| s.id().as_str());
-    if let Some(error) = subject.and_then(|id| problems.get(id)) {
-        let (symbol, colour) = if *error { ("✖", p.warning) } else { ("⚠", p.caution) };
-        painter.text(pos2(right, y), Align2::RIGHT_CENTER, symbol, FontId::proportional(12.0), colour);
-        right -= 18.0;
-    }
-    let detail = painter.layout_no_wrap(row.detail.clone(), FontId::proportional(11.0), p.weak);
-    let room = right - end - 8.0;
-    if room > 24.0 {
-        let at = (right - detail.size().x).max(end + 8.0);
-        let clip = Rect::from_min_max(pos2(end + 8.0, rect.top()), pos2(right, rect.bottom()));
-        painter.with_clip_rect(clip).galley(pos2(at, y - detail.size().y / 2.0), detail, p.weak);
-    }
-}
-
-/// A small box with the kind of a row; filled for the one that is being flown. Returns where the text starts.
-fn tag(painter: &egui::Painter, at: egui::Pos2, text: &str, active: bool, p: &Palette) -> f32 {
-    let (fill, colour) = if active { (p.active, p.halo) } else { (p.line.gamma_multiply(0.7), p.weak) };
-    let galley = painter.layout_no_wrap(text.into(), FontId::monospace(9.5), colour);
-    let width = (galley.size().x + 8.0).max(30.0);
-    let rect = Rect::from_min_size(pos2(at.x, at.y - 8.0), vec2(width, 16.0));
-    painter.rect(rect, 3.0, fill, Stroke::NONE, egui::StrokeKind::Inside);
-    painter.galley(rect.center() - galley.size() / 2.0, galley, colour);
-    rect.right() + 6.0
 }

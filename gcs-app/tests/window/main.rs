@@ -3,6 +3,7 @@
 #![cfg(test)]
 
 mod announcing;
+mod arranging;
 mod comparing;
 mod connecting;
 mod considering;
@@ -25,6 +26,7 @@ mod reach;
 mod reading;
 mod recovering;
 mod store;
+mod table;
 mod tools;
 mod tree;
 mod vehicle;

@@ -239,6 +239,11 @@ impl FlightPlan {
         self.procedures.iter().find_map(|procedure| Some((procedure, leg_in(&procedure.legs, id)?)))
     }
 
+    /// Every leg of the procedures, those in loops too.
+    pub fn procedure_legs(&self) -> Vec<&Arc<Leg>> {
+        self.procedures.iter().flat_map(|procedure| crate::create::legs_in(&procedure.legs)).collect()
+    }
+
     /// A leg by its identifier, in a stage or in a procedure.
     pub fn any_leg(&self, id: &Id) -> Option<&Leg> {
         let flown = self.all_stages().find_map(|(_, stage)| leg_in(&stage.legs, id));

@@ -16,6 +16,13 @@ pub struct Inherited<T> {
     pub from: String,
 }
 
+impl<T: Clone> Inherited<T> {
+    /// It is its own.
+    pub fn own(value: &T) -> Self {
+        Self { value: value.clone(), from: "own".into() }
+    }
+}
+
 /// The altitude of a leg or stage: from the loops around it, its stage, else that at which the path arrives there.
 /// `None`: it is in a procedure, and each call may say it.
 pub fn altitude(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Altitude>> {
@@ -37,6 +44,19 @@ pub fn altitude(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Altitude>> {
 fn is_called(scene: &Scene<'_>, of: &Id) -> bool {
     let plan = scene.document.plan();
     plan.procedure_leg(of).is_some() && plan.leg(of).is_none()
+}
+
+/// The altitude that a leg says itself or that is said around it. `None`: that of the leg before.
+pub fn altitude_said(context: &LegContext<'_>) -> Option<Inherited<Altitude>> {
+    let own = context.leg.altitude.as_ref();
+    own.map(Inherited::own).or_else(|| around(context, |leg| leg.altitude.as_ref(), |s| s.altitude.as_ref()))
+}
+
+/// The airspeed that a leg says itself or that is said around it. `None`: the aircraft's in cruise.
+pub fn speed_said(context: &LegContext<'_>) -> Option<Inherited<Value<f64>>> {
+    let own = context.leg.speed_mps.as_ref();
+    own.map(Inherited::own)
+        .or_else(|| around(context, |leg| leg.speed_mps.as_ref(), |s| s.speed_mps.as_ref()))
 }
 
 /// The airspeed of a leg or stage: from the loops around it, its stage, else the aircraft's in cruise.
@@ -119,10 +139,18 @@ pub fn as_written(value: &Value<f64>) -> String {
 
 /// An altitude with what it is measured from.
 pub fn altitude_text(scene: &Scene<'_>, altitude: &Altitude) -> String {
-    let above = match altitude.reference {
+    format!(
+        "{} {}",
+        value_text(&altitude.metres, scene.units().altitude()),
+        reference_name(altitude.reference)
+    )
+}
+
+/// What an altitude is measured from, for people.
+pub fn reference_name(reference: AltitudeReference) -> &'static str {
+    match reference {
         AltitudeReference::Amsl => "AMSL",
         AltitudeReference::Agl => "AGL",
         AltitudeReference::Home => "above home",
-    };
-    format!("{} {above}", value_text(&altitude.metres, scene.units().altitude()))
+    }
 }

@@ -1,5 +1,6 @@
 //! What is made from a heading of the tree: by its `+`, or a right click on it.
 
+use super::alternates;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use egui::Ui;
@@ -71,7 +72,10 @@ impl Group {
 /// The menu of a heading.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, group: Group, queue: &mut Queue) {
     match group {
-        Group::Stages => stages(ui, scene.document.plan(), queue),
+        Group::Stages => {
+            stages(ui, scene.document.plan(), queue);
+            alternates::submenu(ui, scene.document.plan(), &[None], queue);
+        }
         Group::EmergencyPlans => emergency_plans(ui, scene.document.plan(), queue),
         Group::Procedures => {
             ui.label("Right-click a leg and make a procedure of it,\nthen draw calls of it on the map.");

@@ -1,5 +1,6 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
+use super::alternates;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use aircraft::Profile;
@@ -42,6 +43,17 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
         && scene.selected_legs().len() < 2
     {
         ui.menu_button("Change its kind", |ui| kinds(ui, scene, context.leg, queue));
+    }
+    if let Selection::Leg(_) | Selection::Stage(_) = of {
+        alternates::submenu(ui, plan, &alternates::together(scene, of.id()), queue);
+    }
+    if let Selection::Emergency(alternate) = of {
+        ui.menu_button("Use for the whole plan", |ui| {
+            alternates::causes_menu(ui, plan, &[None], alternate, queue);
+        });
+    }
+    if ui.add(Button::new("Rename").shortcut_text("F2")).clicked() {
+        queue.view(ViewCommand::Rename(of.clone()));
     }
     for entry in entries(scene, of) {
         let button = Button::new(entry.name).shortcut_text(entry.keys);

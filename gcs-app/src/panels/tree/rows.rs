@@ -2,13 +2,17 @@
 
 use super::make::Group;
 use crate::command::Selection;
-use flight_plan::{FlightPlan, Leg, LegKind, Pattern, Stage, StageKind, ZoneKind};
+use flight_plan::{
+    Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, ZoneKind,
+};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// One line of the tree.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Row {
+    /// No two rows have the same; stays what it is from edit to edit.
+    pub key: String,
     pub depth: usize,
     pub tag: &'static str,
     pub text: String,
@@ -16,16 +20,33 @@ pub(super) struct Row {
     pub selection: Option<Selection>,
     /// What can be made in it, for a heading.
     pub group: Option<Group>,
-    /// What is hidden when it is folded.
-    pub folds: Option<String>,
+    /// There is something inside that can be hidden.
+    pub folds: bool,
+    /// Legs can be put into it.
+    pub nests: bool,
+    /// It is a branch of the fork that it selects.
+    pub branch: Option<Id>,
+    /// Of a leg or stage.
+    pub alternates: Option<Arc<Alternates>>,
+}
+
+impl Row {
+    /// A leg, and no branch of it.
+    pub fn leg(&self) -> Option<&Id> {
+        match &self.selection {
+            Some(Selection::Leg(id)) if self.branch.is_none() => Some(id),
+            _ => None,
+        }
+    }
 }
 
 /// The rows of a plan, but for those inside of what is folded.
 pub(super) fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
     let mut builder = Builder { rows: Vec::new(), folded };
+    let whole = Arc::new(Alternates::default().within(&plan.emergency, None));
     for group in Group::ALL.into_iter().filter(|group| group.is_shown(plan)) {
         builder.group(group, |b| match group {
-            Group::Stages => plan.stages.iter().for_each(|stage| b.stage(stage, 1)),
+            Group::Stages => plan.stages.iter().for_each(|stage| b.stage(stage, 1, Some(&whole))),
             Group::EmergencyPlans => b.emergency_plans(plan),
             Group::Procedures => b.procedures(plan),
             Group::Zones => b.zones(plan),
@@ -45,127 +66,130 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn group(&mut self, group: Group, children: impl FnOnce(&mut Self)) {
         let name = group.name();
-        self.push(Row {
-            depth: 0,
-            tag: "",
-            text: name.into(),
-            detail: String::new(),
-            selection: None,
-            group: Some(group),
-            folds: Some(name.into()),
-        });
-        if !self.folded.contains(name) {
+        let row =
+            Row { key: name.into(), text: name.into(), group: Some(group), folds: true, ..Row::default() };
+        if self.push(row) {
             children(self);
         }
     }
 
-    fn push(&mut self, row: Row) {
+    /// True if what is inside is to be seen.
+    fn push(&mut self, row: Row) -> bool {
+        let is_open = !self.folded.contains(&row.key);
         self.rows.push(row);
+        is_open
     }
 
     fn item(&mut self, depth: usize, tag: &'static str, text: &str, detail: String, selection: Selection) {
+        let key = format!("{tag} {}", selection.id());
         self.push(Row {
+            key,
             depth,
             tag,
             text: text.into(),
             detail,
             selection: Some(selection),
-            group: None,
-            folds: None,
+            ..Row::default()
         });
     }
 
-    fn stage(&mut self, stage: &Stage, depth: usize) {
-        let fold = format!("stage {}", stage.id);
-        let hidden = self.folded.contains(&fold);
-        self.push(Row {
+    /// `outer`: what is in force around it; a stage of an emergency plan has no alternate.
+    fn stage(&mut self, stage: &Stage, depth: usize, outer: Option<&Arc<Alternates>>) {
+        let alternates = outer.map(|outer| within(outer, &stage.emergency, &stage.id));
+        let is_open = self.push(Row {
+            key: format!("stage {}", stage.id),
             depth,
             tag: stage_tag(stage.kind),
             text: title(&stage.name, stage.id.as_str()),
-            detail: emergency(&stage.emergency),
             selection: Some(Selection::Stage(stage.id.clone())),
-            group: None,
-            folds: (!stage.legs.is_empty()).then_some(fold),
+            folds: !stage.legs.is_empty(),
+            nests: true,
+            alternates: alternates.clone(),
+            ..Row::default()
         });
-        if !hidden {
-            self.legs(&stage.legs, depth + 1);
+        if is_open {
+            self.legs(&stage.legs, depth + 1, alternates.as_ref());
         }
     }
 
-    fn legs(&mut self, legs: &[Arc<Leg>], depth: usize) {
+    fn legs(&mut self, legs: &[Arc<Leg>], depth: usize, outer: Option<&Arc<Alternates>>) {
         for leg in legs {
-            self.leg(leg, depth);
+            self.leg(leg, depth, outer);
         }
     }
 
-    fn leg(&mut self, leg: &Leg, depth: usize) {
-        let fold = format!("leg {}", leg.id);
-        let hidden = self.folded.contains(&fold);
-        self.push(Row {
+    fn leg(&mut self, leg: &Leg, depth: usize, outer: Option<&Arc<Alternates>>) {
+        let alternates = outer.map(|outer| within(outer, &leg.emergency, &leg.id));
+        let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+        let is_open = self.push(Row {
+            key: format!("leg {}", leg.id),
             depth,
             tag: leg_tag(&leg.kind),
             text: title(&leg.name, leg.id.as_str()),
-            detail: [leg_detail(&leg.kind), emergency(&leg.emergency)].join(" ").trim().to_owned(),
+            detail: leg_detail(&leg.kind),
             selection: Some(Selection::Leg(leg.id.clone())),
-            group: None,
-            folds: (!leg.body().is_empty()).then_some(fold),
+            folds: !leg.body().is_empty() || !branches.is_empty(),
+            nests: matches!(leg.kind, LegKind::Iterative { .. }),
+            alternates: alternates.clone(),
+            ..Row::default()
         });
-        if hidden {
+        if !is_open {
             return;
         }
-        self.legs(leg.body(), depth + 1);
-        if let LegKind::Intersection { branches, default, .. } = &leg.kind {
-            for branch in branches {
-                let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
-                let is_default = default.as_ref() == Some(&branch.id);
-                let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
-                let detail = if is_default { format!("{to}, default") } else { to };
-                self.item(
-                    depth + 1,
-                    "▸",
-                    &title(&branch.label, branch.id.as_str()),
-                    detail,
-                    Selection::Leg(leg.id.clone()),
-                );
-            }
+        self.legs(leg.body(), depth + 1, alternates.as_ref());
+        let default = leg.as_fork().and_then(|fork| fork.default);
+        for branch in branches {
+            let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
+            let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
+            self.push(Row {
+                key: format!("branch {} of {}", branch.id, leg.id),
+                depth: depth + 1,
+                tag: "▸",
+                text: title(&branch.label, branch.id.as_str()),
+                detail: if default == Some(&branch.id) { format!("{to}, default") } else { to },
+                selection: Some(Selection::Leg(leg.id.clone())),
+                branch: Some(branch.id.clone()),
+                ..Row::default()
+            });
         }
     }
 
     fn emergency_plans(&mut self, plan: &FlightPlan) {
         for emergency in &plan.emergency_plans {
-            let fold = format!("emergency {}", emergency.id);
-            let hidden = self.folded.contains(&fold);
-            self.push(Row {
+            let is_open = self.push(Row {
+                key: format!("emergency {}", emergency.id),
                 depth: 1,
                 tag: "ALT",
                 text: title(&emergency.name, emergency.id.as_str()),
                 detail: format!("→ {}", emergency.runway),
                 selection: Some(Selection::Emergency(emergency.id.clone())),
-                group: None,
-                folds: Some(fold),
+                folds: true,
+                ..Row::default()
             });
-            for stage in emergency.stages.iter().filter(|_| !hidden) {
-                self.stage(stage, 2);
+            for stage in emergency.stages.iter().filter(|_| is_open) {
+                self.stage(stage, 2, None);
             }
         }
     }
 
     fn procedures(&mut self, plan: &FlightPlan) {
+        // what is in force around a call is not known here
+        let nothing = Arc::new(Alternates::default());
         for procedure in &plan.procedures {
             let parameters: Vec<&str> = procedure.parameters.iter().map(|p| p.name.as_str()).collect();
-            let fold = format!("procedure {}", procedure.id);
-            let hidden = self.folded.contains(&fold);
-            self.push(Row {
+            let is_open = self.push(Row {
+                key: format!("procedure {}", procedure.id),
                 depth: 1,
                 tag: "PROC",
                 text: title(&procedure.name, procedure.id.as_str()),
                 detail: parameters.join(", "),
                 selection: Some(Selection::Procedure(procedure.id.clone())),
-                group: None,
-                folds: (!procedure.legs.is_empty()).then_some(fold),
+                folds: !procedure.legs.is_empty(),
+                nests: true,
+                ..Row::default()
             });
-            if !hidden {
-                self.legs(&procedure.legs, 2);
+            if is_open {
+                self.legs(&procedure.legs, 2, Some(&nothing));
             }
         }
     }
@@ -213,8 +237,9 @@ pub fn title(name: &str, id: &str) -> String {
     if name.is_empty() { id.to_owned() } else { name.to_owned() }
 }
 
-fn emergency(choice: &flight_plan::EmergencyChoice) -> String {
-    choice.by_cause.first().map(|(_, id)| format!("⚑ {id}")).unwrap_or_default()
+/// What is in force inside; shared, where it is the same.
+fn within(outer: &Arc<Alternates>, choice: &EmergencyChoice, of: &Id) -> Arc<Alternates> {
+    if choice.by_cause.is_empty() { outer.clone() } else { Arc::new(outer.within(choice, Some(of))) }
 }
 
 fn stage_tag(kind: StageKind) -> &'static str {

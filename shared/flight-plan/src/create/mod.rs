@@ -14,7 +14,7 @@ pub use bind::{bind, bound_to, unbind, variable_of_fix, variable_of_leg};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, convert, leg};
-pub use rearrange::{StageSpot, into_branch, relocate, relocate_stage};
+pub use rearrange::{StageSpot, into_branch, relocate, relocate_stage, shift_legs};
 pub use thing::{
     add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
 };

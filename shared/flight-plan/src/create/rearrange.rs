@@ -81,6 +81,17 @@ pub fn into_branch(plan: &FlightPlan, legs: &[Id], fork: &Id, branch: &Id) -> Re
     Ok(Some(Edit::All(edits)))
 }
 
+/// Takes legs of one list past their neighbour: up (`-1`) or down (`1`). `None`: there is none, or they are of several lists.
+pub fn shift_legs(plan: &FlightPlan, legs: &[Id], by: isize) -> Option<Edit> {
+    let moved = in_order(plan, legs);
+    let (list, _) = list_of(plan, &moved.first()?.id)?;
+    let places = moved.iter().map(|leg| list.iter().position(|other| other.id == leg.id));
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
+    let edge = if by < 0 { places.first() } else { places.last() };
+    let neighbour = list.get(edge?.checked_add_signed(by)?)?.id.clone();
+    relocate(plan, legs, &if by < 0 { Spot::Before(neighbour) } else { Spot::After(neighbour) }).ok()?
+}
+
 /// Takes a stage elsewhere. `None`: it is there already.
 pub fn relocate_stage(plan: &FlightPlan, stage: &Id, at: &StageSpot) -> Option<Edit> {
     let mut lists = std::iter::once(&plan.stages).chain(plan.emergency_plans.iter().map(|e| &e.stages));
@@ -262,6 +273,15 @@ mod tests {
         for (legs, at, expected) in cases {
             assert_eq!(after(legs, &at), expected, "{legs:?} {at:?}");
         }
+    }
+
+    #[test]
+    fn a_set_is_taken_past_its_neighbour() {
+        let past = |legs: &[&str], by| Some(shown(Ok(Some(shift_legs(&plan(), &ids(legs), by)?))));
+        assert_eq!(past(&["y", "z"], -1).as_deref(), Some("a b loop(in1 in2) c / fork y z x / "));
+        assert_eq!(past(&["a", "b"], 1).as_deref(), Some("loop(in1 in2) a b c / fork x y z / "));
+        assert_eq!(past(&["y", "z"], 1), None, "they are last");
+        assert_eq!(past(&["a", "x"], 1), None, "of two lists");
     }
 
     #[test]

@@ -1,0 +1,133 @@
+//! Emergency plans of legs, stages and the whole plan: what is in force where, and the menu that chooses the cause.
+
+use crate::command::{Queue, Selection};
+use crate::panels::Scene;
+use crate::panels::what_if::cause_name;
+use crate::theme;
+use egui::{RichText, Ui};
+use flight_plan::{Alternates, Cause, Edit, EmergencyChoice, FlightPlan, Id, InForce};
+use std::collections::BTreeSet;
+
+/// What a cause is called in a menu; `None` stands for every cause that has no plan of its own there.
+pub fn name_of(cause: Option<Cause>) -> &'static str {
+    cause.map_or("Any cause", cause_name)
+}
+
+/// All of them, in the order of a menu.
+pub fn causes() -> impl Iterator<Item = Option<Cause>> {
+    std::iter::once(None).chain(Cause::ALL.map(Some))
+}
+
+/// Associates an emergency plan, or nothing, with legs, stages or (`None`) the whole plan.
+pub fn associated(of: &[Option<Id>], cause: Option<Cause>, plan: Option<&Id>) -> Edit {
+    let one = |of: &Option<Id>| Edit::SetEmergency { of: of.clone(), cause, plan: plan.cloned() };
+    Edit::All(of.iter().map(one).collect())
+}
+
+/// What something names itself.
+pub fn choice<'a>(plan: &'a FlightPlan, of: Option<&Id>) -> Option<&'a EmergencyChoice> {
+    let Some(id) = of else { return Some(&plan.emergency) };
+    plan.any_leg(id).map(|leg| &leg.emergency).or_else(|| plan.stage(id).map(|stage| &stage.emergency))
+}
+
+/// Which causes an emergency plan is for; the ones that it is for already are marked, and taken back by a click.
+pub fn causes_menu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], alternate: &Id, queue: &mut Queue) {
+    let choice = of.first().and_then(|of| choice(plan, of.as_ref()));
+    for cause in causes() {
+        let now =
+            choice.and_then(|choice| choice.by_cause.iter().find(|(c, _)| *c == cause)).map(|(_, id)| id);
+        let is_it = now == Some(alternate);
+        let response = ui.selectable_label(is_it, name_of(cause));
+        let response = match now.filter(|_| !is_it) {
+            Some(other) => response.on_hover_text(format!("Now: {}", plan_name(plan, other))),
+            None => response,
+        };
+        if response.clicked() {
+            queue.edit(associated(of, cause, Some(alternate).filter(|_| !is_it)));
+            ui.close();
+        }
+    }
+}
+
+/// A leg stands for all that are selected with it.
+pub fn together(scene: &Scene<'_>, of: &Id) -> Vec<Option<Id>> {
+    match scene.selected_legs() {
+        legs if legs.contains(of) => legs.into_iter().map(Some).collect(),
+        _ => vec![Some(of.clone())],
+    }
+}
+
+/// Of a row: which emergency plan for which cause.
+pub fn submenu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], queue: &mut Queue) {
+    if plan.emergency_plans.is_empty() {
+        return;
+    }
+    ui.menu_button("Emergency plan", |ui| {
+        for alternate in &plan.emergency_plans {
+            let name = plan_name(plan, &alternate.id);
+            ui.menu_button(name, |ui| causes_menu(ui, plan, of, &alternate.id, queue));
+        }
+        let named: BTreeSet<Option<Cause>> = of
+            .iter()
+            .filter_map(|of| choice(plan, of.as_ref()))
+            .flat_map(|choice| choice.by_cause.iter().map(|(cause, _)| *cause))
+            .collect();
+        let text = if of == [None] { "None" } else { "As around it" };
+        if ui.add_enabled(!named.is_empty(), egui::Button::new(text)).clicked() {
+            queue.edit(Edit::All(named.into_iter().map(|cause| associated(of, cause, None)).collect()));
+        }
+    });
+}
+
+/// What is in force in a few words, and whether it is named there: `Return home`, `Return home, from Fire watch`.
+pub(super) fn in_short(
+    plan: &FlightPlan,
+    all: &Alternates,
+    of: Option<&Selection>,
+) -> Option<(String, bool)> {
+    // as the vehicle says it: what would be flown on the operator's word
+    let usual = all.get(Cause::Operator).or_else(|| all.iter().find_map(|(_, in_force)| in_force))?;
+    let others = all.iter().filter_map(|(_, in_force)| in_force);
+    let others: BTreeSet<&Id> = others.map(|f| &f.plan).filter(|id| **id != usual.plan).collect();
+    let more = if others.is_empty() { String::new() } else { format!(" +{}", others.len()) };
+    let is_own = usual.from.as_ref() == of.map(Selection::id);
+    let from = if is_own { String::new() } else { format!(", from {}", origin(plan, usual)) };
+    Some((format!("{}{more}{from}", plan_name(plan, &usual.plan)), is_own))
+}
+
+/// The emergency plan for every cause, and who names it.
+pub(super) fn explain(ui: &mut Ui, text: &str, plan: &FlightPlan, all: &Alternates, of: Option<&Selection>) {
+    if !text.is_empty() {
+        ui.label(RichText::new(text).strong());
+    }
+    if all.is_empty() {
+        ui.label("No emergency plan is named here: drag one here, or choose it in the menu.");
+        return;
+    }
+    let weak = theme::of(ui).weak;
+    egui::Grid::new("alternates").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+        for (cause, in_force) in all.iter() {
+            ui.label(RichText::new(cause_name(cause)).color(weak));
+            ui.label(match in_force {
+                None => "nothing".to_owned(),
+                Some(f) if f.from.as_ref() == of.map(Selection::id) => plan_name(plan, &f.plan).to_owned(),
+                Some(f) => format!("{}, from {}", plan_name(plan, &f.plan), origin(plan, f)),
+            });
+            ui.end_row();
+        }
+    });
+}
+
+/// Who names it.
+fn origin<'a>(plan: &'a FlightPlan, in_force: &'a InForce) -> &'a str {
+    let Some(from) = &in_force.from else { return "the plan" };
+    let leg = || plan.any_leg(from).map(|leg| leg.name.as_str());
+    let name = plan.stage(from).map(|stage| stage.name.as_str()).or_else(leg).unwrap_or_default();
+    if name.is_empty() { from.as_str() } else { name }
+}
+
+/// Of an emergency plan.
+pub fn plan_name<'a>(plan: &'a FlightPlan, id: &'a Id) -> &'a str {
+    let name = plan.emergency_plan(id).map_or("", |emergency| emergency.name.as_str());
+    if name.is_empty() { id.as_str() } else { name }
+}

@@ -1,0 +1,207 @@
+//! Rows on their way to another place: a line shows where they would go, or a sentence why they can't.
+
+use super::alternates;
+use super::drop::{At, LegSpot, Mark, for_alternate, for_legs, for_stage};
+use super::row::{HEIGHT, depth, indent};
+use super::rows::Row;
+use crate::command::{Queue, Selection};
+use crate::panels::Scene;
+use crate::theme;
+use egui::containers::menu::menu_style;
+use egui::{
+    Area, CursorIcon, Frame, Id as WidgetId, Layout, Order, Popup, PopupAnchor, PopupKind, Pos2, Rect,
+    RichText, Stroke, StrokeKind, Ui, pos2, vec2,
+};
+use flight_plan::{Edit, FlightPlan, Id, create};
+
+/// From one row to the next, screen points.
+pub(super) const STEP: f32 = HEIGHT + 1.0;
+/// So near to its edge the tree scrolls, screen points.
+const EDGE: f32 = 18.0;
+
+/// What is dragged.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum What {
+    Legs(Vec<Id>),
+    Stage(Id),
+    Alternate(Id),
+}
+
+/// What a drop here would do.
+#[derive(Debug, Clone, PartialEq)]
+enum Outcome {
+    /// It is there already.
+    Nothing,
+    Edit(Box<Edit>),
+    /// The cause is asked for.
+    Associate(Option<Id>),
+}
+
+/// A drag.
+#[derive(Debug)]
+pub(super) struct Drag {
+    what: What,
+    name: String,
+    /// Where it was last, and what a drop there would do; so long as the pointer means the same place.
+    over: Option<(At, Mark, Result<Outcome, String>)>,
+}
+
+/// Where the rows are on the screen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View {
+    /// What is seen of them.
+    pub rect: Rect,
+    /// How far they are scrolled, screen points.
+    pub offset: f32,
+}
+
+/// An emergency plan was dropped: for which cause?
+#[derive(Debug)]
+pub(super) struct Asking {
+    at: Pos2,
+    alternate: Id,
+    of: Vec<Option<Id>>,
+}
+
+impl Drag {
+    /// Of a row, and what is selected with it; `None`: it stays where it is.
+    pub fn begin(row: &Row, scene: &Scene<'_>) -> Option<Self> {
+        let selection = row.selection.as_ref().filter(|_| row.branch.is_none())?;
+        let what = match selection {
+            Selection::Leg(id) => match scene.selected_legs() {
+                legs if legs.contains(id) => What::Legs(legs),
+                _ => What::Legs(vec![id.clone()]),
+            },
+            Selection::Stage(id) => What::Stage(id.clone()),
+            Selection::Emergency(id) => What::Alternate(id.clone()),
+            _ => return None,
+        };
+        let name = match &what {
+            What::Legs(legs) if legs.len() > 1 => format!("{} legs", legs.len()),
+            _ => row.text.clone(),
+        };
+        Some(Self { what, name, over: None })
+    }
+
+    /// Shows where it would go. True when it was let go: see [`Drag::drop`].
+    pub fn show(&mut self, ui: &Ui, rows: &[Row], view: View, plan: &FlightPlan) -> bool {
+        let Some(at) = ui.input(|i| i.pointer.latest_pos()) else { return false };
+        self.find(rows, view, at, plan);
+        if let Some((_, mark, outcome)) = &self.over {
+            paint(ui, *mark, view, outcome.is_ok());
+        }
+        let why_not = self.over.as_ref().and_then(|(.., outcome)| outcome.as_ref().err());
+        ui.set_cursor_icon(if why_not.is_some() { CursorIcon::NotAllowed } else { CursorIcon::Grabbing });
+        ghost(ui, at, &self.name, why_not.map(String::as_str));
+        ui.input(|i| i.pointer.any_released())
+    }
+
+    /// How far the tree scrolls now, because the drag is at its edge.
+    pub fn scrolls(ui: &Ui, view: View) -> Option<f32> {
+        let at = ui.input(|i| i.pointer.latest_pos())?;
+        let down = (at.y - view.rect.bottom() + EDGE).max(0.0) - (view.rect.top() + EDGE - at.y).max(0.0);
+        (down != 0.0).then(|| (view.offset + down.clamp(-EDGE, EDGE) * 0.5).max(0.0))
+    }
+
+    fn find(&mut self, rows: &[Row], view: View, pointer: Pos2, plan: &FlightPlan) {
+        let y = (pointer.y - view.rect.top() + view.offset) / STEP;
+        if !view.rect.contains(pointer) || y < 0.0 || y as usize >= rows.len() {
+            self.over = None;
+            return;
+        }
+        let at = At { row: y as usize, down: y.fract(), depth: depth(view.rect.left(), pointer.x) };
+        if self.over.as_ref().is_some_and(|(over, ..)| *over == at) {
+            return;
+        }
+        let (mark, outcome) = self.outcome(rows, at, plan);
+        self.over = Some((at, mark, outcome));
+    }
+
+    fn outcome(&self, rows: &[Row], at: At, plan: &FlightPlan) -> (Mark, Result<Outcome, String>) {
+        let edit = |edit: Option<Edit>| edit.map_or(Outcome::Nothing, |edit| Outcome::Edit(Box::new(edit)));
+        let found = match &self.what {
+            What::Legs(legs) => for_legs(rows, at).map(|(mark, spot)| {
+                let moved = match &spot {
+                    LegSpot::At(spot) => create::relocate(plan, legs, spot),
+                    LegSpot::Branch { fork, branch } => create::into_branch(plan, legs, fork, branch),
+                };
+                (mark, moved.map(edit))
+            }),
+            What::Stage(stage) => for_stage(rows, at)
+                .map(|(mark, spot)| (mark, Ok(edit(create::relocate_stage(plan, stage, &spot))))),
+            What::Alternate(_) => {
+                for_alternate(rows, at).map(|(mark, of)| (mark, Ok(Outcome::Associate(of))))
+            }
+        };
+        found.unwrap_or_else(|why| (Mark::Onto(at.row), Err(why.into())))
+    }
+
+    /// Does it; what is to be asked then.
+    pub fn drop(self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) -> Option<Asking> {
+        let (.., outcome) = self.over?;
+        match (outcome.ok()?, self.what) {
+            (Outcome::Edit(edit), _) => queue.edit(*edit),
+            (Outcome::Associate(of), What::Alternate(alternate)) => {
+                let at = ui.input(|i| i.pointer.latest_pos())?;
+                let of = of.map_or_else(|| vec![None], |of| alternates::together(scene, &of));
+                return Some(Asking { at, alternate, of });
+            }
+            _ => {}
+        }
+        None
+    }
+}
+
+impl Asking {
+    /// The menu of the causes; false when it was closed.
+    pub fn show(&self, ui: &Ui, plan: &FlightPlan, queue: &mut Queue) -> bool {
+        let mut open = true;
+        let id = WidgetId::unique("cause of an alternate");
+        Popup::new(id, ui.ctx().clone(), PopupAnchor::Position(self.at), ui.layer_id())
+            .kind(PopupKind::Menu)
+            .layout(Layout::top_down_justified(egui::Align::Min))
+            .style(menu_style)
+            .gap(0.0)
+            .open_bool(&mut open)
+            .show(|ui| {
+                let name = alternates::plan_name(plan, &self.alternate);
+                ui.label(RichText::new(format!("{name} for which cause?")).color(theme::of(ui).weak));
+                alternates::causes_menu(ui, plan, &self.of, &self.alternate, queue);
+            });
+        open
+    }
+}
+
+fn paint(ui: &Ui, mark: Mark, view: View, is_possible: bool) {
+    let p = theme::of(ui);
+    let painter = ui.painter().with_clip_rect(view.rect);
+    let colour = if is_possible { p.accent } else { p.warning };
+    let top = |row: usize| view.rect.top() - view.offset + row as f32 * STEP;
+    let line = |y: f32, depth| {
+        let x = indent(view.rect.left(), depth) + 14.0;
+        painter.circle_filled(pos2(x, y), 3.0, colour);
+        painter.hline(x..=view.rect.right() - 6.0, y, Stroke::new(2.0, colour));
+    };
+    match mark {
+        Mark::Above { row, depth } => line(top(row) - 0.5, depth),
+        Mark::Below { row, depth } => line(top(row + 1) - 0.5, depth),
+        Mark::Onto(row) => {
+            let rect = Rect::from_min_size(pos2(view.rect.left(), top(row)), vec2(view.rect.width(), HEIGHT));
+            painter.rect_stroke(rect, 4.0, Stroke::new(1.5, colour), StrokeKind::Inside);
+        }
+    }
+}
+
+/// What is dragged, beside the pointer.
+fn ghost(ui: &Ui, at: Pos2, name: &str, why_not: Option<&str>) {
+    let area = Area::new(WidgetId::unique("dragged row")).order(Order::Tooltip).interactable(false);
+    area.fixed_pos(at + vec2(16.0, 12.0)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_max_width(260.0);
+            ui.label(RichText::new(name).strong());
+            if let Some(why_not) = why_not {
+                ui.label(RichText::new(format!("🚫 {why_not}")).color(theme::of(ui).warning));
+            }
+        });
+    });
+}
