@@ -4,6 +4,7 @@ use super::{Action, Group, Kind};
 use crate::command::{Command, DocumentCommand, Selection};
 use crate::panels::Scene;
 use crate::panels::tree::alternates::{associated, causes, choice, name_of, plan_name, together};
+use crate::panels::tree::title;
 use flight_plan::Id;
 
 /// So many emergency plans are offered.
@@ -43,7 +44,7 @@ fn subject(scene: &Scene<'_>) -> (Vec<Option<Id>>, String) {
         },
         Some(Selection::Stage(id)) => {
             let name = scene.document.plan().stage(id).map_or("", |stage| stage.name.as_str());
-            (vec![Some(id.clone())], if name.is_empty() { id.to_string() } else { name.to_owned() })
+            (vec![Some(id.clone())], title(name, id.as_str()))
         }
         _ => (vec![None], "the plan".into()),
     }

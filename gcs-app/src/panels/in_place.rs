@@ -33,7 +33,12 @@ impl InPlace {
             .font(FontId::proportional(13.0))
             .margin(Margin::symmetric(3, 1))
             .desired_width(rect.width() - 8.0);
-        let output = ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| edit.show(ui)).inner;
+        let output = ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+            // no higher than its row
+            ui.spacing_mut().interact_size.y = rect.height() - 4.0;
+            edit.show(ui)
+        });
+        let output = output.inner;
         let response = output.response.response;
         let text = self.text.clone();
         response.widget_info(|| {

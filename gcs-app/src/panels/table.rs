@@ -1,16 +1,77 @@
-//! The plan as it will be flown, one row per passage of a leg. Only the rows in view are laid out.
+//! The plan as it will be flown, one row per passage of a leg, stage by stage. Only the rows in view are laid out. Names, altitudes and
+//! airspeeds are typed where they stand.
 
+mod rows;
+mod typed;
+
+use super::in_place::{InPlace, Typed};
+use super::tree::title;
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::forecast::{Passage, Point};
+use crate::forecast::Passage;
 use crate::theme;
-use crate::units;
-use egui::{RichText, ScrollArea, Sense, Ui};
-use egui_extras::{Column, TableBuilder};
+use egui::{
+    Align, Align2, Context, EventFilter, FontId, Id as WidgetId, Key, Modifiers, Rect, Response, RichText,
+    Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
+};
+use egui_extras::{TableBuilder, TableRow};
+use flight_plan::Id;
+use rows::{Row, Said, cells, heads, label, part, rows, said};
+use std::collections::HashMap;
+use typed::Column;
 
 /// The panel.
+#[derive(Debug, Default)]
+pub struct Table {
+    rows: Vec<Row>,
+    said: HashMap<Id, Said>,
+    /// Of which version of the plan, and of which forecast.
+    of: Option<(u64, u64)>,
+    cursor: Cursor,
+    /// What was selected when it was last drawn.
+    selected: Option<Selection>,
+    editing: Option<Editing>,
+}
+
+/// The cell that the keyboard is at.
 #[derive(Debug)]
-pub struct Table;
+struct Cursor {
+    row: usize,
+    column: Column,
+    /// It is to be brought into view.
+    moved: bool,
+}
+
+impl Default for Cursor {
+    fn default() -> Self {
+        Self { row: 0, column: Column::Name, moved: false }
+    }
+}
+
+/// A cell that is being typed into.
+#[derive(Debug)]
+struct Editing {
+    row: usize,
+    column: Column,
+    field: InPlace,
+}
+
+/// What is done with a cell.
+enum Done {
+    Chosen,
+    Edited,
+    Typed(Typed),
+}
+
+/// Of the cell with the keyboard.
+fn cursor_id() -> WidgetId {
+    WidgetId::unique("table cell with the keyboard")
+}
+
+/// A cell of the table has the keyboard: F2 is for it.
+pub fn has_focus(ctx: &Context) -> bool {
+    ctx.memory(|m| m.has_focus(cursor_id()))
+}
 
 impl Panel for Table {
     fn id(&self) -> PanelId {
@@ -26,92 +87,290 @@ impl Panel for Table {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        self.refresh(scene);
+        self.follow(scene);
+        self.keys(ui, scene, queue);
         timeline::strip(ui, scene, queue);
         // where the columns have no room
-        ScrollArea::horizontal().id_salt("columns").auto_shrink(false).show(ui, |ui| rows(ui, scene, queue));
+        let columns = ScrollArea::horizontal().id_salt("columns").auto_shrink(false);
+        columns.show(ui, |ui| self.table(ui, scene, queue));
     }
 }
 
-fn rows(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let u = scene.units();
-    let heads = [
-        "Leg".into(),
-        "Type".into(),
-        "Pass".into(),
-        "Track".into(),
-        format!("Distance, {}", u.distance().symbol),
-        format!("Total, {}", u.distance().symbol),
-        format!("Altitude AMSL, {}", u.altitude().symbol),
-        "ETE".into(),
-        "Elapsed".into(),
-        format!("Speed, {}", u.speed().symbol),
-        "Energy left".into(),
-        format!("Above ground, {}", u.altitude().symbol),
-    ];
-    let passages = &scene.forecast().passages;
-    let p = theme::of(ui);
-    TableBuilder::new(ui)
-        .id_salt("plan table")
-        .striped(true)
-        .sense(Sense::click())
-        .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
-        .column(Column::initial(120.0).at_least(60.0).clip(true))
-        .columns(Column::initial(60.0).at_least(40.0), 3)
-        .columns(Column::remainder().at_least(60.0), 8)
-        .header(20.0, |mut header| {
-            for head in &heads {
+impl Table {
+    fn refresh(&mut self, scene: &Scene<'_>) {
+        let of = (scene.document.version(), scene.analysis.forecast_version);
+        if self.of != Some(of) {
+            self.of = Some(of);
+            self.rows = rows(scene.forecast());
+            self.said = said(scene.document.plan());
+        }
+    }
+
+    /// Brings what was selected elsewhere into view.
+    fn follow(&mut self, scene: &Scene<'_>) {
+        if self.selected == scene.view.selection {
+            return;
+        }
+        self.selected.clone_from(&scene.view.selection);
+        let passages = &scene.forecast().passages;
+        let is_it = |row: &Row| match (row, &self.selected) {
+            (Row::Stage(stage), Some(Selection::Stage(id))) => stage == id,
+            (Row::Passage(index), Some(Selection::Leg(id))) => {
+                passages.get(*index).is_some_and(|p| p.leg == *id)
+            }
+            _ => false,
+        };
+        if let Some(row) = self.rows.iter().position(is_it) {
+            self.cursor = Cursor { row, moved: true, ..self.cursor };
+        }
+    }
+
+    fn keys(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        if !has_focus(ui.ctx()) || self.editing.is_some() {
+            return;
+        }
+        let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(cursor_id(), filter));
+        let pressed = |modifiers, key| ui.input_mut(|i| i.consume_key(modifiers, key));
+        // with Shift first, for a key alone is part of that
+        for (modifiers, extends) in [(Modifiers::SHIFT, true), (Modifiers::NONE, false)] {
+            for (key, by) in [(Key::ArrowDown, 1), (Key::ArrowUp, -1)] {
+                if pressed(modifiers, key) {
+                    self.walk(by, extends, scene, queue);
+                }
+            }
+        }
+        for (key, by) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
+            if pressed(Modifiers::NONE, key) {
+                self.cursor.column = self.cursor.column.beside(by).unwrap_or(self.cursor.column);
+            }
+        }
+        if pressed(Modifiers::NONE, Key::F2) || pressed(Modifiers::NONE, Key::Enter) {
+            self.edit(scene);
+        }
+    }
+
+    /// To another row, which is selected; with those on the way to it, too.
+    fn walk(&mut self, by: isize, extends: bool, scene: &Scene<'_>, queue: &mut Queue) {
+        let to = self.cursor.row.saturating_add_signed(by).min(self.rows.len().saturating_sub(1));
+        self.cursor = Cursor { row: to, moved: true, ..self.cursor };
+        match self.current(scene) {
+            Some(Selection::Leg(leg)) if extends => queue.view(ViewCommand::Extend(leg)),
+            _ => self.select(scene, queue),
+        }
+    }
+
+    /// What the keyboard is at.
+    fn current(&self, scene: &Scene<'_>) -> Option<Selection> {
+        match self.rows.get(self.cursor.row)? {
+            Row::Stage(stage) => Some(Selection::Stage(stage.clone())),
+            Row::Passage(index) => Some(part(scene, scene.forecast().passages.get(*index)?)),
+        }
+    }
+
+    /// Selects what the keyboard is at.
+    fn select(&mut self, scene: &Scene<'_>, queue: &mut Queue) {
+        let selection = self.current(scene);
+        self.selected.clone_from(&selection);
+        queue.view(ViewCommand::Select(selection));
+    }
+
+    fn said_of(&self, scene: &Scene<'_>, passage: &Passage) -> Said {
+        self.said.get(part(scene, passage).id()).cloned().unwrap_or_default()
+    }
+
+    /// Begins to type into the cell with the keyboard.
+    fn edit(&mut self, scene: &Scene<'_>) {
+        let Some(Row::Passage(index)) = self.rows.get(self.cursor.row) else { return };
+        let Some(passage) = scene.forecast().passages.get(*index) else { return };
+        let text =
+            self.cursor.column.text(&label(scene, passage), &self.said_of(scene, passage), scene.units());
+        let Cursor { row, column, .. } = self.cursor;
+        self.editing = Some(Editing { row, column, field: InPlace::new(&text) });
+    }
+
+    fn table(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let weak = theme::of(ui).weak;
+        let whole = ui.clip_rect();
+        let mut table = TableBuilder::new(ui)
+            .id_salt("plan table")
+            .striped(true)
+            .sense(Sense::click())
+            .animate_scrolling(false)
+            .cell_layout(egui::Layout::left_to_right(Align::Center))
+            .column(egui_extras::Column::initial(120.0).at_least(60.0).clip(true))
+            .column(egui_extras::Column::initial(150.0).at_least(60.0).clip(true))
+            .column(egui_extras::Column::initial(90.0).at_least(50.0).clip(true))
+            .columns(egui_extras::Column::initial(50.0).at_least(36.0), 3)
+            .columns(egui_extras::Column::remainder().at_least(60.0), 8);
+        if std::mem::take(&mut self.cursor.moved) {
+            table = table.scroll_to_row(self.cursor.row, None);
+        }
+        let mut done = None;
+        let table = table.header(20.0, |mut header| {
+            for head in heads(scene.units()) {
                 header.col(|ui| {
-                    ui.label(RichText::new(head).size(11.0).color(p.weak));
+                    ui.label(RichText::new(head).size(11.0).color(weak));
                 });
             }
-        })
-        .body(|body| {
-            body.rows(22.0, passages.len(), |mut row| {
-                let Some(passage) = passages.get(row.index()) else { return };
-                row.set_selected(scene.is_selected(&Selection::Leg(passage.leg.clone())));
-                for text in cells(scene, passage) {
-                    row.col(|ui| {
-                        ui.add(egui::Label::new(text).truncate().selectable(false));
-                    });
-                }
-                if row.response().clicked() {
-                    queue.view(ViewCommand::Select(Some(Selection::Leg(passage.leg.clone()))));
+        });
+        table.body(|body| {
+            body.rows(22.0, self.rows.len(), |mut row| {
+                let index = row.index();
+                match self.rows.get(index) {
+                    Some(Row::Stage(stage)) => heading(&mut row, whole, scene, stage, queue),
+                    Some(Row::Passage(passage)) => {
+                        if let Some(passage) = scene.forecast().passages.get(*passage) {
+                            done = self.passage(&mut row, scene, passage).map(|d| (index, d)).or(done.take());
+                        }
+                    }
+                    None => {}
                 }
             });
         });
+        if let Some((row, (column, what))) = done {
+            self.take(ui, row, column, what, scene, queue);
+        }
+    }
+
+    fn passage(
+        &mut self,
+        row: &mut TableRow<'_, '_>,
+        scene: &Scene<'_>,
+        passage: &Passage,
+    ) -> Option<(Column, Done)> {
+        let index = row.index();
+        let said = self.said_of(scene, passage);
+        row.set_selected(scene.is_selected(&part(scene, passage)));
+        let mut done = None;
+        let mut columns = Column::ALL.into_iter();
+        for text in cells(scene, passage, &said) {
+            let column = columns.next();
+            row.col(|ui| match (column, &mut self.editing) {
+                (Some(column), Some(Editing { row, column: at, field }))
+                    if *row == index && *at == column =>
+                {
+                    let name = format!("{} of {}", column.name(), passage.leg);
+                    let typed = field.show(ui, ui.max_rect(), &name);
+                    done = typed.map(|typed| (column, Done::Typed(typed))).or(done.take());
+                }
+                (Some(column), _) => {
+                    let is_current = (self.cursor.row, self.cursor.column) == (index, column);
+                    let name = format!("{} of {}", column.name(), passage.leg);
+                    let response = cell(ui, (index, column), is_current, text, &name);
+                    if response.double_clicked() {
+                        done = Some((column, Done::Edited));
+                    } else if response.clicked() {
+                        done = Some((column, Done::Chosen));
+                    }
+                }
+                (None, _) => {
+                    ui.add(egui::Label::new(text).truncate().selectable(false));
+                }
+            });
+        }
+        if done.is_none() && row.response().clicked() {
+            done = Some((self.cursor.column, Done::Chosen));
+        }
+        done
+    }
+
+    /// What was done with a cell.
+    fn take(
+        &mut self,
+        ui: &Ui,
+        row: usize,
+        column: Column,
+        done: Done,
+        scene: &Scene<'_>,
+        queue: &mut Queue,
+    ) {
+        match done {
+            Done::Typed(Typed::Cancelled) => self.editing = None,
+            Done::Typed(Typed::Text(text)) => self.finish(row, column, &text, scene, queue),
+            Done::Edited => {
+                self.cursor = Cursor { row, column, moved: false };
+                self.edit(scene);
+            }
+            Done::Chosen => {
+                self.cursor = Cursor { row, column, moved: false };
+                self.choose(ui, scene, queue);
+            }
+        }
+        ui.memory_mut(|m| m.request_focus(cursor_id()));
+    }
+
+    /// With Ctrl or Shift, legs are selected together.
+    fn choose(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let modifiers = ui.input(|i| i.modifiers);
+        match (self.current(scene), modifiers.command, modifiers.shift) {
+            (Some(Selection::Leg(leg)), true, _) => queue.view(ViewCommand::Toggle(leg)),
+            (Some(Selection::Leg(leg)), _, true) => queue.view(ViewCommand::Extend(leg)),
+            _ => self.select(scene, queue),
+        }
+    }
+
+    /// Takes what was typed, for all legs that are selected with that one; where it means nothing, it can be mended.
+    fn finish(&mut self, row: usize, column: Column, text: &str, scene: &Scene<'_>, queue: &mut Queue) {
+        self.editing = None;
+        let Some(Row::Passage(index)) = self.rows.get(row) else { return };
+        let Some(passage) = scene.forecast().passages.get(*index) else { return };
+        let said = self.said_of(scene, passage);
+        let part = part(scene, passage);
+        if text == column.text(&label(scene, passage), &said, scene.units()) {
+            return;
+        }
+        let legs = match scene.selected_legs() {
+            legs if legs.contains(part.id()) && column != Column::Name => legs,
+            _ => vec![part.id().clone()],
+        };
+        match column.edit(text, &legs, &said, scene.units()) {
+            Ok(edit) => queue.edit(edit),
+            Err(why) => {
+                queue.view(ViewCommand::Notice(why));
+                self.editing = Some(Editing { row, column, field: InPlace::new(text) });
+            }
+        }
+    }
 }
 
-fn cells(scene: &Scene<'_>, passage: &Passage) -> [String; 12] {
-    let forecast = scene.forecast();
-    let kind = scene.document.kind_name(&passage.leg);
-    let pass = passage.passes.last().map_or_else(String::new, u64::to_string);
-    let points = forecast.part(passage).unwrap_or_default();
-    let name = scene.document.leg_label(&passage.leg).to_owned();
-    let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        let mut cells = [(); 12].map(|()| "–".to_owned());
-        cells[..3].clone_from_slice(&[name, kind.into(), pass]);
-        return cells;
+/// A cell that can be typed into.
+fn cell(ui: &mut Ui, at: (usize, Column), is_current: bool, text: String, name: &str) -> Response {
+    let rect = ui.max_rect();
+    let (id, sense) = match is_current {
+        true => (cursor_id(), Sense::click()),
+        // one stop of the Tab key; from there the arrows go on
+        false => (WidgetId::unique(("table cell", at.0, at.1.name())), Sense::CLICK),
     };
-    let u = scene.units();
-    [
-        name,
-        kind.into(),
-        pass,
-        track(first, last),
-        u.distance().number(last.distance_m - first.distance_m),
-        u.distance().number(last.distance_m),
-        u.altitude().number(last.altitude_amsl_m),
-        units::duration(last.time_s - first.time_s),
-        units::duration(last.time_s),
-        u.speed().number((last.distance_m - first.distance_m) / (last.time_s - first.time_s)),
-        format!("{:.0} %", 100.0 * passage.energy_left),
-        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
-    ]
+    ui.add_space(4.0);
+    ui.add(egui::Label::new(&text).truncate().selectable(false));
+    let response = ui.interact(rect, id, sense);
+    response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, name));
+    if response.has_focus() {
+        let stroke = Stroke::new(1.0, theme::of(ui).accent);
+        ui.painter().rect_stroke(rect.shrink(0.5), 3.0, stroke, StrokeKind::Inside);
+    }
+    response.on_hover_text(format!("{text}\nDouble-click or F2 to change it"))
 }
 
-/// Direction from start to end, where that means something.
-fn track(first: &Point, last: &Point) -> String {
-    let way = first.position.inverse(last.position);
-    let straight = way.distance_m > 0.8 * (last.distance_m - first.distance_m);
-    if straight && way.distance_m > 1.0 { units::bearing(way.bearing_start_deg) } else { "–".into() }
+/// Where a stage begins: its name over all columns.
+fn heading(row: &mut TableRow<'_, '_>, whole: Rect, scene: &Scene<'_>, stage: &Id, queue: &mut Queue) {
+    row.set_selected(scene.is_selected(&Selection::Stage(stage.clone())));
+    let name = scene.document.plan().stage(stage).map_or("", |stage| stage.name.as_str());
+    let name = title(name, stage.as_str());
+    row.col(|ui| {
+        let rect = ui.max_rect();
+        let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
+        let at = rect.left_center();
+        painter.text(at, Align2::LEFT_CENTER, &name, FontId::proportional(12.5), theme::of(ui).accent);
+        let response = ui.response();
+        response.widget_info(|| egui::WidgetInfo::labeled(Role::Label, true, format!("Stage {name}")));
+    });
+    for _ in 1..Column::COUNT {
+        row.col(|_| {});
+    }
+    if row.response().clicked() {
+        queue.view(ViewCommand::Select(Some(Selection::Stage(stage.clone()))));
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::{SQUARE, Window};
 use egui::{Key, Modifiers, Pos2, vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::{Cause, FlightPlan, Id, LegKind};
 
 const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
@@ -254,9 +254,13 @@ fn an_emergency_plan_of_a_stage_is_chosen_and_taken_back_in_its_menu() {
             &["Emergency plan", entry]
         };
         for step in path {
-            let by =
-                egui_kittest::kittest::By::new().role(egui::accesskit::Role::Button).label_contains(*step);
-            let found = window.harness.get(by).rect().center();
+            let is_it = |node: &egui_kittest::Node<'_>| {
+                node.accesskit_node().label().is_some_and(|label| label.starts_with(step))
+            };
+            let found = {
+                let mut buttons = window.harness.get_all_by_role(egui::accesskit::Role::Button);
+                buttons.find(is_it).unwrap().rect().center()
+            };
             window.click_at(found);
         }
     }

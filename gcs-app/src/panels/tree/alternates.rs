@@ -1,5 +1,6 @@
 //! Emergency plans of legs, stages and the whole plan: what is in force where, and the menu that chooses the cause.
 
+use super::title;
 use crate::command::{Queue, Selection};
 use crate::panels::Scene;
 use crate::panels::what_if::cause_name;
@@ -110,7 +111,7 @@ pub(super) fn explain(ui: &mut Ui, text: &str, plan: &FlightPlan, all: &Alternat
             ui.label(RichText::new(cause_name(cause)).color(weak));
             ui.label(match in_force {
                 None => "nothing".to_owned(),
-                Some(f) if f.from.as_ref() == of.map(Selection::id) => plan_name(plan, &f.plan).to_owned(),
+                Some(f) if f.from.as_ref() == of.map(Selection::id) => plan_name(plan, &f.plan),
                 Some(f) => format!("{}, from {}", plan_name(plan, &f.plan), origin(plan, f)),
             });
             ui.end_row();
@@ -119,15 +120,15 @@ pub(super) fn explain(ui: &mut Ui, text: &str, plan: &FlightPlan, all: &Alternat
 }
 
 /// Who names it.
-fn origin<'a>(plan: &'a FlightPlan, in_force: &'a InForce) -> &'a str {
-    let Some(from) = &in_force.from else { return "the plan" };
+fn origin(plan: &FlightPlan, in_force: &InForce) -> String {
+    let Some(from) = &in_force.from else { return "the plan".into() };
     let leg = || plan.any_leg(from).map(|leg| leg.name.as_str());
     let name = plan.stage(from).map(|stage| stage.name.as_str()).or_else(leg).unwrap_or_default();
-    if name.is_empty() { from.as_str() } else { name }
+    title(name, from.as_str())
 }
 
 /// Of an emergency plan.
-pub fn plan_name<'a>(plan: &'a FlightPlan, id: &'a Id) -> &'a str {
+pub fn plan_name(plan: &FlightPlan, id: &Id) -> String {
     let name = plan.emergency_plan(id).map_or("", |emergency| emergency.name.as_str());
-    if name.is_empty() { id.as_str() } else { name }
+    title(name, id.as_str())
 }

@@ -1,7 +1,7 @@
 //! Rows on their way to another place: a line shows where they would go, or a sentence why they can't.
 
 use super::alternates;
-use super::drop::{At, LegSpot, Mark, for_alternate, for_legs, for_stage};
+use super::drop::{At, Found, LegSpot, Mark, for_alternate, for_legs, for_stage};
 use super::row::{HEIGHT, depth, indent};
 use super::rows::Row;
 use crate::command::{Queue, Selection};
@@ -12,7 +12,8 @@ use egui::{
     Area, CursorIcon, Frame, Id as WidgetId, Layout, Order, Popup, PopupAnchor, PopupKind, Pos2, Rect,
     RichText, Stroke, StrokeKind, Ui, pos2, vec2,
 };
-use flight_plan::{Edit, FlightPlan, Id, create};
+use flight_plan::create::{self, StageSpot};
+use flight_plan::{Edit, FlightPlan, Id};
 
 /// From one row to the next, screen points.
 pub(super) const STEP: f32 = HEIGHT + 1.0;
@@ -25,6 +26,13 @@ enum What {
     Legs(Vec<Id>),
     Stage(Id),
     Alternate(Id),
+}
+
+/// A place for what is dragged.
+enum Where {
+    Legs(LegSpot),
+    Stage(StageSpot),
+    Alternate(Option<Id>),
 }
 
 /// What a drop here would do.
@@ -43,7 +51,7 @@ pub(super) struct Drag {
     what: What,
     name: String,
     /// Where it was last, and what a drop there would do; so long as the pointer means the same place.
-    over: Option<(At, Mark, Result<Outcome, String>)>,
+    over: Option<(Mark, Result<Outcome, String>)>,
 }
 
 /// Where the rows are on the screen.
@@ -87,10 +95,10 @@ impl Drag {
     pub fn show(&mut self, ui: &Ui, rows: &[Row], view: View, plan: &FlightPlan) -> bool {
         let Some(at) = ui.input(|i| i.pointer.latest_pos()) else { return false };
         self.find(rows, view, at, plan);
-        if let Some((_, mark, outcome)) = &self.over {
+        if let Some((mark, outcome)) = &self.over {
             paint(ui, *mark, view, outcome.is_ok());
         }
-        let why_not = self.over.as_ref().and_then(|(.., outcome)| outcome.as_ref().err());
+        let why_not = self.over.as_ref().and_then(|(_, outcome)| outcome.as_ref().err());
         ui.set_cursor_icon(if why_not.is_some() { CursorIcon::NotAllowed } else { CursorIcon::Grabbing });
         ghost(ui, at, &self.name, why_not.map(String::as_str));
         ui.input(|i| i.pointer.any_released())
@@ -110,35 +118,41 @@ impl Drag {
             return;
         }
         let at = At { row: y as usize, down: y.fract(), depth: depth(view.rect.left(), pointer.x) };
-        if self.over.as_ref().is_some_and(|(over, ..)| *over == at) {
-            return;
+        let (mark, place) = match self.place(rows, at) {
+            Ok((mark, place)) => (mark, Ok(place)),
+            Err(why) => (Mark::Onto(at.row), Err(why)),
+        };
+        // a large plan is not searched again while the pointer means the same place
+        if self.over.as_ref().is_none_or(|(over, _)| *over != mark) {
+            let outcome = place.map_err(str::to_owned).and_then(|place| self.outcome(place, plan));
+            self.over = Some((mark, outcome));
         }
-        let (mark, outcome) = self.outcome(rows, at, plan);
-        self.over = Some((at, mark, outcome));
     }
 
-    fn outcome(&self, rows: &[Row], at: At, plan: &FlightPlan) -> (Mark, Result<Outcome, String>) {
-        let edit = |edit: Option<Edit>| edit.map_or(Outcome::Nothing, |edit| Outcome::Edit(Box::new(edit)));
-        let found = match &self.what {
-            What::Legs(legs) => for_legs(rows, at).map(|(mark, spot)| {
-                let moved = match &spot {
-                    LegSpot::At(spot) => create::relocate(plan, legs, spot),
-                    LegSpot::Branch { fork, branch } => create::into_branch(plan, legs, fork, branch),
-                };
-                (mark, moved.map(edit))
-            }),
-            What::Stage(stage) => for_stage(rows, at)
-                .map(|(mark, spot)| (mark, Ok(edit(create::relocate_stage(plan, stage, &spot))))),
-            What::Alternate(_) => {
-                for_alternate(rows, at).map(|(mark, of)| (mark, Ok(Outcome::Associate(of))))
+    fn place(&self, rows: &[Row], at: At) -> Found<Where> {
+        Ok(match &self.what {
+            What::Legs(_) => for_legs(rows, at).map(|(mark, spot)| (mark, Where::Legs(spot)))?,
+            What::Stage(_) => for_stage(rows, at).map(|(mark, spot)| (mark, Where::Stage(spot)))?,
+            What::Alternate(_) => for_alternate(rows, at).map(|(mark, of)| (mark, Where::Alternate(of)))?,
+        })
+    }
+
+    fn outcome(&self, place: Where, plan: &FlightPlan) -> Result<Outcome, String> {
+        let moved = match (&self.what, place) {
+            (What::Legs(legs), Where::Legs(LegSpot::At(spot))) => create::relocate(plan, legs, &spot)?,
+            (What::Legs(legs), Where::Legs(LegSpot::Branch { fork, branch })) => {
+                create::into_branch(plan, legs, &fork, &branch)?
             }
+            (What::Stage(stage), Where::Stage(spot)) => create::relocate_stage(plan, stage, &spot),
+            (_, Where::Alternate(of)) => return Ok(Outcome::Associate(of)),
+            _ => None,
         };
-        found.unwrap_or_else(|why| (Mark::Onto(at.row), Err(why.into())))
+        Ok(moved.map_or(Outcome::Nothing, |edit| Outcome::Edit(Box::new(edit))))
     }
 
     /// Does it; what is to be asked then.
     pub fn drop(self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) -> Option<Asking> {
-        let (.., outcome) = self.over?;
+        let (_, outcome) = self.over?;
         match (outcome.ok()?, self.what) {
             (Outcome::Edit(edit), _) => queue.edit(*edit),
             (Outcome::Associate(of), What::Alternate(alternate)) => {

@@ -1,0 +1,155 @@
+//! The rows of the table: a heading where a stage begins, and the passages of its legs.
+
+use super::typed::Column;
+use crate::command::Selection;
+use crate::forecast::{Forecast, Passage, Point};
+use crate::panels::Scene;
+use crate::panels::inspector::inherited::{self, Inherited};
+use crate::panels::tree::title;
+use crate::units;
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Value};
+use std::collections::HashMap;
+
+/// One row.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Row {
+    /// A stage begins.
+    Stage(Id),
+    /// A passage of the forecast, by its index.
+    Passage(usize),
+}
+
+/// All rows of a flight.
+pub(super) fn rows(forecast: &Forecast) -> Vec<Row> {
+    let mut rows = Vec::with_capacity(forecast.passages.len());
+    let mut stage: Option<&Id> = None;
+    for (index, passage) in forecast.passages.iter().enumerate() {
+        if stage != Some(&passage.stage) {
+            rows.push(Row::Stage(passage.stage.clone()));
+            stage = Some(&passage.stage);
+        }
+        rows.push(Row::Passage(index));
+    }
+    rows
+}
+
+/// What the plan says of a leg's altitude and airspeed, and where it says it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Said {
+    pub altitude: Option<Inherited<Altitude>>,
+    pub speed_mps: Option<Inherited<Value<f64>>>,
+}
+
+/// What the plan says of every leg: looked up once for a version of it.
+pub(super) fn said(plan: &FlightPlan) -> HashMap<Id, Said> {
+    let of_legs = plan.all_legs().into_iter().map(|context| {
+        let (altitude, speed_mps) = (inherited::altitude_said(&context), inherited::speed_said(&context));
+        (context.leg.id.clone(), Said { altitude, speed_mps })
+    });
+    // what is around a procedure is not known: each call may say it
+    // what has no legs is flown by the stage itself
+    let stages = plan.all_stages().map(|(_, stage)| {
+        let altitude = stage.altitude.as_ref().map(Inherited::own);
+        (stage.id.clone(), Said { altitude, speed_mps: stage.speed_mps.as_ref().map(Inherited::own) })
+    });
+    let of_procedures = plan.procedure_legs().into_iter().map(|leg| {
+        let altitude = leg.altitude.as_ref().map(Inherited::own);
+        (leg.id.clone(), Said { altitude, speed_mps: leg.speed_mps.as_ref().map(Inherited::own) })
+    });
+    stages.chain(of_procedures).chain(of_legs).collect()
+}
+
+/// What a passage is of: a leg, also that of a procedure, or a stage without legs.
+pub(super) fn part(scene: &Scene<'_>, passage: &Passage) -> Selection {
+    let leg = scene.document.written(&passage.leg);
+    if leg == passage.stage { Selection::Stage(leg) } else { Selection::Leg(leg) }
+}
+
+/// What people call it.
+pub(super) fn label(scene: &Scene<'_>, passage: &Passage) -> String {
+    let stage = scene.document.plan().stage(&passage.stage).filter(|stage| stage.id == passage.leg);
+    stage.map_or_else(
+        || scene.document.leg_label(&passage.leg).to_owned(),
+        |stage| title(&stage.name, stage.id.as_str()),
+    )
+}
+
+/// What the table says above its columns.
+pub(super) fn heads(units: crate::units::Units) -> [String; Column::COUNT] {
+    let (distance, altitude) = (units.distance().symbol, units.altitude().symbol);
+    [
+        "Leg".into(),
+        "Altitude".into(),
+        "Airspeed".into(),
+        "Type".into(),
+        "Pass".into(),
+        "Track".into(),
+        format!("Distance, {distance}"),
+        format!("Total, {distance}"),
+        format!("Altitude AMSL, {altitude}"),
+        "ETE".into(),
+        "Elapsed".into(),
+        format!("Speed, {}", units.speed().symbol),
+        "Energy left".into(),
+        format!("Above ground, {altitude}"),
+    ]
+}
+
+/// What stands in the columns of a passage.
+pub(super) fn cells(scene: &Scene<'_>, passage: &Passage, said: &Said) -> [String; Column::COUNT] {
+    let kind = scene.document.kind_name(&passage.leg);
+    let pass = passage.passes.last().map_or_else(String::new, u64::to_string);
+    let points = scene.forecast().part(passage).unwrap_or_default();
+    let name = label(scene, passage);
+    let (altitude, airspeed) = (altitude_text(scene, said, points), airspeed_text(scene, said));
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        let mut cells = [(); Column::COUNT].map(|()| "–".to_owned());
+        cells[..5].clone_from_slice(&[name, altitude, airspeed, kind.into(), pass]);
+        return cells;
+    };
+    let u = scene.units();
+    [
+        name,
+        altitude,
+        airspeed,
+        kind.into(),
+        pass,
+        track(first, last),
+        u.distance().number(last.distance_m - first.distance_m),
+        u.distance().number(last.distance_m),
+        u.altitude().number(last.altitude_amsl_m),
+        units::duration(last.time_s - first.time_s),
+        units::duration(last.time_s),
+        u.speed().number((last.distance_m - first.distance_m) / (last.time_s - first.time_s)),
+        format!("{:.0} %", 100.0 * passage.energy_left),
+        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
+    ]
+}
+
+/// `1400 m AMSL, Fire watch`: what is said, and where.
+fn altitude_text(scene: &Scene<'_>, said: &Said, points: &[Point]) -> String {
+    let arrival = || {
+        let metres = Value::Constant(points.first()?.altitude_amsl_m.round());
+        let value = Altitude { metres, reference: AltitudeReference::Amsl };
+        Some(Inherited { value, from: "the leg before".into() })
+    };
+    let altitude = said.altitude.clone().or_else(arrival);
+    altitude.map_or_else(
+        || "–".into(),
+        |altitude| format!("{}, {}", inherited::altitude_text(scene, &altitude.value), altitude.from),
+    )
+}
+
+fn airspeed_text(scene: &Scene<'_>, said: &Said) -> String {
+    said.speed_mps.as_ref().map_or_else(
+        || "cruise".into(),
+        |speed| format!("{}, {}", inherited::value_text(&speed.value, scene.units().speed()), speed.from),
+    )
+}
+
+/// Direction from start to end, where that means something.
+fn track(first: &Point, last: &Point) -> String {
+    let way = first.position.inverse(last.position);
+    let straight = way.distance_m > 0.8 * (last.distance_m - first.distance_m);
+    if straight && way.distance_m > 1.0 { units::bearing(way.bearing_start_deg) } else { "–".into() }
+}

@@ -1,0 +1,166 @@
+//! The table of the legs, and that neither it nor the tree lays out more than is to be seen.
+
+use super::{SQUARE, Window};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{By, Queryable};
+use flight_plan::{AltitudeReference, FlightPlan, Leg, Value};
+use gcs_app::command::Queue;
+use gcs_app::document::Document;
+use gcs_app::forecast::{Analysis, Forecast, Passage, Point};
+use gcs_app::panels::{self, Panel, Scene};
+use std::sync::Arc;
+
+/// The window with the table in front, all of it to be seen.
+fn opened(text: &str) -> Window {
+    let mut window = Window::open_with(text, vec2(1600.0, 1000.0), None);
+    window.until_analysed();
+    window.harness.get_all_by_label("Table").next().unwrap().click();
+    window.steps(3);
+    window
+}
+
+impl Window {
+    fn cell(&self, name: &str) -> Pos2 {
+        self.harness.get_by_role_and_label(Role::Button, name).rect().center()
+    }
+
+    fn write(&mut self, text: &str) {
+        self.harness.event(egui::Event::Text(text.into()));
+        self.steps(2);
+    }
+
+    fn altitude(&self, leg: &str) -> Option<(f64, AltitudeReference)> {
+        let altitude = self.plan().leg(&leg.into()).unwrap().leg.altitude.clone()?;
+        let Value::Constant(metres) = altitude.metres else { panic!() };
+        Some((metres, altitude.reference))
+    }
+}
+
+#[test]
+fn altitudes_say_what_they_are_above_and_where_they_come_from() {
+    let mut window = opened(&SQUARE.replace("id=\"circuit\"", "id=\"circuit\" name=\"Once around\""));
+    assert!(window.shows("100 m above home, own"));
+    window.click("TF side2");
+    assert!(window.shows("150 m above home, Once around"), "it is brought into view");
+    window.click("T/O take-off");
+    for stage in ["Stage take-off", "Stage Once around"] {
+        assert!(window.shows(stage), "{stage}");
+    }
+}
+
+#[test]
+fn legs_that_are_selected_are_changed_together_by_keyboard() {
+    let mut window = opened(SQUARE);
+    let before = window.plan();
+    window.click("TF side3");
+    let at = window.cell("Altitude of side3");
+    window.click_at(at);
+    for _ in 0..2 {
+        window.harness.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
+        window.steps(3);
+    }
+    assert!(window.shows("3 legs"));
+    window.press(Key::F2);
+    window.write("90");
+    window.press(Key::Enter);
+    for leg in ["side1", "side2", "side3"] {
+        assert_eq!(window.altitude(leg), Some((90.0, AltitudeReference::Home)), "{leg}");
+    }
+    assert_eq!(window.altitude("side4"), Some((110.0, AltitudeReference::Home)));
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+const MANY: usize = 100_000;
+
+/// A stage of very many legs.
+fn huge() -> FlightPlan {
+    let mut plan = flight_plan::read(SQUARE.as_bytes()).plan;
+    let leg = plan.stages[1].legs[1].as_ref().clone();
+    let numbered = |n: usize| Arc::new(Leg { id: format!("leg{n}").as_str().into(), ..leg.clone() });
+    plan.stages[1].legs = (0..MANY).map(numbered).collect();
+    plan
+}
+
+/// Draws a panel with the huge plan a few times, and looks at what there is then.
+fn drawn(mut panel: Box<dyn Panel>, scrolled: f32, look: impl Fn(&Harness<'_>)) {
+    let window = Window::open(SQUARE);
+    let app = window.app();
+    let document = Document::new(huge(), None, Vec::new());
+    let point = |n: usize| Point {
+        time_s: n as f64,
+        distance_m: n as f64 * 25.0,
+        position: geometry::LatLon::new(46.0, 8.0),
+        altitude_amsl_m: 500.0,
+        ground_amsl_m: None,
+        passage: n,
+    };
+    let passage = |n: usize| Passage {
+        leg: format!("leg{n}").as_str().into(),
+        stage: "circuit".into(),
+        passes: Vec::new(),
+        first: n,
+        end: n + 1,
+        energy_left: 1.0,
+        clearance_m: None,
+    };
+    let forecast = Forecast {
+        points: (0..MANY).map(point).collect(),
+        passages: (0..MANY).map(passage).collect(),
+        ..Forecast::default()
+    };
+    let analysis = Analysis { forecast: Arc::new(forecast), forecast_version: 1, ..Analysis::default() };
+    let terrain = gcs_app::assets::demo_terrain();
+    let (recent, connections) = Default::default();
+    let scene = Scene {
+        can_undo: (false, false),
+        document: &document,
+        analysis: &analysis,
+        vehicle: app.vehicle(),
+        aboard: None,
+        vehicles: app.vehicles(),
+        view: app.view(),
+        layers: app.layers(),
+        recent: &recent,
+        connections: &connections,
+        left_behind: None,
+        ground: panels::Elevations(terrain.as_ref()),
+        now_s: 1.0,
+        utc: Default::default(),
+    };
+    let mut queue = Queue::default();
+    let builder =
+        Harness::builder().with_size(vec2(900.0, 600.0)).with_context_setup(gcs_app::theme::install);
+    let mut harness = builder.build_ui(|ui| panel.ui(ui, &scene, &mut queue));
+    harness.run_steps(2);
+    harness.hover_at(Pos2::new(300.0, 300.0));
+    let (unit, phase) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move);
+    let source = egui::MouseWheelSource::Wheel;
+    let (delta, modifiers) = (vec2(0.0, -scrolled), Modifiers::NONE);
+    harness.event(egui::Event::MouseWheel { unit, delta, phase, source, modifiers });
+    harness.run_steps(30);
+    look(&harness);
+}
+
+/// So many rows are seen at most in 600 points.
+const IN_VIEW: usize = 32;
+
+#[test]
+fn of_a_hundred_thousand_legs_the_tree_lays_out_what_is_seen() {
+    drawn(Box::new(panels::tree::Tree::default()), 50_000.0, |harness| {
+        let rows = harness.query_all_by_role(Role::TreeItem).count();
+        assert!((10..=IN_VIEW).contains(&rows), "{rows} rows");
+        assert!(harness.query_by_label("Main plan").is_none(), "it is scrolled");
+    });
+}
+
+#[test]
+fn of_a_hundred_thousand_passages_the_table_lays_out_what_is_seen() {
+    drawn(Box::new(panels::table::Table::default()), 50_000.0, |harness| {
+        let rows = harness.query_all(By::new().role(Role::Button).label_contains("Altitude of leg")).count();
+        assert!((10..=IN_VIEW).contains(&rows), "{rows} rows");
+        assert!(harness.query_by_label("Altitude of leg0").is_none(), "it is scrolled");
+    });
+}
