@@ -153,11 +153,14 @@ fn escape_ends_the_measurement_then_the_mode_then_the_selection() {
 fn only_the_tool_in_use_can_be_grabbed() {
     let mut window = window();
     assert!(window.shows("Fix A") && window.shows(SELECT));
+    let place = |window: &Window| window.plan().fix(&"A".into()).unwrap().position;
+    let before = place(&window);
     window.click(MEASURE);
-    assert!(window.harness.query_by_label("Fix A").is_none());
-    window.harness.key_press(Key::V);
-    window.steps(2);
-    assert!(window.harness.query_by_label("Fix A").is_some());
+    window.drag(window.centre("Fix A"), vec2(20.0, 10.0));
+    assert_eq!(place(&window), before);
+    window.press(Key::V);
+    window.drag(window.centre("Fix A"), vec2(20.0, 10.0));
+    assert_ne!(place(&window), before);
 }
 
 #[test]
