@@ -26,6 +26,18 @@ impl Window {
         self.harness.get_by_role_and_label(Role::Button, name).rect().center()
     }
 
+    /// Double-clicks a cell of the leg that a row of the tree selects, types over what is in it, and presses Enter.
+    fn type_into(&mut self, row: &str, cell: &str, text: &str) {
+        self.click(row);
+        // or the next click would be the second of a double click
+        self.steps(30);
+        let at = self.cell(cell);
+        self.click_at(at);
+        self.click_at(at);
+        self.write(text);
+        self.press(Key::Enter);
+    }
+
     fn write(&mut self, text: &str) {
         self.harness.event(egui::Event::Text(text.into()));
         self.steps(2);
@@ -48,6 +60,29 @@ fn altitudes_say_what_they_are_above_and_where_they_come_from() {
     for stage in ["Stage take-off", "Stage Once around"] {
         assert!(window.shows(stage), "{stage}");
     }
+}
+
+#[test]
+fn names_altitudes_and_speeds_are_typed_into_the_table() {
+    let mut window = opened(SQUARE);
+    let before = window.plan();
+    window.type_into("TF side2", "Altitude of side2", "120 AGL");
+    assert_eq!(window.altitude("side2"), Some((120.0, AltitudeReference::Agl)));
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+    window.until_analysed();
+    window.type_into("TF side3", "Name of side3", "Far side");
+    assert_eq!(window.plan().leg(&"side3".into()).unwrap().leg.name, "Far side");
+    window.until_analysed();
+    window.type_into("TF Far side", "Airspeed of side3", "22");
+    let speed = window.plan().leg(&"side3".into()).unwrap().leg.speed_mps.clone();
+    assert_eq!(speed, Some(Value::Constant(22.0)));
+    window.until_analysed();
+    window.type_into("TF side1", "Altitude of side1", "high");
+    assert!(window.shows("is no number in m"), "it says so, and stays open");
+    window.press(Key::Escape);
+    assert_eq!(window.altitude("side1"), Some((100.0, AltitudeReference::Home)));
+    assert!(!window.app().document().can_redo());
 }
 
 #[test]
