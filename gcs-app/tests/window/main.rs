@@ -14,6 +14,7 @@ mod emergency;
 mod filing;
 mod fleet;
 mod flying;
+mod gestures;
 mod handles;
 mod inspecting;
 mod looks;
@@ -25,8 +26,10 @@ mod pointing;
 mod reach;
 mod reading;
 mod recovering;
+mod recreating;
 mod store;
 mod table;
+mod tasks;
 mod tools;
 mod tree;
 mod vehicle;
@@ -49,6 +52,8 @@ const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
 struct Window {
     harness: Harness<'static, App>,
     far: Endpoint,
+    /// Clicks, drags, keys and words so far.
+    gestures: usize,
 }
 
 impl Window {
@@ -65,7 +70,7 @@ impl Window {
             creation.storage = storage;
             App::new(creation, document, links, assets::demo_terrain()).unwrap()
         });
-        Self { harness, far }
+        Self { harness, far, gestures: 0 }
     }
 
     /// What the window looks like now, compared with the kept picture of that name; `LEGWORK_BLESS=1` keeps this one.
@@ -107,6 +112,7 @@ impl Window {
     }
 
     fn click(&mut self, label: &str) {
+        self.gestures += 1;
         self.harness.get_by_label(label).click();
         self.steps(3);
     }
@@ -121,6 +127,7 @@ impl Window {
 
     /// Clicks a place of the screen.
     fn click_at(&mut self, at: Pos2) {
+        self.gestures += 1;
         self.harness.hover_at(at);
         self.steps(1);
         self.harness.drag_at(at);
@@ -131,6 +138,7 @@ impl Window {
 
     /// Clicks a place of the screen with the right button.
     fn right_click_at(&mut self, at: Pos2) {
+        self.gestures += 1;
         self.harness.hover_at(at);
         self.steps(1);
         for pressed in [true, false] {
@@ -142,12 +150,14 @@ impl Window {
     }
 
     fn press(&mut self, key: egui::Key) {
+        self.gestures += 1;
         self.harness.key_press(key);
         self.steps(3);
     }
 
     /// Presses a key with Ctrl, or Command on a Mac.
     fn press_ctrl(&mut self, key: egui::Key) {
+        self.gestures += 1;
         self.harness.key_press_modifiers(egui::Modifiers::COMMAND, key);
         self.steps(3);
     }
@@ -174,6 +184,7 @@ impl Window {
 
     /// Presses, moves in a few steps, lets go.
     fn drag(&mut self, from: Pos2, by: Vec2) {
+        self.gestures += 1;
         self.harness.hover_at(from);
         self.harness.drag_at(from);
         for part in 1..=5 {
