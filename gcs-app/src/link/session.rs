@@ -278,13 +278,23 @@ async fn answer(session: &Session, question: Question, outlet: &Outlet) {
     let left = DELIVERY.saturating_sub(asked.elapsed());
     let result = match left.is_zero() {
         true => Err(dropped(asked)),
-        false => ask(session, call, left).await.map_err(|error| match error {
-            CallError::Refused(refusal) => refusal.reason,
-            CallError::Unreachable { .. } => dropped(asked),
-            other => other.to_string(),
-        }),
+        false => ask(session, call, left).await.map_err(|error| unanswered(error, asked)),
     };
     outlet.send(LinkEvent::Answer { ticket, result }).await;
+}
+
+/// Why there is no good answer, for people.
+fn unanswered(error: CallError, asked: Instant) -> String {
+    match error {
+        CallError::Refused(refusal) => refusal.reason,
+        CallError::Unreachable { .. } => dropped(asked),
+        CallError::Lost { .. } => {
+            "the connection was lost before the answer came, so it may have been done or not: look at the \
+                                   vehicle's state before you give it again"
+                .into()
+        }
+        other => other.to_string(),
+    }
 }
 
 fn dropped(asked: Instant) -> String {
@@ -340,6 +350,15 @@ mod tests {
     fn gps(time_s: f64) -> Telemetry {
         let value = usal::contract::Gps { fix_3d: true, satellites: 9, hdop: 1.0, unix_s: None };
         Telemetry::Gps(Stamped { time_s, validity_s: 2.0, value })
+    }
+
+    #[test]
+    fn only_what_nobody_took_is_said_to_be_dropped() {
+        let name = || "legwork/uav1/fp-manager/invocation/command".to_owned();
+        let said = |error| unanswered(error, Instant::now());
+        assert!(said(CallError::Unreachable { name: name() }).contains("will not be done"));
+        let lost = said(CallError::Lost { name: name() });
+        assert!(lost.contains("may have been done or not") && !lost.contains("legwork/"), "{lost}");
     }
 
     #[tokio::test(flavor = "multi_thread")]
