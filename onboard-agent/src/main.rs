@@ -26,7 +26,7 @@ async fn perform(task: Task) -> ExitCode {
     tokio::spawn(end_on_signal(trigger));
     match task {
         Task::Describe => describe(),
-        Task::Run(options) => match options.completed() {
+        Task::Run(options) => match options.completed().and_then(|options| startable(options, &shutdown)) {
             Ok(options) => status(run(options, shutdown).await),
             Err(error) => failed(STARTED_WRONGLY, &error),
         },
@@ -39,11 +39,15 @@ async fn perform(task: Task) -> ExitCode {
     }
 }
 
-async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
-    // what is wrong is better said once than by every child
+/// What is wrong is better said once than by every child.
+fn startable(options: Options, shutdown: &Shutdown) -> anyhow::Result<Options> {
     for entry in SERVICES.iter().filter(|entry| (entry.is_wanted)(&options)) {
         drop((entry.start)(&options, shutdown.clone())?);
     }
+    Ok(options)
+}
+
+async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
     let program = std::env::current_exe()?;
     supervisor::run(&program, &options.processes(), shutdown).await
 }
