@@ -21,6 +21,7 @@ pub mod rasters;
 pub mod sketch;
 pub mod text;
 pub mod tools;
+mod variables;
 pub mod view;
 pub mod zones;
 
@@ -136,7 +137,8 @@ impl MapState {
             Selection::Fix(id) => plan.fix(id).map(|f| f.position),
             Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
             Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
-            Selection::Variable(_) | Selection::Procedure(_) => None,
+            Selection::Variable(id) => self.sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
+            Selection::Procedure(_) => None,
         }
     }
 
@@ -240,6 +242,7 @@ impl MapState {
         }
         zones::draw(&painter, view, scene, p);
         plan::draw_areas(&painter, view, &self.sketch, scene, p);
+        variables::draw(&painter, view, &self.sketch, scene, p);
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
         self.path.draw(&painter, view, scene, &self.sketch, p);
         self.aircraft.draw_trail(&painter, view, scene, p);

@@ -39,6 +39,19 @@ pub struct Sketch {
     pub main: Vec<Vec<LatLon>>,
     /// Emergency plans, each with its line.
     pub emergencies: Vec<(Id, Vec<LatLon>)>,
+    /// Variables that are a place.
+    pub variables: Vec<PlacedVariable>,
+}
+
+/// A variable that is a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedVariable {
+    /// Its name.
+    pub name: Id,
+    /// Where it is now.
+    pub at: LatLon,
+    /// The radius around it, in metres, where another variable is that.
+    pub radius_m: Option<f64>,
 }
 
 impl Sketch {
@@ -47,7 +60,7 @@ impl Sketch {
         let home = plan.home().or(plan.runways.first()).map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
         let fixes = plan.fixes.iter().rev().map(|fix| (&fix.id, fix.position)).collect();
         let reader = Reader { plan, fixes, env: Env { variables, flight: FlightState::on_ground(home) } };
-        let mut sketch = Self::default();
+        let mut sketch = Self { variables: placed_variables(plan, variables), ..Self::default() };
         for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
             sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
         }
@@ -166,14 +179,15 @@ impl Sketch {
         &mut self,
         leg: &Leg,
         centre: &Place,
-        radius_m: &Value<f64>,
+        source_m: &Value<f64>,
         is_area: bool,
         reader: &Reader<'_>,
     ) {
-        let (Some(at), Some(radius_m)) = (reader.place(centre), reader.number(radius_m)) else { return };
+        let (Some(at), Some(radius_m)) = (reader.place(centre), reader.number(source_m)) else { return };
         if !(radius_m > 0.0 && radius_m < 1.0e6) {
             return;
         }
+        self.note_radius(centre, source_m, reader);
         // circles around the same place share one handle: the first one's
         let taken = self.handles.iter().any(|h| matches!(h.what, Handled::Centre(_)) && h.at == at);
         if !taken {
@@ -182,6 +196,21 @@ impl Sketch {
         self.handles
             .push(Handle { what: Handled::Radius(leg.id.clone()), at: at.destination(90.0, radius_m) });
         self.circles.push(Circle { leg: leg.id.clone(), centre: at, radius_m, is_area });
+    }
+
+    /// A circle around a variable whose radius is made of another variable: that one is the radius of the thing itself.
+    fn note_radius(&mut self, centre: &Place, radius_m: &Value<f64>, reader: &Reader<'_>) {
+        let (Place::Position(Value::Expression(centre)), Value::Expression(radius)) = (centre, radius_m)
+        else {
+            return;
+        };
+        let Some((radius, _)) = bound_radius(radius) else { return };
+        let placed = self.variables.iter_mut().find(|variable| variable.name.as_str() == centre.trim());
+        if let (Some(variable), Some(VariableValue::Number(metres))) =
+            (placed, reader.env.variables.get(&radius))
+        {
+            variable.radius_m.get_or_insert(*metres);
+        }
     }
 
     fn add_polygon(&mut self, leg: &Leg, corners: &[LatLon], holes: &[Vec<LatLon>]) {
@@ -229,6 +258,17 @@ impl Sketch {
             .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
         self.handles.iter().map(|h| h.at).chain(self.main.iter().flatten().copied()).chain(rims).collect()
     }
+}
+
+fn placed_variables(plan: &FlightPlan, variables: &Variables) -> Vec<PlacedVariable> {
+    let place = |name: &Id| match variables.get(name) {
+        Some(VariableValue::Position(at)) if at.is_valid() => Some(*at),
+        _ => None,
+    };
+    let names = plan.variables.iter().map(|variable| &variable.name);
+    names
+        .filter_map(|name| Some(PlacedVariable { name: name.clone(), at: place(name)?, radius_m: None }))
+        .collect()
 }
 
 /// Reads places and numbers with the variables as they are.
@@ -310,6 +350,19 @@ pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<flight_
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn variables_that_are_a_place_have_the_radius_that_goes_with_them() {
+        let plan = flight_plan::read(crate::assets::FIRE_WATCH.as_bytes()).plan;
+        let mut variables = Variables::initial(&plan);
+        let placed = |variables: &Variables| Sketch::new(&plan, variables).variables;
+        let fire = LatLon::new(36.25, -84.26);
+        let expected =
+            |radius_m| [PlacedVariable { name: "fire_centre".into(), at: fire, radius_m: Some(radius_m) }];
+        assert_eq!(placed(&variables), expected(350.0));
+        variables.set(&plan, &"fire_radius".into(), VariableValue::Number(430.0)).unwrap();
+        assert_eq!(placed(&variables), expected(430.0), "as it is in flight");
+    }
 
     #[test]
     fn radii_bound_to_a_variable_are_recognised() {
