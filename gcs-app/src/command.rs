@@ -12,6 +12,7 @@ use flight_exec::rehearse::WhatIf;
 use flight_plan::template::Outline;
 use flight_plan::{Cause, Edit, Id};
 use geometry::LatLon;
+use interchange::Format;
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
 
@@ -37,6 +38,23 @@ pub enum DocumentCommand {
     Replace(Replacement),
     /// The same without asking: the changes are lost.
     Discard(Replacement),
+    /// A file or folder that was dropped onto the window.
+    Dropped(PathBuf),
+    /// Put the plan of another program that was read in the document's place.
+    TakeImport,
+    /// Put the plan into another program's format.
+    Export(Format),
+    /// Ask where to write what was exported.
+    AskExport,
+    /// Write it here.
+    ExportTo {
+        /// The file.
+        path: PathBuf,
+        /// It may be there already.
+        over: bool,
+    },
+    /// Save every document with unsaved changes, then close the window.
+    SaveAllAndQuit,
     /// A new plan made from a template, in the place of an empty one.
     Create(Box<Outline>),
     /// A runway from its landing threshold to its other end, on the ground there.
@@ -90,6 +108,8 @@ pub enum Replacement {
     New,
     /// A file that is asked for.
     AskOpen,
+    /// Another program's file that is asked for.
+    AskImport,
     /// This file.
     Open(PathBuf),
     /// Nothing: the window is closed.
@@ -159,6 +179,22 @@ pub enum ViewCommand {
     StopBrowsing,
     /// The unsaved plan stays.
     KeepUnsaved,
+    /// What was read of another program's file is not wanted.
+    PutImportAside,
+    /// What was exported is not written.
+    PutExportAside,
+    /// Open the report of a demo.
+    OpenReport(PathBuf),
+    /// The demo's strip is not wanted any more.
+    EndStory,
+    /// This step of the tour, from 0; `None` ends it.
+    Tour(Option<usize>),
+    /// A message is being read: it stays.
+    KeepToast(u64),
+    /// A message has been read.
+    DismissToast(u64),
+    /// The result of this work is not wanted.
+    Cancel(u64),
 }
 
 /// Commands to the links.

@@ -17,6 +17,8 @@ pub struct Document {
     /// What was in it then.
     text: Option<Arc<str>>,
     reading_problems: Vec<Problem>,
+    /// Not everything in its file could be read.
+    is_partial: bool,
     kinds: BTreeMap<Id, &'static str>,
     /// Of the legs that have one.
     names: BTreeMap<Id, String>,
@@ -45,6 +47,7 @@ impl Document {
             path,
             stamp: None,
             text: None,
+            is_partial: reading_problems.iter().any(Problem::is_error),
             reading_problems,
             kinds: BTreeMap::new(),
             names: BTreeMap::new(),
@@ -64,18 +67,21 @@ impl Document {
     }
 
     /// Takes over what another program wrote in its file, as a step that can be undone.
-    pub fn reread(&mut self, bytes: &[u8], stamp: Option<Stamp>) {
-        let theirs = Self::read(bytes, None);
+    pub fn reread(&mut self, theirs: Self) {
         self.replace(theirs.plan().as_ref().clone());
-        self.reading_problems = theirs.reading_problems;
-        (self.text, self.stamp) = (theirs.text, stamp);
+        (self.reading_problems, self.is_partial) = (theirs.reading_problems, theirs.is_partial);
+        (self.text, self.stamp) = (theirs.text, theirs.stamp);
         self.history.mark_saved();
     }
 
     /// A plan that was never saved to its file; it differs from that.
     pub fn recovered(bytes: &[u8], path: Option<PathBuf>) -> Self {
-        let reading = flight_plan::read(bytes);
-        let mut document = Self::new(reading.plan, path, Vec::new());
+        Self { path, ..Self::unsaved(flight_plan::read(bytes).plan) }
+    }
+
+    /// A plan that is in no file yet, and that somebody would miss.
+    pub fn unsaved(plan: FlightPlan) -> Self {
+        let mut document = Self::new(plan, None, Vec::new());
         document.history.mark_unsaved();
         document
     }
@@ -109,9 +115,13 @@ impl Document {
     pub fn is_dirty(&self) -> bool {
         !self.history.is_saved()
     }
+    /// Its file holds what could not be read: written over it, that would be lost.
+    pub fn is_partial(&self) -> bool {
+        self.is_partial
+    }
     /// It has no file and was never edited: nothing is lost when another takes its place.
     pub fn is_nobodys(&self) -> bool {
-        self.path.is_none() && !self.can_undo() && !self.can_redo()
+        self.path.is_none() && !self.is_dirty() && !self.can_undo() && !self.can_redo()
     }
     /// There is a step to take back.
     pub fn can_undo(&self) -> bool {
@@ -184,6 +194,7 @@ impl Document {
     /// A version of it was written to `path`, which is its file now, in these words.
     pub fn saved(&mut self, version: u64, path: PathBuf, text: Arc<str>, stamp: Option<Stamp>) {
         (self.path, self.text, self.stamp) = (Some(path), Some(text), stamp);
+        self.is_partial = false;
         if version == self.version {
             self.history.mark_saved();
         } else {

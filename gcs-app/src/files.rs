@@ -1,40 +1,45 @@
-//! Files: dialogs, reading and saving, each on a thread of its own; the window gets the result later.
+//! Files: dialogs, reading and writing, each on a thread of its own; the window gets the result later.
 
+mod reading;
+mod saving;
 mod watch;
 
+pub use reading::{Content, Imported};
+pub(crate) use saving::write_whole;
+pub use saving::{Over, Stamp, Writing};
 pub use watch::Watched;
 
+use crate::desktop;
+use crate::document::Document;
+use crate::export::{self, Exported};
+use crate::formats::FileFormat;
+use crate::jobs::{Jobs, Progress};
 use flight_plan::FlightPlan;
-use serde::{Deserialize, Serialize};
-use std::io::Write;
+use interchange::Format;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
+use terrain::Terrain;
 use watch::Watch;
 
 /// What came of it.
 #[derive(Debug)]
 pub enum FileEvent {
+    /// A file was chosen to be opened.
+    Chosen(PathBuf),
+    /// A file was dropped onto the window that is no map.
+    PlanDropped(PathBuf),
     /// A file was read.
-    Opened {
-        /// Which.
-        path: PathBuf,
-        /// What is in it.
-        bytes: Vec<u8>,
-        /// Its state at that time.
-        stamp: Option<Stamp>,
-    },
+    Opened(Content),
     /// The document's own file was read again.
     Reread {
         /// Which.
         path: PathBuf,
         /// What is in it.
-        bytes: Vec<u8>,
-        /// Its state at that time.
-        stamp: Option<Stamp>,
+        theirs: Box<Document>,
     },
-    /// The document was saved; `version` of it.
+    /// A document was saved.
     Saved {
         /// Where.
         path: PathBuf,
@@ -47,8 +52,20 @@ pub enum FileEvent {
         /// The file's state since then.
         stamp: Option<Stamp>,
     },
+    /// A document was not saved.
+    NotSaved {
+        /// Which.
+        document: u64,
+        /// Why, and what to do; `None`: it is not wanted any more.
+        why: Option<String>,
+    },
     /// Another program has written the file since; it was left as it is.
-    ChangedMeanwhile(PathBuf),
+    ChangedMeanwhile {
+        /// The file.
+        path: PathBuf,
+        /// Of which document.
+        document: u64,
+    },
     /// The same was found without saving.
     ChangedOutside {
         /// The file.
@@ -57,6 +74,15 @@ pub enum FileEvent {
         known: Stamp,
         /// Its state now; `None`: it is gone.
         stamp: Option<Stamp>,
+    },
+    /// A plan is ready to be written for another program.
+    Exported(Box<Exported>),
+    /// It was written.
+    ExportWritten {
+        /// Where.
+        path: PathBuf,
+        /// What.
+        exported: Arc<Exported>,
     },
     /// A map or a folder of elevations was chosen.
     MapChosen(PathBuf),
@@ -73,47 +99,6 @@ pub enum FileEvent {
     Failed(String),
 }
 
-/// A file's state on disk; it differs after another program has written it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Stamp {
-    modified: SystemTime,
-    bytes: u64,
-}
-
-impl Stamp {
-    /// Of a file as it is now; `None`: it can't be looked at.
-    pub fn of(path: &Path) -> Option<Self> {
-        let meta = path.metadata().ok()?;
-        Some(Self { modified: meta.modified().ok()?, bytes: meta.len() })
-    }
-}
-
-/// What a plan may be written over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Over {
-    /// Whatever is there.
-    Anything,
-    /// Nothing: there must be no such file.
-    Nothing,
-    /// A file in this state, or none.
-    As(Stamp),
-}
-
-/// A plan that is to be written.
-#[derive(Debug, Clone)]
-pub struct Writing {
-    /// What is to be read from it.
-    pub plan: Arc<FlightPlan>,
-    /// The text that it comes from: what was not edited stays as it is there.
-    pub original: Option<Arc<str>>,
-    /// Which document it is.
-    pub document: u64,
-    /// Which version of the document it is.
-    pub version: u64,
-    /// What may be overwritten.
-    pub over: Over,
-}
-
 /// What a file is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -121,6 +106,27 @@ pub enum Purpose {
     Open,
     /// To save the document in it.
     Save,
+    /// To write what another program is to read.
+    Export(Format),
+}
+
+impl Purpose {
+    /// What the file ends in where nothing else is typed.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Open | Self::Save => "xml",
+            Self::Export(format) => format.name(),
+        }
+    }
+
+    /// A file of this name is listed.
+    fn lists(self, path: &Path) -> bool {
+        match (self, FileFormat::by_path(path)) {
+            (Self::Open, format) => format.is_some_and(FileFormat::is_read),
+            (Self::Save, format) => format == Some(FileFormat::Legwork),
+            (Self::Export(format), of_path) => of_path == Some(FileFormat::Other(format)),
+        }
+    }
 }
 
 /// Something in a folder: another folder, or a plan.
@@ -134,8 +140,6 @@ pub struct Entry {
 
 /// So many entries of a folder are listed.
 const MOST_ENTRIES: usize = 10_000;
-/// Largest file that is opened, bytes; the reader's own limit is a little lower than this.
-const LARGEST: u64 = 80 * 1024 * 1024;
 /// A dialog that is closed sooner than this was never seen.
 const UNSEEN: Duration = Duration::from_millis(150);
 
@@ -145,6 +149,7 @@ pub struct Files {
     inbox: Receiver<FileEvent>,
     wake: Arc<dyn Fn() + Send + Sync>,
     watch: Watch,
+    jobs: Jobs,
     /// The desktop is asked for a dialog; false as soon as it turned out to have none.
     pub desktop: bool,
 }
@@ -167,7 +172,7 @@ impl Files {
                 wake();
             }))
         };
-        Self { outbox, inbox, wake, watch, desktop: true }
+        Self { outbox, inbox, wake, watch, jobs: Jobs::default(), desktop: true }
     }
 
     /// Looks at a file from now on, and tells once if it is no longer in this state.
@@ -175,13 +180,31 @@ impl Files {
         self.watch.look_at(file);
     }
 
+    /// What is being done with files.
+    pub fn jobs(&self) -> &Jobs {
+        &self.jobs
+    }
+
+    /// The result of this work is no longer wanted.
+    pub fn cancel(&mut self, job: u64) {
+        self.jobs.cancel(job);
+    }
+
+    /// Forgets what has ended. True: something is still being done.
+    pub fn tend(&mut self, now_s: f64) -> bool {
+        self.jobs.tend(now_s)
+    }
+
     /// Reads the document's own file again.
-    pub fn reread(&self, path: PathBuf) {
-        self.work(move || {
-            Some(match open(&path) {
-                FileEvent::Opened { path, bytes, stamp } => FileEvent::Reread { path, bytes, stamp },
-                other => other,
-            })
+    pub fn reread(&mut self, path: PathBuf) {
+        self.job(format!("Reading {}", name_of(&path)), move |progress| {
+            match reading::read(&path, progress) {
+                Ok(Content::Plan(theirs)) => FileEvent::Reread { path, theirs },
+                Ok(Content::Foreign(_)) => {
+                    FileEvent::Failed(format!("{} is no flight plan any more.", path.display()))
+                }
+                Err(why) => FileEvent::Failed(why),
+            }
         });
     }
 
@@ -190,12 +213,28 @@ impl Files {
         self.inbox.try_recv().ok()
     }
 
-    /// Asks for a file and reads it.
-    pub fn ask_open(&self) {
+    /// Asks for a file to be opened; `foreign`: for another program's.
+    pub fn ask_open(&self, foreign: bool) {
         let desktop = self.desktop;
         self.work(move || {
-            let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]);
-            asked(desktop, Purpose::Open, || dialog.pick_file(), |path| open(&path))
+            let others: Vec<&str> =
+                Format::ALL.map(|(name, _)| name).into_iter().filter(|name| *name != "csv").collect();
+            let dialog = rfd::FileDialog::new();
+            let dialog = match foreign {
+                false => dialog.add_filter("Flight plan", &["xml"]).add_filter("Other programs", &others),
+                true => dialog.add_filter("Other programs", &others),
+            };
+            asked(desktop, Purpose::Open, || dialog.pick_file(), FileEvent::Chosen)
+        });
+    }
+
+    /// Says whether something that was dropped is a map or a plan.
+    pub fn sort_dropped(&self, path: PathBuf) {
+        self.work(move || {
+            Some(match reading::is_map(&path) {
+                true => FileEvent::MapChosen(path),
+                false => FileEvent::PlanDropped(path),
+            })
         });
     }
 
@@ -218,17 +257,23 @@ impl Files {
     }
 
     /// Reads what is in a folder.
-    pub fn list(&self, folder: PathBuf) {
+    pub fn list(&self, folder: PathBuf, purpose: Purpose) {
         self.work(move || {
             let folder = std::fs::canonicalize(&folder).unwrap_or(folder);
-            let entries = list(&folder).map_err(|why| format!("{} can't be read: {why}", folder.display()));
+            let entries =
+                list(&folder, purpose).map_err(|why| format!("{} can't be read: {why}", folder.display()));
             Some(FileEvent::Listed { folder, entries })
         });
     }
 
     /// Reads a file.
-    pub fn open(&self, path: PathBuf) {
-        self.work(move || Some(open(&path)));
+    pub fn open(&mut self, path: PathBuf) {
+        self.job(format!("Reading {}", name_of(&path)), move |progress| {
+            match reading::read(&path, progress) {
+                Ok(content) => FileEvent::Opened(content),
+                Err(why) => FileEvent::Failed(why),
+            }
+        });
     }
 
     /// Asks where to save, and saves.
@@ -236,13 +281,56 @@ impl Files {
         let desktop = self.desktop;
         self.work(move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
-            asked(desktop, Purpose::Save, || dialog.save_file(), |path| save(path, &writing))
+            let document = writing.document;
+            asked(desktop, Purpose::Save, || dialog.save_file(), |path| saving::save(path, &writing))
+                .or(Some(FileEvent::NotSaved { document, why: None }))
         });
     }
 
     /// Saves.
     pub fn save(&self, path: PathBuf, writing: Writing) {
-        self.work(move || Some(save(path, &writing)));
+        self.work(move || Some(saving::save(path, &writing)));
+    }
+
+    /// Flies a plan ahead of time and puts it into another program's format.
+    pub fn export(&mut self, plan: Arc<FlightPlan>, format: Format, terrain: Arc<dyn Terrain>) {
+        self.job(format!("Exporting as {}", crate::formats::label(format)), move |progress| {
+            match export::export(&plan, format, terrain, progress) {
+                Ok(exported) => FileEvent::Exported(Box::new(exported)),
+                Err(why) => FileEvent::Failed(why),
+            }
+        });
+    }
+
+    /// Asks where to write it, and writes it.
+    pub fn ask_export(&self, suggestion: String, exported: Arc<Exported>) {
+        let desktop = self.desktop;
+        self.work(move || {
+            let format = exported.format;
+            let dialog = rfd::FileDialog::new().add_filter(crate::formats::label(format), &[format.name()]);
+            let dialog = dialog.set_file_name(suggestion);
+            let write = |path: PathBuf| write_export(path, &exported, Over::Anything);
+            asked(desktop, Purpose::Export(format), || dialog.save_file(), write)
+        });
+    }
+
+    /// Writes it.
+    pub fn write_export(&self, path: PathBuf, exported: Arc<Exported>, over: Over) {
+        self.work(move || Some(write_export(path, &exported, over)));
+    }
+
+    /// Has the desktop open a file.
+    pub fn show(&self, path: PathBuf) {
+        self.work(move || desktop::open(&path).err().map(FileEvent::Failed));
+    }
+
+    /// Work that may take long: it is shown, and can be cancelled.
+    fn job(&mut self, label: String, job: impl FnOnce(&Progress) -> FileEvent + Send + 'static) {
+        let running = self.jobs.begin(label);
+        self.work(move || {
+            let event = job(running.progress());
+            (!running.progress().is_cancelled()).then_some(event)
+        });
     }
 
     fn work(&self, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) {
@@ -276,11 +364,11 @@ fn asked(
 }
 
 /// Folders, then plans, by name; nothing hidden.
-fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
+fn list(folder: &Path, purpose: Purpose) -> std::io::Result<Vec<Entry>> {
     let entry = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.ok()?.path();
         let name = path.file_name()?.to_str()?.to_owned();
-        let is_plan = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
+        let is_plan = purpose.lists(&path);
         // a link to a folder is one
         let is_folder = !is_plan && path.is_dir();
         ((is_folder || is_plan) && !name.starts_with('.')).then_some(Entry { name, is_folder })
@@ -290,179 +378,33 @@ fn list(folder: &Path) -> std::io::Result<Vec<Entry>> {
     Ok(entries)
 }
 
-fn open(path: &Path) -> FileEvent {
-    let stamp = Stamp::of(path);
-    let read = std::fs::metadata(path).and_then(|meta| {
-        if meta.len() > LARGEST {
-            Err(std::io::Error::other("it is larger than 80 MiB"))
-        } else {
-            std::fs::read(path)
-        }
-    });
-    match read {
-        Ok(bytes) => FileEvent::Opened { path: path.to_owned(), bytes, stamp },
-        Err(error) => FileEvent::Failed(format!("{} can't be opened: {error}", path.display())),
+fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEvent {
+    match saving::export(&path, &exported.bytes, over) {
+        Ok(()) => FileEvent::ExportWritten { path, exported: exported.clone() },
+        Err(why) => FileEvent::Failed(why),
     }
 }
 
-fn save(path: PathBuf, writing: &Writing) -> FileEvent {
-    match writing.over {
-        Over::As(expected) if Stamp::of(&path).is_some_and(|now| now != expected) => {
-            return FileEvent::ChangedMeanwhile(path);
-        }
-        Over::Nothing if path.exists() => {
-            let why = "is there already and was not overwritten. Save under another name.";
-            return FileEvent::Failed(format!("{} {why}", path.display()));
-        }
-        _ => {}
-    }
-    let text = text_of(&path, writing);
-    match write_whole(&path, text.as_bytes()) {
-        Ok(()) => {
-            let stamp = Stamp::of(&path);
-            let (document, version) = (writing.document, writing.version);
-            FileEvent::Saved { path, text: text.into(), document, version, stamp }
-        }
-        Err(error) => {
-            FileEvent::Failed(format!("{} was not saved: {error}. Save it elsewhere.", path.display()))
-        }
-    }
-}
-
-/// The plan in the words of the text that it comes from; without one, in those of its file that it takes the place of.
-fn text_of(path: &Path, writing: &Writing) -> String {
-    let in_file = || match writing.over {
-        Over::As(_) => std::fs::read_to_string(path).ok().map(Arc::from),
-        Over::Anything | Over::Nothing => None,
-    };
-    match writing.original.clone().or_else(in_file) {
-        Some(original) => flight_plan::xml::patch(&original, &writing.plan),
-        None => flight_plan::write(&writing.plan),
-    }
-}
-
-/// Temporary file, fsync, rename, fsync of the folder: the old file or the new one, never half of it. A link stays one: what it leads
-/// to is written. What is no file (a device, a pipe) is written into.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let path = &std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if path.metadata().is_ok_and(|is| !is.is_file() && !is.is_dir()) {
-        return std::fs::write(path, bytes);
-    }
-    let name = path.file_name().ok_or_else(|| std::io::Error::other("that is no file name"))?;
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let temporary = folder.join(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
-    let written = (|| {
-        let mut file = std::fs::File::create(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        std::fs::rename(&temporary, path)?;
-        std::fs::File::open(folder)?.sync_all()
-    })();
-    if written.is_err() {
-        // nothing of use is in it
-        let _ = std::fs::remove_file(&temporary);
-    }
-    written
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn writing(name: &str, version: u64) -> Writing {
-        let plan = FlightPlan { name: name.into(), ..FlightPlan::default() };
-        Writing { plan: Arc::new(plan), original: None, document: 1, version, over: Over::Anything }
-    }
-
-    fn name_in(path: &Path) -> String {
-        flight_plan::read(std::fs::read(path).unwrap()).plan.name
-    }
-
-    fn why(event: FileEvent) -> String {
-        let FileEvent::Failed(why) = event else { panic!("{event:?}") };
-        why
-    }
-
-    #[test]
-    fn saving_is_all_or_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("plan.xml");
-        assert!(matches!(save(path.clone(), &writing("one", 1)), FileEvent::Saved { version: 1, .. }));
-        assert!(matches!(save(path.clone(), &writing("two", 2)), FileEvent::Saved { .. }));
-        assert_eq!(name_in(&path), "two");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
-        assert!(matches!(open(&folder.path().join("none.xml")), FileEvent::Failed(_)));
-    }
-
-    #[test]
-    fn folder_that_vanished_is_named_and_not_made() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("missing").join("plan.xml");
-        let why = why(save(path.clone(), &writing("x", 3)));
-        assert!(why.contains("missing") && why.contains("Save it elsewhere"), "{why}");
-        assert!(!path.parent().unwrap().exists());
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn full_disk_is_told() {
-        let why = why(save("/dev/full".into(), &writing("x", 1)));
-        assert!(why.contains("/dev/full was not saved") && why.contains("space"), "{why}");
-    }
-
-    #[test]
-    fn file_stays_whole_where_no_new_one_can_be_written_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("plan.xml");
-        save(path.clone(), &writing("old", 1));
-        // as in a folder that may not be written: the temporary file can't be made
-        let blocked = folder.path().join(format!(".plan.xml.{}.tmp", std::process::id()));
-        std::fs::create_dir(&blocked).unwrap();
-        let why = why(save(path.clone(), &writing("new", 2)));
-        assert!(why.contains("plan.xml was not saved"), "{why}");
-        assert_eq!(name_in(&path), "old");
-    }
-
-    #[test]
-    fn comments_of_the_text_and_of_the_file_are_kept() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("plan.xml");
-        let text = "<flightPlan xmlns='urn:legwork:flight-plan:1' aircraft='t'><!-- mine --></flightPlan>";
-        let from_text = Writing { original: Some(text.into()), ..writing("new", 1) };
-        let FileEvent::Saved { text: written, stamp, .. } = save(path.clone(), &from_text) else { panic!() };
-        assert!(written.contains("<!-- mine -->") && name_in(&path) == "new", "{written}");
-        // a recovered plan has no text
-        let recovered = Writing { over: Over::As(stamp.unwrap()), ..writing("newer", 2) };
-        let FileEvent::Saved { text: written, .. } = save(path.clone(), &recovered) else { panic!() };
-        assert!(written.contains("<!-- mine -->") && name_in(&path) == "newer", "{written}");
-    }
-
-    #[test]
-    fn what_another_program_wrote_is_not_overwritten() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("plan.xml");
-        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1)) else { panic!() };
-        let next = Writing { over: Over::As(stamp.unwrap()), ..writing("ours again", 2) };
-        std::fs::write(&path, "their words").unwrap();
-        assert!(matches!(save(path.clone(), &next), FileEvent::ChangedMeanwhile(_)));
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
-        let new = Writing { over: Over::Nothing, ..next.clone() };
-        assert!(matches!(save(path.clone(), &new), FileEvent::Failed(_)));
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
-        std::fs::remove_file(&path).unwrap();
-        assert!(matches!(save(path.clone(), &new), FileEvent::Saved { .. }));
-        std::fs::remove_file(&path).unwrap();
-        assert!(matches!(save(path, &next), FileEvent::Saved { .. }), "nothing is lost");
-    }
-
     #[test]
     fn folder_lists_folders_then_plans_and_nothing_hidden() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["b.xml", "A.XML", "notes.txt", ".hidden.xml"] {
+        for name in ["b.xml", "A.XML", "notes.txt", ".hidden.xml", "c.kml", "d.csv"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         std::fs::create_dir(folder.path().join("z")).unwrap();
-        let names: Vec<String> = list(folder.path()).unwrap().into_iter().map(|e| e.name).collect();
-        assert_eq!(names, ["z", "A.XML", "b.xml"]);
+        let names = |purpose| -> Vec<String> {
+            list(folder.path(), purpose).unwrap().into_iter().map(|e| e.name).collect()
+        };
+        assert_eq!(names(Purpose::Save), ["z", "A.XML", "b.xml"]);
+        assert_eq!(names(Purpose::Open), ["z", "A.XML", "b.xml", "c.kml"]);
+        assert_eq!(names(Purpose::Export(Format::Csv)), ["z", "d.csv"]);
     }
 }

@@ -1,9 +1,8 @@
 //! Command line of `legwork`.
 
+use anyhow::Context;
 use clap::{Args, Parser, Subcommand};
 use gcs_app::app::{self, Options, Screenshot};
-use gcs_app::document::Document;
-use gcs_app::files::Stamp;
 use gcs_app::{demo, headless};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,7 +32,7 @@ enum Task {
 /// How the window opens.
 #[derive(Debug, Args)]
 struct Window {
-    /// A flight plan to open.
+    /// A plan to open: ours (XML), or one of another program.
     file: Option<PathBuf>,
     /// Connect to a vehicle's gateway at once, as tcp/127.0.0.1:7447.
     #[arg(long, value_name = "ENDPOINT")]
@@ -74,26 +73,22 @@ fn main() -> ExitCode {
 }
 
 fn open(window: Window) -> anyhow::Result<ExitCode> {
-    let document = window.file.map(read).transpose()?;
+    // what is misspelt is said here; the window reads the file without being held up by it
+    if let Some(path) = &window.file {
+        std::fs::File::open(path).with_context(|| format!("{} can't be opened", path.display()))?;
+    }
     let vehicle = window.vehicle;
     app::run(Options {
-        document,
+        file: window.file,
         recover: window.screenshot.is_none(),
+        tour: window.screenshot.is_none(),
         connect: window.connect.map(|endpoint| (vehicle, endpoint)),
         screenshot: window.screenshot.map(|file| Screenshot::new(file, window.after)),
         follow: window.follow,
         theme: window.light.then_some(eframe::egui::Theme::Light),
+        ..Options::default()
     })?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn read(path: PathBuf) -> anyhow::Result<Document> {
-    let stamp = Stamp::of(&path);
-    let bytes = std::fs::read(&path)
-        .map_err(|error| anyhow::anyhow!("{} can't be opened: {error}", path.display()))?;
-    let mut document = Document::read(&bytes, Some(path));
-    document.set_stamp(stamp);
-    Ok(document)
 }
 
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {

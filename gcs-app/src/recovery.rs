@@ -1,4 +1,4 @@
-//! Work that was not saved survives a crash. While the document has unsaved changes, a copy of it is kept in a folder of
+//! Work that was not saved survives a crash. While documents have unsaved changes, a copy of them is kept in a folder of
 //! the program's own. It is taken away when the changes are saved or discarded; the next window offers one that is left.
 
 use crate::document::Document;
@@ -18,45 +18,63 @@ const PERIOD_S: f64 = 2.0;
 /// So many windows at a time have a copy.
 const PLACES: usize = 16;
 
-/// A copy of a document as it is kept.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// A copy of documents as they are kept.
+#[derive(Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Kept {
-    /// The document's file.
-    path: Option<PathBuf>,
+    /// The one that is shown first.
+    documents: Vec<LeftDocument>,
+}
+
+/// A document with unsaved changes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LeftDocument {
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
     /// That file as the window knew it.
     #[serde(default)]
-    stamp: Option<Stamp>,
+    pub stamp: Option<Stamp>,
     /// The plan as it would be saved.
-    text: String,
+    pub text: String,
 }
 
 /// What a window left behind that ended without being closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftBehind {
-    /// The document's file, if it had one.
-    pub path: Option<PathBuf>,
-    /// That file as the window knew it.
-    pub stamp: Option<Stamp>,
-    /// The plan as it would have been saved.
-    pub text: String,
-    /// How long ago it was written.
+    /// The documents with unsaved changes, at least one; the one that was shown first.
+    pub documents: Vec<LeftDocument>,
+    /// How long ago they were written.
     pub age: Duration,
 }
 
-/// What the worker is to do.
-enum Job {
-    Keep { path: Option<PathBuf>, stamp: Option<Stamp>, plan: Arc<FlightPlan> },
-    TakeAway,
+/// A document that is to be kept.
+struct Unsaved {
+    path: Option<PathBuf>,
+    stamp: Option<Stamp>,
+    plan: Arc<FlightPlan>,
 }
 
-/// Keeps the copy of one window's document, on a thread of its own.
+impl Unsaved {
+    fn of(document: &Document) -> Self {
+        Self {
+            path: document.path().map(Path::to_owned),
+            stamp: document.stamp(),
+            plan: document.plan().clone(),
+        }
+    }
+
+    fn written(&self) -> LeftDocument {
+        LeftDocument { path: self.path.clone(), stamp: self.stamp, text: flight_plan::write(&self.plan) }
+    }
+}
+
+/// Keeps the copy of one window's documents, on a thread of its own.
 #[derive(Debug)]
 pub struct Keeper {
-    jobs: Option<Sender<Job>>,
+    jobs: Option<Sender<Vec<Unsaved>>>,
     failures: Receiver<String>,
     worker: Option<JoinHandle<()>>,
-    /// The version of which there is a copy.
-    kept: Option<u64>,
+    /// The versions of which there are copies; `None`: what is there is not of this window.
+    kept: Option<Vec<u64>>,
     last_s: f64,
     left_behind: Option<LeftBehind>,
     /// Held while the window lives: the place is not free.
@@ -86,7 +104,7 @@ impl Keeper {
 
     fn at(place: File, copy: PathBuf) -> std::io::Result<Self> {
         let left_behind = read(&copy);
-        let (jobs, inbox) = channel();
+        let (jobs, inbox) = channel::<Vec<Unsaved>>();
         let (outbox, failures) = channel();
         let work = move || {
             while let Ok(job) = inbox.recv() {
@@ -103,7 +121,7 @@ impl Keeper {
             jobs: Some(jobs),
             failures,
             worker: Some(worker),
-            kept: None,
+            kept: Some(Vec::new()),
             last_s: f64::NEG_INFINITY,
             left_behind,
             _place: place,
@@ -119,40 +137,35 @@ impl Keeper {
     /// became is kept or saved.
     pub fn take_left_behind(&mut self) -> Option<LeftBehind> {
         // what is there now is not of this document
-        self.kept = Some(0);
+        self.kept = None;
         self.left_behind.take()
     }
 
-    /// Keeps a copy of the document if it has changed, or takes it away. Returns after how long to look again.
-    pub fn tend(&mut self, document: &Document, now_s: f64) -> Option<Duration> {
+    /// Keeps a copy of these documents with unsaved changes if they have changed, or takes it away where there are none. Returns
+    /// after how long to look again.
+    pub fn tend<'d>(&mut self, unsaved: impl Iterator<Item = &'d Document>, now_s: f64) -> Option<Duration> {
         if self.left_behind.is_some() {
             return None;
         }
-        let wanted = document.is_dirty().then(|| document.version());
-        if wanted == self.kept {
+        let unsaved: Vec<&Document> = unsaved.collect();
+        let versions = unsaved.iter().map(|document| document.version());
+        if self.kept.as_ref().is_some_and(|kept| versions.clone().eq(kept.iter().copied())) {
             return None;
         }
         let wait_s = self.last_s + PERIOD_S - now_s;
-        if wanted.is_some() && wait_s > 0.0 {
+        if !unsaved.is_empty() && wait_s > 0.0 {
             return Some(Duration::from_secs_f64(wait_s));
         }
         self.last_s = now_s;
-        self.kept = wanted;
-        self.order(match wanted {
-            Some(_) => Job::Keep {
-                path: document.path().map(Path::to_owned),
-                stamp: document.stamp(),
-                plan: document.plan().clone(),
-            },
-            None => Job::TakeAway,
-        });
+        self.kept = Some(versions.collect());
+        self.order(unsaved.into_iter().map(Unsaved::of).collect());
         None
     }
 
     /// The window is closed, and what it had is saved or not wanted.
     pub fn close(&mut self) {
         if self.left_behind.is_none() {
-            self.order(Job::TakeAway);
+            self.order(Vec::new());
         }
     }
 
@@ -162,7 +175,7 @@ impl Keeper {
         Some(format!("No copy of unsaved changes can be kept: {why}. Save the plan often."))
     }
 
-    fn order(&self, job: Job) {
+    fn order(&self, job: Vec<Unsaved>) {
         if let Some(jobs) = &self.jobs {
             // the worker ends after this does
             let _ = jobs.send(job);
@@ -185,16 +198,15 @@ fn copy_in(folder: &Path, place: usize) -> PathBuf {
     folder.join(format!("{place}.json"))
 }
 
-fn carry_out(job: &Job, copy: &Path) -> std::io::Result<()> {
-    match job {
-        Job::Keep { path, stamp, plan } => {
-            let kept = Kept { path: path.clone(), stamp: *stamp, text: flight_plan::write(plan) };
-            write_whole(copy, &serde_json::to_vec(&kept)?)
-        }
-        Job::TakeAway => match std::fs::remove_file(copy) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-            _ => Ok(()),
-        },
+/// Without documents the copy is taken away.
+fn carry_out(unsaved: &[Unsaved], copy: &Path) -> std::io::Result<()> {
+    if !unsaved.is_empty() {
+        let kept = Kept { documents: unsaved.iter().map(Unsaved::written).collect() };
+        return write_whole(copy, &serde_json::to_vec(&kept)?).map(drop);
+    }
+    match std::fs::remove_file(copy) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
     }
 }
 
@@ -202,7 +214,7 @@ fn carry_out(job: &Job, copy: &Path) -> std::io::Result<()> {
 fn read(copy: &Path) -> Option<LeftBehind> {
     let age = copy.metadata().and_then(|meta| meta.modified()).ok()?.elapsed().unwrap_or_default();
     let kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
-    Some(LeftBehind { path: kept.path, stamp: kept.stamp, text: kept.text, age })
+    (!kept.documents.is_empty()).then_some(LeftBehind { documents: kept.documents, age })
 }
 
 #[cfg(test)]
@@ -223,19 +235,36 @@ mod tests {
         document
     }
 
+    fn tend(keeper: &mut Keeper, document: &Document, now_s: f64) -> Option<Duration> {
+        keeper.tend(std::iter::once(document).filter(|document| document.is_dirty()), now_s)
+    }
+
+    #[test]
+    fn every_document_with_unsaved_changes_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let (first, second) = (edited(), edited());
+        let mut killed = Keeper::open(folder.path()).unwrap();
+        assert_eq!(killed.tend([&first, &second].into_iter(), 0.0), None);
+        assert_eq!(killed.tend([&second, &first].into_iter(), 9.0), None);
+        drop(killed);
+        let found = Keeper::open(folder.path()).unwrap().take_left_behind().unwrap();
+        assert_eq!(found.documents.len(), 2);
+        assert_eq!(flight_plan::read(found.documents[1].text.as_bytes()).plan, **first.plan());
+    }
+
     #[test]
     fn killed_window_leaves_its_work_to_the_next_one() {
         let folder = tempfile::tempdir().unwrap();
         let document = edited();
         let mut killed = Keeper::open(folder.path()).unwrap();
         assert_eq!(killed.left_behind(), None);
-        assert_eq!(killed.tend(&document, 0.0), None);
+        assert_eq!(tend(&mut killed, &document, 0.0), None);
         drop(killed);
         let mut next = Keeper::open(folder.path()).unwrap();
-        let found = next.take_left_behind().unwrap();
+        let found = next.take_left_behind().unwrap().documents.remove(0);
         assert_eq!(found.path.as_deref(), document.path());
         assert_eq!(flight_plan::read(found.text.as_bytes()).plan, **document.plan());
-        assert_eq!(next.tend(&Document::default(), 0.0), None);
+        assert_eq!(tend(&mut next, &Document::default(), 0.0), None);
         drop(next);
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None, "it was decided");
     }
@@ -243,11 +272,11 @@ mod tests {
     #[test]
     fn what_was_left_behind_stays_until_it_is_decided() {
         let folder = tempfile::tempdir().unwrap();
-        Keeper::open(folder.path()).unwrap().tend(&edited(), 0.0);
+        tend(&mut Keeper::open(folder.path()).unwrap(), &edited(), 0.0);
         for _ in 0..2 {
             let mut window = Keeper::open(folder.path()).unwrap();
             assert!(window.left_behind().is_some());
-            window.tend(&Document::default(), 0.0);
+            tend(&mut window, &Document::default(), 0.0);
             window.close();
         }
     }
@@ -256,7 +285,7 @@ mod tests {
     fn windows_at_the_same_time_have_places_of_their_own() {
         let folder = tempfile::tempdir().unwrap();
         let mut first = Keeper::open(folder.path()).unwrap();
-        first.tend(&edited(), 0.0);
+        tend(&mut first, &edited(), 0.0);
         let second = Keeper::open(folder.path()).unwrap();
         assert_eq!(second.left_behind(), None);
         drop((first, second));
@@ -267,7 +296,7 @@ mod tests {
     fn closed_window_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let mut window = Keeper::open(folder.path()).unwrap();
-        window.tend(&edited(), 0.0);
+        tend(&mut window, &edited(), 0.0);
         window.close();
         drop(window);
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
@@ -278,12 +307,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut document = edited();
         let mut keeper = Keeper::open(folder.path()).unwrap();
-        assert_eq!(keeper.tend(&document, 10.0), None);
+        assert_eq!(tend(&mut keeper, &document, 10.0), None);
         document.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
-        assert_eq!(keeper.tend(&document, 10.5), Some(Duration::from_millis(1500)));
-        assert_eq!(keeper.tend(&document, 12.0), None);
+        assert_eq!(tend(&mut keeper, &document, 10.5), Some(Duration::from_millis(1500)));
+        assert_eq!(tend(&mut keeper, &document, 12.0), None);
         document.saved(document.version(), "/plans/a.xml".into(), "".into(), None);
-        assert_eq!(keeper.tend(&document, 12.1), None, "taken away at once");
+        assert_eq!(tend(&mut keeper, &document, 12.1), None, "taken away at once");
         drop(keeper);
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
     }

@@ -19,6 +19,8 @@ use std::borrow::Cow;
 pub enum Group {
     /// Files.
     File,
+    /// To other programs' formats.
+    Export,
     /// The plan.
     Edit,
     /// What is shown, and how.
@@ -50,6 +52,7 @@ impl Group {
     pub fn name(self) -> &'static str {
         match self {
             Self::File => "File",
+            Self::Export => "Export",
             Self::Edit => "Edit",
             Self::View => "View",
             Self::Maps => "Maps",

@@ -12,6 +12,7 @@ use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 use flight_exec::{Command as PlanCommand, Phase};
 use flight_plan::{Cause, create};
+use interchange::Format;
 use usal::contract::{GatewayRequest, GatewayState};
 
 /// What an action asks for; or why it is not possible now.
@@ -95,6 +96,14 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::File, "open", "Open…", &[ctrl(Key::O)], |_| document(DocumentCommand::Replace(Replacement::AskOpen))),
     entry(Group::File, "save", "Save", &[ctrl(Key::S)], |_| document(DocumentCommand::Save)),
     entry(Group::File, "save-as", "Save as…", &[ctrl_shift(Key::S)], |_| document(DocumentCommand::AskSaveAs)),
+    entry(Group::File, "import", "Import…", &[], |_| document(DocumentCommand::Replace(Replacement::AskImport))),
+    entry(Group::Export, "export-plan", "Export as QGC plan…", &[], |s| export(s, Format::Plan)),
+    entry(Group::Export, "export-waypoints", "Export as WPL waypoints…", &[], |s| export(s, Format::Waypoints)),
+    entry(Group::Export, "export-kml", "Export as KML…", &[], |s| export(s, Format::Kml)),
+    entry(Group::Export, "export-kmz", "Export as KMZ…", &[], |s| export(s, Format::Kmz)),
+    entry(Group::Export, "export-geojson", "Export as GeoJSON…", &[], |s| export(s, Format::GeoJson)),
+    entry(Group::Export, "export-gpx", "Export as GPX…", &[], |s| export(s, Format::Gpx)),
+    entry(Group::Export, "export-csv", "Export as CSV…", &[], |s| export(s, Format::Csv)),
     entry(Group::File, "take-aboard", "Take the plan aboard", &[], take_aboard),
     entry(Group::File, "quit", "Quit", &[ctrl(Key::Q)], |_| document(DocumentCommand::Replace(Replacement::Quit))),
 
@@ -104,7 +113,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
     entry(Group::Edit, "earlier", "Move the selected legs or stage up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
     entry(Group::Edit, "later", "Move the selected legs or stage down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
-    entry(Group::Edit, "select-nothing", "Close the help, or select nothing", &[plain(Key::Escape)], escape),
+    entry(Group::Edit, "select-nothing", "Close help or tour, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
     entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
@@ -143,6 +152,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Flight, "disconnect", "Disconnect", &[], disconnect),
 
     choice(Group::Help, "help", "Help about what is selected", |s| Kind::Switch(s.view.help.is_some()), help).with_keys(&[plain(Key::F1)]),
+    entry(Group::Help, "tour", "Tour of the window", &[], |_| view(ViewCommand::Tour(Some(0)))),
     entry(Group::Help, "palette", "All commands…", &[ctrl(Key::K), ctrl_shift(Key::P)], |_| view(ViewCommand::Palette(true))),
 ];
 
@@ -161,9 +171,13 @@ fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
 }
 
-/// The help lies over everything: it goes first.
+/// The help lies over everything: it goes first, then the tour.
 fn escape(scene: &Scene<'_>) -> Asked {
-    view(if scene.view.help.is_some() { ViewCommand::Help(None) } else { ViewCommand::Select(None) })
+    view(match (&scene.view.help, scene.view.tour) {
+        (Some(_), _) => ViewCommand::Help(None),
+        (None, Some(_)) => ViewCommand::Tour(None),
+        (None, None) => ViewCommand::Select(None),
+    })
 }
 
 fn alarm_is(scene: &Scene<'_>, cause: Cause) -> Kind {
@@ -172,6 +186,13 @@ fn alarm_is(scene: &Scene<'_>, cause: Cause) -> Kind {
 
 fn raise(scene: &Scene<'_>, cause: Cause) -> Asked {
     view(ViewCommand::Raise(Some(cause).filter(|_| scene.view.alarm != Some(cause))))
+}
+
+fn export(scene: &Scene<'_>, format: Format) -> Asked {
+    if scene.document.plan().stages.is_empty() {
+        return Err("There is nothing to be flown yet: add stages and legs first");
+    }
+    document(DocumentCommand::Export(format))
 }
 
 fn take_aboard(scene: &Scene<'_>) -> Asked {

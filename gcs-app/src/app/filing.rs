@@ -1,13 +1,20 @@
 //! The document and its files: opening, saving, asking where, and what was never saved.
 
 use super::App;
+use crate::command::Replacement;
 use crate::document::Document;
-use crate::files::{Entry, FileEvent, Over, Purpose, Stamp, Writing};
+use crate::export::Exported;
+use crate::files::{Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
 use crate::layers::LayerCommand;
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
+use crate::state::Level;
+use interchange::{Format, Note};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// So many notes about an import or an export are put into the log.
+const MOST_NOTES: usize = 200;
 
 impl App {
     /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
@@ -30,49 +37,48 @@ impl App {
 
     pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {
         let Some(keeper) = &mut self.keeper else { return };
-        if let Some(wait) = keeper.tend(&self.document, ctx.input(|i| i.time)) {
+        if let Some(wait) = keeper.tend(self.shelf.unsaved(&self.document), ctx.input(|i| i.time)) {
             ctx.request_repaint_after(wait);
         }
         self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
     }
 
-    pub(super) fn file_event(&mut self, event: FileEvent) {
+    pub(super) fn file_event(&mut self, event: FileEvent, now_s: f64) {
         match event {
-            FileEvent::Opened { path, bytes, stamp } => {
-                self.recent.add(&path);
-                let mut opened = Document::read(&bytes, Some(path));
-                opened.set_stamp(stamp);
-                self.shelf.open(&mut self.document, opened);
+            FileEvent::Chosen(path) => self.files.open(path),
+            FileEvent::PlanDropped(path) => self.ask_or_replace(Replacement::Open(path)),
+            FileEvent::Opened(Content::Plan(opened)) => {
+                opened.path().into_iter().for_each(|path| self.recent.add(path));
+                self.shelf.open(&mut self.document, *opened);
                 self.show_another();
                 self.view.notice = None;
             }
-            FileEvent::Reread { path, bytes, stamp } => {
+            FileEvent::Opened(Content::Foreign(imported)) => self.view.imported = Some(imported.into()),
+            FileEvent::Reread { path, theirs } => {
                 if self.document.path() == Some(path.as_path()) {
-                    self.document.reread(&bytes, stamp);
+                    self.document.reread(*theirs);
+                    self.toasts.add(
+                        now_s,
+                        Level::Info,
+                        format!("Loaded {} again", self.document.file_name()),
+                    );
                 }
             }
             FileEvent::Saved { path, text, document, version, stamp } => {
-                self.saving = false;
+                self.saving.remove(&document);
                 self.recent.add(&path);
+                self.toasts.add(now_s, Level::Info, format!("Saved {}", path.display()));
                 self.saved(document, version, path, text, stamp);
             }
-            FileEvent::ChangedMeanwhile(path) => {
-                self.saving = false;
-                // who saves again has been told
-                self.document.set_stamp(None);
-                self.view.notice = Some(format!(
-                    "{} was changed by another program and is not overwritten. “Save as…” keeps both; save again to replace it.",
-                    path.display()
-                ));
-            }
+            FileEvent::NotSaved { document, why } => self.not_saved(document, why),
+            FileEvent::ChangedMeanwhile { path, document } => self.changed_meanwhile(&path, document),
             FileEvent::ChangedOutside { path, known, stamp } => self.changed_outside(&path, known, stamp),
+            FileEvent::Exported(exported) => self.view.exported = Some((*exported).into()),
+            FileEvent::ExportWritten { path, exported } => self.exported(&path, &exported, now_s),
             FileEvent::MapChosen(path) => self.change_layers(LayerCommand::Add(path)),
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),
             FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
-            FileEvent::Failed(why) => {
-                self.saving = false;
-                self.view.notice = Some(why);
-            }
+            FileEvent::Failed(why) => self.view.notice = Some(why),
         }
     }
 
@@ -85,6 +91,68 @@ impl App {
         saved.saved(version, path, text, stamp);
     }
 
+    fn not_saved(&mut self, document: u64, why: Option<String>) {
+        self.saving.remove(&document);
+        self.quitting = false;
+        self.view.notice = why.or_else(|| self.view.notice.take());
+    }
+
+    fn changed_meanwhile(&mut self, path: &Path, document: u64) {
+        // who saves again has been told
+        if let Some(document) = self.shelf.find(&mut self.document, document) {
+            document.set_stamp(None);
+        }
+        let why = "was changed by another program and is not overwritten. “Save as…” keeps both; save again to replace it.";
+        self.not_saved(document, Some(format!("{} {why}", path.display())));
+    }
+
+    fn exported(&mut self, path: &Path, exported: &Exported, now_s: f64) {
+        self.view.exported = None;
+        let text = format!("Exported to {}", path.display());
+        self.tell_losses(text, &exported.notes, now_s);
+    }
+
+    /// The losses of an import or an export can be read in the log afterwards.
+    fn tell_losses(&mut self, text: String, notes: &[Note], now_s: f64) {
+        for note in notes.iter().take(MOST_NOTES).rev() {
+            self.toasts.note(now_s, Level::Info, &note.to_string());
+        }
+        match notes.len() {
+            0 => self.toasts.add(now_s, Level::Info, text),
+            1 => self.toasts.add(now_s, Level::Info, format!("{text}. One note about it is in the log")),
+            more => {
+                self.toasts.add(now_s, Level::Info, format!("{text}. {more} notes about it are in the log"))
+            }
+        }
+    }
+
+    /// Puts a plan of another program in the document's place.
+    pub(super) fn take_import(&mut self, now_s: f64) {
+        if let Some(imported) = self.view.imported.take() {
+            let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
+            self.tell_losses(format!("Imported {name}"), &imported.import.notes, now_s);
+            self.shelf.open(&mut self.document, Document::unsaved(imported.import.plan.clone()));
+            self.show_another();
+        }
+    }
+
+    pub(super) fn export(&mut self, format: Format) {
+        self.files.export(self.document.plan().clone(), format, self.layers.ground().clone());
+    }
+
+    pub(super) fn ask_export(&mut self) {
+        if let Some(exported) = &self.view.exported {
+            self.files.ask_export(suggested_name(&exported.name, exported.format.name()), exported.clone());
+        }
+    }
+
+    pub(super) fn export_to(&mut self, path: PathBuf, over: bool) {
+        if let Some(exported) = self.view.exported.take() {
+            self.files.write_export(path, exported, over_if(over));
+        }
+        self.view.browsing = None;
+    }
+
     /// Another document took the place of the one that was shown.
     pub(super) fn show_another(&mut self) {
         self.view.select(None);
@@ -95,14 +163,14 @@ impl App {
 
     /// Has the document's file looked at, as long as nobody is asked about it and it is not being written.
     pub(super) fn watch_file(&mut self) {
-        let is_quiet = !self.saving && self.view.changed_outside.is_none();
+        let is_quiet = !self.is_saving() && self.view.changed_outside.is_none();
         let file = self.document.path().zip(self.document.stamp()).filter(|_| is_quiet);
         self.files.watch(file.map(|(path, stamp)| (path.to_owned(), stamp)));
     }
 
     fn changed_outside(&mut self, path: &Path, known: Stamp, now: Option<Stamp>) {
         let is_news = self.document.path() == Some(path) && self.document.stamp() == Some(known);
-        if self.saving || !is_news {
+        if self.is_saving() || !is_news {
             return;
         }
         self.view.changed_outside = now;
@@ -127,24 +195,54 @@ impl App {
         self.document.differs_from_file();
     }
 
+    /// The document that is shown is being written, or asked where to.
+    fn is_saving(&self) -> bool {
+        self.saving.contains(&self.document.id())
+    }
+
     pub(super) fn save(&mut self) {
         match self.document.path() {
             // a held key asks again and again
-            Some(_) if self.saving => {}
+            _ if self.is_saving() => {}
+            Some(path) if self.document.is_partial() && self.document.is_dirty() => {
+                let why = "could not be read whole, and what is missing here would be lost in it. Save under another name, or replace it all the same.";
+                self.view.notice = Some(format!("{} {why}", path.display()));
+                self.ask_save();
+            }
             Some(path) => {
-                let over = self.document.stamp().map_or(Over::Anything, Over::As);
-                self.saving = true;
-                self.files.save(path.to_owned(), Writing { over, ..self.writing() });
+                let writing = known(&self.document);
+                self.files.save(path.to_owned(), writing);
+                self.saving.insert(self.document.id());
             }
             None => self.ask_save(),
         }
     }
 
+    /// Saves what has unsaved changes, one document after the other, then closes the window. Stops when one can't be saved.
+    pub(super) fn go_on_quitting(&mut self) {
+        if !self.quitting || !self.saving.is_empty() || self.view.browsing.is_some() {
+            return;
+        }
+        let next = self.shelf.unsaved(&self.document).next().map(Document::id);
+        match next {
+            None => self.leaving = true,
+            Some(next) => {
+                if self.shelf.turn_to(&mut self.document, next) {
+                    self.show_another();
+                }
+                self.save();
+            }
+        }
+    }
+
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
-        let mut recovered = Document::recovered(found.text.as_bytes(), found.path);
-        recovered.set_stamp(found.stamp);
-        self.shelf.open(&mut self.document, recovered);
+        // the one that was shown is shown again
+        for left in found.documents.into_iter().rev() {
+            let mut recovered = Document::recovered(left.text.as_bytes(), left.path);
+            recovered.set_stamp(left.stamp);
+            self.shelf.open(&mut self.document, recovered);
+        }
         self.show_another();
     }
 
@@ -154,52 +252,98 @@ impl App {
 
     /// Saves in a file that was chosen; over another one only if that was chosen, too.
     pub(super) fn save_to(&mut self, path: PathBuf, over: bool) {
-        let over = if over { Over::Anything } else { Over::Nothing };
-        self.saving = self.document.path() == Some(path.as_path());
-        self.files.save(path, Writing { over, ..self.writing() });
+        self.view.browsing = None;
+        self.saving.insert(self.document.id());
+        self.files.save(path, Writing { over: over_if(over), ..known(&self.document) });
     }
 
     pub(super) fn ask_save(&mut self) {
-        self.files.ask_save(self.suggested_name(), self.writing());
-    }
-
-    /// The document for any file: who chose that one knows what is in it.
-    fn writing(&self) -> Writing {
-        Writing {
-            plan: self.document.plan().clone(),
-            original: self.document.text().cloned(),
-            document: self.document.id(),
-            version: self.document.version(),
-            over: Over::Anything,
-        }
+        self.saving.insert(self.document.id());
+        let writing = Writing { over: Over::Anything, ..known(&self.document) };
+        self.files.ask_save(self.suggested_name(), writing);
     }
 
     fn suggested_name(&self) -> String {
         let name = self.document.path().and_then(Path::file_name);
-        name.map_or_else(|| "plan.xml".into(), |n| n.to_string_lossy().into_owned())
+        name.map_or_else(
+            || suggested_name(&self.document.plan().name, "xml"),
+            |name| name.to_string_lossy().into_owned(),
+        )
     }
 
     /// Asks in the window, beginning where the document's file is.
     pub(super) fn ask_here(&mut self, purpose: Purpose) {
         self.files.desktop = false;
+        self.saving.remove(&self.document.id());
         let beside = self.document.path().and_then(Path::parent).map(Path::to_owned);
         let folder = beside.filter(|f| !f.as_os_str().is_empty()).or_else(std::env::home_dir);
-        let name = if purpose == Purpose::Save { self.suggested_name() } else { String::new() };
+        let name = match (purpose, &self.view.exported) {
+            (Purpose::Open, _) => String::new(),
+            (Purpose::Export(format), Some(exported)) => suggested_name(&exported.name, format.name()),
+            (Purpose::Save | Purpose::Export(_), _) => self.suggested_name(),
+        };
         let folder = folder.unwrap_or_else(|| ".".into());
         self.view.browsing = Some(Browsing::new(purpose, folder.clone(), name));
-        self.files.list(folder);
+        self.files.list(folder, purpose);
+    }
+
+    /// Nothing is chosen.
+    pub(super) fn stop_browsing(&mut self) {
+        self.view.browsing = None;
+        self.quitting = false;
     }
 
     pub(super) fn browse(&mut self, folder: PathBuf, name: String) {
         let Some(browsing) = &mut self.view.browsing else { return };
-        *browsing = Browsing::new(browsing.purpose, folder.clone(), name);
-        self.files.list(folder);
+        let purpose = browsing.purpose;
+        *browsing = Browsing::new(purpose, folder.clone(), name);
+        self.files.list(folder, purpose);
     }
 
     pub(super) fn show_folder(&mut self, folder: PathBuf, entries: Result<Vec<Entry>, String>) {
         if let Some(browsing) = &mut self.view.browsing {
             browsing.folder = folder;
             browsing.entries = Some(entries);
+        }
+    }
+}
+
+/// The document for its own file, as the window knows that.
+fn known(document: &Document) -> Writing {
+    Writing {
+        plan: document.plan().clone(),
+        original: document.text().cloned(),
+        document: document.id(),
+        version: document.version(),
+        over: document.stamp().map_or(Over::Anything, Over::As),
+    }
+}
+
+fn over_if(over: bool) -> Over {
+    if over { Over::Anything } else { Over::Nothing }
+}
+
+/// The plan's name as the name of a file; letters that folders and shells read otherwise become dashes.
+fn suggested_name(plan: &str, extension: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || " -_.()".contains(c) { c } else { '-' };
+    let name: String = plan.trim().chars().take(60).map(plain).collect();
+    let name = name.trim_matches(['.', '-', ' ']);
+    format!("{}.{extension}", if name.is_empty() { "plan" } else { name })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plans_name_becomes_the_name_of_a_file() {
+        for (plan, file) in [
+            ("Fire watch", "Fire watch.xml"),
+            ("", "plan.xml"),
+            ("../a/b", "a-b.xml"),
+            (" Überflug: 7 Türme? ", "Überflug- 7 Türme.xml"),
+        ] {
+            assert_eq!(suggested_name(plan, "xml"), file);
         }
     }
 }

@@ -28,6 +28,30 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Q
     }
 }
 
+/// Most bytes that are pasted into a field.
+const LONGEST_IN_A_FIELD: usize = 64 << 10;
+
+/// Takes a paste away that no field could lay out in a frame; the sentence says so. What is pasted into the plan has its own
+/// limit.
+pub fn refuse_long_paste(ctx: &Context) -> Option<String> {
+    if !ctx.text_edit_focused() {
+        return None;
+    }
+    ctx.input_mut(|input| {
+        let too_long = |event: &Event| match event {
+            Event::Paste(text) if text.len() > LONGEST_IN_A_FIELD => Some(text.len()),
+            _ => None,
+        };
+        let bytes = input.events.iter().find_map(too_long)?;
+        input.events.retain(|event| too_long(event).is_none());
+        Some(format!(
+            "Nothing was pasted: the clipboard holds {} kB, and at most {} kB are taken here.",
+            bytes >> 10,
+            LONGEST_IN_A_FIELD >> 10
+        ))
+    })
+}
+
 fn is_pressed(ctx: &Context, key: &KeyboardShortcut) -> bool {
     match key.logical_key {
         // not consumed: the field that it ends needs it, too

@@ -2,12 +2,11 @@
 //! floats over it.
 
 use super::{App, Now, path_aboard};
-use crate::command::{DocumentCommand, LinkCommand, Queue, Replacement, ViewCommand};
+use crate::command::{DocumentCommand, LinkCommand, Queue, ViewCommand};
 use crate::dock::Content;
-use crate::layers::{self, LayerCommand};
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, maps, push, recover,
-    start, unsaved,
+    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, interchange, maps, push,
+    recover, start, story, toasts, tour, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -33,11 +32,18 @@ impl App {
             aboard,
             layers,
             help,
+            files,
+            toasts,
+            story,
             ..
         } = self;
         let vehicle = vehicles.shown();
         let scene = Scene {
             document,
+            shelf,
+            jobs: files.jobs(),
+            toasts,
+            story: story.as_ref().map(|(_, chapter)| chapter),
             can_undo: (shelf.can_undo(document), shelf.can_redo(document)),
             analysis,
             vehicle,
@@ -60,6 +66,7 @@ impl App {
         // before all that may take its place
         commands(ui, &scene, queue);
         emergency::show(ui, &scene, queue);
+        story::show(ui, &scene, queue);
         notice(ui, &scene, queue);
         announcements(ui, &scene, queue);
         if !consider::show(ui, &scene, queue) {
@@ -77,12 +84,15 @@ impl App {
                 });
             }
             over_map(ui, floor, &scene, queue);
+            toasts::show(ui, floor, &scene, queue);
         });
         maps::show(ui, &scene, queue);
         unsaved::show(ui, &scene, queue);
         changed::show(ui, &scene, queue);
         browse::show(ui, &scene, queue);
+        interchange::show(ui, &scene, queue);
         recover::show(ui, &scene, queue);
+        tour::show(ui, &scene, queue);
         help.show(ui, &scene, queue);
         palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
@@ -184,11 +194,7 @@ fn floating(ui: &Ui, id: &str, map: Rect, side: Align2, show: impl FnOnce(&mut U
 fn dropped_files(ui: &Ui, queue: &mut Queue) {
     let dropped =
         ui.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect::<Vec<_>>());
-    let (maps, plans): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| layers::is_map(path));
-    maps.into_iter().for_each(|path| queue.layer(LayerCommand::Add(path)));
-    if let Some(path) = plans.into_iter().next() {
-        queue.document(DocumentCommand::Replace(Replacement::Open(path)));
-    }
+    dropped.into_iter().for_each(|path| queue.document(DocumentCommand::Dropped(path)));
 }
 
 #[cfg(test)]

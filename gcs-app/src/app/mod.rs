@@ -7,7 +7,6 @@ mod keys;
 mod layout;
 mod orders;
 mod screenshot;
-mod shelf;
 mod window;
 
 pub(crate) use orders::plan_label;
@@ -30,11 +29,13 @@ use crate::panels::palette::CommandPalette;
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
-use crate::state::{LOOK_AHEAD, Outcome, READ_ABOARD, Ticket, Vehicle, VehicleName, Vehicles};
+use crate::shelf::Shelf;
+use crate::state::{LOOK_AHEAD, Level, Outcome, READ_ABOARD, Ticket, Toasts, Vehicle, VehicleName, Vehicles};
+use crate::story::{Chapter, Story};
 use crate::theme;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
-use shelf::Shelf;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 use terrain::Terrain;
@@ -60,8 +61,11 @@ pub struct App {
     /// Wakes the window.
     wake: Arc<dyn Fn() + Send + Sync>,
     files: Files,
-    /// The document's own file is being written.
-    saving: bool,
+    toasts: Toasts,
+    /// The notice that was put into the log last.
+    noted: Option<String>,
+    /// The documents that are being written, or asked where to, by their numbers.
+    saving: BTreeSet<u64>,
     recent: Recent,
     connections: Connections,
     /// `None`: no copy of unsaved changes is kept.
@@ -72,7 +76,13 @@ pub struct App {
     looked_s: f64,
     /// The window closes, whatever was not saved.
     leaving: bool,
+    /// The window closes when everything is saved.
+    quitting: bool,
     screenshot: Option<Screenshot>,
+    /// The tour has been offered, in this window or an earlier one.
+    tour_seen: bool,
+    /// What a demo tells, and where it had come to in the last frame.
+    story: Option<(Story, Chapter)>,
 }
 
 impl std::fmt::Debug for App {
@@ -87,6 +97,8 @@ struct Remembered {
     units: Units,
     #[serde(default)]
     layers: Vec<Kept>,
+    #[serde(default)]
+    tour_seen: bool,
     #[serde(default)]
     edge: Edge,
     #[serde(default)]
@@ -168,14 +180,19 @@ impl App {
             layers: Layers::new(terrain, remembered.layers, wake.clone()),
             wake: wake.clone(),
             files: Files::new(wake),
-            saving: false,
+            toasts: Toasts::default(),
+            noted: None,
+            saving: BTreeSet::new(),
             recent: remembered.recent,
             connections: remembered.connections,
             keeper: None,
             mirrored: None,
             looked_s: f64::NEG_INFINITY,
             leaving: false,
+            quitting: false,
             screenshot: None,
+            tour_seen: remembered.tour_seen,
+            story: None,
         };
         app.map.fit();
         Ok(app)
@@ -184,6 +201,10 @@ impl App {
     /// The plan being edited.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+    /// The window is about to close.
+    pub fn is_leaving(&self) -> bool {
+        self.leaving
     }
     /// What is known of the vehicles.
     pub fn vehicles(&self) -> &Vehicles {
@@ -205,6 +226,10 @@ impl App {
     pub fn layers(&self) -> &Layers {
         &self.layers
     }
+    /// The messages that are shown.
+    pub fn toasts(&self) -> &Toasts {
+        &self.toasts
+    }
     /// What the map shows.
     pub fn map(&self) -> &MapState {
         &self.map
@@ -222,6 +247,10 @@ impl App {
     fn scene(&self, now: Now) -> Scene<'_> {
         Scene {
             document: &self.document,
+            shelf: &self.shelf,
+            jobs: self.files.jobs(),
+            toasts: &self.toasts,
+            story: self.story.as_ref().map(|(_, chapter)| chapter),
             can_undo: (self.shelf.can_undo(&self.document), self.shelf.can_redo(&self.document)),
             analysis: &self.analysis,
             vehicle: self.vehicles.shown(),
@@ -292,9 +321,42 @@ impl App {
             false => None,
         };
         while let Some(event) = self.files.next_event() {
-            self.file_event(event);
+            self.file_event(event, now_s);
         }
         self.watch_file();
+        self.go_on_quitting();
+        if let Some((story, chapter)) = &mut self.story {
+            *chapter = story.chapter();
+        }
+        self.tend_messages(ctx, now_s);
+    }
+
+    /// Offers the tour of the window, once.
+    pub fn offer_tour(&mut self) {
+        if !std::mem::replace(&mut self.tour_seen, true) {
+            self.view.tour = Some(0);
+        }
+    }
+
+    /// Shows what this story tells from now on.
+    pub fn listen_to(&mut self, story: Story) {
+        let chapter = story.chapter();
+        self.story = Some((story, chapter));
+    }
+
+    /// Work that has ended and messages whose time is over go away.
+    fn tend_messages(&mut self, ctx: &egui::Context, now_s: f64) {
+        if self.files.tend(now_s) | self.layers.tend(now_s) {
+            ctx.request_repaint_after(REFRESH);
+        }
+        if let Some(left_s) = self.toasts.tend(now_s) {
+            ctx.request_repaint_after(Duration::from_secs_f64(left_s));
+        }
+        // what stays until it is read is in the log, too
+        if self.view.notice != self.noted {
+            self.noted.clone_from(&self.view.notice);
+            self.noted.iter().for_each(|text| self.toasts.note(now_s, Level::Caution, text));
+        }
     }
 
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
@@ -335,7 +397,13 @@ impl App {
     fn look_out(&mut self, now_s: f64) {
         if now_s - self.looked_s >= LOOK_OUT_S {
             self.looked_s = now_s;
-            self.vehicles.look(self.layers.ground().as_ref(), now_s);
+            for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
+                let (level, text) = match is_silent {
+                    true => (Level::Caution, "nothing is heard any more. It flies on by its plan"),
+                    false => (Level::Info, "is heard again"),
+                };
+                self.toasts.add(now_s, level, format!("{name}: {text}"));
+            }
         }
     }
 
@@ -367,10 +435,15 @@ impl App {
     fn ask_before_closing(&mut self, ctx: &egui::Context) {
         if self.leaving {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if ctx.input(|i| i.viewport().close_requested()) && self.document.is_dirty() {
+        } else if ctx.input(|i| i.viewport().close_requested()) && self.has_unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.view.unsaved = Some(Replacement::Quit);
         }
+    }
+
+    /// Some document has changes that are in no file, shown or not.
+    fn has_unsaved(&self) -> bool {
+        self.shelf.unsaved(&self.document).next().is_some()
     }
 
     /// What the window has besides the scene.
@@ -438,6 +511,7 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         let now = Now::read(&ctx);
         self.play(&ctx);
+        self.view.notice = keys::refuse_long_paste(&ctx).or_else(|| self.view.notice.take());
         let mut queue = std::mem::take(&mut self.queue);
         // a menu takes Escape for itself
         if !self.scene(now).is_asking() && !egui::Popup::is_any_open(&ctx) {
@@ -469,6 +543,7 @@ impl eframe::App for App {
             STORAGE_KEY,
             &Remembered {
                 units: self.view.units,
+                tour_seen: self.tour_seen,
                 layers: self.layers.kept(),
                 edge: self.view.edge,
                 recent: self.recent.clone(),

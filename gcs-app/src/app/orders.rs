@@ -21,8 +21,8 @@ impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
     pub(super) fn carry_out(&mut self, command: Command, shown: Option<&VehicleName>, now_s: f64) {
         match command {
-            Command::Document(command) => self.change_document(command),
-            Command::View(command) => self.change_view(command),
+            Command::Document(command) => self.change_document(command, now_s),
+            Command::View(command) => self.change_view(command, now_s),
             Command::Layer(command) => self.change_layers(command),
             Command::Link(command) => self.change_link(command, now_s),
             Command::Fly(command) => {
@@ -33,7 +33,7 @@ impl App {
         }
     }
 
-    fn change_document(&mut self, command: DocumentCommand) {
+    fn change_document(&mut self, command: DocumentCommand, now_s: f64) {
         match command {
             DocumentCommand::Edit(edit) => {
                 let done = self.document.edit(&edit);
@@ -51,6 +51,12 @@ impl App {
                 let done = self.bring_home(&runway);
                 self.tell(done);
             }
+            DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
+            DocumentCommand::TakeImport => self.take_import(now_s),
+            DocumentCommand::Export(format) => self.export(format),
+            DocumentCommand::AskExport => self.ask_export(),
+            DocumentCommand::ExportTo { path, over } => self.export_to(path, over),
+            DocumentCommand::SaveAllAndQuit => (self.view.unsaved, self.quitting) = (None, true),
             DocumentCommand::Replace(with) => self.ask_or_replace(with),
             DocumentCommand::Discard(with) => self.replace(with),
             DocumentCommand::Create(outline) => self.create(*outline),
@@ -83,8 +89,12 @@ impl App {
         }
     }
 
-    fn ask_or_replace(&mut self, with: Replacement) {
-        if self.document.is_dirty() {
+    pub(super) fn ask_or_replace(&mut self, with: Replacement) {
+        let would_be_lost = match with {
+            Replacement::Quit => self.has_unsaved(),
+            _ => self.document.is_dirty(),
+        };
+        if would_be_lost {
             self.view.unsaved = Some(with);
         } else {
             self.replace(with);
@@ -92,13 +102,14 @@ impl App {
     }
 
     fn replace(&mut self, with: Replacement) {
-        self.view.unsaved = None;
+        (self.view.unsaved, self.view.browsing) = (None, None);
         match with {
             Replacement::New => {
                 self.shelf.open(&mut self.document, Document::default());
                 self.view.select(None);
             }
-            Replacement::AskOpen => self.files.ask_open(),
+            Replacement::AskOpen => self.files.ask_open(false),
+            Replacement::AskImport => self.files.ask_open(true),
             Replacement::Open(path) => self.files.open(path),
             Replacement::Quit => self.leaving = true,
         }
@@ -149,7 +160,7 @@ impl App {
         Ok(())
     }
 
-    fn change_view(&mut self, command: ViewCommand) {
+    fn change_view(&mut self, command: ViewCommand, now_s: f64) {
         match command {
             ViewCommand::Select(selection) => self.view.select(selection),
             ViewCommand::Toggle(leg) => self.view.toggle(leg),
@@ -203,7 +214,18 @@ impl App {
                     browsing.name = name;
                 }
             }
-            ViewCommand::StopBrowsing => self.view.browsing = None,
+            ViewCommand::StopBrowsing => self.stop_browsing(),
+            ViewCommand::PutImportAside => self.view.imported = None,
+            ViewCommand::PutExportAside => self.view.exported = None,
+            ViewCommand::Cancel(job) => {
+                self.files.cancel(job);
+                self.layers.cancel(job);
+            }
+            ViewCommand::OpenReport(path) => self.files.show(path),
+            ViewCommand::EndStory => self.story = None,
+            ViewCommand::Tour(step) => self.view.tour = step,
+            ViewCommand::KeepToast(id) => self.toasts.keep(id, now_s),
+            ViewCommand::DismissToast(id) => self.toasts.dismiss(id),
             ViewCommand::KeepUnsaved => self.view.unsaved = None,
         }
     }

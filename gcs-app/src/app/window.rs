@@ -4,7 +4,9 @@ use super::{App, Screenshot};
 use crate::assets;
 use crate::document::Document;
 use crate::link::Links;
+use crate::story::Story;
 use std::panic::AssertUnwindSafe;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// How the window opens.
@@ -12,6 +14,8 @@ use std::sync::Arc;
 pub struct Options {
     /// The plan it opens with; without one, it shows the plan aboard as soon as it knows it.
     pub document: Option<Document>,
+    /// A file to open, of whatever format.
+    pub file: Option<PathBuf>,
     /// Vehicle and endpoint to connect to at once.
     pub connect: Option<(String, String)>,
     /// Take a picture and close.
@@ -20,6 +24,10 @@ pub struct Options {
     pub follow: bool,
     /// Keep a copy of unsaved changes, and offer what a crashed window left behind.
     pub recover: bool,
+    /// Offer the tour of the window to who sees it for the first time.
+    pub tour: bool,
+    /// A demo whose story is told in the window.
+    pub story: Option<Story>,
     /// Begin with the light theme instead of the system's or the remembered one.
     pub theme: Option<egui::Theme>,
 }
@@ -93,6 +101,9 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     if let Some((vehicle, endpoint)) = options.connect {
         app.connect(&endpoint, &vehicle.as_str().into(), creation.egui_ctx.input(|i| i.time));
     }
+    if let Some(path) = options.file {
+        app.files.open(path);
+    }
     app.shade_ground(&creation.egui_ctx);
     if options.recover
         && let Some(folder) = eframe::storage_dir("legwork")
@@ -100,6 +111,12 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
         app.keep_copies(&folder.join("recovery"));
     }
     app.screenshot = options.screenshot;
+    if options.tour {
+        app.offer_tour();
+    }
+    if let Some(story) = options.story {
+        app.listen_to(story);
+    }
     if let Some(theme) = options.theme {
         app.view.theme = theme.into();
     }

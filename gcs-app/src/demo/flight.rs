@@ -148,6 +148,7 @@ impl<'a> Flight<'a> {
         self.command(Command::Start).await.context("the plan was not started")?;
         self.started_s = self.now_s;
         self.wall = Instant::now();
+        self.tell("The aircraft takes off and flies the plan");
         let (mut phase, mut since_s) = (Phase::Idle, self.now_s);
         loop {
             let tick = self.next_tick(components).await?;
@@ -244,6 +245,7 @@ impl<'a> Flight<'a> {
                 return Ok(());
             }
             self.progress.say("waiting for the agent");
+            self.watcher.story.tell("Waiting for the agent", Some("the plan is sent and started"));
             ensure!(
                 Instant::now() < deadline,
                 "the agent is not ready after {} s: gateway {:?}, FP Manager {:?}, recording: {is_recorded}",
@@ -326,8 +328,15 @@ impl<'a> Flight<'a> {
                 step.name
             ));
             self.take(&step).await.with_context(|| format!("mission logic, {}", step.name))?;
+            self.tell(step.story);
         }
         Ok(())
+    }
+
+    /// Tells who watches what is happening, and what comes next.
+    fn tell(&self, now: &str) {
+        let next = self.script.missing().next().map_or("the approach and the landing", |step| step.name);
+        self.watcher.story.tell(now, Some(next));
     }
 
     async fn take(&mut self, step: &Step) -> anyhow::Result<()> {

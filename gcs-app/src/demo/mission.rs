@@ -44,6 +44,8 @@ pub enum Act {
 pub struct Step {
     /// For people.
     pub name: &'static str,
+    /// What is to be seen then, for who watches.
+    pub story: &'static str,
     /// When.
     pub when: When,
     /// What, in order.
@@ -65,25 +67,43 @@ fn fire_watch() -> Vec<Step> {
     vec![
         Step {
             name: "the fire grows",
+            story: "The fire has grown: the rows around it are laid out anew, while they are being flown",
             when: on("sweep", 1, 4),
             acts: vec![set("fire_radius", VariableValue::Number(430.0))],
         },
-        Step { name: "another round", when: asked(1), acts: vec![decide("again")] },
+        Step {
+            name: "another round",
+            story: "The operator decided at the fork: another round",
+            when: asked(1),
+            acts: vec![decide("again")],
+        },
         Step {
             name: "the fire moves",
+            story: "The fire has moved: the scan moves with it",
             when: on("sweep", 2, 4),
             acts: vec![
                 set("fire_centre", VariableValue::Position(LatLon::new(36.2525, -84.2565))),
                 set("fire_radius", VariableValue::Number(380.0)),
             ],
         },
-        Step { name: "a closer look", when: asked(2), acts: vec![decide("close")] },
+        Step {
+            name: "a closer look",
+            story: "The operator decided at the fork: a closer look, in circles above the fire",
+            when: asked(2),
+            acts: vec![decide("close")],
+        },
         Step {
             name: "the fire is out",
+            story: "The fire is out: the loop ends and the patrol begins",
             when: on("look", 2, 6),
             acts: vec![set("fire_out", VariableValue::Bool(true))],
         },
-        Step { name: "another way home", when: on("p2", 2, 0), acts: vec![Act::Update(way_home())] },
+        Step {
+            name: "another way home",
+            story: "A new plan was sent in flight: a look at the valley on the way home",
+            when: on("p2", 2, 0),
+            acts: vec![Act::Update(way_home())],
+        },
     ]
 }
 

@@ -18,6 +18,7 @@ use crate::app;
 use crate::document::Document;
 use crate::headless::wind;
 use crate::report::{self, Findings, Record};
+use crate::story::End;
 use aircraft::Wind;
 use anyhow::Context;
 use components::{Components, Setup, VEHICLE};
@@ -133,6 +134,7 @@ fn open_window(args: &Args, document: Document, endpoint: &Receiver<String>, wat
     let options = app::Options {
         document: Some(document),
         connect: Some((VEHICLE.to_owned(), endpoint)),
+        story: Some(watcher.story.clone()),
         screenshot: args.screenshot.clone().map(|file| app::Screenshot::new(file, args.after)),
         ..app::Options::default()
     };
@@ -197,12 +199,28 @@ async fn fly_with(
     flight.leave().await;
     let wall_s = began.elapsed().as_secs_f64();
     let good = ending.and_then(|ending| conclude(args, prepared, &ending, wall_s));
+    let failure = flown.as_ref().err().or(good.as_ref().err());
+    watcher.story.end(&last_words(failure, good.as_ref().is_ok_and(|good| *good)), end(args, &good));
     stay_open(watcher, flown.as_ref().err()).await;
     components.stop().await;
     // why the flight failed says more than why its report did
     flown?;
     let good = good?;
     Ok(ExitCode::from(u8::from(!good)))
+}
+
+fn last_words(failure: Option<&anyhow::Error>, good: bool) -> String {
+    match failure {
+        Some(failure) => format!("The demo has failed: {failure:#}"),
+        None if good => "The mission was flown as planned. Close the window to end the demo.".into(),
+        None => "The mission was not flown as planned: its report says what was different.".into(),
+    }
+}
+
+/// How it ended, with its report if one was written.
+fn end(args: &Args, good: &anyhow::Result<bool>) -> End {
+    let report = std::path::absolute(args.report.join("report.html")).ok();
+    End { good: good.as_ref().is_ok_and(|good| *good), report: report.filter(|path| path.exists()) }
 }
 
 /// Ends the recording: what was recorded, and how the aircraft stands.

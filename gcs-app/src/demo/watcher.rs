@@ -1,5 +1,6 @@
 //! Whoever watches the flight in a window, as the flight sees them.
 
+use crate::story::Story;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
@@ -11,37 +12,45 @@ const LOOK_EVERY: Duration = Duration::from_millis(100);
 
 /// Shared by the window's thread and the flight's.
 #[derive(Debug)]
-pub struct Watcher(AtomicU8);
+pub struct Watcher {
+    state: AtomicU8,
+    /// What the window tells them.
+    pub story: Story,
+}
 
 impl Watcher {
+    fn new(state: u8) -> Self {
+        Self { state: AtomicU8::new(state), story: Story::default() }
+    }
+
     /// A flight without a window.
     pub fn nobody() -> Self {
-        Self(AtomicU8::new(NOBODY))
+        Self::new(NOBODY)
     }
 
     /// A flight beside a window.
     pub fn someone() -> Self {
-        Self(AtomicU8::new(WATCHING))
+        Self::new(WATCHING)
     }
 
     /// The window could not be opened.
     pub fn give_up(&self) {
-        self.0.store(NOBODY, Ordering::Relaxed);
+        self.state.store(NOBODY, Ordering::Relaxed);
     }
 
     /// The window was closed.
     pub fn leave(&self) {
-        self.0.store(LEFT, Ordering::Relaxed);
+        self.state.store(LEFT, Ordering::Relaxed);
     }
 
     /// A window is open: who sits before it may hold the aircraft as long as they like.
     pub fn is_watching(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == WATCHING
+        self.state.load(Ordering::Relaxed) == WATCHING
     }
 
     /// There was a window, and it was closed.
     pub fn has_left(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == LEFT
+        self.state.load(Ordering::Relaxed) == LEFT
     }
 
     /// Waits until the window is closed; at once where there is none.

@@ -3,7 +3,7 @@
 use super::{GAP, MAP, TAB_BAR};
 use crate::command::Queue;
 use crate::map::MapState;
-use crate::panels::{Panel, PanelId, Scene};
+use crate::panels::{Panel, PanelId, Scene, tour};
 use crate::theme;
 use egui::{
     Align, Color32, Frame, Layout, Margin, Rect, RichText, Sense, Stroke, Style, Ui, Visuals, WidgetText,
@@ -134,6 +134,7 @@ impl Behavior<PanelId> for Content<'_> {
             return UiResponse::None;
         }
         let frame = Frame::new().fill(theme::of(ui).panel).inner_margin(MARGIN);
+        tour::mark(ui.ctx(), id, ui.max_rect());
         let dragged = frame.show(ui, |ui| {
             let dragged = !self.tabbed.contains(&tile.0) && self.title_bar(ui, id);
             if self.crowded.contains(id) {

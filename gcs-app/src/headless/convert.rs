@@ -1,10 +1,10 @@
 //! `legwork convert`: from any format to any format.
 
-use super::foreign::FileFormat;
 use super::output::Output;
 use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, expand, foreign};
+use crate::formats::FileFormat;
 use anyhow::bail;
 use interchange::{Export, Note};
 use std::path::{Path, PathBuf};

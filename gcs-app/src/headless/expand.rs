@@ -1,10 +1,11 @@
 //! `legwork expand`: the waypoints that would be sent.
 
-use super::foreign::FileFormat;
 use super::output::{DASH, Output, or_stdout};
 use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
+use crate::export::{self, Unflown};
+use crate::formats::FileFormat;
 use flight_exec::rehearse::Preview;
 use flight_plan::Program;
 use interchange::{Export, Note, csv};
@@ -104,37 +105,35 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     let mut loaded = source.load()?;
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
-    let (program, profile) = match loaded.compile() {
-        Ok(compiled) => compiled,
-        Err(problems) => return Ok(Err(check::print_errors(&source.file, &problems))),
-    };
-    let forbidden = if selection.anyway { Vec::new() } else { loaded.forbidden(air.conditions()) };
-    if !forbidden.is_empty() {
-        eprintln!("{}: the path must not be flown; --anyway writes it all the same", source.file.display());
-        return Ok(Err(check::print_errors(&source.file, &forbidden)));
-    }
-    let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
-        Ok(preview) => preview,
-        Err(error) => {
-            eprintln!("{}: {}", source.file.display(), forecast::why(&error));
-            return Ok(Err(ExitCode::from(1)));
-        }
-    };
-    match (preview.refusals.first(), preview.not_fired.is_empty()) {
-        (Some((seconds, refusal)), _) => {
-            eprintln!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
-            Ok(Err(ExitCode::from(1)))
-        }
-        (None, false) => {
+    let conditions = (!selection.anyway).then(|| air.conditions());
+    let flown = export::flown(&loaded, conditions, |program, profile| {
+        forecast::fly(program, profile, &loaded.terrain, air.wind, &scenario)
+    });
+    match flown {
+        Ok((_, preview)) if !preview.not_fired.is_empty() => {
             eprintln!("{}: the flight never reaches the named leg", source.file.display());
             Ok(Err(ExitCode::from(1)))
         }
-        (None, true) if !selection.goes_without(&forecast::left_out(&preview), &source.file) => {
+        Ok((_, preview)) if !selection.goes_without(&forecast::left_out(&preview), &source.file) => {
             Ok(Err(ExitCode::from(1)))
         }
-        (None, true) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
+        Ok((program, preview)) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
+        Err(unflown) => Ok(Err(print_unflown(&source.file, &unflown))),
     }
+}
+
+fn print_unflown(file: &Path, unflown: &Unflown) -> ExitCode {
+    let shown = file.display();
+    match unflown {
+        Unflown::Errors(problems) => return check::print_errors(file, problems),
+        Unflown::Forbidden(problems) => {
+            eprintln!("{shown}: the path must not be flown; --anyway writes it all the same");
+            return check::print_errors(file, problems);
+        }
+        Unflown::Endless(error) => eprintln!("{shown}: {}", forecast::why(error)),
+        Unflown::Refused { seconds, reason } => eprintln!("{shown}: refused after {seconds:.0} s: {reason}"),
+    }
+    ExitCode::from(1)
 }
 
 fn document(preview: &Preview, selection: &Selection) -> serde_json::Value {

@@ -4,7 +4,7 @@ use super::source::Loaded;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
 use aircraft::{Profile, Wind};
 use flight_exec::Event;
-use flight_exec::rehearse::{Options, Preview, PreviewError, Scenario, Start, preview_with};
+use flight_exec::rehearse::{Advance, Options, Preview, PreviewError, Scenario, Start, preview_with};
 use flight_plan::{FlightPlan, Id, Program};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashMap;
@@ -42,9 +42,7 @@ pub fn fly(
     // without its style the bar is plain
     bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar.enable_steady_tick(Duration::from_millis(120));
-    let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
-    let start = start(program, terrain.as_ref());
-    let result = preview_with(program, profile, terrain, wind, start, scenario, &options, &mut |advance| {
+    let result = fly_reporting(program, profile, terrain, wind, scenario, &mut |advance| {
         let leg = advance.place.as_ref().map(|p| &p.leg);
         bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
         bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
@@ -52,6 +50,23 @@ pub fn fly(
     });
     bar.finish_and_clear();
     result
+}
+
+/// Flies a program; `report` is told how far it is, and gives false when the flight is no longer wanted.
+///
+/// # Errors
+/// It can't be flown to its end.
+pub fn fly_reporting(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    wind: Wind,
+    scenario: &Scenario,
+    report: &mut dyn FnMut(&Advance) -> bool,
+) -> Result<Preview, PreviewError> {
+    let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
+    let start = start(program, terrain.as_ref());
+    preview_with(program, profile, terrain, wind, start, scenario, &options, report)
 }
 
 /// Why a flight ahead of time came to no end; who gives the commands can choose for the plan.

@@ -1,6 +1,6 @@
 //! Plans in other programs' formats.
 
-use anyhow::Context;
+use crate::formats::{self, FileFormat};
 use flight_plan::Runway;
 use geometry::LatLon;
 use interchange::{Assumptions, Format, Import, Note};
@@ -24,60 +24,6 @@ pub struct Foreign {
     /// Distance between the tracks over areas that name none, metres.
     #[arg(long, value_name = "METRES", value_parser = positive)]
     pub spacing: Option<f64>,
-}
-
-/// A format on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FileFormat {
-    /// Our own XML.
-    Legwork,
-    /// Another program's.
-    Other(Format),
-}
-
-impl FileFormat {
-    /// By the extension of a file's name.
-    pub fn by_path(path: &Path) -> Option<Self> {
-        path.extension().and_then(|e| e.to_str()).and_then(Self::by_name)
-    }
-
-    /// By its name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name.eq_ignore_ascii_case("xml") {
-            true => Some(FileFormat::Legwork),
-            false => Format::by_name(name).map(FileFormat::Other),
-        }
-    }
-
-    /// By content first: a name may lie. What is nothing else is a plan of ours, and broken if need be.
-    pub fn of(path: &Path, bytes: &[u8]) -> Self {
-        let by_content = Format::by_content(bytes).filter(|format| match format {
-            Format::Kml | Format::Gpx => root(bytes).is_none_or(|root| root == format.name()),
-            _ => true,
-        });
-        match (by_content, Self::by_path(path)) {
-            (Some(format), _) => FileFormat::Other(format),
-            (None, Some(format)) => format,
-            (None, None) => FileFormat::Legwork,
-        }
-    }
-}
-
-/// The name of an XML document's first element, without its prefix; `None`: there is none near its beginning.
-fn root(bytes: &[u8]) -> Option<String> {
-    let head = String::from_utf8_lossy(bytes.get(..4096).unwrap_or(bytes));
-    let mut rest = head.trim_start_matches('\u{feff}');
-    loop {
-        rest = rest.split_once('<')?.1;
-        let aside =
-            [("!--", "-->"), ("?", "?>"), ("!", ">")].into_iter().find(|(start, _)| rest.starts_with(start));
-        match aside {
-            Some((_, end)) => rest = rest.split_once(end)?.1,
-            None => break,
-        }
-    }
-    let name = rest.split(|c: char| c.is_whitespace() || matches!(c, '>' | '/')).next()?;
-    Some(name.rsplit(':').next()?.to_owned())
 }
 
 /// A format's name on the command line.
@@ -120,16 +66,17 @@ impl Foreign {
         let FileFormat::Other(format) = self.from.unwrap_or_else(|| FileFormat::of(path, bytes)) else {
             return Ok(None);
         };
-        let import = interchange::read(format, bytes, &self.assumptions(path));
-        import.map(Some).with_context(|| format!("{} ({})", path.display(), format.name()))
+        formats::import(format, path, bytes, &self.assumptions(path)).map(Some)
     }
 
     fn assumptions(&self, path: &Path) -> Assumptions {
-        let usual = Assumptions::default();
-        let stem = path.file_stem().and_then(|s| s.to_str()).filter(|s| *s != super::output::DASH);
+        let usual = if path.as_os_str() == super::output::DASH {
+            Assumptions::default()
+        } else {
+            formats::assumptions(path)
+        };
         Assumptions {
             aircraft: self.plan_for.clone(),
-            name: stem.map_or(usual.name, str::to_owned),
             height_agl_m: self.height.unwrap_or(usual.height_agl_m),
             spacing_m: self.spacing.unwrap_or(usual.spacing_m),
             runway: self.runway.clone(),
@@ -148,15 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_by_content_then_by_name() {
-        let of = |name: &str, text: &str| FileFormat::of(Path::new(name), text.as_bytes());
-        assert_eq!(of("a.xml", "QGC WPL 110\n"), FileFormat::Other(Format::Waypoints));
-        assert_eq!(of("a.kml", "garbage"), FileFormat::Other(Format::Kml));
-        assert_eq!(of("-", "<flightPlan/>"), FileFormat::Legwork);
-        assert_eq!(of("-", "<?xml version='1.0'?><!-- no <oops> --><kml/>"), FileFormat::Other(Format::Kml));
-        // that it speaks of KML doesn't make it one
-        assert_eq!(of("a.xml", "<missionPlan><!-- from <kml> --></missionPlan>"), FileFormat::Legwork);
-        assert_eq!(of("a.xml", "<flightPlan><!-- from <gpx> --></flightPlan>"), FileFormat::Legwork);
+    fn formats_there_are_are_listed() {
         assert!(format("dwg").unwrap_err().contains("geojson"));
     }
 

@@ -28,7 +28,7 @@ impl Output {
             return Ok(());
         }
         self.allow(to)?;
-        write_whole(to, bytes).with_context(|| format!("can't write {}", to.display()))
+        write_whole(to, bytes).map(drop).with_context(|| format!("can't write {}", to.display()))
     }
 
     /// Refuses to overwrite.

@@ -120,8 +120,7 @@ impl Selection {
 
     /// The waypoints of the way selected, in the order in which they are flown; those replaced before they were reached are none.
     pub fn steps(&self, preview: &Preview) -> Vec<Step> {
-        let flown = preview.waypoints.iter().filter(|w| !w.replaced && self.takes(w.passage, preview));
-        flown.map(|w| Step { waypoint: w.waypoint.clone(), passage: w.passage.unwrap_or(0) }).collect()
+        crate::export::steps(preview, |passage| self.takes(passage, preview))
     }
 }
 

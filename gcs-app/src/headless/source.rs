@@ -6,7 +6,7 @@ use crate::assets;
 use aircraft::Profile;
 use anyhow::Context;
 use flight_exec::{Conditions, review, review_extremes};
-use flight_plan::{Problem, Program, Reading};
+use flight_plan::{FlightPlan, Problem, Program, Reading};
 use interchange::Note;
 use std::fs::File;
 use std::io::Read;
@@ -93,6 +93,13 @@ impl Source {
 }
 
 impl Loaded {
+    /// A plan that is here already, over a ground; the aircraft is the one it names.
+    pub fn of(plan: &FlightPlan, terrain: Arc<dyn Terrain>) -> Self {
+        let reading = flight_plan::read(flight_plan::write(plan));
+        let profile = Profile::by_name(&reading.plan.aircraft).map_err(|error| error.to_string());
+        Self { reading, notes: Vec::new(), converted: true, profile, terrain }
+    }
+
     /// Everything that is wrong: document, plan, aircraft.
     pub fn problems(&self) -> Vec<Problem> {
         let mut problems = self.reading.problems.clone();

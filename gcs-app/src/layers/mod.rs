@@ -3,6 +3,7 @@
 
 mod open;
 
+use crate::jobs::Jobs;
 use crate::tiles::{About, Health, Reader};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,8 @@ pub struct Layer {
     pub kept: Kept,
     /// What became of it.
     pub state: State,
+    /// The work of opening it.
+    job: u64,
 }
 
 /// What is remembered of a layer.
@@ -105,10 +108,9 @@ impl Layer {
     }
 }
 
-/// Files of these kinds, and what has no kind and may be a folder, are maps and no plans.
-pub fn is_map(path: &Path) -> bool {
-    const KINDS: [&str; 5] = ["mbtiles", "pmtiles", "tif", "tiff", "hgt"];
-    path.extension().is_none_or(|kind| KINDS.iter().any(|known| kind.eq_ignore_ascii_case(known)))
+/// A file that begins like this is a map or elevations.
+pub fn is_map(path: &Path, head: &[u8]) -> bool {
+    open::kind(path, head).is_some()
 }
 
 /// What a file turned out to be.
@@ -137,6 +139,7 @@ pub struct Layers {
     shipped: Arc<dyn Terrain>,
     ground: Arc<dyn Terrain>,
     ground_changed: bool,
+    jobs: Jobs,
     outbox: Sender<(u64, Result<Content, String>)>,
     inbox: Receiver<(u64, Result<Content, String>)>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -153,8 +156,17 @@ impl Layers {
     pub fn new(shipped: Arc<dyn Terrain>, kept: Vec<Kept>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (outbox, inbox) = channel();
         let ground = shipped.clone();
-        let mut layers =
-            Self { list: Vec::new(), next: 0, shipped, ground, ground_changed: false, outbox, inbox, wake };
+        let mut layers = Self {
+            list: Vec::new(),
+            next: 0,
+            shipped,
+            ground,
+            ground_changed: false,
+            jobs: Jobs::default(),
+            outbox,
+            inbox,
+            wake,
+        };
         for kept in kept.into_iter().take(MOST).rev() {
             layers.put(kept);
         }
@@ -210,16 +222,34 @@ impl Layers {
     fn put(&mut self, kept: Kept) {
         self.next += 1;
         let (id, path) = (self.next, kept.path.clone());
-        self.list.insert(0, Layer { id, kept, state: State::Opening });
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let running = self.jobs.begin(format!("Loading {name}"));
+        self.list.insert(0, Layer { id, kept, state: State::Opening, job: running.id() });
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
             // the window may be gone by then
-            let _ = outbox.send((id, open::open(&path)));
+            let _ = outbox.send((id, open::open(&path, running.progress())));
             wake();
         };
         if let Err(error) = std::thread::Builder::new().name("maps".into()).spawn(work) {
             tracing::warn!(%error, "no thread to open a map");
         }
+    }
+
+    /// What is being opened.
+    pub fn jobs(&self) -> &Jobs {
+        &self.jobs
+    }
+
+    /// Forgets work that has ended. True: something is still being opened.
+    pub fn tend(&mut self, now_s: f64) -> bool {
+        self.jobs.tend(now_s)
+    }
+
+    /// What is opened by this work is not wanted.
+    pub fn cancel(&mut self, job: u64) {
+        self.jobs.cancel(job);
+        self.list.retain(|layer| layer.job != job || !matches!(layer.state, State::Opening));
     }
 
     /// A change that needs nothing but the list.

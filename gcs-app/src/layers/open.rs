@@ -1,6 +1,7 @@
 //! What a file or folder is, by what is in it.
 
 use super::Content;
+use crate::jobs::Progress;
 use crate::tiles::{Mbtiles, PmTiles};
 use geometry::LatLon;
 use std::fs::File;
@@ -17,29 +18,47 @@ const MOST_BYTES: u64 = 512 << 20;
 const LARGEST_TILE: u64 = 3601 * 3601 * 2;
 
 /// Opens it.
-pub(super) fn open(path: &Path) -> Result<Content, String> {
+pub(super) fn open(path: &Path, progress: &Progress) -> Result<Content, String> {
     let unreadable = |error: std::io::Error| format!("it can't be read ({error})");
     let meta = std::fs::metadata(path).map_err(unreadable)?;
     if meta.is_dir() {
-        return folder(path);
+        return folder(path, progress);
     }
     if !meta.is_file() {
         return Err("it is neither a file nor a folder".into());
     }
     let mut start = [0; 16];
     let length = File::open(path).and_then(|mut file| file.read(&mut start)).map_err(unreadable)?;
-    match start.get(..length).unwrap_or_default() {
-        start if start.starts_with(b"SQLite format 3") => {
+    match kind(path, start.get(..length).unwrap_or_default()) {
+        Some(Kind::Mbtiles) => {
             Mbtiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
         }
-        start if start.starts_with(b"PMTiles") => {
+        Some(Kind::PmTiles) => {
             PmTiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
         }
-        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => raster(path),
-        _ if is_hgt(path) => tile(path).map(|tile| ground(vec![tile], 0)),
-        _ => {
+        Some(Kind::Tiff) => raster(path),
+        Some(Kind::Hgt) => tile(path).map(|tile| ground(vec![tile], 0)),
+        None => {
             Err("it is none of the known kinds: MBTiles, PMTiles, GeoTIFF elevations, HGT elevations".into())
         }
+    }
+}
+
+/// What a file may be, by what it begins with; elevations of the Shuttle mission begin with nothing in particular.
+pub(super) enum Kind {
+    Mbtiles,
+    PmTiles,
+    Tiff,
+    Hgt,
+}
+
+pub(super) fn kind(path: &Path, start: &[u8]) -> Option<Kind> {
+    match start {
+        start if start.starts_with(b"SQLite format 3") => Some(Kind::Mbtiles),
+        start if start.starts_with(b"PMTiles") => Some(Kind::PmTiles),
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => Some(Kind::Tiff),
+        _ if is_hgt(path) => Some(Kind::Hgt),
+        _ => None,
     }
 }
 
@@ -65,13 +84,17 @@ fn tile(path: &Path) -> Result<Tile, String> {
 }
 
 /// The elevation tiles in a folder, as many as there is memory for.
-fn folder(path: &Path) -> Result<Content, String> {
+fn folder(path: &Path, progress: &Progress) -> Result<Content, String> {
     let entries = std::fs::read_dir(path).map_err(|error| format!("it can't be read ({error})"))?;
     let paths = entries.take(MOST_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
     let mut paths: Vec<PathBuf> = paths.filter(|path| is_hgt(path)).collect();
     paths.sort();
     let (mut tiles, mut left_out, mut bytes) = (Vec::new(), 0, 0);
-    for path in &paths {
+    for (done, path) in paths.iter().enumerate() {
+        progress.set(done as u64, paths.len() as u64);
+        if progress.is_cancelled() {
+            return Err("it was cancelled".into());
+        }
         bytes += path.metadata().map_or(0, |meta| meta.len());
         if bytes > MOST_BYTES {
             return Err(format!(

@@ -6,7 +6,7 @@ use super::tools::Toolbox;
 use super::view::View;
 use crate::assets;
 use crate::command::{Queue, ViewCommand};
-use crate::panels::{Scene, start};
+use crate::panels::{Scene, start, tour};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
@@ -146,6 +146,7 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
             queue.view(ViewCommand::Tool(card.id));
         }
     }
+    tour::mark(ui.ctx(), tour::TOOLS, column.min_rect());
     let Some(status) = tools.status(scene) else { return };
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };

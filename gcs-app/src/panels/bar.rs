@@ -1,6 +1,6 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
 
-use super::Scene;
+use super::{Scene, tour};
 use crate::actions::{Action, Fittings, Group, Kind, all};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
 use crate::link::LinkState;
@@ -51,8 +51,9 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
 
 fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
     let actions = all(scene, fittings);
-    ui.menu_button(RichText::new("Legwork").strong(), |ui| {
+    let menu = ui.menu_button(RichText::new("Legwork").strong(), |ui| {
         section(ui, &actions, &[Group::File], queue);
+        submenu(ui, "Export", &actions, &[Group::Export], queue);
         recent_menu(ui, scene, queue);
         ui.separator();
         submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
@@ -66,6 +67,7 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
         ui.separator();
         section(ui, &actions, &[Group::Help], queue);
     });
+    tour::mark(ui.ctx(), tour::MENU, menu.response.rect);
     for (id, symbol) in [("undo", "↶"), ("redo", "↷")] {
         if let Some(action) = actions.iter().find(|action| action.id == id) {
             symbol_button(ui, action, symbol, queue);

@@ -3,6 +3,7 @@
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::files::{Entry, Purpose};
+use crate::formats;
 use crate::theme;
 use egui::{Align, Id, Key, Layout, Modal, RichText, ScrollArea, Ui};
 use std::path::{Path, PathBuf};
@@ -32,15 +33,15 @@ impl Browsing {
         entries.into_iter().any(|entry| !entry.is_folder && entry.name == name)
     }
 
-    /// What is typed, as a path: `~` is the user's own folder, and a plan that is saved ends in `.xml`.
+    /// What is typed, as a path: `~` is the user's own folder, and what is written ends in what says its format.
     fn target(&self) -> PathBuf {
         let name = self.name.trim();
         let mut path = match (name.strip_prefix("~/"), std::env::home_dir()) {
             (Some(rest), Some(home)) => home.join(rest),
             _ => self.folder.join(name),
         };
-        if self.purpose == Purpose::Save && path.extension().is_none() && !names_folder(name) {
-            path.set_extension("xml");
+        if self.purpose != Purpose::Open && path.extension().is_none() && !names_folder(name) {
+            path.set_extension(self.purpose.extension());
         }
         path
     }
@@ -58,11 +59,11 @@ impl Browsing {
             (_, None) => Wish::Folder(path, String::new()),
             (Purpose::Open, Some(_)) => Wish::Open(path),
             // first look at what is there: nothing is to be overwritten unseen
-            (Purpose::Save, Some(file)) if elsewhere => {
+            (_, Some(file)) if elsewhere => {
                 Wish::Folder(path.parent().unwrap_or(Path::new("/")).into(), file.to_string_lossy().into())
             }
-            (Purpose::Save, Some(file)) if self.has(&file.to_string_lossy()) => Wish::Overwrite(path),
-            (Purpose::Save, Some(_)) => Wish::Save(path),
+            (_, Some(file)) if self.has(&file.to_string_lossy()) => Wish::Overwrite(path),
+            (_, Some(_)) => Wish::Save(path),
         }
     }
 }
@@ -87,8 +88,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let modal = Modal::new(Id::unique("browse")).show(ui.ctx(), |ui| {
         ui.set_width(480.0);
         ui.strong(match browsing.purpose {
-            Purpose::Open => "Open a plan",
-            Purpose::Save => "Save the plan as",
+            Purpose::Open => "Open or import a plan".to_owned(),
+            Purpose::Save => "Save the plan as".to_owned(),
+            Purpose::Export(format) => format!("Export the plan as {}", formats::label(format)),
         });
         folder_row(ui, browsing, queue);
         entries(ui, browsing, queue);
@@ -128,7 +130,7 @@ fn entries(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) {
         None => drop(area.show(ui, |ui| ui.spinner())),
         Some(Err(why)) => drop(area.show(ui, |ui| ui.colored_label(theme::of(ui).warning, why))),
         Some(Ok(entries)) if entries.is_empty() => {
-            area.show(ui, |ui| ui.weak("There is no folder and no plan (*.xml) in here."));
+            area.show(ui, |ui| ui.weak("There is no folder and no such file in here."));
         }
         Some(Ok(entries)) => {
             area.show_rows(ui, ROW, entries.len(), |ui, shown| {
@@ -181,7 +183,7 @@ fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
         (Wish::Folder(..), _) => ("Go there", false),
         (Wish::Overwrite(_), _) => ("Replace the file", true),
         (_, Purpose::Open) => ("Open", false),
-        (_, Purpose::Save) => ("Save here", false),
+        (_, Purpose::Save | Purpose::Export(_)) => ("Save here", false),
     };
     if let Wish::Overwrite(path) = &wish {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -190,7 +192,7 @@ fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
     ui.horizontal(|ui| {
         let button = ui.add_enabled(wish != Wish::Nothing, primary_button(text, p));
         if button.clicked() || (typed && !needs_click) {
-            carry_out(wish, queue);
+            carry_out(wish, browsing.purpose, queue);
         }
         if ui.button("Cancel").clicked() {
             queue.view(ViewCommand::StopBrowsing);
@@ -198,24 +200,25 @@ fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
     });
 }
 
-fn carry_out(wish: Wish, queue: &mut Queue) {
+fn carry_out(wish: Wish, purpose: Purpose, queue: &mut Queue) {
     match wish {
         Wish::Nothing => {}
         Wish::Folder(folder, name) => queue.document(DocumentCommand::Browse(folder, name)),
         Wish::Open(path) => open(path, queue),
-        Wish::Save(path) => save(path, false, queue),
-        Wish::Overwrite(path) => save(path, true, queue),
+        Wish::Save(path) => save(path, false, purpose, queue),
+        Wish::Overwrite(path) => save(path, true, purpose, queue),
     }
 }
 
-fn save(path: PathBuf, over: bool, queue: &mut Queue) {
-    queue.view(ViewCommand::StopBrowsing);
-    queue.document(DocumentCommand::SaveTo { path, over });
+fn save(path: PathBuf, over: bool, purpose: Purpose, queue: &mut Queue) {
+    queue.document(match purpose {
+        Purpose::Export(_) => DocumentCommand::ExportTo { path, over },
+        Purpose::Open | Purpose::Save => DocumentCommand::SaveTo { path, over },
+    });
 }
 
 /// It was asked already what becomes of unsaved changes.
 fn open(path: PathBuf, queue: &mut Queue) {
-    queue.view(ViewCommand::StopBrowsing);
     queue.document(DocumentCommand::Discard(Replacement::Open(path)));
 }
 

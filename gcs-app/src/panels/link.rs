@@ -1,7 +1,7 @@
 //! The link: which vehicle is shown, how its link does, and what was lost on it. It opens the list of
 //! vehicles and the form for another connection.
 
-use super::Scene;
+use super::{Scene, tour};
 use crate::command::{LinkCommand, Queue};
 use crate::connections::{self, Connection};
 use crate::link::LinkState;
@@ -26,6 +26,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         chooser(ui, scene, queue);
         form(ui, scene, queue);
     });
+    tour::mark(ui.ctx(), tour::LINK, button.rect);
     button.on_hover_text(details(scene.vehicle));
     lost(ui, scene.vehicle);
 }

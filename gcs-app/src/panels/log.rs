@@ -2,6 +2,7 @@
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::Queue;
+use crate::state::log::merged;
 use crate::state::{Level, Line, Outcome, Request};
 use crate::theme;
 use crate::units;
@@ -61,12 +62,18 @@ fn command(ui: &mut Ui, request: &Request, now_s: f64) {
 
 fn events(ui: &mut Ui, scene: &Scene<'_>) {
     super::group_title(ui, "Events");
-    let log = &scene.vehicle.log;
-    ScrollArea::vertical().id_salt("events").auto_shrink(false).show_rows(ui, 20.0, log.len(), |ui, rows| {
-        for line in rows.filter_map(|i| log.from_newest(i)) {
-            event(ui, line, scene.now_s);
-        }
-    });
+    // what happened to the vehicle, and what the window has said
+    let lines = merged(&scene.vehicle.log, scene.toasts.log());
+    ScrollArea::vertical().id_salt("events").auto_shrink(false).show_rows(
+        ui,
+        20.0,
+        lines.len(),
+        |ui, rows| {
+            for line in lines.get(rows).unwrap_or_default() {
+                event(ui, line, scene.now_s);
+            }
+        },
+    );
 }
 
 fn event(ui: &mut Ui, line: &Line, now_s: f64) {

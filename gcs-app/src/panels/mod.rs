@@ -14,6 +14,7 @@ pub mod flight;
 pub mod help;
 pub mod in_place;
 pub mod inspector;
+pub mod interchange;
 pub mod link;
 pub mod log;
 pub mod maps;
@@ -25,8 +26,11 @@ pub mod push;
 pub mod recover;
 pub mod services;
 pub mod start;
+pub mod story;
 pub mod table;
 pub mod timeline;
+pub mod toasts;
+pub mod tour;
 pub mod tree;
 pub mod unsaved;
 pub mod what_if;
@@ -34,14 +38,18 @@ pub mod what_if;
 use crate::command::{Queue, Replacement, Selection};
 use crate::connections::Connections;
 use crate::document::Document;
-use crate::files::Stamp;
+use crate::export::Exported;
+use crate::files::{Imported, Stamp};
 use crate::forecast::{Alarm, Analysis, Forecast};
 use crate::guide::Guide;
+use crate::jobs::Jobs;
 use crate::layers::Layers;
 use crate::map::furniture::Edge;
 use crate::recent::Recent;
 use crate::recovery::LeftBehind;
-use crate::state::{Aged, Vehicle, Vehicles};
+use crate::shelf::Shelf;
+use crate::state::{Aged, Toasts, Vehicle, Vehicles};
+use crate::story::Chapter;
 use crate::theme;
 use crate::units::{self, Units};
 use browse::Browsing;
@@ -49,6 +57,7 @@ use egui::{RichText, Ui};
 use flight_exec::rehearse::WhatIf;
 use flight_plan::{Cause, FlightPlan, Id, Problem};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use terrain::Terrain;
 
 /// A panel's identifier; never changes, for layouts are stored with it.
@@ -174,6 +183,12 @@ pub struct ViewState {
     pub unsaved: Option<Replacement>,
     /// The state of the document's file after another program has changed it, until the operator has decided.
     pub changed_outside: Option<Stamp>,
+    /// The step of the tour that is shown, from 0.
+    pub tour: Option<usize>,
+    /// A plan of another program, until the operator has decided.
+    pub imported: Option<Arc<Imported>>,
+    /// The plan in another program's format, until it is written.
+    pub exported: Option<Arc<Exported>>,
     /// A file is being chosen in the window.
     pub browsing: Option<Browsing>,
     /// Something the operator should read: a file that can't be opened, and the like.
@@ -236,6 +251,14 @@ impl std::fmt::Debug for Elevations<'_> {
 pub struct Scene<'a> {
     /// The plan being edited.
     pub document: &'a Document,
+    /// The documents before and after it.
+    pub shelf: &'a Shelf,
+    /// What is being done with files.
+    pub jobs: &'a Jobs,
+    /// What a demo tells.
+    pub story: Option<&'a Chapter>,
+    /// Messages that go by themselves.
+    pub toasts: &'a Toasts,
     /// There is something to undo and to redo, in this document or from one to another.
     pub can_undo: (bool, bool),
     /// What is known of the plan, found out in the background; belongs to an older version for a moment.
@@ -298,6 +321,8 @@ impl<'a> Scene<'a> {
             || self.view.unsaved.is_some()
             || self.view.changed_outside.is_some()
             || self.view.browsing.is_some()
+            || self.view.imported.is_some()
+            || self.view.exported.is_some()
             || self.view.palette
     }
     /// Is this selected?

@@ -1,22 +1,33 @@
-//! The question before a plan with unsaved changes gives way to something else.
+//! The question before plans with unsaved changes give way to something else, or are closed with the window.
 
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
+use crate::document::Document;
 use crate::theme;
-use egui::{Id, Key, Modal, Ui};
+use egui::{Id, Key, Label, Modal, ScrollArea, Ui};
 
 /// Draws it, while there is something to be decided.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(with) = &scene.view.unsaved else { return };
+    let quits = *with == Replacement::Quit;
+    let documents: Vec<&Document> = match quits {
+        true => scene.shelf.unsaved(scene.document).collect(),
+        false => vec![scene.document],
+    };
     let modal = Modal::new(Id::unique("unsaved")).show(ui.ctx(), |ui| {
-        ui.set_width(360.0);
-        ui.strong(format!("“{}” has unsaved changes", scene.document.plan().name));
+        ui.set_width(400.0);
+        title(ui, &documents);
         ui.label(consequence(with));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            if ui.add(primary_button("Save first", theme::of(ui))).clicked() {
-                queue.view(ViewCommand::KeepUnsaved);
-                queue.document(DocumentCommand::Save);
+            let save = if quits { "Save and quit" } else { "Save first" };
+            if ui.add(primary_button(save, theme::of(ui))).clicked() {
+                if quits {
+                    queue.document(DocumentCommand::SaveAllAndQuit);
+                } else {
+                    queue.view(ViewCommand::KeepUnsaved);
+                    queue.document(DocumentCommand::Save);
+                }
             }
             if ui.button("Discard the changes").clicked() {
                 queue.document(DocumentCommand::Discard(with.clone()));
@@ -31,10 +42,25 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
+fn title(ui: &mut Ui, documents: &[&Document]) {
+    let name = |document: &Document| document.plan().name.clone();
+    if let [document] = documents {
+        ui.strong(format!("“{}” has unsaved changes", name(document)));
+        return;
+    }
+    ui.strong(format!("{} plans have unsaved changes", documents.len()));
+    ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
+        for document in documents {
+            let text = format!("“{}”, {}", name(document), document.file_name());
+            ui.add(Label::new(text).truncate());
+        }
+    });
+}
+
 fn consequence(with: &Replacement) -> &'static str {
     match with {
         Replacement::New => "A new plan takes its place. Until the window closes, undo brings this one back.",
-        Replacement::AskOpen | Replacement::Open(_) => {
+        Replacement::AskOpen | Replacement::AskImport | Replacement::Open(_) => {
             "Another plan takes its place. Until the window closes, undo brings this one back."
         }
         Replacement::Quit => "The window is about to close: the changes would be lost.",

@@ -74,10 +74,25 @@ impl Log {
     pub fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }
+    /// Every line, the oldest first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Line> {
+        self.lines.iter()
+    }
     /// A line, counted from the newest.
     pub fn from_newest(&self, index: usize) -> Option<&Line> {
         self.lines.get(self.lines.len().checked_sub(index + 1)?)
     }
+}
+
+/// The lines of two logs, the newest first.
+pub fn merged<'a>(a: &'a Log, b: &'a Log) -> Vec<&'a Line> {
+    let (mut a, mut b) = (a.iter().rev().peekable(), b.iter().rev().peekable());
+    std::iter::from_fn(|| match (a.peek(), b.peek()) {
+        (Some(of_a), Some(of_b)) if of_a.time_s < of_b.time_s => b.next(),
+        (Some(_), _) => a.next(),
+        (None, _) => b.next(),
+    })
+    .collect()
 }
 
 /// Who decided, where nobody did.
@@ -183,6 +198,18 @@ pub fn short_hash(hash: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_logs_are_one_by_time() {
+        let (mut a, mut b) = (Log::default(), Log::default());
+        for (log, time_s) in [(&mut a, 1.0), (&mut b, 2.0)] {
+            log.add(time_s, Level::Info, "x", &format!("{time_s}"));
+            log.add(time_s + 2.0, Level::Info, "x", &format!("{}", time_s + 2.0));
+        }
+        let texts = |a, b| merged(a, b).iter().map(|line| line.text.as_str()).collect::<Vec<_>>().join(" ");
+        assert_eq!(texts(&a, &b), "4 3 2 1");
+        assert_eq!((texts(&b, &a), texts(&a, &Log::default())), ("4 3 2 1".into(), "3 1".into()));
+    }
 
     #[test]
     fn a_flood_of_lines_stays_bounded_and_repetitions_are_counted() {

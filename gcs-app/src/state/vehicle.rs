@@ -105,6 +105,7 @@ pub struct Vehicle {
     plan_events: Repeats,
     gateway_events: Repeats,
     asked_aboard_s: Option<f64>,
+    was_silent: bool,
 }
 
 /// A plan the FP Manager flies.
@@ -379,6 +380,16 @@ impl Vehicle {
         alarms.extend(self.watch.alarms());
         alarms.sort_by(|a, b| b.severity.cmp(&a.severity).then_with(|| a.id.cmp(&b.id)));
         alarms
+    }
+
+    /// Once after it has fallen silent (true), and once after it is heard again (false).
+    pub(super) fn silence_changed(&mut self, now_s: f64) -> Option<bool> {
+        let is_silent = self.link_alarm(now_s).is_some();
+        let changed = is_silent != self.was_silent;
+        self.was_silent = is_silent;
+        // a link that was closed on purpose is not heard again
+        let is_heard = self.silence_s(now_s).is_some_and(|silence_s| silence_s < LINK_CAUTION_S);
+        (changed && (is_silent || is_heard)).then_some(is_silent)
     }
 
     fn link_alarm(&self, now_s: f64) -> Option<Alarm> {

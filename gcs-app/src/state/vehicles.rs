@@ -101,9 +101,11 @@ impl Vehicles {
         self.by_name.values().any(|v| v.link.is_wanted())
     }
 
-    /// Looks at every aircraft over the ground.
-    pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64) {
+    /// Looks at every aircraft over the ground; gives those that have fallen silent (true) or are heard again (false).
+    pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64) -> Vec<(VehicleName, bool)> {
         self.by_name.values_mut().for_each(|vehicle| vehicle.look(terrain, now_s));
+        let changed = self.by_name.iter_mut().filter_map(|(name, v)| Some((name, v.silence_changed(now_s)?)));
+        changed.map(|(name, is_silent)| (name.clone(), is_silent)).collect()
     }
 
     /// Vehicles in an emergency that should be asked now when they land.

@@ -157,7 +157,12 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
         let terrain = gcs_app::assets::demo_terrain();
         let recent = gcs_app::recent::Recent::default();
         let connections = gcs_app::connections::Connections::default();
+        let (shelf, jobs) = Default::default();
         let scene = Scene {
+            shelf: &shelf,
+            jobs: &jobs,
+            toasts: app.toasts(),
+            story: None,
             can_undo: (false, false),
             document: app.document(),
             analysis: app.analysis(),

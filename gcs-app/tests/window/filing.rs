@@ -4,7 +4,7 @@ use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 
-fn window(text: &str) -> Window {
+pub fn window(text: &str) -> Window {
     let mut window = Window::open(text);
     window.harness.state_mut().ask_for_files_here();
     window
@@ -15,7 +15,7 @@ pub fn until_listed(window: &mut Window) {
 }
 
 /// Types a name into the dialog.
-fn name(window: &mut Window, path: &Path) {
+pub fn name(window: &mut Window, path: &Path) {
     let field = window.harness.get_by_label("File name");
     field.click();
     window.steps(2);
@@ -156,7 +156,7 @@ fn file_that_was_open_is_offered_again() {
 }
 
 /// A window with a file of its own, opened by its dialog; the file's text is `text`.
-fn window_on(path: &Path, text: &str) -> Window {
+pub fn window_on(path: &Path, text: &str) -> Window {
     std::fs::write(path, text).unwrap();
     let mut window = window("");
     open(&mut window, path);
@@ -265,4 +265,92 @@ fn plan_that_cannot_be_saved_stays_unsaved_with_its_reason() {
     window.press_ctrl(egui::Key::S);
     window.until("notice", |app| app.view().notice.as_ref().is_some_and(|n| n.contains("Save it elsewhere")));
     assert!(window.plan() == edited && window.app().document().is_dirty());
+}
+
+/// Deletes a leg of the square.
+pub fn edit(window: &mut Window) {
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    assert!(window.app().document().is_dirty());
+}
+
+/// Two documents with unsaved changes; the second is shown.
+fn two_unsaved(folder: &Path) -> Window {
+    let mut window = window_on(&folder.join("first.xml"), SQUARE);
+    edit(&mut window);
+    window.press_ctrl(egui::Key::O);
+    window.click("Discard the changes");
+    until_listed(&mut window);
+    let second = folder.join("second.xml");
+    std::fs::write(&second, SQUARE).unwrap();
+    name(&mut window, &second);
+    window.click("Open");
+    window.until("opened", move |app| app.document().path() == Some(second.as_path()));
+    edit(&mut window);
+    window
+}
+
+#[test]
+fn quit_asks_for_every_document_and_saves_them_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = two_unsaved(folder.path());
+    window.press_ctrl(egui::Key::Q);
+    assert!(window.shows("2 plans have unsaved changes"));
+    assert!(window.shows("first.xml") && window.shows("second.xml"));
+    window.press(egui::Key::Escape);
+    assert!(window.app().view().unsaved.is_none());
+    window.press_ctrl(egui::Key::Q);
+    window.click("Save and quit");
+    let is_saved = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap() != SQUARE;
+    window.until("both saved", |app| app.is_leaving());
+    assert!(is_saved("first.xml") && is_saved("second.xml"));
+}
+
+#[test]
+fn quit_stops_where_a_document_cannot_be_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = two_unsaved(folder.path());
+    std::fs::write(folder.path().join("first.xml"), "theirs").unwrap();
+    window.press_ctrl(egui::Key::Q);
+    window.click("Save and quit");
+    window.until("notice", |app| app.view().notice.is_some());
+    assert!(window.shows("was changed by another program") && !window.app().is_leaving());
+    assert_eq!(
+        window.app().document().path(),
+        Some(folder.path().join("first.xml").as_path()),
+        "it is shown"
+    );
+}
+
+#[test]
+fn every_document_survives_a_crash() {
+    let (folder, copies) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let mut killed = two_unsaved(folder.path());
+    killed.harness.state_mut().keep_copies(copies.path());
+    killed.steps(3);
+    drop(killed);
+    let mut next = window("");
+    next.harness.state_mut().keep_copies(copies.path());
+    next.steps(3);
+    assert!(next.shows("second.xml and of another plan"));
+    next.click("Recover the changes");
+    for name in ["second.xml", "first.xml"] {
+        assert_eq!(next.app().document().path(), Some(folder.path().join(name).as_path()));
+        assert!(next.app().document().is_dirty() && next.plan().leg(&"side2".into()).is_none());
+        next.press_ctrl(egui::Key::Z);
+    }
+}
+
+#[test]
+fn file_that_could_not_be_read_whole_is_not_written_over_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cut.xml");
+    let cut = &SQUARE[..SQUARE.find("id=\"side3\"").unwrap()];
+    let mut window = window_on(&path, cut);
+    edit(&mut window);
+    window.press_ctrl(egui::Key::S);
+    until_listed(&mut window);
+    assert!(window.shows("could not be read whole") && window.shows("What is in it would be lost"));
+    window.press(egui::Key::Escape);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), cut);
 }

@@ -32,7 +32,12 @@ impl Sheet {
         let (analysis, vehicle, vehicles) = (Default::default(), Default::default(), Default::default());
         let (recent, connections) = (Default::default(), Default::default());
         let layers = Layers::new(Arc::new(Flat(0.0)), Vec::new(), Arc::new(|| {}));
+        let (shelf, jobs, toasts) = Default::default();
         let scene = Scene {
+            shelf: &shelf,
+            jobs: &jobs,
+            toasts: &toasts,
+            story: None,
             document: &self.document,
             can_undo: (false, false),
             analysis: &analysis,

@@ -110,3 +110,11 @@ fn what_is_typed_into_a_field_is_pasted_there() {
     paste(&mut window, "36.5, -84.2");
     assert_eq!(legs(&window), ["side1", "side2", "side3", "side4"]);
 }
+
+#[test]
+fn a_clipboard_too_large_for_a_field_is_refused_in_words() {
+    let mut window = Window::open(SQUARE);
+    window.press_ctrl(egui::Key::K);
+    paste(&mut window, &"x".repeat(50 << 20));
+    assert!(window.shows("Nothing was pasted: the clipboard holds 51200 kB"));
+}

@@ -149,7 +149,12 @@ fn drawn(mut panel: Box<dyn Panel>, scrolled: f32, look: impl Fn(&Harness<'_>)) 
     let analysis = Analysis { forecast: Arc::new(forecast), forecast_version: 1, ..Analysis::default() };
     let terrain = gcs_app::assets::demo_terrain();
     let (recent, connections) = Default::default();
+    let (shelf, jobs) = Default::default();
     let scene = Scene {
+        shelf: &shelf,
+        jobs: &jobs,
+        toasts: app.toasts(),
+        story: None,
         can_undo: (false, false),
         document: &document,
         analysis: &analysis,

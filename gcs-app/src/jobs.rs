@@ -1,0 +1,153 @@
+//! Long work on threads of its own: what is being done, how far it is, and whether it is still wanted.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+
+/// Work that has lasted so long is shown, seconds: less would be a flicker.
+const SHOWN_AFTER_S: f64 = 0.3;
+/// Parts that progress is counted in.
+const PARTS: u64 = 1000;
+
+#[derive(Debug, Default)]
+struct Shared {
+    /// Parts that are done, plus one; 0: not known.
+    parts: AtomicU32,
+    cancelled: AtomicBool,
+    ended: AtomicBool,
+}
+
+/// How far work is, seen from its thread and from the window. Work that ends before it is dropped has ended.
+#[derive(Debug, Clone, Default)]
+pub struct Progress(Arc<Shared>);
+
+impl Progress {
+    /// So much of all of it is done.
+    pub fn set(&self, done: u64, all: u64) {
+        let parts = PARTS * done.min(all) / all.max(1);
+        self.0.parts.store(u32::try_from(parts).map_or(0, |parts| parts + 1), Ordering::Relaxed);
+    }
+
+    /// The share that is done, 0..=1, where it is known.
+    pub fn share(&self) -> Option<f32> {
+        self.0.parts.load(Ordering::Relaxed).checked_sub(1).map(|parts| parts as f32 / PARTS as f32)
+    }
+
+    /// Nobody waits for it any more.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// Held by the thread while it works.
+#[derive(Debug)]
+pub struct Running {
+    id: u64,
+    progress: Progress,
+}
+
+impl Running {
+    /// The work's number.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// For the thread to say how far it is.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.progress.0.ended.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Work that is being done.
+#[derive(Debug)]
+pub struct Job {
+    /// Its number; no two are alike.
+    pub id: u64,
+    /// For people: what is being done.
+    pub label: String,
+    /// How far it is.
+    pub progress: Progress,
+    /// When the window saw it first, seconds of its clock.
+    since_s: Option<f64>,
+}
+
+/// All work that is being done, the oldest first.
+#[derive(Debug, Default)]
+pub struct Jobs(Vec<Job>);
+
+impl Jobs {
+    /// Work begins; it lasts as long as what this gives is held.
+    pub fn begin(&mut self, label: String) -> Running {
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        let id = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        let progress = Progress::default();
+        self.0.push(Job { id, label, progress: progress.clone(), since_s: None });
+        Running { id, progress }
+    }
+
+    /// Its result is no longer wanted.
+    pub fn cancel(&mut self, id: u64) {
+        for job in self.0.iter().filter(|job| job.id == id) {
+            job.progress.0.cancelled.store(true, Ordering::Relaxed);
+        }
+        self.0.retain(|job| job.id != id);
+    }
+
+    /// Forgets what has ended. True: something is still being done.
+    pub fn tend(&mut self, now_s: f64) -> bool {
+        self.0.retain(|job| !job.progress.0.ended.load(Ordering::Relaxed));
+        for job in &mut self.0 {
+            job.since_s.get_or_insert(now_s);
+        }
+        !self.0.is_empty()
+    }
+
+    /// What has lasted long enough to be shown.
+    pub fn lasting(&self, now_s: f64) -> impl Iterator<Item = &Job> {
+        self.0.iter().filter(move |job| job.since_s.is_some_and(|since_s| now_s - since_s >= SHOWN_AFTER_S))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(jobs: &Jobs, now_s: f64) -> Vec<&str> {
+        jobs.lasting(now_s).map(|job| job.label.as_str()).collect()
+    }
+
+    #[test]
+    fn work_is_shown_while_it_lasts_and_not_for_a_moment() {
+        let mut jobs = Jobs::default();
+        let running = jobs.begin("Reading a.kml".into());
+        assert!(jobs.tend(10.0) && shown(&jobs, 10.1).is_empty());
+        assert_eq!(shown(&jobs, 10.5), ["Reading a.kml"]);
+        drop(running);
+        assert!(!jobs.tend(11.0) && shown(&jobs, 11.0).is_empty());
+    }
+
+    #[test]
+    fn cancelled_work_learns_it() {
+        let mut jobs = Jobs::default();
+        let (first, second) = (jobs.begin("a".into()), jobs.begin("b".into()));
+        jobs.tend(0.0);
+        jobs.cancel(first.id());
+        assert!(first.progress().is_cancelled() && !second.progress().is_cancelled());
+        assert_eq!(shown(&jobs, 1.0), ["b"]);
+    }
+
+    #[test]
+    fn progress_is_a_share_or_not_known() {
+        let progress = Progress::default();
+        assert_eq!(progress.share(), None);
+        for (done, all, share) in [(0, 10, 0.0), (5, 10, 0.5), (20, 10, 1.0), (0, 0, 0.0)] {
+            progress.set(done, all);
+            assert_eq!(progress.share(), Some(share), "{done} of {all}");
+        }
+    }
+}

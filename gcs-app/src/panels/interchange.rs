@@ -1,0 +1,147 @@
+//! What another program's file becomes, and what becomes of the plan in another program's format: a list of what was assumed,
+//! changed or left out, before anything is replaced or written.
+
+use super::{Scene, primary_button};
+use crate::command::{DocumentCommand, Queue, ViewCommand};
+use crate::export::Exported;
+use crate::files::Imported;
+use crate::{formats, theme};
+use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
+use flight_plan::FlightPlan;
+use interchange::Note;
+
+const WIDTH: f32 = 560.0;
+const LIST_HEIGHT: f32 = 220.0;
+const ROW: f32 = 20.0;
+
+/// Draws it, while there is something to be decided.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    // one question at a time
+    if scene.view.browsing.is_some() {
+        return;
+    }
+    if let Some(imported) = &scene.view.imported {
+        dialog(ui, "import", ViewCommand::PutImportAside, queue, |ui, queue| {
+            import(ui, imported, scene, queue)
+        });
+    } else if let Some(exported) = &scene.view.exported {
+        dialog(ui, "export", ViewCommand::PutExportAside, queue, |ui, queue| export(ui, exported, queue));
+    }
+}
+
+/// `aside`: what Escape asks for.
+fn dialog(ui: &Ui, id: &str, aside: ViewCommand, queue: &mut Queue, add: impl FnOnce(&mut Ui, &mut Queue)) {
+    let modal = Modal::new(Id::unique(id)).show(ui.ctx(), |ui| {
+        ui.set_width(WIDTH);
+        add(ui, queue);
+    });
+    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
+        queue.view(aside);
+    }
+}
+
+fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue) {
+    let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
+    ui.strong(format!("Import “{name}” ({})", formats::label(imported.format)));
+    ui.label(format!("It becomes a plan with {}.", contents(&imported.import.plan)));
+    let document = scene.document;
+    if !document.is_nobodys() {
+        ui.label(format!("It takes the place of “{}”. Undo brings that back.", document.plan().name));
+    }
+    notes(ui, "Assumed, changed or left out", &imported.import.notes);
+    ui.horizontal(|ui| {
+        if ui.add(primary_button("Import the plan", theme::of(ui))).clicked() {
+            queue.document(DocumentCommand::TakeImport);
+        }
+        if ui.button("Cancel").clicked() {
+            queue.view(ViewCommand::PutImportAside);
+        }
+    });
+}
+
+fn export(ui: &mut Ui, exported: &Exported, queue: &mut Queue) {
+    ui.strong(format!("Export “{}” as {}", exported.name, formats::label(exported.format)));
+    ui.label(format!(
+        "{}, as they are flown in calm air when nobody decides otherwise.",
+        number(exported.waypoints, "waypoint")
+    ));
+    notes(ui, "Not in the file, or not as in the plan", &exported.notes);
+    ui.horizontal(|ui| {
+        if ui.add(primary_button("Save as…", theme::of(ui))).clicked() {
+            queue.document(DocumentCommand::AskExport);
+        }
+        if ui.button("Cancel").clicked() {
+            queue.view(ViewCommand::PutExportAside);
+        }
+    });
+}
+
+fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
+    ui.add_space(4.0);
+    if notes.is_empty() {
+        ui.label(RichText::new("✔ Nothing is lost or changed.").color(theme::of(ui).good));
+        ui.add_space(8.0);
+        return;
+    }
+    super::group_title(ui, &format!("{title} ({})", notes.len()));
+    ui.separator();
+    let height = (notes.len() as f32 * ROW).min(LIST_HEIGHT);
+    let area = ScrollArea::vertical().auto_shrink(false).max_height(height);
+    area.show_rows(ui, ROW - ui.spacing().item_spacing.y, notes.len(), |ui, shown| {
+        for note in notes.get(shown).unwrap_or_default() {
+            row(ui, note);
+        }
+    });
+    ui.separator();
+    ui.add_space(4.0);
+}
+
+fn row(ui: &mut Ui, note: &Note) {
+    let text = format!("{}: {}", note.place, note.message);
+    ui.add(Label::new(text).truncate()).on_hover_text(note.to_string());
+}
+
+/// What is in a plan, in a few words.
+fn contents(plan: &FlightPlan) -> String {
+    let parts = [
+        (plan.all_legs().len(), "leg"),
+        (plan.fixes.len(), "fix"),
+        (plan.runways.len(), "runway"),
+        (plan.zones.len(), "zone"),
+    ];
+    let parts: Vec<String> =
+        parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| number(*count, what)).collect();
+    match parts.as_slice() {
+        [] => "nothing that can be flown".into(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// `1 leg`, `2 legs`, `3 fixes`.
+fn number(count: usize, what: &str) -> String {
+    let plural = match (count, what.ends_with('x')) {
+        (1, _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{count} {what}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_in_a_plan_is_said_in_words() {
+        let mut plan = FlightPlan::default();
+        assert_eq!(contents(&plan), "nothing that can be flown");
+        plan = flight_plan::read(include_str!("../../../assets/plans/square.xml")).plan;
+        assert!(
+            contents(&plan).contains("legs, ") && contents(&plan).contains(" and "),
+            "{}",
+            contents(&plan)
+        );
+        assert_eq!((number(1, "fix"), number(2, "fix")), ("1 fix".into(), "2 fixes".into()));
+    }
+}

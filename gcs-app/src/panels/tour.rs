@@ -1,0 +1,164 @@
+//! The tour of the window: a few cards, each with an arrow to what it is about. Parts of the window say where they are.
+
+use super::{Scene, primary_button};
+use crate::command::{Queue, ViewCommand};
+use crate::theme::{self, Palette};
+use egui::{Align2, Area, Context, Id, LayerId, Order, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
+
+/// What a card says, and about which part of the window.
+struct Card {
+    about: &'static str,
+    title: &'static str,
+    text: &'static str,
+}
+
+/// The menu of the window.
+pub const MENU: &str = "menu";
+/// The tools on the map.
+pub const TOOLS: &str = "tools";
+/// Where a vehicle is connected to.
+pub const LINK: &str = "link";
+
+const CARDS: [Card; 6] = [
+    Card {
+        about: MENU,
+        title: "Everything is in here",
+        text: "This menu has every command. Ctrl+K finds one by its name, and F1 explains what is selected.",
+    },
+    Card {
+        about: TOOLS,
+        title: "Draw the flight",
+        text: "Choose a tool and click on the map. Esc puts it away again, and undo takes any step back.",
+    },
+    Card {
+        about: super::tree::ID,
+        title: "The plan, leg by leg",
+        text: "Stages, legs, loops and emergency plans. A right click shows what can be done with one.",
+    },
+    Card {
+        about: "inspector",
+        title: "Change what is selected",
+        text: "Every number and choice of it, with its unit. A number may follow the plan's variables.",
+    },
+    Card {
+        about: "profile",
+        title: "See what will be flown",
+        text: "After every change the plan is flown ahead of time. Move the cursor along it; Space plays it.",
+    },
+    Card {
+        about: LINK,
+        title: "Then fly it",
+        text: "Connect to a vehicle, push the plan, start. “legwork demo” shows a whole flight without one.",
+    },
+];
+
+const WIDTH: f32 = 280.0;
+/// About the height of a card, to choose its place.
+const HEIGHT: f32 = 130.0;
+/// From a card to what it is about, screen points.
+const GAP: f32 = 36.0;
+
+/// Says where a part of the window is.
+pub fn mark(ctx: &Context, part: &str, rect: Rect) {
+    let now = ctx.cumulative_pass_nr();
+    ctx.data_mut(|d| d.insert_temp(id_of(part), (now, rect)));
+}
+
+/// Where a part is; `None`: it is not shown.
+fn place_of(ctx: &Context, part: &str) -> Option<Rect> {
+    let (pass, rect) = ctx.data(|d| d.get_temp::<(u64, Rect)>(id_of(part)))?;
+    (pass + 1 >= ctx.cumulative_pass_nr()).then_some(rect)
+}
+
+fn id_of(part: &str) -> Id {
+    Id::unique("tour").with(part)
+}
+
+/// Draws the present card.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(step) = scene.view.tour.filter(|_| !scene.is_asking()) else { return };
+    let Some(card) = CARDS.get(step) else { return };
+    let (window, about) = (ui.max_rect(), place_of(ui.ctx(), card.about));
+    let p = theme::of(ui);
+    let at = beside(about, window);
+    let frame = theme::card(ui).stroke(Stroke::new(1.5, p.accent)).shadow(ui.visuals().popup_shadow);
+    let area = Area::new(Id::unique("tour")).order(Order::Foreground).fixed_pos(at).constrain_to(window);
+    let shown = area.show(ui.ctx(), |ui| {
+        ui.set_max_width(WIDTH);
+        frame.show(ui, |ui| content(ui, card, step, queue));
+    });
+    if let Some(about) = about {
+        let painter =
+            Painter::new(ui.ctx().clone(), LayerId::new(Order::Foreground, Id::unique("arrow")), window);
+        point(&painter, shown.response.rect, about, p);
+    }
+}
+
+fn content(ui: &mut Ui, card: &Card, step: usize, queue: &mut Queue) {
+    let p = theme::of(ui);
+    ui.label(RichText::new(card.title).strong().size(15.0));
+    ui.label(card.text);
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        let is_last = step + 1 == CARDS.len();
+        let next = ui.add(primary_button(if is_last { "Done" } else { "Next" }, p));
+        if next.clicked() {
+            queue.view(ViewCommand::Tour((!is_last).then_some(step + 1)));
+        }
+        if step > 0 && ui.button("Back").clicked() {
+            queue.view(ViewCommand::Tour(Some(step - 1)));
+        }
+        if !is_last && ui.button("Skip the tour").clicked() {
+            queue.view(ViewCommand::Tour(None));
+        }
+        ui.label(RichText::new(format!("{} of {}", step + 1, CARDS.len())).color(p.weak));
+    });
+}
+
+/// The upper left corner of a card beside what it is about: below it, right of it, above it or left of it, where there is
+/// room; else in the middle.
+fn beside(about: Option<Rect>, window: Rect) -> Pos2 {
+    let size = vec2(WIDTH, HEIGHT);
+    let middle = Align2::CENTER_CENTER.align_size_within_rect(size, window).min;
+    let Some(about) = about else { return middle };
+    let places = [
+        about.left_bottom() + vec2(0.0, GAP),
+        Pos2::new(about.right() + GAP, about.top() + 20.0),
+        Pos2::new(about.left(), about.top() - GAP - HEIGHT),
+        Pos2::new(about.left() - GAP - WIDTH, about.top() + 20.0),
+    ];
+    let fits = |at: &Pos2| window.contains_rect(Rect::from_min_size(*at, size));
+    places.into_iter().find(fits).unwrap_or(middle)
+}
+
+/// A frame around what is meant, and an arrow to it.
+fn point(painter: &Painter, card: Rect, about: Rect, p: &Palette) {
+    let stroke = Stroke::new(2.5, p.accent);
+    painter.rect_stroke(about.shrink(1.0), 4.0, stroke, egui::StrokeKind::Inside);
+    let to = about.clamp(card.center());
+    let from = card.clamp(to);
+    if from.distance(to) > 8.0 {
+        painter.arrow(from, to - from, stroke);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn a_card_covers_neither_what_it_is_about_nor_the_windows_edge() {
+        let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(960.0, 600.0));
+        for about in [
+            Rect::from_min_size(pos2(10.0, 5.0), vec2(70.0, 30.0)),
+            Rect::from_min_size(pos2(0.0, 42.0), vec2(250.0, 550.0)),
+            Rect::from_min_size(pos2(700.0, 42.0), vec2(260.0, 300.0)),
+            Rect::from_min_size(pos2(260.0, 400.0), vec2(430.0, 200.0)),
+        ] {
+            let card = Rect::from_min_size(beside(Some(about), window), vec2(WIDTH, HEIGHT));
+            assert!(!card.intersects(about) && window.contains_rect(card), "{about} {card}");
+        }
+        assert!(window.contains(beside(Some(window), window)));
+    }
+}

@@ -1,0 +1,142 @@
+//! Documents that gave way to others. Undo and redo reach them for as long as the window lives.
+
+use crate::document::Document;
+
+/// So many without unsaved changes are kept on either side.
+const MOST: usize = 20;
+
+/// The documents before and after the one that is shown, the nearest last.
+#[derive(Debug, Default)]
+pub struct Shelf {
+    before: Vec<Document>,
+    after: Vec<Document>,
+}
+
+impl Shelf {
+    /// Puts another document in the place of this one. One that nobody worked on is not kept.
+    pub fn open(&mut self, shown: &mut Document, next: Document) {
+        let old = std::mem::replace(shown, next);
+        if !old.is_nobodys() {
+            self.before.push(old);
+        }
+        forget_oldest(&mut self.before);
+        forget_oldest(&mut self.after);
+    }
+
+    /// The document takes its last step back; one without steps gives way to the one before it. True: another is shown.
+    pub fn undo(&mut self, shown: &mut Document) -> bool {
+        if shown.can_undo() {
+            shown.undo();
+            return false;
+        }
+        turn(&mut self.before, shown, &mut self.after)
+    }
+
+    /// The other way.
+    pub fn redo(&mut self, shown: &mut Document) -> bool {
+        if shown.can_redo() {
+            shown.redo();
+            return false;
+        }
+        turn(&mut self.after, shown, &mut self.before)
+    }
+
+    /// There is something to undo.
+    pub fn can_undo(&self, shown: &Document) -> bool {
+        shown.can_undo() || !self.before.is_empty()
+    }
+
+    /// There is something to redo.
+    pub fn can_redo(&self, shown: &Document) -> bool {
+        shown.can_redo() || !self.after.is_empty()
+    }
+
+    /// Documents with unsaved changes, the one that is shown first.
+    pub fn unsaved<'d>(&'d self, shown: &'d Document) -> impl Iterator<Item = &'d Document> {
+        std::iter::once(shown).chain(&self.before).chain(&self.after).filter(|document| document.is_dirty())
+    }
+
+    /// Turns to the document with this number. True: another is shown.
+    pub fn turn_to(&mut self, shown: &mut Document, id: u64) -> bool {
+        let before = self.before.iter().rev().position(|document| document.id() == id);
+        let after = self.after.iter().rev().position(|document| document.id() == id);
+        let (steps, from, to) = match (before, after) {
+            (Some(steps), _) => (steps, &mut self.before, &mut self.after),
+            (_, Some(steps)) => (steps, &mut self.after, &mut self.before),
+            (None, None) => return false,
+        };
+        for _ in 0..=steps {
+            turn(from, shown, to);
+        }
+        true
+    }
+
+    /// A document by its number, wherever it is.
+    pub fn find<'d>(&'d mut self, shown: &'d mut Document, id: u64) -> Option<&'d mut Document> {
+        let kept = self.before.iter_mut().chain(&mut self.after);
+        std::iter::once(shown).chain(kept).find(|document| document.id() == id)
+    }
+}
+
+/// One with unsaved changes is never forgotten: it took somebody's work to make it.
+fn forget_oldest(documents: &mut Vec<Document>) {
+    let mut spare = documents.iter().filter(|document| !document.is_dirty()).count().saturating_sub(MOST);
+    documents.retain(|document| {
+        let forgotten = spare > 0 && !document.is_dirty();
+        spare -= usize::from(forgotten);
+        !forgotten
+    });
+}
+
+fn turn(from: &mut Vec<Document>, shown: &mut Document, to: &mut Vec<Document>) -> bool {
+    let Some(next) = from.pop() else { return false };
+    to.push(std::mem::replace(shown, next));
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flight_plan::FlightPlan;
+
+    fn named(name: &str, dirty: bool) -> Document {
+        let plan = FlightPlan { name: name.into(), ..FlightPlan::default() };
+        match dirty {
+            true => Document::unsaved(plan),
+            false => Document::new(plan, Some("/a.xml".into()), Vec::new()),
+        }
+    }
+
+    fn names<'d>(documents: impl Iterator<Item = &'d Document>) -> Vec<String> {
+        documents.map(|document| document.plan().name.clone()).collect()
+    }
+
+    #[test]
+    fn the_list_is_bounded_and_unsaved_changes_are_never_forgotten() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("mine", true));
+        for round in 0..4 * MOST {
+            shelf.open(&mut shown, named("clean", false));
+            // some of them get behind the one that is shown
+            if round % 3 == 0 {
+                shelf.undo(&mut shown);
+            }
+        }
+        assert_eq!(names(shelf.unsaved(&shown)), ["mine"]);
+        assert!(shelf.before.len() <= MOST + 1 && shelf.after.len() <= MOST + 1);
+    }
+
+    #[test]
+    fn turning_to_a_document_keeps_the_order() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("a", true));
+        for name in ["b", "c", "d"] {
+            shelf.open(&mut shown, named(name, true));
+        }
+        let ids: Vec<u64> = shelf.unsaved(&shown).map(Document::id).collect();
+        assert_eq!(names(shelf.unsaved(&shown)), ["d", "a", "b", "c"]);
+        assert!(shelf.turn_to(&mut shown, ids[1]) && shown.plan().name == "a");
+        assert!(shelf.turn_to(&mut shown, ids[3]) && shown.plan().name == "c");
+        assert!(!shelf.turn_to(&mut shown, ids[3]), "it is shown already");
+        shelf.redo(&mut shown);
+        assert_eq!(shown.plan().name, "d");
+    }
+}

@@ -1,0 +1,117 @@
+//! Plans from and to other programs.
+
+use super::filing::{name, until_listed, window, window_on};
+use super::reach::Missing as Dropped;
+use super::{SQUARE, Window};
+use egui::Key;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/interchange/tests/fixtures").join(name)
+}
+
+pub fn drop_file(window: &mut Window, path: &Path) {
+    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
+    window.steps(2);
+}
+
+fn until_imported(window: &mut Window) {
+    window.until("the import", |app| app.view().imported.is_some());
+}
+
+#[test]
+fn plan_of_another_program_is_imported_after_its_losses_were_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window_on(&folder.path().join("mine.xml"), SQUARE);
+    let before = window.plan();
+    window.press_ctrl(Key::O);
+    until_listed(&mut window);
+    name(&mut window, &fixture("survey.plan"));
+    window.click("Open");
+    until_imported(&mut window);
+    assert_eq!(window.plan(), before, "nothing is replaced yet");
+    assert!(window.shows("Import “survey.plan” (QGC plan)") && window.shows("ASSUMED, CHANGED OR LEFT OUT"));
+    let note = window.app().view().imported.as_ref().unwrap().import.notes[0].clone();
+    assert!(window.shows(&format!("{}: {}", note.place, note.message)), "as on the command line: {note}");
+    window.press(Key::Escape);
+    assert!(window.plan() == before && window.app().view().imported.is_none());
+
+    drop_file(&mut window, &fixture("survey.plan"));
+    until_imported(&mut window);
+    window.click("Import the plan");
+    let document = window.app().document();
+    assert!(document.is_dirty() && document.path().is_none() && *document.plan().as_ref() != before);
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before);
+    window.press_ctrl(Key::Y);
+    assert_ne!(window.plan(), before);
+}
+
+#[test]
+fn dropped_files_are_known_by_their_content() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window("");
+    for file in ["patrol.waypoints", "places.kml", "places.geojson", "tour.gpx"] {
+        let misnamed = folder.path().join("plan");
+        std::fs::copy(fixture(file), &misnamed).unwrap();
+        drop_file(&mut window, &misnamed);
+        until_imported(&mut window);
+        window.press(Key::Escape);
+        assert!(window.app().view().imported.is_none(), "{file}");
+    }
+}
+
+#[test]
+fn what_is_no_plan_or_too_long_is_refused_in_words_and_nothing_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(SQUARE);
+    let before = window.plan();
+    let long = folder.path().join("long.xml");
+    std::fs::write(&long, SQUARE).unwrap();
+    let photo = folder.path().join("photo.xml");
+    std::fs::write(&photo, b"\xff\xd8\xff\xe0\0\x10JFIF").unwrap();
+    // its text, and then nothing for a long way
+    std::fs::write(&long, SQUARE.repeat(8)).unwrap();
+    std::fs::OpenOptions::new().write(true).open(&long).unwrap().set_len(300 << 20).unwrap();
+    for (path, why) in [(&long, "it has 300 MB, and at most 64 MB are read"), (&photo, "it is no text")] {
+        drop_file(&mut window, path);
+        window.until("notice", |app| app.view().notice.as_ref().is_some_and(|notice| notice.contains(why)));
+        assert!(window.plan() == before && !window.app().document().is_dirty());
+    }
+}
+
+#[test]
+fn plan_is_exported_after_its_losses_were_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = std::fs::canonicalize(folder.path()).unwrap();
+    let mut window = window(SQUARE);
+    window.click("Legwork");
+    window.click("Export");
+    window.click("Export as GPX…");
+    window.until("the export", |app| app.view().exported.is_some());
+    assert!(window.shows("as GPX") && window.shows("waypoints, as they are flown"));
+    let note = window.app().view().exported.as_ref().unwrap().notes[0].clone();
+    assert!(window.shows(&note.message), "{note}");
+    window.click("Save as…");
+    until_listed(&mut window);
+    name(&mut window, &folder.join("flown"));
+    window.click("Go there");
+    until_listed(&mut window);
+    window.click("Save here");
+    let written = folder.join("flown.gpx");
+    window.until("the file", |_| written.exists());
+    assert!(std::fs::read_to_string(&written).unwrap().contains("<gpx"));
+    window.until("the end", |app| app.view().exported.is_none());
+    assert!(window.app().document().path().is_none(), "an export is no save");
+}
+
+#[test]
+fn plan_that_cannot_be_flown_is_not_exported() {
+    let mut window = window(&SQUARE.replace("aircraft=\"trainer\"", "aircraft=\"zeppelin\""));
+    window.click("Legwork");
+    window.click("Export");
+    window.click("Export as KML…");
+    window.until("notice", |app| app.view().notice.is_some());
+    assert!(window.shows("Nothing was exported: the plan has errors"));
+}
