@@ -119,7 +119,7 @@ fn sentence(unflown: &Unflown) -> String {
     };
     match unflown {
         Unflown::Errors(problems) => format!("the plan has errors. The first: {}", first(problems)),
-        Unflown::Forbidden(problems) => format!("the path must not be flown. {}", first(problems)),
+        Unflown::Forbidden(problems) => format!("the path must not be flown: {}", first(problems)),
         Unflown::Endless(error) => error.to_string(),
         Unflown::Refused { seconds, reason } => format!("refused after {seconds:.0} s: {reason}"),
     }

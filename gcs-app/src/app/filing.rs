@@ -73,7 +73,10 @@ impl App {
             FileEvent::NotSaved { document, why } => self.not_saved(document, why),
             FileEvent::ChangedMeanwhile { path, document } => self.changed_meanwhile(&path, document),
             FileEvent::ChangedOutside { path, known, stamp } => self.changed_outside(&path, known, stamp),
-            FileEvent::Exported(exported) => self.view.exported = Some((*exported).into()),
+            FileEvent::Exported(exported) => {
+                self.view.exported = Some((*exported).into());
+                self.view.notice = None;
+            }
             FileEvent::ExportWritten { path, exported } => self.exported(&path, &exported, now_s),
             FileEvent::MapChosen(path) => self.change_layers(LayerCommand::Add(path)),
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),

@@ -35,8 +35,9 @@ fn draw_one(painter: &Painter, view: &View, variable: &PlacedVariable, selected:
     let corner = |x: f32, y: f32| -> Pos2 { at + vec2(x, y) * MARK };
     let corners = vec![corner(0.0, -1.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(-1.0, 0.0)];
     painter.add(Shape::convex_polygon(corners, p.caution, Stroke::new(width, p.halo)));
-    let beside = at + vec2(0.0, MARK + 3.0);
-    text::haloed(painter, beside, Align2::CENTER_TOP, &name(variable.name.as_str()), 11.5, p.text, p);
+    // clear of what is flown around it
+    let above = at - vec2(0.0, radius.max(MARK) + 3.0);
+    text::haloed(painter, above, Align2::CENTER_BOTTOM, &name(variable.name.as_str()), 11.5, p.text, p);
 }
 
 /// As people write it.
