@@ -1,9 +1,11 @@
 //! Files: dialogs, reading and writing, each on a thread of its own; the window gets the result later.
 
+mod listing;
 mod reading;
 mod saving;
 mod watch;
 
+pub use listing::Entry;
 pub use reading::{Content, Imported};
 pub(crate) use saving::write_whole;
 pub use saving::{Over, Stamp, Writing};
@@ -16,6 +18,7 @@ use crate::formats::FileFormat;
 use crate::jobs::{Jobs, Progress};
 use flight_plan::FlightPlan;
 use interchange::Format;
+use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -129,17 +132,6 @@ impl Purpose {
     }
 }
 
-/// Something in a folder: another folder, or a plan.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
-    /// Its name.
-    pub name: String,
-    /// It is a folder.
-    pub is_folder: bool,
-}
-
-/// So many entries of a folder are listed.
-const MOST_ENTRIES: usize = 10_000;
 /// A dialog that is closed sooner than this was never seen.
 const UNSEEN: Duration = Duration::from_millis(150);
 
@@ -260,8 +252,8 @@ impl Files {
     pub fn list(&self, folder: PathBuf, purpose: Purpose) {
         self.work(move || {
             let folder = std::fs::canonicalize(&folder).unwrap_or(folder);
-            let entries =
-                list(&folder, purpose).map_err(|why| format!("{} can't be read: {why}", folder.display()));
+            let entries = listing::list(&folder, purpose)
+                .map_err(|why| format!("{} can't be read: {why}", folder.display()));
             Some(FileEvent::Listed { folder, entries })
         });
     }
@@ -278,10 +270,9 @@ impl Files {
 
     /// Asks where to save, and saves.
     pub fn ask_save(&self, suggestion: String, writing: Writing) {
-        let desktop = self.desktop;
-        self.work(move || {
+        let (desktop, document) = (self.desktop, writing.document);
+        self.save_by(document, move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
-            let document = writing.document;
             asked(desktop, Purpose::Save, || dialog.save_file(), |path| saving::save(path, &writing))
                 .or(Some(FileEvent::NotSaved { document, why: None }))
         });
@@ -289,7 +280,7 @@ impl Files {
 
     /// Saves.
     pub fn save(&self, path: PathBuf, writing: Writing) {
-        self.work(move || Some(saving::save(path, &writing)));
+        self.save_by(writing.document, move || Some(saving::save(path, &writing)));
     }
 
     /// Flies a plan ahead of time and puts it into another program's format.
@@ -333,7 +324,21 @@ impl Files {
         });
     }
 
-    fn work(&self, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) {
+    /// Whatever becomes of a document that is being saved, the window hears of it: it could not be saved again before.
+    fn save_by(&self, document: u64, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) {
+        let failed = move || {
+            let why = "Nothing was saved: the program failed at it. Save under another name.".to_owned();
+            FileEvent::NotSaved { document, why: Some(why) }
+        };
+        let job = move || std::panic::catch_unwind(AssertUnwindSafe(job)).unwrap_or_else(|_| Some(failed()));
+        if !self.work(job) {
+            // this window receives it
+            let _ = self.outbox.send(failed());
+        }
+    }
+
+    /// False: there is no thread for it.
+    fn work(&self, job: impl FnOnce() -> Option<FileEvent> + Send + 'static) -> bool {
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
             if let Some(event) = job() {
@@ -342,9 +347,8 @@ impl Files {
                 wake();
             }
         };
-        if let Err(error) = std::thread::Builder::new().name("files".into()).spawn(work) {
-            tracing::warn!(%error, "no thread for a file");
-        }
+        let started = std::thread::Builder::new().name("files".into()).spawn(work);
+        started.inspect_err(|error| tracing::warn!(%error, "no thread for a file")).is_ok()
     }
 }
 
@@ -363,21 +367,6 @@ fn asked(
     }
 }
 
-/// Folders, then plans, by name; nothing hidden.
-fn list(folder: &Path, purpose: Purpose) -> std::io::Result<Vec<Entry>> {
-    let entry = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.ok()?.path();
-        let name = path.file_name()?.to_str()?.to_owned();
-        let is_plan = purpose.lists(&path);
-        // a link to a folder is one
-        let is_folder = !is_plan && path.is_dir();
-        ((is_folder || is_plan) && !name.starts_with('.')).then_some(Entry { name, is_folder })
-    };
-    let mut entries: Vec<Entry> = std::fs::read_dir(folder)?.filter_map(entry).take(MOST_ENTRIES).collect();
-    entries.sort_by_key(|e| (!e.is_folder, e.name.to_lowercase()));
-    Ok(entries)
-}
-
 fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEvent {
     match saving::export(&path, &exported.bytes, over) {
         Ok(()) => FileEvent::ExportWritten { path, exported: exported.clone() },
@@ -387,24 +376,4 @@ fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEven
 
 fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn folder_lists_folders_then_plans_and_nothing_hidden() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["b.xml", "A.XML", "notes.txt", ".hidden.xml", "c.kml", "d.csv"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        std::fs::create_dir(folder.path().join("z")).unwrap();
-        let names = |purpose| -> Vec<String> {
-            list(folder.path(), purpose).unwrap().into_iter().map(|e| e.name).collect()
-        };
-        assert_eq!(names(Purpose::Save), ["z", "A.XML", "b.xml"]);
-        assert_eq!(names(Purpose::Open), ["z", "A.XML", "b.xml", "c.kml"]);
-        assert_eq!(names(Purpose::Export(Format::Csv)), ["z", "d.csv"]);
-    }
 }

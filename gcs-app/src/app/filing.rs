@@ -261,6 +261,9 @@ impl App {
     }
 
     pub(super) fn ask_save(&mut self) {
+        if self.is_saving() {
+            return;
+        }
         self.saving.insert(self.document.id());
         let writing = Writing { over: Over::Anything, ..known(&self.document) };
         self.files.ask_save(self.suggested_name(), writing);

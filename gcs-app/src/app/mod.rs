@@ -5,7 +5,9 @@ mod filing;
 mod ground;
 mod keys;
 mod layout;
+mod messages;
 mod orders;
+mod remembered;
 mod screenshot;
 mod window;
 
@@ -20,21 +22,19 @@ use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
 use crate::forecast::{Aboard, Analysis, Forecast, Question, Worker};
-use crate::layers::{Kept, Layers};
+use crate::layers::Layers;
 use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::MapState;
-use crate::map::furniture::Edge;
 use crate::panels::help::Help;
 use crate::panels::palette::CommandPalette;
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::shelf::Shelf;
-use crate::state::{LOOK_AHEAD, Level, Outcome, READ_ABOARD, Ticket, Toasts, Vehicle, VehicleName, Vehicles};
+use crate::state::{LOOK_AHEAD, Outcome, READ_ABOARD, Ticket, Toasts, Vehicle, VehicleName, Vehicles};
 use crate::story::{Chapter, Story};
 use crate::theme;
-use crate::units::Units;
-use serde::{Deserialize, Serialize};
+use remembered::Remembered;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
@@ -91,42 +91,10 @@ impl std::fmt::Debug for App {
     }
 }
 
-/// What is remembered from one run to the next.
-#[derive(Debug, Default, Serialize, Deserialize)]
-struct Remembered {
-    units: Units,
-    #[serde(default)]
-    layers: Vec<Kept>,
-    #[serde(default)]
-    tour_seen: bool,
-    #[serde(default)]
-    edge: Edge,
-    #[serde(default)]
-    recent: Recent,
-    #[serde(default)]
-    connections: Connections,
-    #[serde(default)]
-    theme: egui::ThemePreference,
-    #[serde(default)]
-    scale: theme::Scale,
-}
-
-impl Remembered {
-    fn view(&self) -> ViewState {
-        // what is stored may be damaged
-        let scale = theme::Scale::new(self.scale.get()).unwrap_or_default();
-        ViewState { units: self.units, edge: self.edge, theme: self.theme, scale, ..ViewState::default() }
-    }
-}
-
-const STORAGE_KEY: &str = "legwork";
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
 /// And so often while none is, as long as something is known of one.
 const SLOW_REFRESH: Duration = Duration::from_secs(1);
-/// Altitudes and ground are watched so often, seconds.
-const LOOK_OUT_S: f64 = 0.25;
-
 /// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
 #[derive(Debug, Clone, Copy)]
 struct Now {
@@ -159,8 +127,7 @@ impl App {
             let ctx = ctx.clone();
             Arc::new(move || ctx.request_repaint())
         };
-        let remembered: Remembered =
-            creation.storage.and_then(|s| eframe::get_value(s, STORAGE_KEY)).unwrap_or_default();
+        let remembered = creation.storage.map(Remembered::read).unwrap_or_default();
         let panels = panels::all();
         let mut app = Self {
             document,
@@ -331,34 +298,6 @@ impl App {
         self.tend_messages(ctx, now_s);
     }
 
-    /// Offers the tour of the window, once.
-    pub fn offer_tour(&mut self) {
-        if !std::mem::replace(&mut self.tour_seen, true) {
-            self.view.tour = Some(0);
-        }
-    }
-
-    /// Shows what this story tells from now on.
-    pub fn listen_to(&mut self, story: Story) {
-        let chapter = story.chapter();
-        self.story = Some((story, chapter));
-    }
-
-    /// Work that has ended and messages whose time is over go away.
-    fn tend_messages(&mut self, ctx: &egui::Context, now_s: f64) {
-        if self.files.tend(now_s) | self.layers.tend(now_s) {
-            ctx.request_repaint_after(REFRESH);
-        }
-        if let Some(left_s) = self.toasts.tend(now_s) {
-            ctx.request_repaint_after(Duration::from_secs_f64(left_s));
-        }
-        // what stays until it is read is in the log, too
-        if self.view.notice != self.noted {
-            self.noted.clone_from(&self.view.notice);
-            self.noted.iter().for_each(|text| self.toasts.note(now_s, Level::Caution, text));
-        }
-    }
-
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
     fn adopt_plan_aboard(&mut self) {
         let Some(shown) = self.vehicles.shown_name().cloned() else { return };
@@ -390,20 +329,6 @@ impl App {
             self.document = Document::default();
             self.view.select(None);
             self.view.cursor_s = None;
-        }
-    }
-
-    /// Watches altitude and ground, a few times a second.
-    fn look_out(&mut self, now_s: f64) {
-        if now_s - self.looked_s >= LOOK_OUT_S {
-            self.looked_s = now_s;
-            for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
-                let (level, text) = match is_silent {
-                    true => (Level::Caution, "nothing is heard any more. It flies on by its plan"),
-                    false => (Level::Info, "is heard again"),
-                };
-                self.toasts.add(now_s, level, format!("{name}: {text}"));
-            }
         }
     }
 
@@ -538,20 +463,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(
-            storage,
-            STORAGE_KEY,
-            &Remembered {
-                units: self.view.units,
-                tour_seen: self.tour_seen,
-                layers: self.layers.kept(),
-                edge: self.view.edge,
-                recent: self.recent.clone(),
-                connections: self.connections.clone(),
-                theme: self.view.theme,
-                scale: self.view.scale,
-            },
-        );
+        Remembered::of(self).store(storage);
         self.dock.save(storage);
     }
 }

@@ -5,7 +5,7 @@ use super::polyline;
 use super::tools::Canvas;
 use super::tools::pick::selection;
 use super::view::View;
-use super::{sketch::Handled, zones};
+use super::{sketch::Handled, variables, zones};
 use crate::chart::zones as chart;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::forecast::{Forecast, Passage};
@@ -137,6 +137,10 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         let name = zones::label(zone, scene.units());
         outline(&closed(&chart::outline(zone)), name, Selection::Zone(zone.id.clone()))
     });
+    let variables = sketch.variables.iter().filter_map(|variable| {
+        let (at, name) = (view.place(variable.at), format!("Variable {}", variables::name(&variable.name)));
+        inside(at, view).then(|| Item { name, at, what: Selection::Variable(variable.name.clone()) })
+    });
     let emergencies = sketch.emergencies.iter().filter_map(|(id, line)| {
         let name = plan.emergency_plan(id).map_or_else(|| id.to_string(), |e| title(&e.name, id.as_str()));
         outline(line, format!("Path of emergency plan {name}"), Selection::Emergency(id.clone()))
@@ -153,7 +157,13 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         inside(at, view).then(|| Item { name: handle.what.name(), at, what })
     });
     let mut once = HashSet::new();
-    let all = runways.chain(zones).chain(legs(canvas)).chain(areas).chain(emergencies).chain(handles);
+    let all = runways
+        .chain(zones)
+        .chain(variables)
+        .chain(legs(canvas))
+        .chain(areas)
+        .chain(emergencies)
+        .chain(handles);
     all.filter(|item| once.insert(item.what.clone())).take(MOST).collect()
 }
 

@@ -7,6 +7,7 @@ use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use flight_plan::Id;
 
 /// From the middle of a mark to its corners, screen points.
 const MARK: f32 = 6.0;
@@ -37,10 +38,10 @@ fn draw_one(painter: &Painter, view: &View, variable: &PlacedVariable, selected:
     painter.add(Shape::convex_polygon(corners, p.caution, Stroke::new(width, p.halo)));
     // clear of what is flown around it
     let above = at - vec2(0.0, radius.max(MARK) + 3.0);
-    text::haloed(painter, above, Align2::CENTER_BOTTOM, &name(variable.name.as_str()), 11.5, p.text, p);
+    text::haloed(painter, above, Align2::CENTER_BOTTOM, &name(&variable.name), 11.5, p.text, p);
 }
 
 /// As people write it.
-pub fn name(variable: &str) -> String {
-    variable.replace('_', " ")
+pub fn name(variable: &Id) -> String {
+    variable.as_str().replace('_', " ")
 }

@@ -228,3 +228,12 @@ fn table_tells_name_energy_and_height_above_ground_of_each_leg() {
     }
     assert!(window.harness.query_all_by_label_contains(" %").count() > 1, "energy of each leg");
 }
+
+#[test]
+fn variables_that_are_a_place_are_on_the_map() {
+    let mut window = Window::open(gcs_app::assets::FIRE_WATCH);
+    window.until_analysed();
+    window.harness.get_by_label("Variable fire centre").click_accesskit();
+    window.steps(3);
+    assert_eq!(window.selected(), "fire_centre");
+}

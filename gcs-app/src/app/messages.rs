@@ -1,0 +1,53 @@
+//! What the window tells by itself: messages that go again, the story of a demo, the tour.
+
+use super::{App, REFRESH};
+use crate::state::Level;
+use crate::story::Story;
+use std::time::Duration;
+
+/// Altitudes and ground are watched so often, seconds.
+const LOOK_OUT_S: f64 = 0.25;
+
+impl App {
+    /// Offers the tour of the window, once.
+    pub fn offer_tour(&mut self) {
+        if !std::mem::replace(&mut self.tour_seen, true) {
+            self.view.tour = Some(0);
+        }
+    }
+
+    /// Shows what this story tells from now on.
+    pub fn listen_to(&mut self, story: Story) {
+        let chapter = story.chapter();
+        self.story = Some((story, chapter));
+    }
+
+    /// Work that has ended and messages whose time is over go away.
+    pub(super) fn tend_messages(&mut self, ctx: &egui::Context, now_s: f64) {
+        if self.files.tend(now_s) | self.layers.tend(now_s) {
+            ctx.request_repaint_after(REFRESH);
+        }
+        if let Some(left_s) = self.toasts.tend(now_s) {
+            ctx.request_repaint_after(Duration::from_secs_f64(left_s));
+        }
+        // what stays until it is read is in the log, too
+        if self.view.notice != self.noted {
+            self.noted.clone_from(&self.view.notice);
+            self.noted.iter().for_each(|text| self.toasts.note(now_s, Level::Caution, text));
+        }
+    }
+
+    /// Watches altitude and ground, a few times a second.
+    pub(super) fn look_out(&mut self, now_s: f64) {
+        if now_s - self.looked_s >= LOOK_OUT_S {
+            self.looked_s = now_s;
+            for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
+                let (level, text) = match is_silent {
+                    true => (Level::Caution, "nothing is heard any more. It flies on by its plan"),
+                    false => (Level::Info, "is heard again"),
+                };
+                self.toasts.add(now_s, level, format!("{name}: {text}"));
+            }
+        }
+    }
+}
