@@ -63,15 +63,7 @@ impl App {
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &fittings, queue));
-        // before all that may take its place
-        commands(ui, &scene, queue);
-        emergency::show(ui, &scene, queue);
-        story::show(ui, &scene, queue);
-        notice(ui, &scene, queue);
-        announcements(ui, &scene, queue);
-        if !consider::show(ui, &scene, queue) {
-            push::show(ui, &scene, queue);
-        }
+        strips(ui, &scene, queue);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
@@ -86,17 +78,35 @@ impl App {
             over_map(ui, floor, &scene, queue);
             toasts::show(ui, floor, &scene, queue);
         });
-        maps::show(ui, &scene, queue);
-        unsaved::show(ui, &scene, queue);
-        changed::show(ui, &scene, queue);
-        browse::show(ui, &scene, queue);
-        interchange::show(ui, &scene, queue);
-        recover::show(ui, &scene, queue);
-        tour::show(ui, &scene, queue);
+        dialogs(ui, &scene, queue);
         help.show(ui, &scene, queue);
         palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
     }
+}
+
+/// What takes its place before map and panels.
+fn strips(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    // before all that may take its place
+    commands(ui, scene, queue);
+    emergency::show(ui, scene, queue);
+    story::show(ui, scene, queue);
+    notice(ui, scene, queue);
+    announcements(ui, scene, queue);
+    if !consider::show(ui, scene, queue) {
+        push::show(ui, scene, queue);
+    }
+}
+
+/// What lies over map and panels until something is decided, and the tour.
+fn dialogs(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    maps::show(ui, scene, queue);
+    unsaved::show(ui, scene, queue);
+    changed::show(ui, scene, queue);
+    browse::show(ui, scene, queue);
+    interchange::show(ui, scene, queue);
+    recover::show(ui, scene, queue);
+    tour::show(ui, scene, queue);
 }
 
 /// The commands of the flight have a bar of their own: it hides nothing, and nothing hides it.

@@ -57,6 +57,7 @@ impl Remembered {
         eframe::set_value(storage, STORAGE_KEY, self);
     }
 
+    /// What the operator looks at when the window opens.
     pub fn view(&self) -> ViewState {
         // what is stored may be damaged
         let scale = theme::Scale::new(self.scale.get()).unwrap_or_default();
