@@ -72,7 +72,9 @@ impl App {
             }
             FileEvent::NotSaved { document, why } => self.not_saved(document, why),
             FileEvent::ChangedMeanwhile { path, document } => self.changed_meanwhile(&path, document),
-            FileEvent::ChangedOutside { path, known, stamp } => self.changed_outside(&path, known, stamp),
+            FileEvent::ChangedOutside { path, known, stamp } => {
+                self.changed_outside(&path, known, stamp, now_s)
+            }
             FileEvent::Exported(exported) => {
                 self.view.exported = Some((*exported).into());
                 self.view.notice = None;
@@ -171,7 +173,7 @@ impl App {
         self.files.watch(file.map(|(path, stamp)| (path.to_owned(), stamp)));
     }
 
-    fn changed_outside(&mut self, path: &Path, known: Stamp, now: Option<Stamp>) {
+    fn changed_outside(&mut self, path: &Path, known: Stamp, now: Option<Stamp>, now_s: f64) {
         let is_news = self.document.path() == Some(path) && self.document.stamp() == Some(known);
         if self.is_saving() || !is_news {
             return;
@@ -181,7 +183,12 @@ impl App {
             // its stamp stays: what comes back in its place is not overwritten unseen
             self.document.differs_from_file();
             let why = "was deleted or moved by another program. Save to write it again.";
-            self.view.notice = Some(format!("{} {why}", path.display()));
+            let text = format!("{} {why}", path.display());
+            match self.view.notice {
+                // why it could not be saved says more
+                Some(_) => self.toasts.add(now_s, Level::Caution, text),
+                None => self.view.notice = Some(text),
+            }
         }
     }
 
