@@ -10,7 +10,7 @@ use crate::units::Units;
 use flight_exec::Command as PlanCommand;
 use flight_exec::rehearse::WhatIf;
 use flight_plan::template::Outline;
-use flight_plan::{Cause, Edit, Id};
+use flight_plan::{Cause, Edit, Id, Place};
 use geometry::LatLon;
 use interchange::Format;
 use std::path::PathBuf;
@@ -66,8 +66,13 @@ pub enum DocumentCommand {
         /// Another one the other way, too.
         both: bool,
     },
-    /// An emergency plan that brings the aircraft to this runway.
-    BringHome(Id),
+    /// An emergency plan that brings the aircraft to a runway.
+    BringHome {
+        /// The runway.
+        runway: Id,
+        /// Through these places, from the runway outwards.
+        outwards: Vec<Place>,
+    },
     /// Take over what another program has written in the document's file.
     LoadTheirs,
     /// Keep the document as it is; saving replaces what another program has written.
@@ -135,6 +140,8 @@ pub enum ViewCommand {
     Guide(Answer),
     /// Put a map tool to use, by its identifier.
     Tool(&'static str),
+    /// Draw a new way on from this leg.
+    DrawWay(Id),
     /// Other units.
     Units(Units),
     /// Light, dark, or as the system.

@@ -13,7 +13,7 @@ use crate::state::{LOOK_AHEAD, Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
-use flight_plan::{Cause, Edit, Id, Thing, create, diff};
+use flight_plan::{Cause, Edit, Id, Place, Thing, create, diff};
 use geometry::LatLon;
 use usal::contract::{GatewayRequest, Propose};
 
@@ -47,8 +47,8 @@ impl App {
                 let done = self.add_runway(threshold, end, both);
                 self.tell(done);
             }
-            DocumentCommand::BringHome(runway) => {
-                let done = self.bring_home(&runway);
+            DocumentCommand::BringHome { runway, outwards } => {
+                let done = self.bring_home(&runway, &outwards);
                 self.tell(done);
             }
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
@@ -150,11 +150,12 @@ impl App {
         Ok(())
     }
 
-    fn bring_home(&mut self, runway: &Id) -> Result<(), String> {
+    fn bring_home(&mut self, runway: &Id, outwards: &[Place]) -> Result<(), String> {
         let plan = self.document.plan().clone();
         let Some(runway) = plan.runway(runway) else { return Ok(()) };
         let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-        let (id, edit) = create::emergency_plan(&plan, runway, &profile, self.layers.ground().as_ref());
+        let ground = self.layers.ground().as_ref();
+        let (id, edit) = create::emergency_plan(&plan, runway, outwards, &profile, ground);
         self.document.edit(&edit)?;
         self.view.select(Some(Selection::Emergency(id)));
         Ok(())
@@ -180,6 +181,10 @@ impl App {
             ViewCommand::Tool(id) => {
                 self.view.guide.take(Answer::Draw(None));
                 self.map.choose_tool(id);
+            }
+            ViewCommand::DrawWay(from) => {
+                self.view.select(Some(Selection::Leg(from)));
+                self.map.draw_way();
             }
             ViewCommand::Units(units) => self.view.units = units,
             ViewCommand::Theme(theme) => self.view.theme = theme,

@@ -9,7 +9,7 @@ use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Place, Value};
 use geometry::LatLon;
-use new_leg::Side;
+use new_leg::{Aim, Side};
 
 /// Takes the keys and what the menu asked for, unless something is being typed.
 pub fn run(ui: &Ui, map: &Response, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -59,7 +59,7 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
 fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Queue) {
     let scene = canvas.scene;
     let plan = scene.document.plan();
-    let Some(at) = new_leg::spot(plan, scene.view.selection.as_ref(), Side::Behind) else {
+    let Some(aim) = new_leg::aim(plan, scene.view.selection.as_ref(), &Side::Behind) else {
         return queue
             .view(ViewCommand::Notice("Make a new mission first: it has a stage to paste into.".into()));
     };
@@ -68,10 +68,14 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
     match coordinates::read(text, &known) {
         Ok(place) => {
             let drawn = Drawn::Place(Place::Position(Value::Constant(place)));
-            let approach = new_leg::approach(canvas, &at);
-            new_leg::add(LegChoice::Tf, &drawn, at, approach, plan, queue);
+            let approach = new_leg::approach(canvas, &aim);
+            new_leg::add(LegChoice::Tf, &drawn, aim, approach, plan, queue);
         }
-        Err(_) => put(clipboard::paste(plan, text, &at, under), queue),
+        Err(_) => {
+            if let Aim::Spot(at) = &aim {
+                put(clipboard::paste(plan, text, at, under), queue);
+            }
+        }
     }
 }
 

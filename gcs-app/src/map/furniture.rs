@@ -25,6 +25,9 @@ pub struct Edge {
 /// On a map that is narrower there is no legend: the commands take several lines there, screen points.
 pub const NARROW: f32 = 600.0;
 
+/// From one tool to the next, screen points.
+const TOOL: f32 = 36.0;
+
 /// Draws scale bar, legend and sources.
 pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     scale(painter, view, scene.units(), p);
@@ -137,21 +140,32 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 /// The tools at the map's left edge, and what the one in use says.
 pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
-    let area = Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), vec2(34.0, map.height().max(40.0)));
-    let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map tools"));
-    column.spacing_mut().item_spacing.y = 4.0;
-    for (card, in_use) in tools.cards() {
-        let name = format!("{} ({})", card.name, card.key.name());
-        if button(&mut column, card.symbol, &name, in_use) {
-            queue.view(ViewCommand::Tool(card.id));
+    let cards: Vec<_> = tools.cards().collect();
+    // a second column where the map is too low for one
+    let in_column = (((map.height() - 12.0) / TOOL) as usize).max(1);
+    let columns = cards.chunks(in_column);
+    let beside_tools = 16.0 + TOOL * columns.len() as f32;
+    for (index, cards) in columns.enumerate() {
+        let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
+        let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
+        let salt = ("map tools", index);
+        let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt(salt));
+        column.spacing_mut().item_spacing.y = 4.0;
+        for (card, in_use) in cards {
+            let name = format!("{} ({})", card.name, card.key.name());
+            if button(&mut column, card.symbol, &name, *in_use) {
+                queue.view(ViewCommand::Tool(card.id));
+            }
         }
     }
     tour::mark(ui.ctx(), tour::TOOLS, column.min_rect());
     let Some(status) = tools.status(scene) else { return };
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
-    let beside =
-        Rect::from_min_max(map.left_top() + vec2(52.0 + card, 12.0), map.right_bottom() - vec2(52.0, 0.0));
+    let beside = Rect::from_min_max(
+        map.left_top() + vec2(beside_tools + card, 12.0),
+        map.right_bottom() - vec2(52.0, 0.0),
+    );
     let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
     theme::card(&chip).show(&mut chip, |ui| {
         ui.add(egui::Label::new(status).wrap());

@@ -12,9 +12,9 @@ use egui::containers::menu::menu_style;
 use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
 use flight_exec::{Command, Phase};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Edit, Id, Place, Spot, Thing, Value};
+use flight_plan::{Edit, Id, Place, Thing, Value};
 use geometry::LatLon;
-use new_leg::Side;
+use new_leg::{Aim, Side};
 
 /// The menu, if one is open.
 #[derive(Debug, Default)]
@@ -123,7 +123,6 @@ fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
     }
     let variable = match thing {
         Selection::Fix(fix) => create::variable_of_fix(plan, fix),
-        Selection::Leg(leg) => create::variable_of_leg(plan, leg),
         _ => None,
     };
     if let Some((made, edit)) = variable
@@ -147,9 +146,9 @@ fn insert(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) 
     let plan = scene.document.plan();
     let is_leg = |thing: &&Selection| matches!(thing, Selection::Leg(_));
     let beside = opened.things.iter().find(is_leg).or(scene.view.selection.as_ref());
-    let Some(behind) = new_leg::spot(plan, beside, Side::Behind) else { return };
-    let before = new_leg::spot(plan, beside, Side::Before).filter(|before| *before != behind);
-    let mut offer = |name: String, choice: LegChoice, at: &Spot| {
+    let Some(behind) = new_leg::aim(plan, beside, &Side::Behind) else { return };
+    let before = new_leg::aim(plan, beside, &Side::Before).filter(|before| *before != behind);
+    let mut offer = |name: String, choice: LegChoice, at: &Aim| {
         if ui.button(name).clicked() {
             let drawn = Drawn::Place(Place::Position(Value::Constant(opened.place)));
             let approach = new_leg::approach(canvas, at);
@@ -157,7 +156,7 @@ fn insert(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) 
         }
     };
     for at in before.iter().chain([&behind]) {
-        offer(format!("Waypoint here, {}", new_leg::words(at)), LegChoice::Tf, at);
+        offer(format!("Waypoint here, {}", new_leg::words(at, plan)), LegChoice::Tf, at);
     }
     offer("Scan here".into(), LegChoice::Scan, &behind);
     offer("Orbit here".into(), LegChoice::Orbit, &behind);

@@ -6,6 +6,7 @@ pub mod basemap;
 mod chips;
 mod clipboard;
 pub mod coverage;
+mod footprints;
 pub mod foreseen;
 pub mod furniture;
 pub mod graticule;
@@ -32,12 +33,14 @@ use crate::theme;
 use crate::tiles::{Reader, Relief};
 use egui::{DragPanButtons, Role, Ui};
 use flight_plan::Variables;
+use flight_plan::create::Way;
 use geometry::LatLon;
 use rasters::Raster;
 use sketch::Sketch;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use terrain::Terrain;
+use tools::new_leg::Side;
 use tools::{Canvas, Toolbox};
 use usal::contract::PlanVariables;
 use view::View;
@@ -119,6 +122,11 @@ impl MapState {
     /// Puts a tool to use.
     pub fn choose_tool(&mut self, id: &str) {
         self.tools.choose(id);
+    }
+
+    /// Puts the tool that draws legs to use, for a new way from the selected leg.
+    pub fn draw_way(&mut self) {
+        self.tools.draw_legs(Side::Way(Way::New));
     }
 
     /// Where something selectable is, if it is anywhere.
@@ -244,6 +252,8 @@ impl MapState {
         plan::draw_areas(&painter, view, &self.sketch, scene, p);
         variables::draw(&painter, view, &self.sketch, scene, p);
         plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
+        footprints::draw(&painter, view, &self.sketch, scene, p);
+        plan::draw_ways(&painter, view, &self.sketch, scene, p);
         self.path.draw(&painter, view, scene, &self.sketch, p);
         self.aircraft.draw_trail(&painter, view, scene, p);
         foreseen::draw(&painter, view, scene, p);

@@ -4,6 +4,7 @@ use super::polyline::{self, Style};
 use super::sketch::{Circle, Sketch};
 use super::text;
 use super::view::{Mercator, View};
+use crate::chart::labels::Labels;
 use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
@@ -43,6 +44,27 @@ fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, 
     let on = |i: usize| centre + egui::Vec2::angled(i as f32 / steps as f32 * std::f32::consts::TAU) * radius;
     let ring: Vec<Pos2> = (0..=steps).map(on).collect();
     painter.extend(Shape::dashed_line(&ring, stroke, 8.0, 6.0));
+}
+
+/// The ways on from forks, each with its name; the flown path is drawn over the one that is taken.
+pub fn draw_ways(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+    let mut placed = Labels::new(painter.clip_rect().into());
+    for way in &sketch.ways {
+        let selected = is_selected(scene, &way.fork);
+        let points: Vec<Mercator> = way.line.iter().map(|at| (*at).into()).collect();
+        let parts = polyline::visible_parts(&points, view);
+        let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent);
+        polyline::draw(painter, &parts, stroke, Style::Dashed, p.halo);
+        let [from, to, ..] = way.line.as_slice() else { continue };
+        let (from, to) = (view.place(*from), view.place(*to));
+        let at = from + (to - from) * 0.5 + vec2(0.0, 6.0);
+        let name = if way.is_default { format!("{} (default)", way.label) } else { way.label.clone() };
+        let size = vec2(name.chars().count() as f32 * 6.5, 13.0);
+        let is_free = placed.is_free(&Align2::CENTER_TOP.anchor_size(at, size).into());
+        if (selected || from.distance(to) > 140.0) && view.is_near(at) && is_free {
+            placed.take(text::haloed(painter, at, Align2::CENTER_TOP, &name, 11.5, p.text, p).into());
+        }
+    }
 }
 
 /// Emergency plans: grey and dotted; the one in force is named.

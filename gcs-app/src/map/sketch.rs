@@ -3,8 +3,11 @@
 
 mod handle;
 pub mod numbers;
+pub mod photos;
+mod ways;
 
 pub use handle::{Handle, Handled};
+pub use ways::Way;
 
 use flight_plan::{
     Area, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Pattern, Place, Scan, Section, Value,
@@ -41,6 +44,10 @@ pub struct Sketch {
     pub emergencies: Vec<(Id, Vec<LatLon>)>,
     /// Variables that are a place.
     pub variables: Vec<PlacedVariable>,
+    /// Ways on from forks.
+    pub ways: Vec<Way>,
+    /// Pictures along legs.
+    pub photos: Vec<photos::Photos>,
 }
 
 /// A variable that is a place.
@@ -70,11 +77,14 @@ impl Sketch {
         }
         plan.zones.iter().for_each(|zone| sketch.add_zone(zone));
         sketch.add_lines(plan, &reader);
+        sketch.add_variables();
+        sketch.ways = ways::of(plan, &reader);
         sketch
     }
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
         self.handles.extend(numbers::handles(leg, reader));
+        self.photos.extend(photos::of(leg, reader));
         match &leg.kind {
             LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {
@@ -241,6 +251,15 @@ impl Sketch {
         }
     }
 
+    /// Where a leg is bound to a variable, its handle moves that too.
+    fn add_variables(&mut self) {
+        for variable in &self.variables {
+            if !self.handles.iter().any(|handle| handle.at == variable.at) {
+                self.handles.push(Handle { what: Handled::Variable(variable.name.clone()), at: variable.at });
+            }
+        }
+    }
+
     /// The middle of what a rim belongs to.
     pub fn centre_of(&self, of: &Id, plan: &FlightPlan) -> Option<LatLon> {
         match plan.zone(of).map(|zone| &zone.shape) {
@@ -288,6 +307,10 @@ impl Reader<'_> {
             }
         };
         at.is_valid().then_some(at)
+    }
+
+    fn place_of(&self, leg: &Leg) -> Option<LatLon> {
+        leg.place().and_then(|place| self.place(place))
     }
 
     fn polygon(&self, source: &str) -> Option<Vec<LatLon>> {

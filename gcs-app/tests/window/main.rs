@@ -4,6 +4,7 @@
 
 mod announcing;
 mod arranging;
+mod branching;
 mod comparing;
 mod connecting;
 mod considering;
@@ -22,6 +23,7 @@ mod looks;
 mod maps;
 mod palette;
 mod pasting;
+mod placing;
 mod planning;
 mod pointing;
 mod reach;

@@ -18,6 +18,8 @@ pub struct Handle {
 pub enum Handled {
     /// A fix, with every leg that goes there.
     Fix(Id),
+    /// A variable that is a position.
+    Variable(Id),
     /// Where a leg goes.
     Waypoint(Id),
     /// The middle of a scan or orbit.
@@ -77,7 +79,7 @@ impl Handled {
     /// The leg it belongs to, if it is a leg's.
     pub fn leg(&self) -> Option<&Id> {
         match self {
-            Self::Fix(_) | Self::Between { .. } => None,
+            Self::Fix(_) | Self::Variable(_) | Self::Between { .. } => None,
             Self::Waypoint(leg)
             | Self::Centre(leg)
             | Self::Radius(leg)
@@ -99,6 +101,7 @@ impl Handled {
     pub fn name(&self) -> String {
         match self {
             Self::Fix(id) => format!("Fix {id}"),
+            Self::Variable(name) => format!("Place of {name}"),
             Self::Waypoint(id) => format!("Waypoint {id}"),
             Self::Centre(id) => format!("Centre of {id}"),
             Self::Radius(id) => format!("Radius of {id}"),

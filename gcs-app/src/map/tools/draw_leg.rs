@@ -1,13 +1,15 @@
 //! Areas, lines and circles that become patterns.
 
-use super::new_leg::{self, Side, choose_kind, choose_side, spot, words};
+use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
 use super::pen::{Figure, Mark, Pen};
-use super::{Canvas, Card, Pointer, Tool, Touch};
+use super::trial::Trials;
+use super::{Canvas, Card, Tool, Touch};
 use crate::command::Queue;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{CursorIcon, Key, Painter, Pos2, Ui};
 use flight_plan::create::{Drawn, LegChoice, Shape};
+use geometry::LatLon;
 
 /// What a tool of this sort is.
 #[derive(Debug, PartialEq, Eq)]
@@ -50,20 +52,33 @@ pub struct DrawLeg {
     choice: LegChoice,
     side: Side,
     pen: Pen,
+    /// What it would become, as it would be flown.
+    trials: Trials,
 }
 
 impl DrawLeg {
     /// With nothing drawn yet.
     pub fn new(form: &'static Form) -> Self {
         let figure = form.figures.first().map_or(Figure::Ring, |(figure, _)| *figure);
-        Self { form, choice: form.first, side: Side::default(), pen: Pen::new(figure) }
+        Self {
+            form,
+            choice: form.first,
+            side: Side::default(),
+            pen: Pen::new(figure),
+            trials: Trials::default(),
+        }
+    }
+
+    /// Where the leg goes.
+    fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
+        new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &self.side)
     }
 
     fn complete(&mut self, marks: Vec<Mark>, canvas: &Canvas<'_>, queue: &mut Queue) {
-        let (plan, selected) = (canvas.scene.document.plan(), canvas.scene.view.selection.as_ref());
-        let Some(at) = spot(plan, selected, self.side) else { return };
-        let approach = new_leg::approach(canvas, &at);
-        new_leg::add(self.choice, &drawn(self.pen.figure(), marks), at, approach, plan, queue);
+        let Some(aim) = self.aim(canvas.scene) else { return };
+        let (plan, approach) = (canvas.scene.document.plan(), new_leg::approach(canvas, &aim));
+        new_leg::add(self.choice, &drawn(self.pen.figure(), marks), aim, approach, plan, queue);
+        self.side = Side::default();
     }
 }
 
@@ -84,15 +99,25 @@ impl Tool for DrawLeg {
     }
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
-        let at = spot(scene.document.plan(), scene.view.selection.as_ref(), self.side);
-        Some(match (self.pen.len(), at) {
+        Some(match (self.pen.len(), self.aim(scene)) {
             (_, None) => {
                 format!("{}: make a new mission first, it has a stage to draw into.", self.choice.name())
             }
             (0, Some(at)) => {
-                format!("{} {}: {}. Esc ends it.", self.choice.name(), words(&at), self.pen.hint())
+                format!(
+                    "{} {}: {}. Esc ends it.",
+                    self.choice.name(),
+                    words(&at, scene.document.plan()),
+                    self.pen.hint()
+                )
             }
-            _ => format!("{}: {}.", self.choice.name(), self.pen.hint()),
+            _ => {
+                let trial = self.trials.get().map_or(String::new(), |trial| match &trial.fault {
+                    Some(fault) => format!(" It can't be flown so: {fault}."),
+                    None => trial.cost_words(scene.units()).map_or(String::new(), |cost| format!(" {cost}.")),
+                });
+                format!("{}: {}.{trial}", self.choice.name(), self.pen.hint())
+            }
         })
     }
 
@@ -113,14 +138,23 @@ impl Tool for DrawLeg {
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
         self.pen.hover(at, canvas);
+        let Some((marks, aim)) = self.pen.so_far().zip(self.aim(canvas.scene)) else {
+            return self.trials.clear();
+        };
+        let (plan, approach) = (canvas.scene.document.plan(), new_leg::approach(canvas, &aim));
+        let leg = new_leg::leg(self.choice, &drawn(self.pen.figure(), marks), &aim, approach, plan);
+        self.trials.fly(leg, &aim, approach, canvas);
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        let (plan, selected) = (canvas.scene.document.plan(), canvas.scene.view.selection.as_ref());
-        if spot(plan, selected, self.side).is_none() {
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(self.pen.last())
+    }
+
+    fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if self.aim(canvas.scene).is_none() {
             return;
         }
-        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+        if let Some(marks) = self.pen.put(mark, canvas) {
             self.complete(marks, canvas, queue);
         }
     }
@@ -130,8 +164,6 @@ impl Tool for DrawLeg {
             self.complete(marks, canvas, queue);
         }
     }
-
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     fn wants(&self, key: Key) -> bool {
         self.pen.wants(key)
@@ -152,6 +184,9 @@ impl Tool for DrawLeg {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        if let Some(trial) = self.trials.get() {
+            trial.paint(painter, canvas, p);
+        }
         self.pen.paint(painter, canvas, p);
     }
 }

@@ -1,6 +1,7 @@
 //! Draws what the guide to a new plan asks for: a place, the runway, the mission.
 
 use super::pen::{Figure, Mark, Pen};
+use super::snap::snap;
 use super::{Canvas, Card, Pointer, Tool, Touch};
 use crate::command::{Queue, ViewCommand};
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
@@ -92,7 +93,7 @@ impl Tool for Guided {
             if at.is_valid() {
                 queue.view(ViewCommand::Guide(Answer::Place(at)));
             }
-        } else if let Some(marks) = self.pen.press(pointer.at, canvas) {
+        } else if let Some(marks) = self.pen.put(snap(pointer.at, canvas), canvas) {
             self.complete(&marks, queue);
         }
     }
@@ -102,8 +103,6 @@ impl Tool for Guided {
             self.complete(&marks, queue);
         }
     }
-
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     fn wants(&self, key: Key) -> bool {
         key == Key::Escape || self.pen.wants(key)

@@ -1,5 +1,7 @@
 //! Measure: distance and bearing from one place to another.
 
+use super::pen::Mark;
+use super::snap::{self, snap};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::command::Queue;
 use crate::map::polyline::{self, Style};
@@ -17,7 +19,7 @@ pub struct Measure {
     from: Option<LatLon>,
     to: Option<LatLon>,
     /// Where the pointer is: the end, until there is one.
-    pointer: Option<LatLon>,
+    pointer: Option<Mark>,
 }
 
 /// Names of the ends, in the order of their keys.
@@ -28,7 +30,7 @@ const PIECES: u32 = 32;
 impl Measure {
     /// Both ends, as far as they are known.
     fn ends(&self) -> Option<(LatLon, LatLon)> {
-        Some((self.from?, self.to.or(self.pointer)?))
+        Some((self.from?, self.to.or(self.pointer.as_ref().map(|mark| mark.at))?))
     }
 
     fn set(&mut self, key: usize, to: LatLon) {
@@ -61,21 +63,28 @@ impl Tool for Measure {
     }
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
-        self.pointer = at.map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
+        self.pointer = at.map(|at| snap(at, canvas)).filter(|mark| mark.at.is_valid());
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, _queue: &mut Queue) {
-        if pointer.grip.is_some() {
-            return;
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if pointer.grip.is_none() {
+            self.put(snap(pointer.at, canvas), canvas, queue);
         }
+    }
+
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(self.from)
+    }
+
+    fn put(&mut self, mark: Mark, _canvas: &Canvas<'_>, _queue: &mut Queue) {
         if self.to.is_some() {
             self.leave();
         }
-        self.set(usize::from(self.from.is_some()), canvas.view.geo(pointer.at));
+        self.set(usize::from(self.from.is_some()), mark.at);
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, _queue: &mut Queue) {
-        self.set(grip, canvas.view.geo(to));
+        self.set(grip, snap(to, canvas).at);
     }
 
     fn wants(&self, key: Key) -> bool {
@@ -103,6 +112,9 @@ impl Tool for Measure {
             let at = canvas.view.place(to) + vec2(10.0, -10.0);
             let result = result(from, to, canvas.scene.units());
             text::haloed(painter, at, Align2::LEFT_BOTTOM, &result, 13.0, p.text, p);
+        }
+        if let Some(pointer) = self.pointer.as_ref().filter(|_| self.to.is_none()) {
+            snap::paint(painter, pointer, canvas, p);
         }
         for grip in self.grips(canvas) {
             let hot = touch.hovered == Some(grip.key) || touch.dragged == Some(grip.key);

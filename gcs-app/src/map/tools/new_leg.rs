@@ -6,9 +6,9 @@ use crate::map::sketch::{Handle, Handled};
 use crate::panels::Scene;
 use aircraft::Profile;
 use egui::{ComboBox, Response, Role, Ui, WidgetInfo};
-use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape};
+use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape, Way};
 use flight_plan::{
-    Altitude, Edit, FlightPlan, Id, Leg, LegKind, Place, Spot, StageKind, TurnDirection, Value,
+    Altitude, FlightPlan, Id, Leg, LegContext, LegKind, Place, Spot, StageKind, TurnDirection, Value,
 };
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const LIST: f32 = 420.0;
 
 /// On which side of the selected leg a new one goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Side {
     /// After it.
     #[default]
@@ -27,14 +27,36 @@ pub enum Side {
     Before,
     /// At its end, if it is a loop.
     Inside,
+    /// At the beginning of a way on from it.
+    Way(Way),
 }
 
 impl Side {
-    const ALL: [Self; 3] = [Self::Behind, Self::Before, Self::Inside];
+    /// Those that a leg has.
+    fn of(leg: &Leg) -> Vec<Self> {
+        let inside = leg.as_loop().is_some().then_some(Self::Inside);
+        let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+        let ways = branches.iter().map(|branch| Way::Branch(branch.id.clone())).chain([Way::New]);
+        [Self::Behind, Self::Before].into_iter().chain(inside).chain(ways.map(Self::Way)).collect()
+    }
+}
+
+/// Where a new leg goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Aim {
+    /// Among other legs.
+    Spot(Spot),
+    /// At the beginning of a way on from a leg.
+    Way {
+        /// A fork, or a leg behind which one is made.
+        from: Id,
+        /// Which way.
+        way: Way,
+    },
 }
 
 /// Where a new leg goes: beside the selected one, or to the end of what is selected, or of the mission.
-pub fn spot(plan: &FlightPlan, selected: Option<&Selection>, side: Side) -> Option<Spot> {
+pub fn aim(plan: &FlightPlan, selected: Option<&Selection>, side: &Side) -> Option<Aim> {
     match selected {
         Some(Selection::Leg(id)) => {
             if let Some(leg) = plan.any_leg(id) {
@@ -42,15 +64,15 @@ pub fn spot(plan: &FlightPlan, selected: Option<&Selection>, side: Side) -> Opti
             }
         }
         Some(Selection::Stage(id)) if plan.stage(id).is_some_and(|s| has_legs(s.kind)) => {
-            return Some(Spot::EndOf(id.clone()));
+            return Some(Aim::Spot(Spot::EndOf(id.clone())));
         }
         Some(Selection::Procedure(id)) if plan.procedure(id).is_some() => {
-            return Some(Spot::EndOf(id.clone()));
+            return Some(Aim::Spot(Spot::EndOf(id.clone())));
         }
         Some(Selection::Emergency(id)) => {
             let stages = plan.emergency_plan(id).into_iter().flat_map(|e| &e.stages);
             if let Some(stage) = stages.into_iter().find(|stage| has_legs(stage.kind)) {
-                return Some(Spot::EndOf(stage.id.clone()));
+                return Some(Aim::Spot(Spot::EndOf(stage.id.clone())));
             }
         }
         _ => {}
@@ -58,15 +80,17 @@ pub fn spot(plan: &FlightPlan, selected: Option<&Selection>, side: Side) -> Opti
     let stages = plan.stages.iter().filter(|stage| has_legs(stage.kind));
     let stage =
         stages.clone().find(|stage| stage.kind == StageKind::Mission).or_else(|| stages.clone().next());
-    stage.map(|stage| Spot::EndOf(stage.id.clone()))
+    stage.map(|stage| Aim::Spot(Spot::EndOf(stage.id.clone())))
 }
 
-fn beside(leg: &Leg, side: Side) -> Spot {
-    match side {
+fn beside(leg: &Leg, side: &Side) -> Aim {
+    let side = if Side::of(leg).contains(side) { side } else { &Side::Behind };
+    Aim::Spot(match side {
         Side::Before => Spot::Before(leg.id.clone()),
-        Side::Inside if leg.as_loop().is_some() => Spot::EndOf(leg.id.clone()),
-        Side::Behind | Side::Inside => Spot::After(leg.id.clone()),
-    }
+        Side::Inside => Spot::EndOf(leg.id.clone()),
+        Side::Behind => Spot::After(leg.id.clone()),
+        Side::Way(way) => return Aim::Way { from: leg.id.clone(), way: way.clone() },
+    })
 }
 
 /// The autopilot performs take-off and landing by itself.
@@ -75,11 +99,18 @@ fn has_legs(kind: StageKind) -> bool {
 }
 
 /// Where that is, for people.
-pub fn words(spot: &Spot) -> String {
-    match spot {
-        Spot::Before(id) => format!("before {id}"),
-        Spot::After(id) => format!("behind {id}"),
-        Spot::EndOf(id) => format!("at the end of {id}"),
+pub fn words(aim: &Aim, plan: &FlightPlan) -> String {
+    match aim {
+        Aim::Spot(Spot::Before(id)) => format!("before {id}"),
+        Aim::Spot(Spot::After(id)) => format!("behind {id}"),
+        Aim::Spot(Spot::EndOf(id)) => format!("at the end of {id}"),
+        Aim::Way { from, way: Way::New } => format!("on a new way from {from}"),
+        Aim::Way { from, way: Way::Branch(branch) } => {
+            let branches = plan.any_leg(from).and_then(Leg::as_fork).map_or(&[][..], |fork| fork.branches);
+            let label = branches.iter().find(|b| b.id == *branch).map(|b| b.label.as_str());
+            let label = label.filter(|label| !label.is_empty()).unwrap_or(branch.as_str());
+            format!("on “{label}” from {from}")
+        }
     }
 }
 
@@ -88,10 +119,11 @@ pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
     let (plan, selected) = (scene.document.plan(), scene.view.selection.as_ref());
     let Some(Selection::Leg(id)) = selected else { return };
     let Some(leg) = plan.any_leg(id) else { return };
-    let shown = words(&beside(leg, *side));
+    let shown = words(&beside(leg, side), plan);
     let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
-        for other in Side::ALL.into_iter().filter(|s| *s != Side::Inside || leg.as_loop().is_some()) {
-            ui.selectable_value(side, other, words(&beside(leg, other)));
+        for other in Side::of(leg) {
+            let name = words(&beside(leg, &other), plan);
+            ui.selectable_value(side, other, name);
         }
     });
     named(&choice.response, format!("Where: {shown}"));
@@ -117,18 +149,37 @@ fn named(response: &Response, name: String) {
 pub fn add(
     choice: LegChoice,
     drawn: &Drawn,
-    at: Spot,
+    aim: Aim,
     approach: Option<Approach>,
     plan: &FlightPlan,
     queue: &mut Queue,
 ) -> Option<Id> {
-    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-    let Some(leg) = create::leg(plan, &profile, choice, drawn, approach, level(plan, &at)) else {
+    let Some(leg) = leg(choice, drawn, &aim, approach, plan) else {
         queue.view(ViewCommand::Notice(impossible(choice).into()));
         return None;
     };
+    put(leg, aim, plan, queue)
+}
+
+/// The leg that what was drawn there would become.
+pub fn leg(
+    choice: LegChoice,
+    drawn: &Drawn,
+    aim: &Aim,
+    approach: Option<Approach>,
+    plan: &FlightPlan,
+) -> Option<Leg> {
+    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+    create::leg(plan, &profile, choice, drawn, approach, level(plan, aim))
+}
+
+/// Puts a leg into the plan, and selects it.
+pub fn put(leg: Leg, aim: Aim, plan: &FlightPlan, queue: &mut Queue) -> Option<Id> {
     let id = leg.id.clone();
-    queue.edit(Edit::InsertLeg { leg: Box::new(leg), at });
+    queue.edit(match aim {
+        Aim::Spot(at) => create::insert(plan, leg, at),
+        Aim::Way { from, way } => create::begin_way(plan, &from, &way, leg)?,
+    });
     queue.view(ViewCommand::Select(Some(Selection::Leg(id.clone()))));
     Some(id)
 }
@@ -144,8 +195,8 @@ fn impossible(choice: LegChoice) -> &'static str {
 }
 
 /// The altitude in force at a place of the plan.
-fn level<'a>(plan: &'a FlightPlan, at: &Spot) -> Option<&'a Altitude> {
-    let (Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) = at;
+pub fn level<'a>(plan: &'a FlightPlan, aim: &Aim) -> Option<&'a Altitude> {
+    let (Aim::Spot(Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) | Aim::Way { from: id, .. }) = aim;
     if let Some(stage) = plan.stage(id) {
         return stage.altitude.as_ref();
     }
@@ -155,23 +206,32 @@ fn level<'a>(plan: &'a FlightPlan, at: &Spot) -> Option<&'a Altitude> {
 }
 
 /// Where the path is before a new leg, and which way it goes there.
-pub fn approach(canvas: &Canvas<'_>, at: &Spot) -> Option<Approach> {
+pub fn approach(canvas: &Canvas<'_>, aim: &Aim) -> Option<Approach> {
     let plan = canvas.scene.document.plan();
-    match at {
-        Spot::After(id) => end_of(canvas, last_flown(plan.leg(id)?.leg)),
-        Spot::Before(id) => {
-            let context = plan.leg(id)?;
-            match context.index.checked_sub(1).and_then(|i| context.siblings.get(i)) {
-                Some(before) => end_of(canvas, last_flown(before)),
-                None => canvas.scene.forecast().start_of(&context.leg.first_flown().id),
-            }
-        }
-        Spot::EndOf(id) => {
+    match aim {
+        Aim::Spot(Spot::After(id)) | Aim::Way { from: id, .. } => behind(canvas, &plan.leg(id)?),
+        Aim::Spot(Spot::Before(id)) => before(canvas, &plan.leg(id)?),
+        Aim::Spot(Spot::EndOf(id)) => {
             let inside = plan.stage(id).map(|s| s.legs.as_slice());
             let inside: Option<&[Arc<Leg>]> = inside.or_else(|| plan.leg(id).map(|c| c.leg.body()));
             let last = inside.and_then(<[_]>::last).or_else(|| before_stage(plan, id))?;
-            end_of(canvas, last_flown(last))
+            behind(canvas, &plan.leg(&last.id)?)
         }
+    }
+}
+
+/// At a fork nothing is flown: the path is where it was before.
+fn behind(canvas: &Canvas<'_>, context: &LegContext<'_>) -> Option<Approach> {
+    match context.leg.as_fork() {
+        Some(_) => before(canvas, context),
+        None => end_of(canvas, last_flown(context.leg)),
+    }
+}
+
+fn before(canvas: &Canvas<'_>, context: &LegContext<'_>) -> Option<Approach> {
+    match context.index.checked_sub(1).and_then(|i| context.siblings.get(i)) {
+        Some(before) => behind(canvas, &canvas.scene.document.plan().leg(&before.id)?),
+        None => canvas.scene.forecast().start_of(&context.leg.first_flown().id),
     }
 }
 
@@ -186,7 +246,8 @@ pub fn place_of(canvas: &Canvas<'_>, leg: &Leg) -> Option<LatLon> {
     match leg.place()? {
         Place::Fix(id) => canvas.scene.document.plan().fix(id).map(|fix| fix.position),
         Place::Position(_) => {
-            let is_its = |h: &&Handle| matches!(&h.what, Handled::Waypoint(id) if *id == leg.id);
+            let is_its =
+                |h: &&Handle| matches!(&h.what, Handled::Waypoint(id) | Handled::Centre(id) if *id == leg.id);
             canvas.sketch.handles.iter().find(is_its).map(|handle| handle.at)
         }
     }

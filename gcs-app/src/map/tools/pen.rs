@@ -1,13 +1,14 @@
 //! What all drawing has in common: places are clicked one after the other until the figure is whole.
 
-use super::{Canvas, snap};
+use super::Canvas;
+use super::snap::{self, snap};
 use crate::map::polyline::{self, Style};
 use crate::map::text;
 use crate::map::view::Mercator;
 use crate::theme::Palette;
 use crate::units::{self, Units};
 use egui::{Align2, Key, Painter, Pos2, Stroke, vec2};
-use flight_plan::Place;
+use flight_plan::{Place, Value};
 use geometry::LatLon;
 
 /// A click so near to the first corner closes an outline, screen points.
@@ -37,6 +38,15 @@ pub struct Mark {
     pub place: Place,
     /// Where it is.
     pub at: LatLon,
+    /// What was near there, for people.
+    pub on: Option<String>,
+}
+
+impl Mark {
+    /// A place that is nothing else.
+    pub fn at(at: LatLon) -> Self {
+        Self { place: Place::Position(Value::Constant(at)), at, on: None }
+    }
 }
 
 /// A figure on its way.
@@ -79,9 +89,9 @@ impl Pen {
         self.fault = (self.figure == Figure::Ring && crosses_itself(&ring)).then_some(CROSSES);
     }
 
-    /// Takes a click; gives the figure when it is whole.
-    pub fn press(&mut self, at: Pos2, canvas: &Canvas<'_>) -> Option<Vec<Mark>> {
-        let mark = snap(at, canvas);
+    /// Takes a place; gives the figure when it is whole.
+    pub fn put(&mut self, mark: Mark, canvas: &Canvas<'_>) -> Option<Vec<Mark>> {
+        let at = canvas.view.place(mark.at);
         if !mark.at.is_valid() {
             return None;
         }
@@ -92,6 +102,11 @@ impl Pen {
         self.marks.push(mark);
         let is_whole = matches!(self.figure, Figure::Segment | Figure::Circle) && self.len() == 2;
         if is_whole { self.finish() } else { None }
+    }
+
+    /// What was clicked so far; it is forgotten.
+    pub fn drawn(&mut self) -> Vec<Mark> {
+        std::mem::take(&mut self.marks)
     }
 
     /// The figure, if it has enough places.
@@ -143,9 +158,30 @@ impl Pen {
         }
     }
 
+    /// The figure as it would be if the pointer clicked now and it ended; `None`: it is not whole, or can't be.
+    pub fn so_far(&self) -> Option<Vec<Mark>> {
+        let marks = self.begun();
+        (!self.marks.is_empty() && marks.len() >= self.least() && self.fault.is_none()).then_some(marks)
+    }
+
     /// What was clicked, and where the pointer is.
     fn places(&self) -> impl Iterator<Item = LatLon> {
         self.marks.iter().chain(&self.pointer).map(|mark| mark.at)
+    }
+
+    /// What was clicked, and where the pointer is.
+    pub fn begun(&self) -> Vec<Mark> {
+        self.marks.iter().chain(&self.pointer).cloned().collect()
+    }
+
+    /// The place that was drawn last.
+    pub fn last(&self) -> Option<LatLon> {
+        self.marks.last().map(|mark| mark.at)
+    }
+
+    /// Where the pointer is.
+    pub fn pointer(&self) -> Option<&Mark> {
+        self.pointer.as_ref()
     }
 
     /// Draws what there is, red if it can't be.
@@ -169,10 +205,10 @@ impl Pen {
         text::haloed(painter, at, Align2::LEFT_BOTTOM, &words, 13.0, p.text, p);
     }
 
-    /// A ring around the fix that a click would take.
+    /// What a click would take.
     fn paint_snap(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
-        if let Some(Mark { place: Place::Fix(_), at }) = &self.pointer {
-            painter.circle_stroke(canvas.view.place(*at), 10.0, Stroke::new(2.0, p.accent));
+        if let Some(mark) = &self.pointer {
+            snap::paint(painter, mark, canvas, p);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::command::Selection;
 use crate::map::path;
 use crate::map::sketch::Handled;
 use egui::Pos2;
-use flight_plan::{FlightPlan, Id};
+use flight_plan::{FlightPlan, Id, Runway};
 use geometry::LatLon;
 
 /// A line so near to the pointer is meant, screen points.
@@ -18,8 +18,12 @@ const REACH: f32 = 9.0;
 pub fn things_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
     let plan = canvas.scene.document.plan();
     let handles = canvas.sketch.handles.iter().filter(|handle| {
-        matches!(handle.what, Handled::Fix(_) | Handled::Waypoint(_) | Handled::Centre(_))
-            && canvas.view.place(handle.at).distance(at) < REACH
+        let is_always = matches!(
+            handle.what,
+            Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) | Handled::Centre(_)
+        );
+        let shown = is_always || canvas.scene.is_selected(&selection(plan, &handle.what));
+        shown && canvas.view.place(handle.at).distance(at) < REACH
     });
     let mut things: Vec<Selection> = handles.map(|handle| selection(plan, &handle.what)).collect();
     things.extend(lines_near(at, canvas));
@@ -45,10 +49,24 @@ fn without_repeats(things: Vec<Selection>) -> Vec<Selection> {
     once
 }
 
+/// The runway under the pointer.
+pub fn runway_near<'a>(at: Pos2, canvas: &Canvas<'a>) -> Option<&'a Runway> {
+    let view = canvas.view;
+    canvas.scene.document.plan().runways.iter().find(|runway| {
+        let (from, to) = (view.place(runway.threshold), view.place(end_of(runway)));
+        is_near(at, from, to) || from.distance(at) < 2.0 * REACH
+    })
+}
+
+fn end_of(runway: &Runway) -> LatLon {
+    runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0))
+}
+
 /// What is selected with a handle.
 pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
     match what {
         Handled::Fix(id) => Selection::Fix(id.clone()),
+        Handled::Variable(name) => Selection::Variable(name.clone()),
         Handled::Waypoint(id)
         | Handled::Centre(id)
         | Handled::Radius(id)
@@ -78,10 +96,7 @@ fn outlines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
         (view.place(centre).distance(at) - (radius_m * view.points_per_metre()) as f32).abs() < NEAR
     };
     let plan = scene.document.plan();
-    let runways = plan.runways.iter().filter(|runway| {
-        let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
-        on_line(&[runway.threshold, end], false)
-    });
+    let runways = plan.runways.iter().filter(|runway| on_line(&[runway.threshold, end_of(runway)], false));
     let polygons = sketch.polygons.iter().filter(|(_, rings)| rings.iter().any(|ring| on_line(ring, true)));
     let circles = sketch.circles.iter().filter(|circle| on_circle(circle.centre, circle.radius_m));
     let zones = plan.zones.iter().filter(|zone| on_line(&chart::outline(zone), true));

@@ -1,25 +1,24 @@
 //! Select and move: waypoints, fixes, the middle and the rim of circles, corners of areas, routes and zones. The small marks
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
+use super::bands;
 use super::group::{Group, legs_within};
-use super::pen::length;
+use super::handles::{draw, draw_labels, label, near, value};
+use super::pen::{Mark, way};
 use super::pick::{lines_near, selection};
+use super::snap::{self, snap_but};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
-use crate::chart::labels::Labels;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
 use crate::map::text;
 use crate::theme::Palette;
 use aircraft::Profile;
-use egui::{Align2, Key, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use egui::{Align2, Key, Painter, Pos2, Rect, vec2};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Spot, Value, ZoneShape};
+use flight_plan::{
+    Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Spot, Value, VariableValue, ZoneShape,
+};
 use geometry::LatLon;
-
-/// Most handles that react at once; more could not be told apart.
-const MOST: usize = 1000;
-/// A leg that is shorter on the screen shows no middle to be dragged, screen points.
-const GAP: f64 = 90.0;
 
 /// The tool; the one in use unless another one is chosen.
 #[derive(Debug, Default)]
@@ -32,6 +31,12 @@ pub struct Select {
     among: Vec<Selection>,
     /// The handles around several selected legs.
     group: Group,
+    /// The handle that is being dragged, and where it was.
+    grabbed: Option<Handle>,
+    /// Where it was dragged to.
+    dragged: Option<Mark>,
+    /// What letting go does: the leg goes to what it was dragged onto.
+    landing: Option<Edit>,
 }
 
 impl Select {
@@ -87,6 +92,7 @@ impl Tool for Select {
             return;
         }
         let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
+        self.grabbed = handle.filter(|_| !pointer.clicks).cloned();
         self.among = if pointer.grip.is_none() { lines_near(pointer.at, canvas) } else { Vec::new() };
         let chosen = handle.filter(|_| pointer.clicks).and_then(|handle| numbers::choice(plan, &handle.what));
         if let Some(edit) = chosen {
@@ -115,7 +121,11 @@ impl Tool for Select {
             return;
         }
         let Some(handle) = canvas.sketch.handles.get(grip) else { return };
-        let (plan, to) = (canvas.scene.document.plan(), canvas.view.geo(to));
+        let plan = canvas.scene.document.plan();
+        let mark = self.snapped(handle, to, canvas);
+        let to = mark.at;
+        self.landing = landing(plan, self.grabbed.as_ref(), &mark);
+        self.dragged = Some(mark);
         if is_mark(handle) {
             return if to.is_valid() {
                 self.insert(&handle.what, to, plan, queue)
@@ -137,6 +147,10 @@ impl Tool for Select {
     fn release(&mut self, queue: &mut Queue) {
         self.inserting = None;
         self.group.release();
+        (self.grabbed, self.dragged) = (None, None);
+        if let Some(edit) = self.landing.take() {
+            queue.document(DocumentCommand::DragEdit(edit));
+        }
         queue.document(DocumentCommand::EndGesture);
     }
 
@@ -162,38 +176,83 @@ impl Tool for Select {
             labels.extend(value(handle, at, canvas).filter(|_| hot));
         }
         draw_labels(painter, labels, p);
+        if let Some(handle) = touch.dragged.and_then(|key| canvas.sketch.handles.get(key)) {
+            self.paint_drag(painter, handle, canvas, p);
+        }
         self.group.paint(painter, canvas, p);
     }
+}
+
+impl Select {
+    /// What is near where a handle is dragged; nothing that moves with it. Numbers and marks don't snap.
+    fn snapped(&self, handle: &Handle, to: Pos2, canvas: &Canvas<'_>) -> Mark {
+        let snaps = matches!(
+            handle.what,
+            Handled::Fix(_)
+                | Handled::Variable(_)
+                | Handled::Waypoint(_)
+                | Handled::Centre(_)
+                | Handled::Corner { .. }
+        );
+        if !snaps {
+            return Mark::at(canvas.view.geo(to));
+        }
+        let plan = canvas.scene.document.plan();
+        let bound = handle.what.leg().and_then(|leg| create::bound_to(plan.leg(leg)?.leg));
+        let own_variable = match &handle.what {
+            Handled::Variable(name) => Some(name.clone()),
+            _ => None,
+        };
+        let bound = bound.or(own_variable);
+        let own = [handle.what.name(), bound.map_or_else(String::new, |name| format!("variable {name}"))];
+        let own = own.map(|name| name.to_lowercase());
+        let is_own = |on: &str| own.contains(&on.to_lowercase());
+        let (now, was) = (handle.at, self.grabbed.as_ref().map(|grabbed| grabbed.at));
+        let lands = self.dragged.as_ref().and_then(|mark| mark.on.clone());
+        snap_but(to, canvas, &|on, at| {
+            // what is at the same place moves along, unless it was dragged onto it
+            is_own(on) || (at.distance_m(now) < 0.5 && lands.as_deref() != Some(on)) || was == Some(at)
+        })
+    }
+
+    /// Bands from what is dragged to what is before and behind it, what it is dragged onto, and what is wrong with it so.
+    fn paint_drag(&self, painter: &Painter, handle: &Handle, canvas: &Canvas<'_>, p: &Palette) {
+        if let Some(mark) = &self.dragged {
+            snap::paint(painter, mark, canvas, p);
+        }
+        let Some(leg) = handle.what.leg().filter(|_| matches!(handle.what, Handled::Waypoint(_))) else {
+            return;
+        };
+        let (bands, before) = bands::around(canvas, leg);
+        bands::paint(painter, canvas, handle.at, &bands, p);
+        let at = canvas.view.place(handle.at) + vec2(12.0, 26.0);
+        let fault = canvas.scene.problems().find(|q| q.is_error() && q.subject.as_ref() == Some(leg));
+        let (words, colour) = match (fault, before) {
+            (Some(problem), _) => (problem.message.clone(), p.warning),
+            (None, Some(from)) => (way(from, handle.at, canvas.scene.units()), p.text),
+            (None, None) => return,
+        };
+        text::haloed(painter, at, Align2::LEFT_TOP, &words, 12.0, colour, p);
+    }
+}
+
+/// What letting a leg's place go there does, if there is a fix or variable. A variable that was dragged along goes back.
+fn landing(plan: &FlightPlan, grabbed: Option<&Handle>, mark: &Mark) -> Option<Edit> {
+    let Handle { what: Handled::Waypoint(leg) | Handled::Centre(leg), at: was } = grabbed? else {
+        return None;
+    };
+    if matches!(mark.place, Place::Position(Value::Constant(_))) {
+        return None;
+    }
+    let lands = create::put_at(plan, leg, &mark.place)?;
+    let back = create::bound_to(plan.leg(leg)?.leg)
+        .map(|name| Edit::SetVariable { name, value: VariableValue::Position(*was) });
+    Some(Edit::All(back.into_iter().chain([lands]).collect()))
 }
 
 /// Not there yet: it is when it is dragged.
 fn is_mark(handle: &Handle) -> bool {
     matches!(handle.what, Handled::Ghost { .. } | Handled::Between { .. })
-}
-
-/// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
-fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
-    let Canvas { view, sketch, scene, .. } = *canvas;
-    let plan = scene.document.plan();
-    let is_shown = move |handle: &Handle| match &handle.what {
-        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side(_) => {
-            scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
-        }
-        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
-            scene.is_selected(&selection(plan, &handle.what))
-        }
-        Handled::Centre(id) => plan.zone(id).is_none() || scene.is_selected(&Selection::Zone(id.clone())),
-        Handled::Between { gap_m, .. } => f64::from(*gap_m) * view.points_per_metre() > GAP,
-        Handled::Fix(_) | Handled::Waypoint(_) => true,
-    };
-    sketch
-        .handles
-        .iter()
-        .enumerate()
-        .map(move |(key, handle)| (key, handle, view.place(handle.at)))
-        .filter(move |(_, _, at)| view.rect.contains(*at))
-        .filter(move |(_, handle, _)| is_shown(handle))
-        .take(MOST)
 }
 
 /// Removes a corner, unless too few would be left.
@@ -234,6 +293,9 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         return None;
     }
     match what {
+        Handled::Variable(name) => {
+            Some(Edit::SetVariable { name: name.clone(), value: VariableValue::Position(to) })
+        }
         Handled::Fix(fix) => Some(Edit::MoveFix { fix: fix.clone(), to }),
         Handled::Waypoint(leg) | Handled::Centre(leg) => Some(Edit::MoveWaypoint { leg: leg.clone(), to }),
         Handled::Radius(leg) => {
@@ -246,97 +308,5 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         Handled::Number { leg, number, ruler } => numbers::edit(plan, leg, number, ruler.read(to)),
         Handled::ArcCentre(leg) => numbers::move_arc_centre(plan, leg, to),
         Handled::Ghost { .. } | Handled::Between { .. } | Handled::Entry { .. } | Handled::Side(_) => None,
-    }
-}
-
-/// What a handle that is hovered or dragged has come to.
-fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
-    let (plan, units) = (canvas.scene.document.plan(), canvas.scene.units());
-    let text = match &handle.what {
-        Handled::Number { number, ruler, .. } => numbers::words(number, ruler.read(handle.at), units),
-        Handled::Radius(of) => {
-            let centre = canvas.sketch.centre_of(of, plan)?;
-            format!("Radius {}", length(centre.distance_m(handle.at), units))
-        }
-        what if what.is_choice() => what.name(),
-        _ => return None,
-    };
-    Some(Label { at: at + vec2(11.0, -9.0), anchor: Align2::LEFT_BOTTOM, text, first: true })
-}
-
-/// Shapes say what a handle is: triangle a fix, circle a waypoint, cross a centre, square a rim or corner.
-fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: bool, p: &Palette) {
-    let size = if selected || hot { 7.0 } else { 5.0 };
-    let fill = if selected { p.accent } else { p.halo };
-    let stroke = Stroke::new(if hot { 2.4 } else { 1.8 }, if selected { p.text } else { p.accent });
-    match &handle.what {
-        Handled::Fix(_) => {
-            let corners = [vec2(0.0, -1.2), vec2(1.1, 0.8), vec2(-1.1, 0.8)].map(|d| at + d * size);
-            painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
-        }
-        Handled::Waypoint(_) => {
-            painter.circle(at, size * 0.8, fill, stroke);
-        }
-        Handled::Centre(_) => {
-            painter.circle(at, size, fill, stroke);
-            painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
-            painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
-        }
-        Handled::Ghost { .. } | Handled::Between { .. } => {
-            let size = if hot { 6.0 } else { 3.5 };
-            painter.circle(at, size, p.halo.gamma_multiply(0.8), Stroke::new(1.4, p.accent));
-            if hot {
-                painter.line_segment([at - vec2(3.5, 0.0), at + vec2(3.5, 0.0)], stroke);
-                painter.line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], stroke);
-            }
-        }
-        Handled::Number { .. } | Handled::ArcCentre(_) => {
-            let corners = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0)];
-            let corners = corners.map(|d| at + d * size).to_vec();
-            painter.add(Shape::convex_polygon(corners, p.halo, stroke));
-        }
-        Handled::Entry { chosen, .. } => {
-            painter.circle(at, size * 0.9, if *chosen { p.accent } else { p.halo }, stroke);
-            painter.circle_filled(at, 2.0, p.text);
-        }
-        Handled::Side(_) => {
-            painter.circle(at, size * 0.9, p.halo, stroke);
-            text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
-        }
-        Handled::Radius(_) | Handled::Corner { .. } => {
-            let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
-            painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
-        }
-    }
-}
-
-/// A name beside a handle.
-struct Label {
-    at: Pos2,
-    anchor: Align2,
-    text: String,
-    /// Drawn whatever is there already.
-    first: bool,
-}
-
-fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
-    let (id, offset, anchor) = match &handle.what {
-        Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
-        Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
-        _ => return None,
-    };
-    Some(Label { at: at + offset, anchor, text: id.to_string(), first })
-}
-
-/// Names that do not overlap; what is selected or under the pointer comes first.
-fn draw_labels(painter: &Painter, mut labels: Vec<Label>, p: &Palette) {
-    labels.sort_by_key(|l| !l.first);
-    let mut placed = Labels::new(painter.clip_rect().into());
-    for label in labels {
-        let size = vec2(label.text.chars().count() as f32 * 7.0, 13.0);
-        let rect = label.anchor.anchor_size(label.at, size);
-        if label.first || placed.is_free(&rect.into()) {
-            placed.take(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p).into());
-        }
     }
 }

@@ -1,12 +1,14 @@
 //! Fixes, runways and zones.
 
 use super::pen::{Figure, Mark, Pen};
-use super::{Canvas, Card, Pointer, Tool, Touch};
+use super::{Canvas, Card, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
+use crate::panels::field::{self, Change};
 use crate::theme::Palette;
 use egui::{CursorIcon, Key, Painter, Pos2, Ui};
-use flight_plan::{Edit, Thing, ZoneKind, ZoneShape, create};
+use flight_plan::{Altitude, AltitudeReference, Edit, Thing, Value, Zone, ZoneKind, ZoneShape, create};
+use geometry::LatLon;
 
 /// Each click makes a fix.
 #[derive(Debug, Default)]
@@ -21,8 +23,12 @@ impl Tool for PlaceFix {
         Some("Fix: click where it is; legs that are drawn near it go there. Esc ends it.".into())
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        let at = canvas.view.geo(pointer.at);
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(None)
+    }
+
+    fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let at = mark.at;
         if !at.is_valid() {
             return;
         }
@@ -31,8 +37,6 @@ impl Tool for PlaceFix {
         queue.edit(Edit::Add(Box::new(Thing::Fix(fix))));
         queue.view(ViewCommand::Select(Some(Selection::Fix(id))));
     }
-
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     fn cursor(&self) -> CursorIcon {
         CursorIcon::Crosshair
@@ -83,13 +87,15 @@ impl Tool for DrawRunway {
         self.pen.hover(at, canvas);
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(self.pen.last())
+    }
+
+    fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.put(mark, canvas) {
             self.complete(&marks, queue);
         }
     }
-
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     fn wants(&self, key: Key) -> bool {
         self.pen.wants(key)
@@ -119,11 +125,15 @@ impl Tool for DrawRunway {
 pub struct DrawZone {
     pen: Pen,
     kind: ZoneKind,
+    /// Its lower limit; `None`: the ground.
+    floor: Option<Altitude>,
+    /// Its upper limit; `None`: none.
+    ceiling: Option<Altitude>,
 }
 
 impl Default for DrawZone {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Ring), kind: ZoneKind::KeepOut }
+        Self { pen: Pen::new(Figure::Ring), kind: ZoneKind::KeepOut, floor: None, ceiling: None }
     }
 }
 
@@ -135,11 +145,37 @@ impl DrawZone {
             }
             _ => ZoneShape::Polygon(marks.iter().map(|mark| mark.at).collect()),
         };
+        let (floor, ceiling) = (self.floor.clone(), self.ceiling.clone());
         let zone = create::zone(canvas.scene.document.plan(), self.kind, shape);
+        let zone = Zone { floor, ceiling, ..zone };
         let id = zone.id.clone();
         queue.edit(Edit::Add(Box::new(Thing::Zone(zone))));
         queue.view(ViewCommand::Select(Some(Selection::Zone(id))));
     }
+}
+
+/// A limit of a zone: none, or an altitude; a floor without one is the ground.
+fn limit(ui: &mut Ui, name: &str, limit: &mut Option<Altitude>, first: Altitude, scene: &Scene<'_>) {
+    let mut given = limit.is_some();
+    if ui.checkbox(&mut given, name).changed() {
+        *limit = given.then_some(first);
+    }
+    let Some(Altitude { metres: Value::Constant(metres), reference }) = limit else { return };
+    let unit = scene.units().altitude();
+    let change = field::number_between(ui, &format!("{name} of the zone"), *metres, unit, -1000.0..=20_000.0);
+    if let Change::Moving(new) | Change::Set(new) = change {
+        *metres = new;
+    }
+    let names = AltitudeReference::NAMES;
+    let now = names.iter().position(|(_, other)| other == reference);
+    let labels = ["AMSL", "AGL", "above home"];
+    ui.scope(|ui| {
+        ui.set_max_width(110.0);
+        let chosen = field::choice(ui, &format!("{name}: above what"), &labels, now);
+        if let Some((_, chosen)) = chosen.and_then(|chosen| names.get(chosen)) {
+            *reference = *chosen;
+        }
+    });
 }
 
 /// What a kind of zone is called.
@@ -159,10 +195,15 @@ impl Tool for DrawZone {
         Some(format!("{}: {}. Esc ends it.", zone_name(self.kind), self.pen.hint()))
     }
 
-    fn options(&mut self, ui: &mut Ui, _scene: &Scene<'_>) {
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+        let above_ground =
+            |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Agl };
+        limit(ui, "Floor", &mut self.floor, above_ground(0.0), scene);
+        limit(ui, "Ceiling", &mut self.ceiling, above_ground(120.0), scene);
         if self.pen.len() > 0 {
             return;
         }
+        ui.separator();
         ui.selectable_value(&mut self.kind, ZoneKind::KeepOut, "keep out");
         ui.selectable_value(&mut self.kind, ZoneKind::KeepIn, "keep in");
         ui.separator();
@@ -177,8 +218,12 @@ impl Tool for DrawZone {
         self.pen.hover(at, canvas);
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        if let Some(marks) = self.pen.press(pointer.at, canvas) {
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(self.pen.last())
+    }
+
+    fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if let Some(marks) = self.pen.put(mark, canvas) {
             self.complete(&marks, canvas, queue);
         }
     }
@@ -188,8 +233,6 @@ impl Tool for DrawZone {
             self.complete(&marks, canvas, queue);
         }
     }
-
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
     fn wants(&self, key: Key) -> bool {
         self.pen.wants(key)

@@ -1,8 +1,11 @@
 //! Track: legs from place to place, one for each click.
 
-use super::new_leg::{self, Side, choose_kind, choose_side, spot, words};
+use super::bands::{self, Band};
+use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
 use super::pen::{Mark, way};
-use super::{Canvas, Card, Pointer, Tool, Touch, snap};
+use super::snap::{self, snap};
+use super::trial::{Trial, Trials};
+use super::{Canvas, Card, Tool, Touch};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::map::polyline::{self, Style};
 use crate::map::text;
@@ -10,10 +13,12 @@ use crate::map::view::Mercator;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{Align2, CursorIcon, Key, Painter, Pos2, Stroke, Ui, vec2};
-use flight_plan::create::{Approach, Drawn, LegChoice, Shape, arc_centre};
-use flight_plan::{Edit, Id, Place, Spot, TurnDirection};
+use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape, arc_centre};
+use flight_plan::{Id, Spot, TurnDirection};
 use geometry::LatLon;
 
+/// The tool's identifier.
+pub const ID: &str = "track";
 /// Pieces of an arc on the screen.
 const PIECES: u32 = 24;
 
@@ -27,8 +32,10 @@ pub struct Track {
     pointer: Option<Mark>,
     /// How the path arrives where the next leg begins.
     approach: Option<Approach>,
-    /// Where the path goes on behind it.
-    onward: Option<LatLon>,
+    /// Where the path may go on behind it.
+    bands: Vec<Band>,
+    /// The next leg as it would be flown.
+    trials: Trials,
 }
 
 impl Default for Track {
@@ -39,33 +46,48 @@ impl Default for Track {
             drawn: Vec::new(),
             pointer: None,
             approach: None,
-            onward: None,
+            bands: Vec::new(),
+            trials: Trials::default(),
         }
     }
 }
 
 impl Track {
     /// Where the next leg goes.
-    fn next_spot(&self, scene: &Scene<'_>) -> Option<Spot> {
-        let behind = self.drawn.last().map(|id| Spot::After(id.clone()));
-        behind.or_else(|| spot(scene.document.plan(), scene.view.selection.as_ref(), self.side))
+    fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
+        let behind = self.drawn.last().map(|id| Aim::Spot(Spot::After(id.clone())));
+        behind.or_else(|| new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &self.side))
+    }
+
+    /// What a click would add, or why it could not be flown.
+    fn next_in_words(&self, from: LatLon, to: LatLon, scene: &Scene<'_>) -> String {
+        match self.trials.get() {
+            Some(Trial { fault: Some(fault), .. }) => format!("The next leg can't be flown: {fault}."),
+            trial => {
+                let words = trial.map_or_else(
+                    || way(from, to, scene.units()),
+                    |trial| trial.words(from, to, scene.units()),
+                );
+                format!("Next leg: {words}. Backspace takes the last back.")
+            }
+        }
     }
 }
 
 impl Tool for Track {
     fn card(&self) -> &'static Card {
-        &Card { id: "track", name: "Draw legs", symbol: "✏", key: Key::T }
+        &Card { id: ID, name: "Draw legs", symbol: "✏", key: Key::T }
     }
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
-        Some(match (self.drawn.is_empty(), self.next_spot(scene)) {
+        Some(match (self.drawn.is_empty(), self.aim(scene)) {
             (_, None) => "Draw legs: make a new mission first, it has a stage to draw into.".into(),
-            (true, Some(spot)) => format!("Draw legs {}: click where to fly. Esc ends it.", words(&spot)),
+            (true, Some(aim)) => {
+                let place = words(&aim, scene.document.plan());
+                format!("Draw legs {place}: click where to fly. Esc ends it.")
+            }
             (false, _) => match (&self.pointer, self.approach) {
-                (Some(to), Some(at)) => {
-                    let result = way(at.from, to.at, scene.units());
-                    format!("Next leg: {result}. Backspace takes the last back.")
-                }
+                (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
                 _ => "Draw legs: Backspace takes the last back, Enter ends it.".into(),
             },
         })
@@ -85,18 +107,26 @@ impl Tool for Track {
         while self.drawn.last().is_some_and(|id| plan.leg(id).is_none()) {
             self.drawn.pop();
         }
-        let spot = self.next_spot(canvas.scene);
-        self.approach = spot.as_ref().and_then(|spot| new_leg::approach(canvas, spot));
-        self.onward = spot.and_then(|spot| onward(canvas, &spot));
+        let aim = self.aim(canvas.scene);
+        self.approach = aim.as_ref().and_then(|aim| new_leg::approach(canvas, aim));
+        self.bands = aim.as_ref().map_or(Vec::new(), |aim| bands::behind(canvas, aim));
+        let Some((aim, to)) = aim.zip(self.pointer.as_ref()) else { return self.trials.clear() };
+        let drawn = Drawn::Place(to.place.clone());
+        let leg = new_leg::leg(self.choice, &drawn, &aim, self.approach, plan);
+        self.trials.fly(leg, &aim, self.approach, canvas);
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        let mark = snap(pointer.at, canvas);
-        let Some(at) = self.next_spot(canvas.scene).filter(|_| mark.at.is_valid()) else { return };
+    fn typed_from(&self) -> Option<Option<LatLon>> {
+        Some(self.approach.map(|approach| approach.from))
+    }
+
+    fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let Some(at) = self.aim(canvas.scene).filter(|_| mark.at.is_valid()) else { return };
         let (approach, plan) = (new_leg::approach(canvas, &at), canvas.scene.document.plan());
         let drawn = Drawn::Place(mark.place);
         if let Some(id) = new_leg::add(self.choice, &drawn, at, approach, plan, queue) {
             self.drawn.push(id);
+            self.side = Side::default();
         }
     }
 
@@ -104,20 +134,23 @@ impl Tool for Track {
         self.drawn.clear();
     }
 
-    fn drag(&mut self, _grip: usize, _to: Pos2, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
-
     fn wants(&self, key: Key) -> bool {
         !self.drawn.is_empty() && matches!(key, Key::Escape | Key::Enter | Key::Backspace)
     }
 
-    fn key(&mut self, key: Key, _canvas: &Canvas<'_>, queue: &mut Queue) {
+    fn key(&mut self, key: Key, canvas: &Canvas<'_>, queue: &mut Queue) {
         if key != Key::Backspace {
             return self.drawn.clear();
         }
         let Some(id) = self.drawn.pop() else { return };
-        queue.edit(Edit::DeleteLeg { leg: id });
+        queue.edit(create::delete_leg(canvas.scene.document.plan(), &id));
         let before = self.drawn.last().map(|id| Selection::Leg(id.clone()));
         queue.view(ViewCommand::Select(before));
+    }
+
+    fn aim_at(&mut self, side: Side) {
+        self.drawn.clear();
+        self.side = side;
     }
 
     fn leave(&mut self) {
@@ -130,24 +163,31 @@ impl Tool for Track {
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
         let Some(to) = &self.pointer else { return };
-        if matches!(to.place, Place::Fix(_)) {
-            painter.circle_stroke(canvas.view.place(to.at), 10.0, Stroke::new(2.0, p.accent));
-        }
-        if let Some(onward) = self.onward {
-            let line = [to.at.into(), onward.into()];
-            let parts = polyline::visible_parts(&line, canvas.view);
-            polyline::draw(painter, &parts, Stroke::new(1.2, p.weak), Style::Dotted, p.halo);
-        }
+        snap::paint(painter, to, canvas, p);
+        bands::paint(painter, canvas, to.at, &self.bands, p);
         let Some(at) = self.approach else { return };
         let ghost = ghost(self.choice, &at, to.at);
-        let colour = if ghost.is_some() { p.accent } else { p.warning };
+        let trial = self.trials.get();
+        let is_bad = ghost.is_none() || trial.is_some_and(|trial| trial.fault.is_some());
+        let colour = if is_bad { p.warning } else { p.accent };
         let line = ghost.unwrap_or_else(|| vec![at.from, to.at]);
         let line: Vec<Mercator> = line.into_iter().map(Mercator::from).collect();
         let parts = polyline::visible_parts(&line, canvas.view);
         polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
+        trial.into_iter().for_each(|trial| trial.paint(painter, canvas, p));
         let beside = canvas.view.place(to.at) + vec2(10.0, -10.0);
-        let result = way(at.from, to.at, canvas.scene.units());
-        text::haloed(painter, beside, Align2::LEFT_BOTTOM, &result, 13.0, p.text, p);
+        let units = canvas.scene.units();
+        let words =
+            trial.map_or_else(|| way(at.from, to.at, units), |trial| trial.words(at.from, to.at, units));
+        text::haloed(
+            painter,
+            beside,
+            Align2::LEFT_BOTTOM,
+            &words,
+            13.0,
+            if is_bad { p.warning } else { p.text },
+            p,
+        );
     }
 }
 
@@ -167,15 +207,4 @@ fn ghost(choice: LegChoice, at: &Approach, to: LatLon) -> Option<Vec<LatLon>> {
         centre.destination(start.bearing_start_deg + swept * share, start.distance_m)
     };
     Some((0..=PIECES).map(on).collect())
-}
-
-/// The place that the leg behind a new one leads to.
-fn onward(canvas: &Canvas<'_>, spot: &Spot) -> Option<LatLon> {
-    let plan = canvas.scene.document.plan();
-    let next = match spot {
-        Spot::Before(id) => plan.leg(id)?.leg,
-        Spot::After(id) => plan.leg(id)?.successor()?,
-        Spot::EndOf(_) => return None,
-    };
-    new_leg::place_of(canvas, next)
 }

@@ -1,6 +1,7 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
 use super::alternates;
+use super::bind;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use aircraft::Profile;
@@ -35,7 +36,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     if let Selection::Runway(runway) = of
         && ui.button("Emergency plan that lands here").clicked()
     {
-        queue.document(DocumentCommand::BringHome(runway.clone()));
+        queue.document(DocumentCommand::BringHome { runway: runway.clone(), outwards: Vec::new() });
     }
     if let Selection::Leg(id) = of
         && let Some(context) = plan.leg(id)
@@ -55,12 +56,32 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     if ui.add(Button::new("Rename").shortcut_text("F2")).clicked() {
         queue.view(ViewCommand::Rename(of.clone()));
     }
+    on_map(ui, scene, of, queue);
     for entry in entries(scene, of) {
         let button = Button::new(entry.name).shortcut_text(entry.keys);
         if ui.add_enabled(entry.edit.is_some(), button).clicked() {
             entry.edit.into_iter().for_each(|edit| queue.edit(edit));
             entry.selects.into_iter().for_each(|made| queue.view(ViewCommand::Select(Some(made))));
         }
+    }
+}
+
+/// What is done on the map, with it or beside it.
+fn on_map(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
+    if let Selection::Leg(leg) = of
+        && scene.selected_legs().len() < 2
+    {
+        let way = ui.button("Draw a new way from it").on_hover_text("A branch, drawn on the map leg by leg");
+        if way.clicked() {
+            queue.view(ViewCommand::DrawWay(leg.clone()));
+        }
+        bind::show(ui, scene, leg, queue);
+    }
+    if let Selection::Procedure(_) = of
+        && ui.button("Place it on the map").clicked()
+    {
+        queue.view(ViewCommand::Select(Some(of.clone())));
+        queue.view(ViewCommand::Tool("procedure"));
     }
 }
 
@@ -124,6 +145,6 @@ fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
     if is_loop {
         entries.push(Entry::new("Take its legs out of the loop", "", create::unloop(plan, leg)));
     }
-    entries.push(Entry::new("Delete", "Del", Some(Edit::DeleteLeg { leg: leg.clone() })));
+    entries.push(Entry::new("Delete", "Del", Some(create::delete_leg(plan, leg))));
     entries
 }

@@ -60,8 +60,103 @@ pub fn bound_to(leg: &Leg) -> Option<Id> {
         (Some(Area::Expression(source)), _) | (_, Some(Place::Position(Value::Expression(source)))) => source,
         _ => return None,
     };
-    let is_name = source.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    is_name.then(|| Id::new(source))
+    is_name(source).then(|| Id::new(source))
+}
+
+/// A leg that goes to another place, or is about one: a fix, a position or what an expression gives. `None`: it has no such
+/// place, or one of several.
+pub fn put_at(plan: &FlightPlan, leg: &Id, place: &Place) -> Option<Edit> {
+    let mut leg = plan.leg(leg)?.leg.clone();
+    if matches!(leg.kind, LegKind::Pattern(Pattern::TrackLine { .. } | Pattern::Corridor { .. })) {
+        return None;
+    }
+    place_mut(&mut leg)?.clone_from(place);
+    Some(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
+}
+
+/// A number of a leg that a variable can give.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Numeric {
+    /// One of [`Leg::numbers`], by its name in the document.
+    Own(&'static str),
+    /// Its altitude.
+    Altitude,
+    /// Its airspeed.
+    Speed,
+}
+
+impl Numeric {
+    /// Those that are given on a leg, with their values.
+    pub fn of(leg: &Leg) -> Vec<(Self, &Value<f64>)> {
+        let numbers = leg.numbers().into_iter();
+        let own = numbers.filter_map(|(name, value)| Some((Self::Own(name), value?)));
+        let altitude = leg.altitude.as_ref().map(|altitude| (Self::Altitude, &altitude.metres));
+        let speed = leg.speed_mps.as_ref().map(|speed| (Self::Speed, speed));
+        own.chain(altitude).chain(speed).collect()
+    }
+
+    /// The variable that it consists of.
+    pub fn bound_to(value: &Value<f64>) -> Option<Id> {
+        match value {
+            Value::Expression(source) if is_name(source) => Some(Id::new(source)),
+            _ => None,
+        }
+    }
+
+    /// What it is called in the document.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own(name) => name,
+            Self::Altitude => "altitude",
+            Self::Speed => "speed",
+        }
+    }
+
+    /// The edit that sets it.
+    pub fn set(self, leg: &Leg, value: Value<f64>) -> Option<Edit> {
+        let of = leg.id.clone();
+        Some(match self {
+            Self::Own(name) => Edit::SetNumber { leg: of, name: name.into(), value: Some(value) },
+            Self::Altitude => {
+                let reference = leg.altitude.as_ref()?.reference;
+                Edit::SetAltitude { of, altitude: Some(crate::Altitude { metres: value, reference }) }
+            }
+            Self::Speed => Edit::SetSpeed { of, speed_mps: Some(value) },
+        })
+    }
+
+    /// The edit that makes it what a variable says.
+    pub fn bind(self, leg: &Leg, variable: &Id) -> Option<Edit> {
+        self.set(leg, Value::Expression(variable.as_str().into()))
+    }
+
+    /// A new variable with its value, which it is from then on. `None`: it is an expression already.
+    pub fn make_variable(self, plan: &FlightPlan, leg: &Leg) -> Option<(Id, Edit)> {
+        let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;
+        let Value::Constant(now) = value else { return None };
+        let name = plan.unique_id(&plain(&format!("{}_{}", leg.id, self.name())));
+        let edits = vec![add(&name, VariableValue::Number(*now)), self.bind(leg, &name)?];
+        Some((name, Edit::All(edits)))
+    }
+
+    /// The edit that gives it a value of its own again: what its variable says at the start. `None`: it is not bound to one.
+    pub fn unbind(self, plan: &FlightPlan, leg: &Leg) -> Option<Edit> {
+        let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;
+        match plan.variable(&Self::bound_to(value)?)?.initial {
+            VariableValue::Number(now) => self.set(leg, Value::Constant(now)),
+            _ => None,
+        }
+    }
+}
+
+fn is_name(source: &str) -> bool {
+    !source.is_empty() && source.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+/// A text as a name of the expression language.
+fn plain(text: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    text.chars().map(plain).collect()
 }
 
 fn bound(leg: &Leg, name: &Id, initial: &VariableValue) -> Option<Edit> {
@@ -88,8 +183,7 @@ fn add(name: &Id, initial: VariableValue) -> Edit {
 
 /// A name for the expression language: `scan-1` gives `scan_1_place`.
 fn variable_name(plan: &FlightPlan, of: &Id) -> Id {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-    let name: String = of.as_str().chars().map(plain).collect();
+    let name = plain(of.as_str());
     let mut taken = lists::ids(plan);
     taken.extend(plan.variables.iter().map(|variable| variable.name.clone()));
     lists::fresh(&Id::new(&format!("at_{name}")), &taken)

@@ -63,6 +63,29 @@ pub fn leg(
     })
 }
 
+/// A call of a procedure, put there and turned to a bearing (`None`: as it was written). A procedure without a reference stays
+/// where it is. `None`: there is no such procedure.
+pub fn call(plan: &FlightPlan, procedure: &Id, anchor: Place, bearing_deg: Option<f64>) -> Option<Leg> {
+    let procedure = plan.procedure(procedure)?;
+    let movable = procedure.reference.is_some();
+    let call = Call {
+        procedure: procedure.id.clone(),
+        arguments: Vec::new(),
+        anchor: movable.then_some(anchor),
+        bearing_deg: bearing_deg.filter(|_| movable).map(Value::Constant),
+    };
+    Some(Leg {
+        id: plan.fresh_id(LegChoice::Call.stem()),
+        name: String::new(),
+        emergency: EmergencyChoice::default(),
+        altitude: None,
+        speed_mps: None,
+        next: None,
+        actions: Vec::new(),
+        kind: LegKind::Call(call),
+    })
+}
+
 /// A leg made another kind: it keeps its identifier, name, altitude, speed, actions and, as far as that can be, its place.
 /// `None`: nothing of it can become that.
 pub fn convert(

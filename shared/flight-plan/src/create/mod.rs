@@ -3,22 +3,26 @@
 
 mod arrange;
 mod bind;
+mod branch;
 mod course;
 mod kind;
 mod leg;
 mod rearrange;
 mod thing;
+mod trial;
 
 pub use arrange::{delete_legs, duplicate, fork, loop_around, procedure_of, shift, unloop};
-pub use bind::{bind, bound_to, unbind, variable_of_fix, variable_of_leg};
+pub use bind::{Numeric, bind, bound_to, put_at, unbind, variable_of_fix, variable_of_leg};
+pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
-pub use leg::{Drawn, convert, leg};
+pub use leg::{Drawn, call, convert, leg};
 pub use rearrange::{StageSpot, into_branch, relocate, relocate_stage, shift_legs};
 pub use thing::{
     add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
 };
 pub(crate) use thing::{every_leg, legs_in};
+pub use trial::{RUN_UP_M, is_tried, trial};
 
 use crate::edit::lists;
 use crate::{FlightPlan, Id};

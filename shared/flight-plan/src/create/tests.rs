@@ -158,8 +158,8 @@ fn a_way_home_is_made_for_any_runway() {
     let second = runway(&plan, HOME.destination(0.0, 6000.0), HOME.destination(5.0, 6500.0), 260.0);
     let plan = Edit::Add(Box::new(Thing::Runway(second.clone()))).apply(&plan).unwrap();
     let profile = Profile::default();
-    let plan = emergency_plan(&plan, &second, &profile, &Flat(200.0)).1.apply(&plan).unwrap();
-    let plan = emergency_plan(&plan, &plan.runways[0], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    let plan = emergency_plan(&plan, &second, &[], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    let plan = emergency_plan(&plan, &plan.runways[0], &[], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
     assert_eq!(errors(&plan), Vec::<String>::new());
     let ids: Vec<&str> = plan.emergency_plans.iter().map(|e| e.id.as_str()).collect();
     assert_eq!(ids, ["return", "return2", "return3"]);
@@ -168,6 +168,71 @@ fn a_way_home_is_made_for_any_runway() {
     assert_eq!(plan.emergency.by_cause, [(None, "return".into())], "it has one already");
     let gone = remove(&plan, &"return".into()).apply(&plan).unwrap();
     assert!(gone.emergency.by_cause.is_empty() && gone.emergency_plan(&"return".into()).is_none());
+}
+
+#[test]
+fn an_emergency_plan_drawn_outwards_is_flown_inwards() {
+    let plan = made(Template::Survey);
+    let outwards = [3000.0, 6000.0, 9000.0].map(|far_m| at(HOME.destination(200.0, far_m)));
+    let runway = plan.runways[0].clone();
+    let (id, edit) = emergency_plan(&plan, &runway, &outwards, &Profile::default(), &Flat(200.0));
+    let plan = edit.apply(&plan).unwrap();
+    assert_eq!(errors(&plan), Vec::<String>::new());
+    let legs = &plan.emergency_plan(&id).unwrap().stages[0].legs;
+    let flown: Vec<_> =
+        legs.iter().take(3).map(|leg| (leg.kind_name(), leg.place().unwrap().clone())).collect();
+    let [near, middle, far] = outwards;
+    assert_eq!(flown, [("DF", far), ("TF", middle), ("TF", near)]);
+}
+
+#[test]
+fn a_number_becomes_a_variable_and_comes_back() {
+    let plan = made(Template::Survey);
+    let drawn = Drawn::Circle { centre: at(HOME.destination(150.0, 7000.0)), radius_m: 900.0 };
+    let orbit = leg(&plan, &Profile::default(), LegChoice::Orbit, &drawn, None, None).unwrap();
+    let id = orbit.id.clone();
+    let plan = insert(&plan, orbit, Spot::EndOf("mission".into())).apply(&plan).unwrap();
+    let radius = |plan: &FlightPlan| {
+        let leg = plan.leg(&id).unwrap().leg.clone();
+        let found =
+            Numeric::of(&leg).into_iter().find(|(n, _)| *n == Numeric::Own("radius")).unwrap().1.clone();
+        (leg, found)
+    };
+    let number = Numeric::Own("radius");
+    let (name, edit) = number.make_variable(&plan, &radius(&plan).0).unwrap();
+    let bound = edit.apply(&plan).unwrap();
+    assert_eq!((name.as_str(), errors(&bound)), ("orbit1_radius", Vec::new()));
+    assert_eq!(Numeric::bound_to(&radius(&bound).1), Some(name.clone()));
+    let moved = Edit::SetVariable { name, value: VariableValue::Number(950.0) }.apply(&bound).unwrap();
+    let own = number.unbind(&moved, &radius(&moved).0).unwrap().apply(&moved).unwrap();
+    assert_eq!(radius(&own).1, Value::Constant(950.0));
+}
+
+#[test]
+fn a_procedure_is_called_at_a_place_and_turned() {
+    let plan = made(Template::Patrol);
+    let legs = [plan.stages.iter().find(|s| s.kind == StageKind::Mission).unwrap().legs[0].id.clone()];
+    let (id, edit) = procedure_of(&plan, &legs).unwrap();
+    let plan = edit.apply(&plan).unwrap();
+    let made = call(&plan, &id, at(HOME), Some(90.0)).unwrap();
+    let LegKind::Call(call_of) = &made.kind else { panic!("no call") };
+    assert_eq!(call_of.anchor, Some(at(HOME)));
+    assert_eq!(call_of.bearing_deg, Some(Value::Constant(90.0)));
+    assert!(call(&plan, &"none".into(), at(HOME), None).is_none());
+}
+
+#[test]
+fn a_trial_flies_what_can_be_flown_and_refuses_what_cannot() {
+    let plan = made(Template::Survey);
+    let from = HOME.destination(200.0, 5000.0);
+    let way = Approach { from, course_deg: Some(200.0) };
+    let tried = |to: LatLon| {
+        let drawn = Drawn::Place(at(to));
+        let tf = leg(&plan, &Profile::default(), LegChoice::Tf, &drawn, Some(way), None).unwrap();
+        errors(&trial(&plan, way, 500.0, &tf))
+    };
+    assert_eq!(tried(from.destination(230.0, 3000.0)), Vec::<String>::new());
+    assert!(!tried(from).is_empty(), "a leg of no length");
 }
 
 #[test]

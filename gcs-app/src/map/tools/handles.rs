@@ -1,0 +1,136 @@
+//! The handles that are on the screen, and how they look.
+
+use super::Canvas;
+use super::pen::length;
+use super::pick::selection;
+use crate::chart::labels::Labels;
+use crate::command::Selection;
+use crate::map::sketch::{Handle, Handled, numbers};
+use crate::map::text;
+use crate::theme::Palette;
+use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+
+/// Most handles that react at once; more could not be told apart.
+const MOST: usize = 1000;
+/// A leg that is shorter on the screen shows no middle to be dragged, screen points.
+const GAP: f64 = 90.0;
+
+/// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
+pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let plan = scene.document.plan();
+    let is_shown = move |handle: &Handle| match &handle.what {
+        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side(_) => {
+            scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
+        }
+        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
+            scene.is_selected(&selection(plan, &handle.what))
+        }
+        Handled::Centre(id) => plan.zone(id).is_none() || scene.is_selected(&Selection::Zone(id.clone())),
+        Handled::Between { gap_m, .. } => f64::from(*gap_m) * view.points_per_metre() > GAP,
+        Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) => true,
+    };
+    sketch
+        .handles
+        .iter()
+        .enumerate()
+        .map(move |(key, handle)| (key, handle, view.place(handle.at)))
+        .filter(move |(_, _, at)| view.rect.contains(*at))
+        .filter(move |(_, handle, _)| is_shown(handle))
+        .take(MOST)
+}
+
+/// What a handle that is hovered or dragged has come to.
+pub fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
+    let (plan, units) = (canvas.scene.document.plan(), canvas.scene.units());
+    let text = match &handle.what {
+        Handled::Number { number, ruler, .. } => numbers::words(number, ruler.read(handle.at), units),
+        Handled::Radius(of) => {
+            let centre = canvas.sketch.centre_of(of, plan)?;
+            format!("Radius {}", length(centre.distance_m(handle.at), units))
+        }
+        what if what.is_choice() => what.name(),
+        _ => return None,
+    };
+    Some(Label { at: at + vec2(11.0, -9.0), anchor: Align2::LEFT_BOTTOM, text, first: true })
+}
+
+/// Shapes say what a handle is: triangle a fix, circle a waypoint, cross a centre, square a rim or corner.
+pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: bool, p: &Palette) {
+    let size = if selected || hot { 7.0 } else { 5.0 };
+    let fill = if selected { p.accent } else { p.halo };
+    let stroke = Stroke::new(if hot { 2.4 } else { 1.8 }, if selected { p.text } else { p.accent });
+    match &handle.what {
+        Handled::Fix(_) => {
+            let corners = [vec2(0.0, -1.2), vec2(1.1, 0.8), vec2(-1.1, 0.8)].map(|d| at + d * size);
+            painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
+        }
+        Handled::Variable(_) => {
+            painter.circle(at, size * 0.6, fill, stroke);
+        }
+        Handled::Waypoint(_) => {
+            painter.circle(at, size * 0.8, fill, stroke);
+        }
+        Handled::Centre(_) => {
+            painter.circle(at, size, fill, stroke);
+            painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
+            painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
+        }
+        Handled::Ghost { .. } | Handled::Between { .. } => {
+            let size = if hot { 6.0 } else { 3.5 };
+            painter.circle(at, size, p.halo.gamma_multiply(0.8), Stroke::new(1.4, p.accent));
+            if hot {
+                painter.line_segment([at - vec2(3.5, 0.0), at + vec2(3.5, 0.0)], stroke);
+                painter.line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], stroke);
+            }
+        }
+        Handled::Number { .. } | Handled::ArcCentre(_) => {
+            let corners = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0)];
+            let corners = corners.map(|d| at + d * size).to_vec();
+            painter.add(Shape::convex_polygon(corners, p.halo, stroke));
+        }
+        Handled::Entry { chosen, .. } => {
+            painter.circle(at, size * 0.9, if *chosen { p.accent } else { p.halo }, stroke);
+            painter.circle_filled(at, 2.0, p.text);
+        }
+        Handled::Side(_) => {
+            painter.circle(at, size * 0.9, p.halo, stroke);
+            text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
+        }
+        Handled::Radius(_) | Handled::Corner { .. } => {
+            let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
+            painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
+        }
+    }
+}
+
+/// A name beside a handle.
+pub struct Label {
+    at: Pos2,
+    anchor: Align2,
+    text: String,
+    /// Drawn whatever is there already.
+    first: bool,
+}
+
+pub fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
+    let (id, offset, anchor) = match &handle.what {
+        Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
+        Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
+        _ => return None,
+    };
+    Some(Label { at: at + offset, anchor, text: id.to_string(), first })
+}
+
+/// Names that do not overlap; what is selected or under the pointer comes first.
+pub fn draw_labels(painter: &Painter, mut labels: Vec<Label>, p: &Palette) {
+    labels.sort_by_key(|l| !l.first);
+    let mut placed = Labels::new(painter.clip_rect().into());
+    for label in labels {
+        let size = vec2(label.text.chars().count() as f32 * 7.0, 13.0);
+        let rect = label.anchor.anchor_size(label.at, size);
+        if label.first || placed.is_free(&rect.into()) {
+            placed.take(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p).into());
+        }
+    }
+}

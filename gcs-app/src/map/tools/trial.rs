@@ -1,0 +1,165 @@
+//! What is drawn is flown before it is put into the plan: its path, its length and time, and why it can't be flown.
+
+use super::new_leg::{self, Aim};
+use super::{Canvas, pen};
+use crate::map::polyline::{self, Style};
+use crate::map::view::Mercator;
+use crate::panels::Scene;
+use crate::theme::Palette;
+use crate::units::{self, Units};
+use aircraft::{Profile, Wind};
+use egui::{Painter, Stroke};
+use flight_exec::rehearse::{Options, Preview, Rehearsal, Start};
+use flight_plan::create::{self, Approach, is_tried};
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Value, compile};
+use geometry::LatLon;
+use std::sync::Arc;
+
+/// Longest part of a leg that is tried out, seconds of flight.
+const LONGEST_S: f64 = 300.0;
+/// Most waypoints that are tried out.
+const MOST_WAYPOINTS: usize = 2000;
+/// Above the ground where the plan says nothing, metres.
+const HEIGHT_M: f64 = 150.0;
+
+/// A leg as it would be flown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trial {
+    /// The path, as far as it is known.
+    pub line: Vec<LatLon>,
+    /// Its length, metres, and how long it takes, seconds; `None`: it can't be flown, or is longer than can be tried out.
+    pub cost: Option<(f64, f64)>,
+    /// Why it can't be flown.
+    pub fault: Option<String>,
+    /// The aircraft's speed, m/s, for what is too long to be tried out.
+    pace_mps: f64,
+}
+
+impl Trial {
+    /// `1.2 km · 045° · 1:20`, or that it can't be flown.
+    pub fn words(&self, from: LatLon, to: LatLon, units: Units) -> String {
+        let way = pen::way(from, to, units);
+        match (&self.fault, self.cost) {
+            (Some(_), _) => format!("{way} · can't be flown"),
+            (None, Some((_, time_s))) => format!("{way} · {}", units::duration(time_s)),
+            (None, None) if self.pace_mps > 0.0 => {
+                format!("{way} · about {}", units::duration(from.distance_m(to) / self.pace_mps))
+            }
+            (None, None) => way,
+        }
+    }
+
+    /// `4.2 km · 3:20`.
+    pub fn cost_words(&self, units: Units) -> Option<String> {
+        let (length_m, time_s) = self.cost?;
+        Some(format!("{} · {}", pen::length(length_m, units), units::duration(time_s)))
+    }
+
+    /// Draws the path.
+    pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+        let line: Vec<Mercator> = self.line.iter().map(|at| (*at).into()).collect();
+        let parts = polyline::visible_parts(&line, canvas.view);
+        polyline::draw(painter, &parts, Stroke::new(2.0, p.accent), Style::Dashed, p.halo);
+    }
+}
+
+/// The last leg that was tried out.
+#[derive(Debug, Default)]
+pub struct Trials {
+    tried: Option<(u64, Leg, Approach)>,
+    trial: Trial,
+}
+
+impl Trials {
+    /// A leg that would be put there; flown anew only when it is another.
+    pub fn fly(&mut self, leg: Option<Leg>, aim: &Aim, approach: Option<Approach>, canvas: &Canvas<'_>) {
+        let version = canvas.scene.document.version();
+        let wanted = leg.zip(approach).map(|(leg, approach)| (version, leg, approach));
+        if wanted == self.tried {
+            return;
+        }
+        self.trial = match &wanted {
+            Some((_, leg, approach)) => fly(leg, aim, *approach, canvas.scene),
+            None => Trial::default(),
+        };
+        self.tried = wanted;
+    }
+
+    /// What came out; `None`: nothing was tried out.
+    pub fn get(&self) -> Option<&Trial> {
+        self.tried.as_ref().map(|_| &self.trial)
+    }
+
+    /// Forgets it.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
+    let (plan, ground) = (scene.document.plan(), scene.layers.ground());
+    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+    let ground_amsl_m = ground.elevation_m(approach.from);
+    let level_amsl_m = level_amsl_m(plan, new_leg::level(plan, aim), ground_amsl_m.unwrap_or(0.0));
+    let tried = create::trial(plan, approach, level_amsl_m, leg);
+    let program = match compile(tried, &profile, ground.as_ref()) {
+        Ok(program) => Arc::new(program),
+        Err(problems) => {
+            let fault =
+                problems.into_iter().find(|problem| problem.is_error()).map(|problem| problem.message);
+            return Trial { fault, ..Trial::default() };
+        }
+    };
+    let pace_mps = profile.cruise_airspeed_mps;
+    let rehearsal = Rehearsal::new(profile, ground.clone(), Wind::CALM, options());
+    Trial { pace_mps, ..flown(leg, approach, level_amsl_m, &program, rehearsal) }
+}
+
+fn options() -> Options {
+    let most_s = LONGEST_S;
+    Options { most_s, most_waypoints: MOST_WAYPOINTS, step_s: 0.2, ..Options::default() }
+}
+
+fn flown(
+    leg: &Leg,
+    approach: Approach,
+    altitude_amsl_m: f64,
+    program: &Arc<Program>,
+    mut rehearsal: Rehearsal,
+) -> Trial {
+    let heading_deg = approach.course_deg.unwrap_or(0.0);
+    let position = approach.from.destination(heading_deg + 180.0, create::RUN_UP_M);
+    let start = Start::InFlight { position, altitude_amsl_m, heading_deg };
+    // it ends in the air; a path that is cut short is drawn as far as it goes
+    let outcome = rehearsal.fly(program, start, &mut |_| true);
+    match rehearsal.preview() {
+        Some(preview) => part_of(leg, preview),
+        None => Trial { fault: outcome.err().map(|why| why.to_string()), ..Trial::default() },
+    }
+}
+
+/// The part of a flight that is the leg's.
+fn part_of(leg: &Leg, preview: &Preview) -> Trial {
+    let is_its = |passage: Option<usize>| {
+        passage.and_then(|i| preview.legs.get(i)).is_some_and(|passage| is_tried(&passage.place.leg, &leg.id))
+    };
+    let line =
+        preview.track.iter().filter(|point| is_its(point.passage)).map(|point| point.position).collect();
+    let its = || preview.legs.iter().filter(|passage| is_tried(&passage.place.leg, &leg.id));
+    let length_m: f64 = its().map(|passage| passage.distance_m).sum();
+    let time_s: f64 = its().map(|passage| passage.end_s - passage.start_s).sum();
+    let is_whole = preview.time_s < LONGEST_S && time_s > 0.0;
+    Trial { line, cost: is_whole.then_some((length_m, time_s)), ..Trial::default() }
+}
+
+/// An altitude in force, as far as it is a number.
+fn level_amsl_m(plan: &FlightPlan, level: Option<&Altitude>, ground_amsl_m: f64) -> f64 {
+    match level {
+        Some(Altitude { metres: Value::Constant(metres), reference }) => match reference {
+            AltitudeReference::Amsl => *metres,
+            AltitudeReference::Agl => ground_amsl_m + metres,
+            AltitudeReference::Home => plan.home().map_or(0.0, |home| home.elevation_amsl_m) + metres,
+        },
+        _ => ground_amsl_m + HEIGHT_M,
+    }
+}

@@ -1,0 +1,64 @@
+//! Ways on from a fork, drawn on the map.
+
+use super::drawing::choose;
+use super::{SQUARE, Window};
+use egui::{Key, vec2};
+use egui_kittest::kittest::Queryable;
+use flight_plan::Id;
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+/// The legs of the circuit in their order, each with where it says that it leads.
+fn ways(window: &Window) -> Vec<String> {
+    let plan = window.plan();
+    let said = |next: &Option<Id>| next.as_ref().map_or(String::new(), |next| format!(">{next}"));
+    let legs = plan.stage(&"circuit".into()).unwrap().legs.iter();
+    legs.map(|leg| {
+        let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches).iter();
+        let branches: String = branches.map(|b| format!(" {}{}", b.id, said(&b.next))).collect();
+        format!("{}{}{branches}", leg.id, said(&leg.next))
+    })
+    .collect()
+}
+
+#[test]
+fn a_new_way_is_drawn_from_a_leg_and_taken_back_in_one_step_each() {
+    let mut window = window();
+    let before = ways(&window);
+    window.harness.get_by_label("TF side2").click_secondary();
+    window.steps(3);
+    window.click("Draw a new way from it");
+    assert!(window.shows("Draw legs on a new way from side2"));
+    let at = window.centre("Map");
+    window.click_at(at + vec2(40.0, 90.0));
+    window.click_at(at + vec2(-30.0, 120.0));
+    let drawn = ["side1", "side2", "fork1 on>side3 way2>leg1", "leg1", "leg2", "side3", "side4"];
+    assert_eq!(ways(&window), drawn);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window.press(Key::Backspace);
+    assert_eq!(ways(&window)[3..], ["leg1", "side3", "side4"]);
+    for _ in 0..3 {
+        window.click("Undo");
+    }
+    assert_eq!(ways(&window), before);
+}
+
+#[test]
+fn with_a_fork_selected_legs_are_drawn_into_the_branch_that_is_chosen() {
+    let mut window = window();
+    window.harness.get_by_label("TF side2").click_secondary();
+    window.steps(3);
+    let at = window.harness.get_by_label_contains("Fork before it").rect().center();
+    window.click_at(at);
+    window.press(Key::T);
+    choose(&mut window, "Where: behind fork1", "on “Go on” from fork1");
+    let at = window.centre("Map");
+    window.click_at(at + vec2(40.0, 90.0));
+    assert_eq!(ways(&window), ["side1", "fork1 on>leg1 skip>side3", "leg1", "side2", "side3", "side4"]);
+    assert!(window.shows("Draw legs: ") || window.shows("Next leg"), "the next click goes on from there");
+}

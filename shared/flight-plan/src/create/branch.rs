@@ -1,0 +1,211 @@
+//! Ways on from a fork, drawn leg by leg; and legs put between others without losing where those lead.
+
+use super::arrange::list_of;
+use super::kind::LegChoice;
+use super::leg::{Drawn, leg as new_leg};
+use crate::{Branch, Edit, FlightPlan, Id, Leg, LegKind, Spot};
+use aircraft::Profile;
+
+/// Which way on from a fork.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Way {
+    /// One of its branches.
+    Branch(Id),
+    /// A branch that is made for it.
+    New,
+}
+
+/// Puts a leg where it goes. Behind a leg that says what follows it, the new one leads there instead.
+pub fn insert(plan: &FlightPlan, mut leg: Leg, at: Spot) -> Edit {
+    let before = match &at {
+        Spot::After(id) => plan.any_leg(id).filter(|before| before.next.is_some()),
+        Spot::Before(_) | Spot::EndOf(_) => None,
+    };
+    let Some(before) = before else { return Edit::InsertLeg { leg: Box::new(leg), at } };
+    leg.next.clone_from(&before.next);
+    let freed =
+        Edit::ReplaceLeg { leg: before.id.clone(), with: Box::new(Leg { next: None, ..before.clone() }) };
+    Edit::All(vec![freed, Edit::InsertLeg { leg: Box::new(leg), at }])
+}
+
+/// Takes a leg out. What led to it leads to what followed it.
+pub fn delete_leg(plan: &FlightPlan, id: &Id) -> Edit {
+    let delete = Edit::DeleteLeg { leg: id.clone() };
+    let Some((list, index)) = list_of(plan, id) else { return delete };
+    let following = list.get(index + 1).map(|leg| leg.id.clone());
+    let onward = list.get(index).and_then(|leg| leg.next.clone()).or(following);
+    let mut edits: Vec<Edit> = Vec::new();
+    for leg in list.iter().filter(|leg| leg.id != *id) {
+        let mut changed = leg.as_ref().clone();
+        let is_it = |next: &Option<Id>| next.as_ref() == Some(id);
+        if is_it(&changed.next) {
+            changed.next.clone_from(&onward);
+        }
+        if let LegKind::Intersection { branches, .. } = &mut changed.kind {
+            let hit = branches.iter_mut().filter(|branch| is_it(&branch.next));
+            hit.for_each(|branch| branch.next.clone_from(&onward));
+        }
+        if changed != **leg {
+            edits.push(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(changed) });
+        }
+    }
+    edits.push(delete);
+    Edit::All(edits)
+}
+
+/// A leg at the beginning of a way on from a fork; behind any other leg, a fork is made for it. A new way leads back to where
+/// the flight goes on without a decision. `None`: there is no such leg or branch.
+pub fn begin_way(plan: &FlightPlan, from: &Id, way: &Way, mut leg: Leg) -> Option<Edit> {
+    let (list, index) = list_of(plan, from)?;
+    let (before, behind) = (list.get(index)?, list.get(index + 1).map(|leg| leg.id.clone()));
+    let (mut fork, mut edits) = (before.as_ref().clone(), Vec::new());
+    if fork.as_fork().is_none() {
+        fork = new_leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
+        edits.push(insert(plan, fork.clone(), Spot::After(from.clone())));
+    }
+    fork.next = None;
+    // where a branch leads that names nothing: ways that end with the list meet in a merge
+    let follower = before.next.clone().or(behind.clone()).unwrap_or_else(|| plan.unique_id("merge"));
+    let ways = ways_of(&mut fork, &follower)?;
+    let target = turn_to((&mut *ways.0, ways.1), way, &leg.id)?;
+    let merges = ways.0.iter().any(|branch| branch.next.as_ref() == Some(&follower)) || target == follower;
+    let merge =
+        (behind.is_none() && before.next.is_none() && merges).then(|| merge(plan, follower)).flatten();
+    // it stands right behind the fork, before what followed that
+    let behind = behind.or_else(|| merge.as_ref().map(|merge| merge.id.clone()));
+    leg.next = Some(target).filter(|target| Some(target) != behind.as_ref());
+    let (fork_id, leg_id) = (fork.id.clone(), leg.id.clone());
+    edits.push(Edit::ReplaceLeg { leg: fork_id.clone(), with: Box::new(fork) });
+    edits.push(Edit::InsertLeg { leg: Box::new(leg), at: Spot::After(fork_id) });
+    edits.extend(merge.map(|merge| Edit::InsertLeg { leg: Box::new(merge), at: Spot::After(leg_id) }));
+    Some(Edit::All(edits))
+}
+
+/// The branches of a fork and its default.
+type Ways<'a> = (&'a mut Vec<Branch>, Option<&'a Id>);
+
+/// Every branch says where it leads; there is one at least.
+fn ways_of<'a>(fork: &'a mut Leg, follower: &Id) -> Option<Ways<'a>> {
+    let LegKind::Intersection { branches, default, .. } = &mut fork.kind else { return None };
+    if branches.is_empty() {
+        branches.push(Branch { id: Id::new("on"), label: "Go on".into(), next: None, when: None });
+        *default = Some(Id::new("on"));
+    }
+    for branch in branches.iter_mut() {
+        branch.next.get_or_insert_with(|| follower.clone());
+    }
+    Some((branches, default.as_ref()))
+}
+
+/// Lets a way begin with a leg; gives where that leg leads.
+fn turn_to((branches, default): Ways<'_>, way: &Way, leg: &Id) -> Option<Id> {
+    if let Way::Branch(id) = way {
+        return branches.iter_mut().find(|branch| branch.id == *id)?.next.replace(leg.clone());
+    }
+    let on = branches.iter().find(|branch| Some(&branch.id) == default).or(branches.first())?;
+    let target = on.next.clone();
+    let is_free = |n: &usize| branches.iter().all(|branch| branch.id != way_id(*n));
+    let number = (branches.len() + 1..).find(is_free)?;
+    let (id, label) = (way_id(number), format!("Way {number}"));
+    branches.push(Branch { id, label, next: Some(leg.clone()), when: None });
+    target
+}
+
+fn way_id(number: usize) -> Id {
+    Id::new(&format!("way{number}"))
+}
+
+/// An intersection where ways meet again.
+fn merge(plan: &FlightPlan, id: Id) -> Option<Leg> {
+    let mut made = new_leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
+    if let LegKind::Intersection { branches, default, .. } = &mut made.kind {
+        branches.clear();
+        *default = None;
+    }
+    Some(Leg { id, ..made })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{check, read};
+    use terrain::Flat;
+
+    fn plan(legs: &str) -> FlightPlan {
+        let text = format!(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><fixes><fix id="A" lat="36" lon="-84"/><fix id="B" lat="36.03" lon="-84"/>
+            <fix id="C" lat="36.03" lon="-84.03"/></fixes><mainPlan><stage id="s" type="mission" altitude="600" altitudeReference="amsl">{legs}</stage></mainPlan></flightPlan>"#
+        );
+        let reading = read(&text);
+        assert!(!reading.has_errors(), "{:?}", reading.problems);
+        reading.plan
+    }
+
+    fn drawn(id: &str) -> Leg {
+        let mut leg = plan(r#"<TF id="x" fix="C"/>"#).leg(&"x".into()).unwrap().leg.clone();
+        leg.id = id.into();
+        leg
+    }
+
+    /// The legs in their order, each with where it says that it leads.
+    fn ways(plan: &FlightPlan) -> Vec<String> {
+        let said = |next: &Option<Id>| next.as_ref().map_or(String::new(), |next| format!(">{next}"));
+        let leg = |leg: &std::sync::Arc<Leg>| {
+            let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+            let branches: String = branches.iter().map(|b| format!(" {}{}", b.id, said(&b.next))).collect();
+            format!("{}{}{branches}", leg.id, said(&leg.next))
+        };
+        plan.stages[0].legs.iter().map(leg).collect()
+    }
+
+    fn errors(plan: &FlightPlan) -> Vec<String> {
+        let problems = check(plan, &Profile::default(), &Flat(200.0));
+        let ours = ["unknown-", "duplicate", "unreachable", "next"];
+        let is_ours = |p: &&crate::Problem| p.is_error() && ours.iter().any(|code| p.code.contains(code));
+        problems.iter().filter(is_ours).map(ToString::to_string).collect()
+    }
+
+    const ROUTE: &str = r#"<IF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="A"/>"#;
+
+    #[test]
+    fn a_new_way_leaves_behind_a_leg_and_meets_the_old_one_again() {
+        let plan = plan(ROUTE);
+        let forked = begin_way(&plan, &"b".into(), &Way::New, drawn("n1")).unwrap().apply(&plan).unwrap();
+        assert_eq!(ways(&forked), ["a", "b", "fork1 on>c way2>n1", "n1", "c"]);
+        let longer = insert(&forked, drawn("n2"), Spot::After("n1".into())).apply(&forked).unwrap();
+        let third = begin_way(&longer, &"fork1".into(), &Way::New, drawn("m1")).unwrap();
+        let third = third.apply(&longer).unwrap();
+        assert_eq!(ways(&third), ["a", "b", "fork1 on>c way2>n1 way3>m1", "m1>c", "n1", "n2", "c"]);
+        let longer = insert(&third, drawn("m2"), Spot::After("m1".into())).apply(&third).unwrap();
+        assert_eq!(ways(&longer)[3..], ["m1", "m2>c", "n1", "n2", "c"], "the last one leads back");
+        assert_eq!(errors(&longer), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_leg_is_put_at_the_beginning_of_a_way() {
+        let plan = plan(ROUTE);
+        let forked = begin_way(&plan, &"b".into(), &Way::New, drawn("n1")).unwrap().apply(&plan).unwrap();
+        let way = Way::Branch("on".into());
+        let both = begin_way(&forked, &"fork1".into(), &way, drawn("o1")).unwrap().apply(&forked).unwrap();
+        assert_eq!(ways(&both), ["a", "b", "fork1 on>o1 way2>n1", "o1>c", "n1", "c"]);
+        assert_eq!(errors(&both), Vec::<String>::new());
+        assert!(begin_way(&both, &"fork1".into(), &Way::Branch("no".into()), drawn("x1")).is_none());
+    }
+
+    #[test]
+    fn ways_from_the_last_leg_meet_in_a_merge() {
+        let plan = plan(ROUTE);
+        let forked = begin_way(&plan, &"c".into(), &Way::New, drawn("n1")).unwrap().apply(&plan).unwrap();
+        assert_eq!(ways(&forked), ["a", "b", "c", "fork1 on>merge way2>n1", "n1", "merge"]);
+        assert_eq!(errors(&forked), Vec::<String>::new());
+    }
+
+    #[test]
+    fn what_led_to_a_leg_that_is_taken_out_leads_on() {
+        let plan = plan(ROUTE);
+        let forked = begin_way(&plan, &"b".into(), &Way::New, drawn("n1")).unwrap().apply(&plan).unwrap();
+        let without = delete_leg(&forked, &"n1".into()).apply(&forked).unwrap();
+        assert_eq!(ways(&without), ["a", "b", "fork1 on>c way2>c", "c"]);
+        assert_eq!(errors(&without), Vec::<String>::new());
+    }
+}
