@@ -79,25 +79,35 @@ fn place_is_typed_and_what_is_none_is_refused() {
     }
 }
 
-#[test]
-fn runway_and_area_are_drawn_and_the_plan_flies_there() {
-    let mut window = begun(SIZE);
-    window.click("✏ Draw the runway");
-    assert!(window.shows("click the landing threshold"));
-    draw(&mut window, &[vec2(0.0, 60.0), vec2(40.0, 60.0)]);
-    assert!((guide(&window).heading_deg - 90.0).abs() < 1.0 && guide(&window).drawing.is_none());
-    window.click("✏ Draw the area");
-    draw(&mut window, &[vec2(0.0, -60.0), vec2(90.0, -70.0), vec2(100.0, -150.0), vec2(10.0, -140.0)]);
-    window.press(Key::Enter);
-    assert!(window.shows("area of 4 points"));
+/// A survey of which runway and area were drawn, begun with nothing.
+pub fn drawn_survey(size: egui::Vec2) -> Window {
+    let mut window = begun(size);
+    draw_runway_and_area(&mut window);
     window.click("Create");
     window.until_analysed();
+    window
+}
+
+#[test]
+fn runway_and_area_are_drawn_and_the_plan_flies_there() {
+    let window = drawn_survey(SIZE);
     assert_eq!(window.errors(), Vec::<String>::new());
     let LegKind::Scan(scan) = window.plan().leg(&"scan".into()).unwrap().leg.kind.clone() else {
         panic!("no scan")
     };
     assert!(matches!(scan.area, flight_plan::Area::Polygon { corners, .. } if corners.len() == 4));
     assert!((window.plan().runways[0].heading_deg - 90.0).abs() < 1.0);
+}
+
+fn draw_runway_and_area(window: &mut Window) {
+    window.click("✏ Draw the runway");
+    assert!(window.shows("click the landing threshold"));
+    draw(window, &[vec2(0.0, 60.0), vec2(40.0, 60.0)]);
+    assert!((guide(window).heading_deg - 90.0).abs() < 1.0 && guide(window).drawing.is_none());
+    window.click("✏ Draw the area");
+    draw(window, &[vec2(0.0, -60.0), vec2(90.0, -70.0), vec2(100.0, -150.0), vec2(10.0, -140.0)]);
+    window.press(Key::Enter);
+    assert!(window.shows("area of 4 points"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What the window looks like, compared with pictures that are kept; those of the guide among them.
 
-use super::creating::EMPTY;
+use super::creating::{EMPTY, drawn_survey};
 use super::flying::flying;
 use super::*;
 use egui::Key;
@@ -37,6 +37,13 @@ fn window_without_a_plan() {
     let mut window = with_theme(window, "theme light");
     window.picture("new-light");
     window.guide_picture("guide-new");
+}
+
+#[test]
+fn plan_drawn_from_nothing() {
+    let mut window = drawn_survey(vec2(1280.0, 800.0));
+    window.steps(30);
+    window.guide_picture("guide-drawn");
 }
 
 #[test]
