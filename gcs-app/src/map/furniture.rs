@@ -145,6 +145,7 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
     let in_column = (((map.height() - 12.0) / TOOL) as usize).max(1);
     let columns = cards.chunks(in_column);
     let beside_tools = 16.0 + TOOL * columns.len() as f32;
+    let mut shown = Rect::NOTHING;
     for (index, cards) in columns.enumerate() {
         let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
         let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
@@ -157,8 +158,9 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
                 queue.view(ViewCommand::Tool(card.id));
             }
         }
+        shown |= column.min_rect();
     }
-    tour::mark(ui.ctx(), tour::TOOLS, column.min_rect());
+    tour::mark(ui.ctx(), tour::TOOLS, shown);
     let Some(status) = tools.status(scene) else { return };
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
