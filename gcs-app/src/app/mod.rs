@@ -2,6 +2,7 @@
 //! asked for. Nothing here waits for file, network or computation.
 
 mod filing;
+mod focus;
 mod ground;
 mod keys;
 mod layout;
@@ -444,6 +445,7 @@ impl eframe::App for App {
             keys::read(&ctx, &self.scene(now), &self.fittings(), &mut queue);
         }
         self.lay_out(ui, now, &mut queue);
+        focus::ring(&ctx);
         // what was asked for was meant for the vehicle that was drawn
         let drawn = self.vehicles.shown_name().cloned();
         for command in queue.take() {

@@ -10,10 +10,9 @@ use crate::chart::zones as chart;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::forecast::{Forecast, Passage};
 use crate::panels::tree::title;
-use crate::theme::Palette;
 use crate::units::{self, Units};
 use egui::accesskit::Action;
-use egui::{Key, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo};
+use egui::{Key, Pos2, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use flight_plan::{FlightPlan, Id};
 use geometry::LatLon;
 use std::collections::HashSet;
@@ -53,7 +52,7 @@ pub struct Items {
 
 impl Items {
     /// Offers what is in view to be selected. `fixes`: the tool in use offers no handles of fixes and waypoints.
-    pub fn run(&mut self, ui: &Ui, canvas: &Canvas<'_>, fixes: bool, queue: &mut Queue, p: &Palette) {
+    pub fn run(&mut self, ui: &Ui, canvas: &Canvas<'_>, fixes: bool, queue: &mut Queue) {
         let scene = canvas.scene;
         let made = Made {
             view: *canvas.view,
@@ -68,7 +67,7 @@ impl Items {
         }
         for item in &self.list {
             let selected = scene.is_selected(&item.what);
-            if offer(ui, item, selected, p) {
+            if offer(ui, item, selected) {
                 queue.view(ViewCommand::Select(Some(item.what.clone())));
             }
         }
@@ -77,27 +76,17 @@ impl Items {
 }
 
 /// True: it was chosen by key or by a screen reader.
-fn offer(ui: &Ui, item: &Item, selected: bool, p: &Palette) -> bool {
+fn offer(ui: &Ui, item: &Item, selected: bool) -> bool {
     let id = ui.scope_id().with(("map item", &item.what));
     let rect = Rect::from_center_size(item.at, Vec2::splat(SIDE));
     let response = ui.interact(rect, id, Sense::focusable_noninteractive());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &item.name));
     ui.ctx().accesskit_node_builder(response.id, |node| node.add_action(Action::Click));
     let has_focus = response.has_focus();
-    if has_focus {
-        ring(ui.painter(), item.at, p);
-    }
     ui.input(|i| {
         let pressed = i.key_pressed(Key::Enter) || i.key_pressed(Key::Space);
         (has_focus && pressed) || i.has_accesskit_action_request(response.id, Action::Click)
     })
-}
-
-/// Around what has the keyboard on the map.
-pub fn ring(painter: &Painter, at: Pos2, p: &Palette) {
-    for (width, colour) in [(5.0, p.halo), (2.0, p.accent)] {
-        painter.circle_stroke(at, 0.75 * SIDE, Stroke::new(width, colour));
-    }
 }
 
 /// The aircraft that is shown; there is nothing to be selected of it.
@@ -116,9 +105,6 @@ fn aircraft(ui: &Ui, canvas: &Canvas<'_>) {
     let rect = Rect::from_center_size(at, Vec2::splat(2.0 * SIDE));
     let response = ui.interact(rect, ui.scope_id().with("aircraft"), Sense::focusable_noninteractive());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Aircraft {name}, {state}")));
-    if response.has_focus() {
-        ring(ui.painter(), at, crate::theme::of(ui));
-    }
 }
 
 /// Zones, runways, emergency plans, legs and areas: what is in view of them.

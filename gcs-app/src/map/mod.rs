@@ -267,7 +267,7 @@ impl MapState {
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
-        self.items.run(ui, &canvas, !self.tools.offers_handles(), queue, p);
+        self.items.run(ui, &canvas, !self.tools.offers_handles(), queue);
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);
         clipboard::run(ui, response, &mut self.menu, &canvas, queue);

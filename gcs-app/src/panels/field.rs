@@ -140,13 +140,10 @@ pub fn small_button(ui: &mut Ui, symbol: &str, name: &str) -> bool {
 }
 
 /// A text, taken when the field is left or Enter is pressed.
-pub fn text(ui: &mut Ui, name: &str, current: &str, code: bool) -> Option<String> {
+pub fn text(ui: &mut Ui, name: &str, current: &str) -> Option<String> {
     let id = ui.auto_id_with(("field", name));
     let mut draft = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
-    let mut edit = egui::TextEdit::singleline(&mut draft).id(id).desired_width(ui.available_width() - 30.0);
-    if code {
-        edit = edit.code_editor();
-    }
+    let edit = egui::TextEdit::singleline(&mut draft).id(id).desired_width(ui.available_width() - 30.0);
     let response = ui.add(edit);
     let label = name.to_owned();
     response.widget_info(|| {
@@ -189,9 +186,6 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
         galley,
         if progress > 0.0 { p.text } else { colour },
     );
-    if response.has_focus() {
-        painter.rect_stroke(rect.expand(2.0), 6.0, Stroke::new(1.0, p.text), egui::StrokeKind::Outside);
-    }
     if was_let_go(ui, response.id) {
         response.show_tooltip_text(format!("Nothing was done. Keep it pressed for {HOLD_S:.0} s."));
     } else {

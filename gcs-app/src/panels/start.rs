@@ -76,7 +76,7 @@ fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         RichText::new("Zoom in and click the map, or type it: a position, a city, an airport or its code.")
             .color(p.weak),
     );
-    let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", "", false));
+    let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", ""));
     if let Some(typed) = typed {
         match read(&typed) {
             Ok(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
@@ -185,7 +185,7 @@ fn place(
     mut set: impl FnMut(LatLon),
 ) {
     let shown = units::position(at);
-    let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown, false)));
+    let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown)));
     row.response.on_hover_text(hint);
     if let Some(typed) = row.inner {
         read(&typed).map_or_else(|reason| queue.view(ViewCommand::Notice(reason)), &mut set);

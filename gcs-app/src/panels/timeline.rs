@@ -78,7 +78,6 @@ pub fn strip(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     draw_strip(&ui.painter_at(rect), rect, scene, p);
     if response.has_focus() {
-        ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.0, p.text), egui::StrokeKind::Inside);
         let pressed = |key| ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));
         let by = f64::from(i8::from(pressed(Key::ArrowRight)) - i8::from(pressed(Key::ArrowLeft)));
         if by != 0.0 {

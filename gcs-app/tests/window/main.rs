@@ -15,6 +15,7 @@ mod emergency;
 mod filing;
 mod fleet;
 mod flying;
+mod focusing;
 mod gestures;
 mod handles;
 mod inspecting;

@@ -5,7 +5,6 @@ use super::sweep::Sweep;
 use super::typed::Typed;
 use super::{Asked, Canvas, Card, Grip, Pointer, Tool, Touch, all, guided, is_guided, track};
 use crate::command::Queue;
-use crate::map::items::ring;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::Rect;
@@ -165,9 +164,6 @@ impl Toolbox {
             }
             if response.dragged() {
                 touch.dragged = Some(grip.key);
-            }
-            if response.has_focus() {
-                ring(ui.painter(), grip.at, p);
             }
             asks |= response.secondary_clicked();
             react(tool, &mut self.offset, &response, &grip, canvas, queue);

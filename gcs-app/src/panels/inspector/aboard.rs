@@ -88,12 +88,12 @@ fn variable_field(
                 Change::None
             }
         }
-        VariableValue::Text(current) => match field::text(ui, name, current, false) {
+        VariableValue::Text(current) => match field::text(ui, name, current) {
             Some(new) => Change::Set(VariableValue::Text(new)),
             None => Change::None,
         },
         VariableValue::Position(at) => {
-            let text = field::text(ui, name, &units::position(*at), false);
+            let text = field::text(ui, name, &units::position(*at));
             match text.as_deref().and_then(coordinates::position) {
                 Some(to) => Change::Set(VariableValue::Position(to)),
                 None => Change::None,

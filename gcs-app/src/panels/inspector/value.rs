@@ -113,7 +113,7 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
             return Some(formula::field(ui, page, &name, source, used));
         }
         Kind::Identifier | Kind::Text | Kind::Names | Kind::Instant | Kind::Positions => {
-            if let Some(new) = field::text(ui, &name, value, false) {
+            if let Some(new) = field::text(ui, &name, value) {
                 let optional = property.without.is_some() && new.trim().is_empty();
                 page.set(property, (!optional).then_some(new));
             }
@@ -182,7 +182,7 @@ fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Rang
             page.send(property, change.map(|si| si.to_string()));
         }
         _ => {
-            if let Some(new) = field::text(ui, &name, value, false) {
+            if let Some(new) = field::text(ui, &name, value) {
                 page.set(property, Some(new));
             }
         }
@@ -227,7 +227,7 @@ fn result(page: &Page<'_, '_>, source: &str) -> Option<f64> {
 fn position(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
     let name = page.name(property.label);
     let shown = coordinates::position(value).map_or_else(|| value.to_owned(), units::position);
-    if let Some(typed) = field::text(ui, &name, &shown, false) {
+    if let Some(typed) = field::text(ui, &name, &shown) {
         // what is no position is refused by the document, in words
         let exact = coordinates::position(&typed).map(|at| format!("{} {}", at.lat_deg, at.lon_deg));
         page.set(property, Some(exact.unwrap_or(typed)));
