@@ -79,6 +79,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("egui", &["gcs-app", "pictures"]),
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
+    ("reqwest", &["gcs-app"]),
     ("quick-xml", &["flight-plan", "interchange"]),
     // the fuzzer asks its interpreter what an expression means
     ("cel", &["flight-plan", "fuzz-targets"]),

@@ -5,7 +5,7 @@ use crate::command::Replacement;
 use crate::document::Document;
 use crate::export::Exported;
 use crate::files::{Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
-use crate::layers::LayerCommand;
+use crate::layers::{LayerCommand, Source};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::Level;
@@ -80,7 +80,7 @@ impl App {
                 self.view.notice = None;
             }
             FileEvent::ExportWritten { path, exported } => self.exported(&path, &exported, now_s),
-            FileEvent::MapChosen(path) => self.change_layers(LayerCommand::Add(path)),
+            FileEvent::MapChosen(path) => self.change_layers(LayerCommand::Add(Source::File(path))),
             FileEvent::NoDialog(purpose) => self.ask_here(purpose),
             FileEvent::Listed { folder, entries } => self.show_folder(folder, entries),
             FileEvent::Failed(why) => self.view.notice = Some(why),

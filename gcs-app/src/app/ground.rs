@@ -13,8 +13,8 @@ impl App {
 
     pub(super) fn change_layers(&mut self, command: LayerCommand) {
         match command {
-            LayerCommand::Add(path) => {
-                let added = self.layers.add(&path);
+            LayerCommand::Add(source) => {
+                let added = self.layers.add(source);
                 self.tell(added);
             }
             LayerCommand::Ask { folder } => self.files.ask_map(folder),

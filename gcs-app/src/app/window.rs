@@ -105,8 +105,12 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
         app.files.open(path);
     }
     app.shade_ground(&creation.egui_ctx);
+    let folder = eframe::storage_dir("legwork");
+    if let Some(folder) = &folder {
+        app.layers.keep_tiles_in(&folder.join("tiles"));
+    }
     if options.recover
-        && let Some(folder) = eframe::storage_dir("legwork")
+        && let Some(folder) = &folder
     {
         app.keep_copies(&folder.join("recovery"));
     }

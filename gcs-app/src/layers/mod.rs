@@ -1,10 +1,10 @@
-//! The maps and elevations that users bring: which there are, in which order, and what became of each. Files are opened on
-//! threads of their own.
+//! The maps and elevations that users bring, and the servers of map tiles that they name: which there are, in which order,
+//! and what became of each. They are opened on threads of their own.
 
 mod open;
 
 use crate::jobs::Jobs;
-use crate::tiles::{About, Health, Reader};
+use crate::tiles::{About, Folder, Health, Reader, Template};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -18,8 +18,8 @@ const MOST: usize = 50;
 /// What is asked of the layers.
 #[derive(Debug, Clone)]
 pub enum LayerCommand {
-    /// Add a file or a folder, above all others.
-    Add(PathBuf),
+    /// Add a file, a folder or a server, above all others.
+    Add(Source),
     /// Ask for a file, or for a folder.
     Ask {
         /// A folder of elevation tiles.
@@ -50,11 +50,50 @@ pub struct Layer {
     job: u64,
 }
 
+/// Where a layer comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Source {
+    /// A file or folder.
+    File(PathBuf),
+    /// A server of map tiles.
+    Online(Server),
+}
+
+impl Source {
+    /// What people call it: the file's or the server's name.
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+            Self::Online(server) => Template::new(&server.url)
+                .map_or_else(|_| server.url.clone(), |template| template.host().to_owned()),
+        }
+    }
+}
+
+/// A server of map tiles.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Server {
+    /// The address of a tile, with `{z}`, `{x}` and `{y}` for its numbers.
+    pub url: String,
+    /// Whom the map has to name.
+    pub attribution: String,
+}
+
+impl Server {
+    /// The one that anybody may use who names it, keeps what it gave and asks for no more than is looked at.
+    pub fn openstreetmap() -> Self {
+        Self {
+            url: "https://tile.openstreetmap.org/{z}/{x}/{y}.png".into(),
+            attribution: "© OpenStreetMap contributors".into(),
+        }
+    }
+}
+
 /// What is remembered of a layer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// The file or folder.
-    pub path: PathBuf,
+    /// Where it comes from.
+    pub source: Source,
     /// It is in use.
     pub shown: bool,
     /// How opaque a map is, 0..=1.
@@ -94,8 +133,15 @@ impl std::fmt::Debug for State {
 impl Layer {
     /// What it is called.
     pub fn name(&self) -> String {
-        let path = &self.kept.path;
-        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+        self.kept.source.name()
+    }
+
+    /// All of where it comes from.
+    pub fn origin(&self) -> String {
+        match &self.kept.source {
+            Source::File(path) => path.display().to_string(),
+            Source::Online(server) => server.url.clone(),
+        }
     }
 
     /// South-west and north-east corner, where they are known.
@@ -113,9 +159,9 @@ pub fn is_map(path: &Path, head: &[u8]) -> bool {
     open::kind(path, head).is_some()
 }
 
-/// What a file turned out to be.
+/// What a file or server turned out to be.
 enum Content {
-    Map(Box<dyn Reader>, About),
+    Map { readers: Vec<Box<dyn Reader>>, about: About, health: Arc<Health> },
     Ground { terrain: Arc<dyn Terrain>, bounds: Option<(LatLon, LatLon)>, detail: String },
 }
 
@@ -123,8 +169,8 @@ enum Content {
 pub struct Opened {
     /// Which layer.
     pub id: u64,
-    /// Reads its tiles.
-    pub reader: Box<dyn Reader>,
+    /// Read its tiles.
+    pub readers: Vec<Box<dyn Reader>>,
     /// What it says of itself.
     pub about: About,
     /// How it does.
@@ -143,6 +189,7 @@ pub struct Layers {
     outbox: Sender<(u64, Result<Content, String>)>,
     inbox: Receiver<(u64, Result<Content, String>)>,
     wake: Arc<dyn Fn() + Send + Sync>,
+    tiles: Folder,
 }
 
 impl std::fmt::Debug for Layers {
@@ -166,11 +213,18 @@ impl Layers {
             outbox,
             inbox,
             wake,
+            tiles: Folder::default(),
         };
         for kept in kept.into_iter().take(MOST).rev() {
             layers.put(kept);
         }
         layers
+    }
+
+    /// Keeps the tiles of servers in this folder from now on.
+    pub fn keep_tiles_in(&self, folder: &Path) {
+        // the first one stays
+        let _ = self.tiles.set(folder.to_owned());
     }
 
     /// The uppermost first.
@@ -193,42 +247,47 @@ impl Layers {
         std::mem::take(&mut self.ground_changed)
     }
 
-    /// Whom the map has to name.
-    pub fn attributions(&self) -> impl Iterator<Item = &str> {
+    /// Whom the map has to name, and whether that server can't be reached.
+    pub fn attributions(&self) -> impl Iterator<Item = String> {
         let shown = self.list.iter().filter(|layer| layer.kept.shown);
         shown.filter_map(|layer| match &layer.state {
-            State::Map(about, _) if !about.attribution.is_empty() => Some(about.attribution.as_str()),
+            State::Map(about, health) if !about.attribution.is_empty() => {
+                let offline = if health.is_offline() { " (offline)" } else { "" };
+                Some(format!("{}{offline}", about.attribution))
+            }
             _ => None,
         })
     }
 
-    /// Adds a file or folder above all others; one that is there already is opened again.
+    /// Adds a file, folder or server above all others; one that is there already is opened again.
     ///
     /// # Errors
     /// There are too many.
-    pub fn add(&mut self, path: &Path) -> Result<(), String> {
-        // a relative path means something else in the next run
-        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let same = self.list.iter().position(|layer| layer.kept.path == path);
+    pub fn add(&mut self, source: Source) -> Result<(), String> {
+        let source = match source {
+            // a relative path means something else in the next run
+            Source::File(path) => Source::File(std::path::absolute(&path).unwrap_or(path)),
+            Source::Online(server) => Source::Online(server),
+        };
+        let same = self.list.iter().position(|layer| layer.kept.source == source);
         let kept = same.map(|at| self.list.remove(at).kept);
         if self.list.len() >= MOST {
             return Err(format!("There are {MOST} maps already: remove one first."));
         }
-        self.put(Kept { shown: true, ..kept.unwrap_or(Kept { path, shown: true, opacity: 1.0 }) });
+        self.put(Kept { shown: true, ..kept.unwrap_or(Kept { source, shown: true, opacity: 1.0 }) });
         self.renew_ground();
         Ok(())
     }
 
     fn put(&mut self, kept: Kept) {
         self.next += 1;
-        let (id, path) = (self.next, kept.path.clone());
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let running = self.jobs.begin(format!("Loading {name}"));
+        let (id, source, tiles) = (self.next, kept.source.clone(), self.tiles.clone());
+        let running = self.jobs.begin(format!("Loading {}", kept.source.name()));
         self.list.insert(0, Layer { id, kept, state: State::Opening, job: running.id() });
         let (outbox, wake) = (self.outbox.clone(), self.wake.clone());
         let work = move || {
             // the window may be gone by then
-            let _ = outbox.send((id, open::open(&path, running.progress())));
+            let _ = outbox.send((id, open::open(&source, tiles, running.progress())));
             wake();
         };
         if let Err(error) = std::thread::Builder::new().name("maps".into()).spawn(work) {
@@ -284,17 +343,16 @@ impl Layers {
             // it may have been removed meanwhile
             let Some(layer) = self.list.iter_mut().find(|layer| layer.id == id) else { continue };
             match content {
-                Ok(Content::Map(reader, about)) => {
-                    let health = Arc::<Health>::default();
+                Ok(Content::Map { readers, about, health }) => {
                     layer.state = State::Map(about.clone(), health.clone());
-                    return Some(Ok(Opened { id, reader, about, health }));
+                    return Some(Ok(Opened { id, readers, about, health }));
                 }
                 Ok(Content::Ground { terrain, bounds, detail }) => {
                     layer.state = State::Ground { terrain, bounds, detail };
                     self.renew_ground();
                 }
                 Err(why) => {
-                    let sentence = format!("{} is not used: {why}.", layer.kept.path.display());
+                    let sentence = format!("{} is not used: {why}.", layer.origin());
                     layer.state = State::Failed(why);
                     return Some(Err(sentence));
                 }

@@ -1,8 +1,8 @@
 //! What a file or folder is, by what is in it.
 
-use super::Content;
+use super::{Content, Server, Source};
 use crate::jobs::Progress;
-use crate::tiles::{Mbtiles, PmTiles};
+use crate::tiles::{About, Folder, Health, Mbtiles, Online, PmTiles, Reader, Template};
 use geometry::LatLon;
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -18,7 +18,25 @@ const MOST_BYTES: u64 = 512 << 20;
 const LARGEST_TILE: u64 = 3601 * 3601 * 2;
 
 /// Opens it.
-pub(super) fn open(path: &Path, progress: &Progress) -> Result<Content, String> {
+pub(super) fn open(source: &Source, tiles: Folder, progress: &Progress) -> Result<Content, String> {
+    match source {
+        Source::File(path) => file(path, progress),
+        Source::Online(server) => online(server, tiles),
+    }
+}
+
+fn online(server: &Server, tiles: Folder) -> Result<Content, String> {
+    let health = Arc::<Health>::default();
+    let readers = Online::open(Template::new(&server.url)?, tiles, &health)?;
+    let readers = readers.into_iter().map(|reader| Box::new(reader) as Box<dyn Reader>).collect();
+    Ok(Content::Map { readers, about: Online::about(&server.attribution), health })
+}
+
+fn map((reader, about): (impl Reader + 'static, About)) -> Content {
+    Content::Map { readers: vec![Box::new(reader)], about, health: Arc::default() }
+}
+
+fn file(path: &Path, progress: &Progress) -> Result<Content, String> {
     let unreadable = |error: std::io::Error| format!("it can't be read ({error})");
     let meta = std::fs::metadata(path).map_err(unreadable)?;
     if meta.is_dir() {
@@ -30,12 +48,8 @@ pub(super) fn open(path: &Path, progress: &Progress) -> Result<Content, String> 
     let mut start = [0; 16];
     let length = File::open(path).and_then(|mut file| file.read(&mut start)).map_err(unreadable)?;
     match kind(path, start.get(..length).unwrap_or_default()) {
-        Some(Kind::Mbtiles) => {
-            Mbtiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
-        }
-        Some(Kind::PmTiles) => {
-            PmTiles::open(path).map(|(reader, about)| Content::Map(Box::new(reader), about))
-        }
+        Some(Kind::Mbtiles) => Mbtiles::open(path).map(map),
+        Some(Kind::PmTiles) => PmTiles::open(path).map(map),
         Some(Kind::Tiff) => raster(path),
         Some(Kind::Hgt) => tile(path).map(|tile| ground(vec![tile], 0)),
         None => {

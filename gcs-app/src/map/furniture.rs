@@ -35,7 +35,7 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
         legend(painter, view.rect, p);
     }
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
-    let sources = std::iter::once(assets::ATTRIBUTION).chain(scene.layers.attributions());
+    let sources = std::iter::once(assets::ATTRIBUTION.to_owned()).chain(scene.layers.attributions());
     let sources = sources.collect::<Vec<_>>().join(" · ");
     text::haloed(painter, corner, Align2::RIGHT_BOTTOM, &sources, 10.0, p.weak, p);
     north(painter, view.rect.right_bottom() - vec2(26.0, 44.0), p);

@@ -168,7 +168,7 @@ impl MapState {
 
     /// Shows a map's tiles from now on, as long as its layer is there.
     pub fn add_raster(&mut self, opened: Opened, ctx: &egui::Context) {
-        let raster = Raster::new(vec![opened.reader], opened.about, &opened.health, ctx);
+        let raster = Raster::new(opened.readers, opened.about, &opened.health, ctx);
         self.rasters.insert(opened.id, raster);
     }
 

@@ -1,9 +1,10 @@
 //! The dialog of the map: the maps and elevations that were brought, their order, and what lies on the map's edge.
 
-use super::Scene;
+use super::{Scene, field};
 use crate::command::{Queue, ViewCommand};
-use crate::layers::{Layer, LayerCommand, State};
+use crate::layers::{Layer, LayerCommand, Server, Source, State};
 use crate::theme;
+use crate::tiles::Template;
 use egui::{Align2, Id, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         .anchor(Align2::RIGHT_TOP, vec2(-70.0, 110.0))
         .show(ui.ctx(), |ui| {
             add(ui, queue);
+            online(ui, queue);
             ui.separator();
             list(ui, scene, queue);
             ui.separator();
@@ -63,11 +65,45 @@ fn add(ui: &mut Ui, queue: &mut Queue) {
         let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
         let button = ui.add_enabled(!path.trim().is_empty(), egui::Button::new("Add"));
         if (button.clicked() || entered) && !path.trim().is_empty() {
-            queue.layer(LayerCommand::Add(PathBuf::from(path.trim())));
+            queue.layer(LayerCommand::Add(Source::File(PathBuf::from(path.trim()))));
             path.clear();
         }
     });
     ui.data_mut(|d| d.insert_temp(id, path));
+}
+
+/// A server that is named; nothing is fetched from any other.
+fn online(ui: &mut Ui, queue: &mut Queue) {
+    let id = Id::unique("server of tiles");
+    let mut server = ui.data_mut(|d| d.get_temp::<Server>(id).unwrap_or_default());
+    ui.collapsing("From a server", |ui| {
+        ui.weak("Tiles are fetched as you look at them, and kept for when there is no network.");
+        for (name, hint, text) in [
+            ("Address", "https://server/{z}/{x}/{y}.png", &mut server.url),
+            ("Attribution", "Whom the map has to name", &mut server.attribution),
+        ] {
+            field::row(ui, name, |ui| {
+                let edit = TextEdit::singleline(text).hint_text(hint).desired_width(260.0).char_limit(2000);
+                ui.add(edit).on_hover_text(hint)
+            });
+        }
+        let wrong = Template::new(&server.url).err();
+        if let Some(wrong) = wrong.as_ref().filter(|_| !server.url.trim().is_empty()) {
+            ui.colored_label(theme::of(ui).caution, format!("⚠ {wrong}"));
+        }
+        ui.horizontal(|ui| {
+            let ready = wrong.is_none() && !server.attribution.trim().is_empty();
+            let add = ui.add_enabled(ready, egui::Button::new("Add the server"));
+            if add.on_disabled_hover_text("It needs an address and an attribution").clicked() {
+                queue.layer(LayerCommand::Add(Source::Online(std::mem::take(&mut server))));
+            }
+            let preset = ui.button("OpenStreetMap").on_hover_text("Fill in the address of openstreetmap.org");
+            if preset.clicked() {
+                server = Server::openstreetmap();
+            }
+        });
+    });
+    ui.data_mut(|d| d.insert_temp(id, server));
 }
 
 fn list(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -86,8 +122,7 @@ fn row(ui: &mut Ui, layer: &Layer, is_first: bool, queue: &mut Queue) {
     let (id, name, p) = (layer.id, layer.name(), theme::of(ui));
     ui.horizontal(|ui| {
         let mut shown = layer.kept.shown;
-        let path = layer.kept.path.display().to_string();
-        if ui.checkbox(&mut shown, name.as_str()).on_hover_text(path).clicked() {
+        if ui.checkbox(&mut shown, name.as_str()).on_hover_text(layer.origin()).clicked() {
             queue.layer(LayerCommand::Show(id, shown));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -116,6 +151,9 @@ fn row(ui: &mut Ui, layer: &Layer, is_first: bool, queue: &mut Queue) {
                 });
                 if slider.changed() {
                     queue.layer(LayerCommand::Opacity(id, opacity));
+                }
+                if health.is_offline() {
+                    ui.weak("offline").on_hover_text("The server does not answer; what was fetched is shown");
                 }
                 match health.unreadable() {
                     0 => {}

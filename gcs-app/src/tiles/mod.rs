@@ -4,18 +4,20 @@
 
 mod desk;
 mod mbtiles;
+mod online;
 mod picture;
 mod pmtiles;
 mod relief;
 
 pub use desk::{Desk, Done};
 pub use mbtiles::Mbtiles;
+pub use online::{Folder, Online, Template};
 pub use pmtiles::PmTiles;
 pub use relief::Relief;
 
 use egui::ColorImage;
 use geometry::LatLon;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Deepest zoom level of a tile: a pixel is a few centimetres.
 pub const MAX_ZOOM: u8 = 24;
@@ -89,7 +91,7 @@ impl Default for About {
 #[derive(Debug, Default)]
 pub struct Health {
     unreadable: AtomicUsize,
-    failing: AtomicUsize,
+    offline: AtomicBool,
 }
 
 impl Health {
@@ -97,15 +99,16 @@ impl Health {
     pub fn unreadable(&self) -> usize {
         self.unreadable.load(Ordering::Relaxed)
     }
-    /// The last tile could not be had.
-    pub fn is_failing(&self) -> bool {
-        self.failing.load(Ordering::Relaxed) > 0
+    /// The server did not answer when it was asked last.
+    pub fn is_offline(&self) -> bool {
+        self.offline.load(Ordering::Relaxed)
+    }
+    fn set_offline(&self, offline: bool) {
+        self.offline.store(offline, Ordering::Relaxed);
     }
     fn note(&self, answer: &Answer) {
-        match answer {
-            Answer::Unreadable => drop(self.unreadable.fetch_add(1, Ordering::Relaxed)),
-            Answer::Later => self.failing.store(1, Ordering::Relaxed),
-            Answer::Picture(_) | Answer::Nothing => self.failing.store(0, Ordering::Relaxed),
+        if matches!(answer, Answer::Unreadable) {
+            self.unreadable.fetch_add(1, Ordering::Relaxed);
         }
     }
 }
