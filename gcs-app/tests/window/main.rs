@@ -38,6 +38,7 @@ mod telling;
 mod tools;
 mod tree;
 mod vehicle;
+mod waiting;
 mod watching;
 mod whatif;
 
@@ -49,6 +50,7 @@ use gcs_app::assets;
 use gcs_app::document::Document;
 use gcs_app::link::{Endpoint, Links};
 use pictures::Raster;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
@@ -68,12 +70,22 @@ impl Window {
 
     /// A window of some size that remembers an earlier one.
     fn open_with(text: &str, size: Vec2, storage: Option<&'static dyn eframe::Storage>) -> Self {
+        Self::open_over(text, size, storage, assets::demo_terrain())
+    }
+
+    /// The same over some ground.
+    fn open_over(
+        text: &str,
+        size: Vec2,
+        storage: Option<&'static dyn eframe::Storage>,
+        ground: Arc<dyn terrain::Terrain>,
+    ) -> Self {
         let (links, far) = Links::pair();
         let document = Document::read(text.as_bytes(), None);
         let builder = Harness::builder().with_size(size).with_step_dt(1.0 / 60.0);
         let harness = builder.renderer(Raster::default()).build_eframe(move |creation| {
             creation.storage = storage;
-            App::new(creation, document, links, assets::demo_terrain()).unwrap()
+            App::new(creation, document, links, ground).unwrap()
         });
         Self { harness, far, gestures: 0 }
     }
