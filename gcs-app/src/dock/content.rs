@@ -79,7 +79,8 @@ impl<'a> Content<'a> {
     /// The title of a panel that is alone in its place: it is dragged by it. True if that begins.
     fn title_bar(&mut self, ui: &mut Ui, id: PanelId) -> bool {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), TAB_BAR - 4.0), Sense::hover());
-        let handle = ui.interact(rect, ui.scope_id().with("title"), Sense::click_and_drag());
+        // there is nothing to be done with it by key
+        let handle = ui.interact(rect, ui.scope_id().with("title"), Sense::CLICK | Sense::DRAG);
         let mut bar =
             ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
         let weak = theme::of(ui).weak;
@@ -102,14 +103,14 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The header in a row of its own; none where the panel has no header.
+    /// The header in a row of its own, or in two where that is narrow; none where the panel has no header.
     fn header_row(&mut self, ui: &mut Ui, id: PanelId) {
         let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), TAB_BAR));
-        let layout = Layout::left_to_right(Align::Center);
+        let layout = Layout::left_to_right(Align::Center).with_main_wrap(rect.width() < HEADER);
         let mut row = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         self.header(&mut row, id);
         if row.min_rect().width() > 0.0 {
-            ui.advance_cursor_after_rect(rect);
+            ui.advance_cursor_after_rect(rect.union(row.min_rect()));
         }
     }
 
@@ -121,7 +122,7 @@ impl<'a> Content<'a> {
 }
 
 /// Least width of a header beside tabs; with less, it stands below them, screen points.
-const HEADER: f32 = 200.0;
+const HEADER: f32 = 240.0;
 /// Around a panel.
 const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 8 };
 

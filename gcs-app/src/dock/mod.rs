@@ -30,6 +30,7 @@ pub struct Dock {
     tree: PanelTree,
     /// Panels that the operator has hidden; they keep their places.
     hidden: BTreeSet<PanelId>,
+    wanted: fit::Wanted,
 }
 
 impl Dock {
@@ -40,7 +41,11 @@ impl Dock {
     }
 
     fn default_of(panels: &[Box<dyn Panel>]) -> Self {
-        let empty = || Self { tree: PanelTree::empty(egui::Id::unique("dock")), hidden: BTreeSet::new() };
+        let empty = || Self {
+            tree: PanelTree::empty(egui::Id::unique("dock")),
+            hidden: BTreeSet::new(),
+            wanted: Default::default(),
+        };
         // a test shows that it is sound
         Self::of(&Stored::default_of(panels), panels).unwrap_or_else(empty)
     }
@@ -49,7 +54,7 @@ impl Dock {
         let ids = || panels.iter().map(|panel| panel.id());
         let known: Vec<PanelId> = std::iter::once(MAP).chain(ids()).collect();
         let hidden = ids().filter(|id| stored.hidden.contains(*id)).collect();
-        Some(Self { tree: stored.tree(&known)?, hidden })
+        Some(Self { tree: stored.tree(&known)?, hidden, wanted: Default::default() })
     }
 
     /// Stores the layout for the next run.
@@ -85,7 +90,7 @@ impl Dock {
             self.tree.set_visible(tile, self.shows(panel) && content.is_relevant(panel));
         }
         if let Some(root) = self.tree.root() {
-            fit::fit(&mut self.tree.tiles, root, ui.available_size());
+            fit::fit(&mut self.tree.tiles, root, ui.available_size(), &mut self.wanted);
         }
         content.begin(&self.tree.tiles);
         self.tree.ui(content, ui);

@@ -72,11 +72,12 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         queue.consider(Command::ReturnToMain { leg: leg.clone() });
     }
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
-    combo.show_ui(ui, |ui| {
+    let shown = combo.show_ui(ui, |ui| {
         for other in main() {
             if ui.selectable_label(*other == leg, scene.vehicle.leg_name(other)).clicked() {
                 ui.data_mut(|d| d.insert_temp(id, other.clone()));
             }
         }
     });
+    shown.response.on_hover_text("Return to the main plan at another leg");
 }

@@ -118,8 +118,13 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.close();
     }
     ui.label(scene.vehicle.link.text());
-    super::field::row(ui, "Gateway at", |ui| ui.add(text(&mut form.endpoint)));
-    super::field::row(ui, "Vehicle", |ui| ui.add(text(&mut form.vehicle)));
+    super::field::row(ui, "Gateway at", |ui| {
+        ui.add(text(&mut form.endpoint))
+            .on_hover_text("Where the vehicle's gateway listens, as tcp/127.0.0.1:7447")
+    });
+    super::field::row(ui, "Vehicle", |ui| {
+        ui.add(text(&mut form.vehicle)).on_hover_text("The vehicle's name, as its agent was started with")
+    });
     let endpoint = connections::endpoint(&form.endpoint);
     let wrong = endpoint.as_ref().err().cloned().or_else(|| connections::name_problem(&form.vehicle));
     let p = theme::of(ui);

@@ -3,7 +3,8 @@
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
-use egui::{RichText, ScrollArea, Sense, Ui};
+use egui::text::LayoutJob;
+use egui::{FontId, RichText, ScrollArea, Sense, Ui};
 use flight_plan::{FlightPlan, Id, Problem};
 
 /// The panel.
@@ -43,7 +44,8 @@ fn list(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if problems.is_empty() {
         return;
     }
-    let height = 44.0;
+    // two lines each, and more where there is room
+    let height = (ui.available_height() / problems.len() as f32).clamp(44.0, 110.0).floor();
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show_rows(
         ui,
         height,
@@ -75,10 +77,16 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
         {
             queue.edit((**fix).clone());
         }
-        ui.vertical(|ui| {
-            let text = RichText::new(format!("{}{place}", problem.message)).size(12.0);
-            ui.add(egui::Label::new(text).wrap().selectable(false).sense(Sense::hover()));
-        });
+        // what has no room stands in the tooltip
+        let mut job = LayoutJob::simple(
+            format!("{}{place}", problem.message),
+            FontId::proportional(12.0),
+            p.text,
+            ui.available_width(),
+        );
+        job.wrap.max_rows = (height / 15.0) as usize;
+        let text = ui.painter().layout_job(job);
+        ui.painter().galley(ui.cursor().min, text, p.text);
     });
     let response = response.on_hover_text(format!("{}\n{}", problem.code, problem.message));
     if response.clicked()

@@ -9,7 +9,7 @@ use flight_plan::{LegKind, Pattern};
 pub const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
 
 /// A window without a plan, at the example's hills.
-pub fn begun(size: egui::Vec2) -> Window {
+fn begun(size: egui::Vec2) -> Window {
     let mut window = Window::open_with(EMPTY, size, None);
     window.steps(3);
     window.click("Among the example's hills");

@@ -41,7 +41,7 @@ fn tab_leads_through_the_window_and_what_has_the_keyboard_is_seen() {
     for name in [
         "Legwork",
         "○ Connect",
-        "TF side3",
+        "TF side2",
         "Map",
         "Runway R05",
         "Path of side4",

@@ -31,6 +31,7 @@ mod reach;
 mod reading;
 mod recovering;
 mod recreating;
+mod states;
 mod store;
 mod table;
 mod tasks;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
 
-pub fn opened(text: &str) -> Window {
+fn opened(text: &str) -> Window {
     let mut window = Window::open(text);
     window.until_analysed();
     window.harness.get_all_by_label("What if").next().unwrap().click();

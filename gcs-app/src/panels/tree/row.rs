@@ -148,9 +148,6 @@ fn background(ui: &Ui, rect: Rect, selected: bool, response: &Response) {
     } else if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
     }
-    if response.has_focus() {
-        ui.painter().rect_stroke(rect.shrink(0.5), 4.0, Stroke::new(1.0, p.accent), egui::StrokeKind::Inside);
-    }
 }
 
 /// Draws what stands in a row, and returns what of it had no room.
@@ -176,14 +173,16 @@ fn contents(ui: &Ui, rect: Rect, row: &Row, look: &Look<'_>, renames: bool) -> S
     let size = if row.tag.is_empty() { 12.0 } else { 13.0 };
     let text = line(ui, row.text.clone(), size, colour, right - x);
     let end = x + text.size().x;
-    let cut = if text.elided { row.text.clone() } else { String::new() };
+    let mut cut = if text.elided { row.text.clone() } else { String::new() };
     painter.galley(pos2(x, y - text.size().y / 2.0), text, colour);
     let room = right - end - 8.0;
     if room > 24.0 {
         let plan = look.scene.document.plan();
         let alternate =
             row.alternates.as_ref().and_then(|a| alternates::in_short(plan, a, row.selection.as_ref()));
-        aside(ui, &row.detail, alternate, pos2(right, y), room, p);
+        if aside(ui, &row.detail, alternate, pos2(right, y), room, p) {
+            cut = format!("{}  {}", row.text, row.detail);
+        }
     }
     cut
 }
@@ -199,7 +198,8 @@ fn problem(painter: &egui::Painter, rect: Rect, row: &Row, look: &Look<'_>, p: &
     right - 18.0
 }
 
-/// What is said beside the name: of the row itself, and what is in force there, paler where it is inherited.
+/// What is said beside the name: of the row itself, and what is in force there, paler where it is inherited. True: not all
+/// of it had room.
 fn aside(
     ui: &Ui,
     detail: &str,
@@ -207,7 +207,7 @@ fn aside(
     right: egui::Pos2,
     room: f32,
     p: &Palette,
-) {
+) -> bool {
     let mut job = LayoutJob::default();
     let format = |colour| TextFormat::simple(FontId::proportional(11.0), colour);
     job.append(detail, 0.0, format(p.weak));
@@ -217,7 +217,9 @@ fn aside(
         job.append(&format!("⚑ {text}"), space, format(colour));
     }
     let galley = ui.painter().layout_job(one_line(job, room));
-    ui.painter().galley(pos2(right.x - galley.size().x, right.y - galley.size().y / 2.0), galley, p.weak);
+    let (at, is_cut) = (right - vec2(galley.size().x, galley.size().y / 2.0), galley.elided);
+    ui.painter().galley(at, galley, p.weak);
+    is_cut
 }
 
 fn line(ui: &Ui, text: String, size: f32, colour: Color32, width: f32) -> Arc<Galley> {

@@ -102,7 +102,7 @@ impl Cache {
         if let Err(error) = written {
             tracing::debug!(%error, "a tile is not kept");
         }
-        if self.kept.fetch_add(1, Ordering::Relaxed) % PERIOD == 0 {
+        if self.kept.fetch_add(1, Ordering::Relaxed).is_multiple_of(PERIOD) {
             self.tidy();
         }
     }

@@ -115,7 +115,7 @@ impl Fetcher {
                     Ok(Fetched::Tile { bytes: Vec::new(), tag: String::new(), lifetime_s })
                 }
                 status => {
-                    let asked = text(response.headers(), RETRY_AFTER).parse().map_or(0, |s: u32| s);
+                    let asked = text(response.headers(), RETRY_AFTER).parse::<u32>().unwrap_or(0);
                     Err(Trouble { why: status.to_string(), asked: Duration::from_secs(asked.into()) })
                 }
             }
