@@ -52,20 +52,24 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
 fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
     let actions = all(scene, fittings);
     let menu = ui.menu_button(RichText::new("Legwork").strong(), |ui| {
-        section(ui, &actions, &[Group::File], queue);
-        submenu(ui, "Export", &actions, &[Group::Export], queue);
-        recent_menu(ui, scene, queue);
-        ui.separator();
-        submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
-        submenu(ui, "Panels", &actions, &[Group::Panel], queue);
-        submenu(ui, "What if", &actions, &[Group::WhatIf], queue);
-        submenu(ui, "Maps", &actions, &[Group::Maps], queue);
-        ui.separator();
-        section(ui, &actions, &[Group::Units], queue);
-        ui.separator();
-        section(ui, &actions, &[Group::Theme], queue);
-        ui.separator();
-        section(ui, &actions, &[Group::Help], queue);
+        // a small window has no room for all of it
+        let most = ui.ctx().content_rect().height() - 60.0;
+        egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+            section(ui, &actions, &[Group::File], queue);
+            submenu(ui, "Export", &actions, &[Group::Export], queue);
+            recent_menu(ui, scene, queue);
+            ui.separator();
+            submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
+            submenu(ui, "Panels", &actions, &[Group::Panel], queue);
+            submenu(ui, "What if", &actions, &[Group::WhatIf], queue);
+            submenu(ui, "Maps", &actions, &[Group::Maps], queue);
+            ui.separator();
+            section(ui, &actions, &[Group::Units], queue);
+            ui.separator();
+            section(ui, &actions, &[Group::Theme], queue);
+            ui.separator();
+            section(ui, &actions, &[Group::Help], queue);
+        });
     });
     tour::mark(ui.ctx(), tour::MENU, menu.response.rect);
     for (id, symbol) in [("undo", "↶"), ("redo", "↷")] {

@@ -1,6 +1,5 @@
-//! The window never waits: whatever is slow (the ground, a disk, a server) is held fast here, and frames go on.
+//! The window never waits: whatever is slow (the ground, a server) is held fast here, and frames go on.
 
-use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
@@ -83,19 +82,4 @@ fn frames_go_on_while_a_server_of_tiles_does_not_answer() {
         (silent.local_addr().unwrap().to_string(), 0)
     );
     assert!(window.app().view().notice.is_none());
-}
-
-#[test]
-#[cfg(unix)]
-fn frames_go_on_while_a_file_is_not_read_yet() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("slow.xml");
-    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
-    let mut window = Window::open(super::creating::EMPTY);
-    window.steps(2);
-    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
-    window.steps(20);
-    assert!(window.plan().stages.is_empty(), "whoever reads it waits for its bytes");
-    std::fs::write(&path, SQUARE).unwrap();
-    window.until("the plan", |app| !app.document().plan().stages.is_empty());
 }
