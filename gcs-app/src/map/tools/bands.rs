@@ -29,15 +29,13 @@ pub fn behind(canvas: &Canvas<'_>, aim: &Aim) -> Vec<Band> {
     let plan = canvas.scene.document.plan();
     let mut bands = Vec::new();
     let around = match aim {
-        Aim::Spot(Spot::Before(id)) => plan.leg(id).map(|context| {
-            lead_to(canvas, context.leg, &context, DEEPEST, &mut bands);
-            context
+        Aim::Spot(Spot::Before(id)) => plan.leg(id).inspect(|context| {
+            lead_to(canvas, context.leg, context, DEEPEST, &mut bands);
         }),
-        Aim::Spot(Spot::After(id)) => plan.leg(id).map(|context| {
-            follow(canvas, &context, DEEPEST, &mut bands);
-            context
+        Aim::Spot(Spot::After(id)) => plan.leg(id).inspect(|context| {
+            follow(canvas, context, DEEPEST, &mut bands);
         }),
-        Aim::Way { from, way } => plan.leg(from).map(|context| {
+        Aim::Way { from, way } => plan.leg(from).inspect(|context| {
             let branch = context.leg.as_fork().and_then(|fork| {
                 let is_it = |branch: &&flight_plan::Branch| match way {
                     Way::Branch(id) => branch.id == *id,
@@ -46,12 +44,11 @@ pub fn behind(canvas: &Canvas<'_>, aim: &Aim) -> Vec<Band> {
                 fork.branches.iter().find(is_it)?.next.as_ref()
             });
             match branch.and_then(|id| context.siblings.iter().find(|leg| leg.id == *id)) {
-                Some(target) => lead_to(canvas, target, &context, DEEPEST, &mut bands),
-                None => following(&context).into_iter().for_each(|next| {
-                    lead_to(canvas, next, &context, DEEPEST, &mut bands);
+                Some(target) => lead_to(canvas, target, context, DEEPEST, &mut bands),
+                None => following(context).into_iter().for_each(|next| {
+                    lead_to(canvas, next, context, DEEPEST, &mut bands);
                 }),
             }
-            context
         }),
         Aim::Spot(Spot::EndOf(_)) => None,
     };

@@ -47,7 +47,7 @@ fn words(name: &str) -> String {
 }
 
 /// Variables of the sort that is wanted.
-fn variables<'a>(plan: &'a FlightPlan, is_fit: fn(&VariableValue) -> bool) -> impl Iterator<Item = &'a Id> {
+fn variables(plan: &FlightPlan, is_fit: fn(&VariableValue) -> bool) -> impl Iterator<Item = &Id> {
     plan.variables.iter().filter(move |variable| is_fit(&variable.initial)).map(|variable| &variable.name)
 }
 
