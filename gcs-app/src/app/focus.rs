@@ -5,6 +5,10 @@ use egui::{Context, StrokeKind};
 
 /// Draws a ring around it. Fields that are typed into have a cursor and a frame of their own.
 pub fn ring(ctx: &Context) {
+    // to read a response takes the keyboard from it if the pointer is just pressed or released beside it
+    if ctx.input(|i| i.pointer.any_pressed() || i.pointer.any_released()) {
+        return;
+    }
     let focused = ctx.memory(|m| m.focused()).filter(|_| !ctx.text_edit_focused());
     let Some(response) = focused.and_then(|id| ctx.read_response(id)) else { return };
     let p = theme::palette(ctx.global_style().visuals.dark_mode);

@@ -54,7 +54,7 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
     let menu = ui.menu_button(RichText::new("Legwork").strong(), |ui| {
         // a small window has no room for all of it
         let most = ui.ctx().content_rect().height() - 60.0;
-        egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+        egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
             section(ui, &actions, &[Group::File], queue);
             submenu(ui, "Export", &actions, &[Group::Export], queue);
             recent_menu(ui, scene, queue);
