@@ -168,9 +168,9 @@ struct Attempt {
 impl Attempt {
     /// It ended without a reply, and not because nobody was there: the connection that it went out on is gone, or somebody had it
     /// for a while.
-    fn may_have_been_taken(&self, inner: &Weak<Inner>) -> bool {
+    fn may_have_been_taken(&self, ended: Instant, inner: &Weak<Inner>) -> bool {
         let is_connected = inner.upgrade().is_some_and(|inner| inner.is_connected());
-        self.was_connected && (!is_connected || self.begun.elapsed() > HELD)
+        self.was_connected && (!is_connected || ended - self.begun > HELD)
     }
 }
 
@@ -230,8 +230,11 @@ impl Request {
                 Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
                 Ok(Some(reply)) => return self.read(&reply),
                 Ok(None) => {
-                    lost |= attempt.may_have_been_taken(&self.inner);
-                    if Instant::now() + RETRY >= last_attempt {
+                    let ended = Instant::now();
+                    // a connection that breaks ends its requests a moment before it is known to be gone
+                    tokio::time::sleep(RETRY).await;
+                    lost |= attempt.may_have_been_taken(ended, &self.inner);
+                    if Instant::now() >= last_attempt {
                         let name = self.name;
                         return Err(if lost {
                             CallError::Lost { name }
@@ -239,7 +242,6 @@ impl Request {
                             CallError::Unreachable { name }
                         });
                     }
-                    tokio::time::sleep(RETRY).await;
                     attempt = self.attempt()?;
                 }
             }
