@@ -308,7 +308,10 @@ fn wait_is_flown(trace: &Trace, found: &mut Findings) {
     for (begin_s, seconds, steps) in waits(trace) {
         let Some(last) = steps.last().filter(|s| !s.after.circles()) else { continue };
         let interfered = |s: &Step| {
-            s.is_jump() || matches!(s.input(), Some(Input::Rejected { .. } | Input::Progress { .. }))
+            // a commit that is gone back on at once circles again at the next moment
+            s.is_jump()
+                || s.is_undone()
+                || matches!(s.input(), Some(Input::Rejected { .. } | Input::Progress { .. }))
         };
         if !steps.iter().any(interfered) {
             let waited_s = last.moment.now.as_secs_f64() - begin_s;
