@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// Width of the strip along a line that was drawn, metres.
 const STRIP_M: f64 = 200.0;
+/// A fire may grow to so many times its radius.
+const GROWN: f64 = 1.2;
 /// How often a fire is scanned.
 const PASSES: f64 = 2.0;
 
@@ -46,7 +48,7 @@ impl Outline {
         let (half_m, radius_m) = (self.extent.half_width_m(), self.extent.radius_m());
         let scanned_m2 = match self.template {
             Template::Survey | Template::Search => 4.0 * half_m * radius_m,
-            Template::FireWatch => PASSES * 4.0 * half_m * radius_m,
+            Template::FireWatch => PASSES * 4.0 * (GROWN * half_m) * (GROWN * radius_m),
             Template::Corridor => 2.0 * radius_m * self.strip_m(),
             Template::Circuit | Template::Patrol => 0.0,
         };
@@ -90,7 +92,7 @@ impl Outline {
             Variable {
                 unit: "m".into(),
                 min: Some((radius_m / 2.0).max(200.0).round()),
-                max: Some((radius_m * 1.2).round()),
+                max: Some((radius_m * GROWN).round()),
                 ..radius
             },
         ]
