@@ -1,9 +1,11 @@
-//! Copy, cut, paste and duplicate: legs as text, and coordinates as a waypoint.
+//! Copy, cut, paste and duplicate: legs as text, coordinates as a waypoint, and drawings of other programs.
 
+use super::drawings;
 use super::menu::Menu;
 use super::tools::{Canvas, new_leg};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
+use crate::panels::start;
 use egui::{Context, Event, Key, Modifiers, Response, Ui};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
@@ -55,14 +57,23 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
     }
 }
 
-/// Coordinates become a waypoint where they say; legs come to where the pointer is.
+/// Coordinates become a waypoint where they say, a drawing becomes legs there; legs come to where the pointer is.
 fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Queue) {
     let scene = canvas.scene;
     let plan = scene.document.plan();
+    let drawing = drawings::read(text);
+    if let (Some(drawing), true) = (&drawing, start::is_wanted(scene)) {
+        let answered = drawing.as_ref().map_err(String::clone);
+        let answered = answered.and_then(|features| drawings::answer(features, &scene.view.guide));
+        return queue.view(answered.map_or_else(ViewCommand::Notice, ViewCommand::Guide));
+    }
     let Some(aim) = new_leg::aim(plan, scene.view.selection.as_ref(), &Side::Behind) else {
         return queue
             .view(ViewCommand::Notice("Make a new mission first: it has a stage to paste into.".into()));
     };
+    if let (Some(drawing), Aim::Spot(at)) = (drawing, &aim) {
+        return put(drawing.and_then(|features| drawings::legs(&features, at.clone(), canvas)), queue);
+    }
     let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
     let known = Known { plan: Some(plan), aircraft, near: under, world: None };
     match coordinates::read(text, &known) {

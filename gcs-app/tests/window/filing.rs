@@ -33,6 +33,8 @@ fn plan_is_saved_and_opened_without_a_desktops_dialog() {
     first.click("TF side2");
     first.press_ctrl(egui::Key::S);
     until_listed(&mut first);
+    let proposed = first.app().view().browsing.as_ref().map(|browsing| browsing.name.clone());
+    assert_eq!(proposed.as_deref(), Some("Square circuit.xml"), "the plan's name");
     name(&mut first, &folder.path().join("mine"));
     first.click("Go there");
     until_listed(&mut first);

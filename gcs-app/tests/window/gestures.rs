@@ -94,6 +94,13 @@ impl Window {
         self.steps(1);
     }
 
+    /// Pastes a text.
+    pub fn paste(&mut self, text: &str) {
+        self.gestures += 1;
+        self.harness.event(Event::Paste(text.into()));
+        self.steps(3);
+    }
+
     /// Takes an entry of what a heading of the tree can add.
     pub fn add_to(&mut self, heading: &str, entry: &str) {
         self.click_role(Role::Button, &format!("Add to {heading}"));

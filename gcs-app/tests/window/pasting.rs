@@ -28,11 +28,6 @@ fn taken(window: &mut Window, event: Event) -> String {
     text.unwrap_or_default()
 }
 
-fn paste(window: &mut Window, text: &str) {
-    window.harness.event(Event::Paste(text.into()));
-    window.steps(3);
-}
-
 #[test]
 fn copied_legs_are_pasted_at_the_pointer_even_in_another_window() {
     let mut window = window();
@@ -44,7 +39,7 @@ fn copied_legs_are_pasted_at_the_pointer_even_in_another_window() {
     let here = other.centre("Map") + vec2(90.0, 60.0);
     other.harness.hover_at(here);
     other.steps(2);
-    paste(&mut other, &text);
+    other.paste(&text);
     assert_eq!(legs(&other), ["side1", "side2", "side3", "side4", "side5"]);
     assert_eq!(other.selected(), "side5");
     assert!(other.centre("Waypoint side5").distance(here) < 3.0);
@@ -72,12 +67,12 @@ fn pasted_coordinates_are_a_waypoint() {
     let mut window = window();
     window.click("TF side4");
     let at = gcs_app::coordinates::position("36°31'N 84°12'W").unwrap();
-    paste(&mut window, "  36°31'N 84°12'W\n");
+    window.paste("  36°31'N 84°12'W\n");
     let plan = window.plan();
     let leg = plan.leg(&"leg1".into()).unwrap();
     assert!(transform::places(&plan, leg.leg)[0].distance_m(at) < 0.1);
     // where the pointer is not, and by the name of something
-    paste(&mut window, "090° 300 m from A");
+    window.paste("090° 300 m from A");
     let plan = window.plan();
     let a = plan.fix(&"A".into()).unwrap().position;
     let second = transform::places(&plan, plan.leg(&"leg2".into()).unwrap().leg)[0];
@@ -91,12 +86,31 @@ fn what_cannot_be_pasted_is_refused_in_words() {
         ("x".repeat(50 << 20), "50 MB"),
         ("hello".into(), "neither legs nor a place"),
         ("<html/>".into(), "no flight plan"),
+        ("<kml/>".into(), "no point, line or area"),
+        ("<kml".into(), "That KML can't be pasted"),
+        (format!("<kml>{}</kml>", " ".repeat(5 << 20)), "more than 4 MB"),
     ] {
-        paste(&mut window, &text);
+        window.paste(&text);
         let notice = window.app().view().notice.clone().unwrap_or_default();
         assert!(notice.contains(why), "{notice}");
     }
     assert!(!window.is_enabled("Undo"));
+}
+
+#[test]
+fn a_drawing_of_another_program_becomes_legs() {
+    let mut window = window();
+    window.click("TF side2");
+    window.paste(include_str!("../../../shared/interchange/tests/fixtures/places.kml"));
+    let plan = window.plan();
+    let stage = plan.stage(&"circuit".into()).unwrap();
+    let kinds: Vec<&str> = stage.legs.iter().map(|leg| gcs_app::panels::tree::leg_tag(&leg.kind)).collect();
+    assert_eq!(kinds, ["TF", "TF", "TF", "CORR", "SCAN", "TF", "TF"]);
+    assert_eq!(stage.legs[3].name, "Road");
+    let flight_plan::LegKind::Scan(scan) = &stage.legs[4].kind else { panic!() };
+    assert!(matches!(&scan.area, flight_plan::Area::Polygon { holes, .. } if holes.len() == 1));
+    window.click("Undo");
+    assert_eq!(legs(&window).len(), 4, "one step");
 }
 
 #[test]
@@ -107,7 +121,7 @@ fn what_is_typed_into_a_field_is_pasted_there() {
     let name = window.harness.get_all_by_role(egui::accesskit::Role::TextInput).next().unwrap();
     name.focus();
     window.steps(1);
-    paste(&mut window, "36.5, -84.2");
+    window.paste("36.5, -84.2");
     assert_eq!(legs(&window), ["side1", "side2", "side3", "side4"]);
 }
 
@@ -115,6 +129,6 @@ fn what_is_typed_into_a_field_is_pasted_there() {
 fn a_clipboard_too_large_for_a_field_is_refused_in_words() {
     let mut window = Window::open(SQUARE);
     window.press_ctrl(egui::Key::K);
-    paste(&mut window, &"x".repeat(50 << 20));
+    window.paste(&"x".repeat(50 << 20));
     assert!(window.shows("Nothing was pasted: the clipboard holds 51200 kB"));
 }

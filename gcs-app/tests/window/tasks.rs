@@ -9,7 +9,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_exec::Command;
-use flight_plan::{Cause, FlightPlan, Id, LegKind, compile};
+use flight_plan::{Cause, FlightPlan, Id, LegKind, Pattern, compile};
 use gcs_app::assets;
 use gcs_app::link::{Call, Reply};
 
@@ -71,6 +71,47 @@ fn survey_with_alternates_from_an_empty_map() {
     let scan = plan.leg(&"scan".into()).unwrap().leg;
     assert_eq!(scan.emergency.by_cause, [(None, away.id), (Some(Cause::Engine), way_home.id)]);
     flies(&mut window);
+}
+
+/// A road, as a map of the web copies it.
+const ROAD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><name>The road</name><LineString><coordinates>
+  -84.1780,36.3060,0 -84.1690,36.3075,0 -84.1600,36.3062,0
+</coordinates></LineString></Placemark></Document></kml>"#;
+
+#[test]
+fn corridor_along_a_pasted_kml_line() {
+    let mut window = opened(SQUARE);
+    window.select_row(("TF side2", 0));
+    window.paste(ROAD);
+    let plan = window.plan();
+    let made = plan.leg(&window.selected().as_str().into()).unwrap();
+    assert_eq!(made.leg.name, "The road");
+    let LegKind::Pattern(Pattern::Corridor { route, .. }) = &made.leg.kind else { panic!("no corridor") };
+    assert_eq!(route.len(), 3);
+    window.fill_in(Role::SpinButton, "Width", "200");
+    assert!(window.gestures <= 5, "{} gestures", window.gestures);
+    flies(&mut window);
+    window.click("Undo");
+    window.click("Undo");
+    assert_eq!(window.plan(), flight_plan::read(SQUARE).plan, "one step each");
+}
+
+#[test]
+fn new_mission_along_a_pasted_kml_line() {
+    let mut window = Window::open_with(EMPTY, SIZE, None);
+    window.steps(3);
+    window.paste(ROAD);
+    assert!(window.shows("Say where you fly first"));
+    window.click("Among the example's hills");
+    window.paste(ROAD);
+    assert!(window.shows("There is no area in what was copied"), "a survey is of an area");
+    window.click("Corridor");
+    window.paste(ROAD);
+    window.click("Create");
+    let plan = window.plan();
+    let is_it = |kind: &LegKind| matches!(kind, LegKind::Pattern(Pattern::Corridor { route, .. }) if route.len() == 3);
+    assert!(plan.all_legs().iter().any(|context| is_it(&context.leg.kind)));
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod track;
 mod wpl;
 mod xml;
 
+pub use drawing::{Feature, Shape, Vertex};
 pub use note::Note;
 pub use synthetic::Assumptions;
 pub use track::{RecordedFlight, TrackEvent, TrackPoint, write_flights};
@@ -191,6 +192,24 @@ pub fn read(format: Format, bytes: &[u8], assumptions: &Assumptions) -> Result<I
         Format::Gpx => drawing::read(gpx::read(bytes)?, assumptions),
         Format::Csv => Err(Error::WriteOnly),
     }
+}
+
+/// What a drawing holds, before it becomes parts of a plan; missions have no such thing.
+///
+/// # Errors
+/// As for [`read`].
+pub fn features(format: Format, bytes: &[u8]) -> Result<Vec<Feature>, Error> {
+    if bytes.len() > MAX_BYTES {
+        return Err(Error::TooLong);
+    }
+    let drawing = match format {
+        Format::Kml => kml::read(bytes)?,
+        Format::Kmz => kmz::read(bytes)?,
+        Format::GeoJson => geojson::read(bytes)?,
+        Format::Gpx => gpx::read(bytes)?,
+        Format::Plan | Format::Waypoints | Format::Csv => return Ok(Vec::new()),
+    };
+    Ok(drawing.features)
 }
 
 /// Writes a file.
