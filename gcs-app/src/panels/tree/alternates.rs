@@ -80,20 +80,14 @@ pub fn submenu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], queue: &mut Qu
     });
 }
 
-/// What is in force in a few words, and whether it is named there: `Return home`, `Return home, from Fire watch`.
-pub(super) fn in_short(
-    plan: &FlightPlan,
-    all: &Alternates,
-    of: Option<&Selection>,
-) -> Option<(String, bool)> {
+/// What is named there itself, in a few words: `Return home`, `Return home +1`. What is inherited is no news on every row.
+pub(super) fn own_in_short(plan: &FlightPlan, all: &Alternates, of: Option<&Id>) -> Option<String> {
+    let own = || all.iter().filter_map(|(_, in_force)| in_force).filter(|f| f.from.as_ref() == of);
     // as the vehicle says it: what would be flown on the operator's word
-    let usual = all.get(Cause::Operator).or_else(|| all.iter().find_map(|(_, in_force)| in_force))?;
-    let others = all.iter().filter_map(|(_, in_force)| in_force);
-    let others: BTreeSet<&Id> = others.map(|f| &f.plan).filter(|id| **id != usual.plan).collect();
+    let usual = own().find(|f| all.get(Cause::Operator) == Some(f)).or_else(|| own().next())?;
+    let others: BTreeSet<&Id> = own().map(|f| &f.plan).filter(|id| **id != usual.plan).collect();
     let more = if others.is_empty() { String::new() } else { format!(" +{}", others.len()) };
-    let is_own = usual.from.as_ref() == of.map(Selection::id);
-    let from = if is_own { String::new() } else { format!(", from {}", origin(plan, usual)) };
-    Some((format!("{}{more}{from}", plan_name(plan, &usual.plan)), is_own))
+    Some(format!("{}{more}", plan_name(plan, &usual.plan)))
 }
 
 /// The emergency plan for every cause, and who names it.
@@ -131,4 +125,26 @@ fn origin(plan: &FlightPlan, in_force: &InForce) -> String {
 pub fn plan_name(plan: &FlightPlan, id: &Id) -> String {
     let name = plan.emergency_plan(id).map_or("", |emergency| emergency.name.as_str());
     title(name, id.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_says_what_it_names_itself_and_not_what_it_inherits() {
+        let choice = |by_cause: &[(Option<Cause>, &str)]| EmergencyChoice {
+            by_cause: by_cause.iter().map(|(cause, plan)| (*cause, Id::new(plan))).collect(),
+        };
+        let plan = FlightPlan::default();
+        let whole = Alternates::default().within(&choice(&[(None, "home")]), None);
+        let leg = Id::new("leg");
+        let said = |own: &[(Option<Cause>, &str)]| {
+            own_in_short(&plan, &whole.within(&choice(own), Some(&leg)), Some(&leg)).unwrap_or_default()
+        };
+        assert_eq!(own_in_short(&plan, &whole, None).as_deref(), Some("home"), "the plan itself");
+        assert_eq!(said(&[]), "");
+        assert_eq!(said(&[(Some(Cause::Engine), "field")]), "field");
+        assert_eq!(said(&[(None, "strip"), (Some(Cause::Engine), "field")]), "strip +1");
+    }
 }

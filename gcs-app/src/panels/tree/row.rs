@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub(super) const HEIGHT: f32 = 23.0;
 /// From a row to those in it, screen points.
 const INDENT: f32 = 13.0;
+/// Width of a heading's `+`, screen points; clear of the scroll bar.
+const ADD: f32 = 42.0;
 
 /// What all rows are drawn with.
 pub(super) struct Look<'a> {
@@ -127,9 +129,7 @@ fn menus(ui: &Ui, row: &Row, response: &Response, opens: bool, scene: &Scene<'_>
 
 /// At the end of a heading: what can be made there.
 fn add_button(ui: &Ui, row: Rect, group: Group, scene: &Scene<'_>, queue: &mut Queue) {
-    // clear of the scroll bar
-    let rect =
-        Rect::from_min_max(pos2(row.right() - 42.0, row.top()), pos2(row.right() - 12.0, row.bottom()));
+    let rect = Rect::from_min_max(pos2(row.right() - ADD, row.top()), pos2(row.right() - 12.0, row.bottom()));
     let button = ui.interact(rect, ui.scope_id().with(group.name()), Sense::click());
     button.widget_info(|| {
         egui::WidgetInfo::labeled(Role::Button, true, format!("Add to {}", group.name().to_lowercase()))
@@ -168,7 +168,7 @@ fn contents(ui: &Ui, rect: Rect, row: &Row, look: &Look<'_>, renames: bool) -> S
     if renames {
         return String::new();
     }
-    let right = problem(&painter, rect, row, look, p);
+    let right = problem(&painter, rect, row, look, p) - if row.group.is_some() { ADD } else { 0.0 };
     let colour = if active { p.active } else { p.text };
     let size = if row.tag.is_empty() { 12.0 } else { 13.0 };
     let text = line(ui, row.text.clone(), size, colour, right - x);
@@ -178,8 +178,8 @@ fn contents(ui: &Ui, rect: Rect, row: &Row, look: &Look<'_>, renames: bool) -> S
     let room = right - end - 8.0;
     if room > 24.0 {
         let plan = look.scene.document.plan();
-        let alternate =
-            row.alternates.as_ref().and_then(|a| alternates::in_short(plan, a, row.selection.as_ref()));
+        let of = row.selection.as_ref().map(Selection::id);
+        let alternate = row.alternates.as_ref().and_then(|a| alternates::own_in_short(plan, a, of));
         if aside(ui, &row.detail, alternate, pos2(right, y), room, p) {
             cut = format!("{}  {}", row.text, row.detail);
         }
@@ -198,23 +198,21 @@ fn problem(painter: &egui::Painter, rect: Rect, row: &Row, look: &Look<'_>, p: &
     right - 18.0
 }
 
-/// What is said beside the name: of the row itself, and what is in force there, paler where it is inherited. True: not all
-/// of it had room.
+/// What is said beside the name: of the row itself, and which emergency plan it names. True: not all of it had room.
 fn aside(
     ui: &Ui,
     detail: &str,
-    alternate: Option<(String, bool)>,
+    alternate: Option<String>,
     right: egui::Pos2,
     room: f32,
     p: &Palette,
 ) -> bool {
     let mut job = LayoutJob::default();
-    let format = |colour| TextFormat::simple(FontId::proportional(11.0), colour);
-    job.append(detail, 0.0, format(p.weak));
-    if let Some((text, is_own)) = alternate {
+    let format = TextFormat::simple(FontId::proportional(11.0), p.weak);
+    job.append(detail, 0.0, format.clone());
+    if let Some(text) = alternate {
         let space = if detail.is_empty() { 0.0 } else { 8.0 };
-        let colour = if is_own { p.weak } else { p.weak.gamma_multiply(0.7) };
-        job.append(&format!("⚑ {text}"), space, format(colour));
+        job.append(&format!("⚑ {text}"), space, format);
     }
     let galley = ui.painter().layout_job(one_line(job, room));
     let (at, is_cut) = (right - vec2(galley.size().x, galley.size().y / 2.0), galley.elided);

@@ -26,7 +26,7 @@ pub(super) struct Row {
     pub nests: bool,
     /// It is a branch of the fork that it selects.
     pub branch: Option<Id>,
-    /// Of a leg or stage.
+    /// Of a leg or stage, or of the whole plan.
     pub alternates: Option<Arc<Alternates>>,
 }
 
@@ -45,7 +45,8 @@ pub(super) fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
     let mut builder = Builder { rows: Vec::new(), folded };
     let whole = Arc::new(Alternates::default().within(&plan.emergency, None));
     for group in Group::ALL.into_iter().filter(|group| group.is_shown(plan)) {
-        builder.group(group, |b| match group {
+        let alternates = (group == Group::Stages && !plan.stages.is_empty()).then(|| whole.clone());
+        builder.group(group, alternates, |b| match group {
             Group::Stages => plan.stages.iter().for_each(|stage| b.stage(stage, 1, Some(&whole))),
             Group::EmergencyPlans => b.emergency_plans(plan),
             Group::Procedures => b.procedures(plan),
@@ -64,10 +65,16 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn group(&mut self, group: Group, children: impl FnOnce(&mut Self)) {
+    fn group(&mut self, group: Group, alternates: Option<Arc<Alternates>>, children: impl FnOnce(&mut Self)) {
         let name = group.name();
-        let row =
-            Row { key: name.into(), text: name.into(), group: Some(group), folds: true, ..Row::default() };
+        let row = Row {
+            key: name.into(),
+            text: name.into(),
+            group: Some(group),
+            folds: true,
+            alternates,
+            ..Row::default()
+        };
         if self.push(row) {
             children(self);
         }
