@@ -148,8 +148,8 @@ pub enum ViewCommand {
     Theme(egui::ThemePreference),
     /// How large everything is.
     Scale(crate::theme::Scale),
-    /// Open the command palette, or close it.
-    Palette(bool),
+    /// Open the command palette with the beginning of what is typed there, or close it.
+    Palette(Option<&'static str>),
     /// Show this topic of the help, by its key; `None` closes it.
     Help(Option<String>),
     /// Show the plan and type what to search in it.

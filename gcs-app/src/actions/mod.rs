@@ -4,6 +4,7 @@
 //! To add an action: a line in [`table`]. Tools and panels come from their own registries.
 
 pub mod alternates;
+pub mod bindings;
 pub mod fuzzy;
 pub mod places;
 mod table;

@@ -11,7 +11,7 @@ use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 use flight_exec::{Command as PlanCommand, Phase};
-use flight_plan::{Cause, create};
+use flight_plan::{Cause, Id, create};
 use interchange::Format;
 use usal::contract::{GatewayRequest, GatewayState};
 
@@ -113,6 +113,8 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
     entry(Group::Edit, "earlier", "Move the selected legs or stage up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
     entry(Group::Edit, "later", "Move the selected legs or stage down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
+    entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
+    entry(Group::Edit, "bind", "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
     entry(Group::Edit, "select-nothing", "Close help or tour, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
@@ -153,7 +155,7 @@ pub const ENTRIES: &[Entry] = &[
 
     choice(Group::Help, "help", "Help about what is selected", |s| Kind::Switch(s.view.help.is_some()), help).with_keys(&[plain(Key::F1)]),
     entry(Group::Help, "tour", "Tour of the window", &[], |_| view(ViewCommand::Tour(Some(0)))),
-    entry(Group::Help, "palette", "All commands…", &[ctrl(Key::K), ctrl_shift(Key::P)], |_| view(ViewCommand::Palette(true))),
+    entry(Group::Help, "palette", "All commands…", &[ctrl(Key::K), ctrl_shift(Key::P)], |_| view(ViewCommand::Palette(Some("")))),
 ];
 
 impl Entry {
@@ -228,6 +230,26 @@ fn delete(scene: &Scene<'_>) -> Asked {
 
 fn rename(scene: &Scene<'_>) -> Asked {
     view(ViewCommand::Rename(scene.view.selection.clone().ok_or(NOTHING)?))
+}
+
+/// A leg of the flight, alone.
+fn one_leg<'a>(scene: &'a Scene<'_>) -> Result<&'a Id, &'static str> {
+    match &scene.view.selection {
+        Some(Selection::Leg(leg)) if scene.document.plan().leg(leg).is_some() => Ok(leg),
+        _ => Err("Select a leg first"),
+    }
+}
+
+fn new_way(scene: &Scene<'_>) -> Asked {
+    view(ViewCommand::DrawWay(one_leg(scene)?.clone()))
+}
+
+/// Which variable and what of the leg is chosen in the palette.
+fn bind(scene: &Scene<'_>) -> Asked {
+    if create::bindings(scene.document.plan(), one_leg(scene)?).is_empty() {
+        return Err("The selected leg has no place and no number");
+    }
+    view(ViewCommand::Palette(Some("bind the ")))
 }
 
 /// Moves the selected legs, or the stage, among their neighbours.

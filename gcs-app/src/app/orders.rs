@@ -189,7 +189,7 @@ impl App {
             ViewCommand::Units(units) => self.view.units = units,
             ViewCommand::Theme(theme) => self.view.theme = theme,
             ViewCommand::Scale(scale) => self.view.scale = scale,
-            ViewCommand::Palette(open) => self.view.palette = open,
+            ViewCommand::Palette(begins) => self.view.palette = begins,
             ViewCommand::Help(topic) => self.view.help = topic,
             ViewCommand::Search => {
                 self.dock.show_panel(crate::panels::tree::ID, true);

@@ -2,6 +2,7 @@
 //! (`flight_plan::describe`), whatever it is. Every change is an edit of the document, and one undo step.
 
 mod aboard;
+mod bind;
 mod form;
 mod formula;
 pub mod inherited;

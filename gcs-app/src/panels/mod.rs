@@ -4,6 +4,7 @@
 
 pub mod alarms;
 pub mod bar;
+pub mod binding;
 pub mod browse;
 pub mod changed;
 pub mod consider;
@@ -145,8 +146,8 @@ pub struct ViewState {
     pub theme: egui::ThemePreference,
     /// How large everything is.
     pub scale: theme::Scale,
-    /// The command palette is open.
-    pub palette: bool,
+    /// The command palette is open; what is typed in it begins with this.
+    pub palette: Option<&'static str>,
     /// The topic of the help that is read, by its key.
     pub help: Option<String>,
     /// The plan's search is about to get the keyboard.
@@ -323,7 +324,7 @@ impl<'a> Scene<'a> {
             || self.view.browsing.is_some()
             || self.view.imported.is_some()
             || self.view.exported.is_some()
-            || self.view.palette
+            || self.view.palette.is_some()
     }
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {

@@ -1,9 +1,11 @@
 //! The command palette: everything that can be done, found by a few letters.
 
 use super::{Scene, field};
-use crate::actions::{Action, Fittings, Kind, all, alternates, fuzzy, places};
+use crate::actions::{Action, Fittings, Kind, all, alternates, bindings, fuzzy, places};
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align2, Area, Id, Key, Modifiers, Order, RichText, ScrollArea, Ui, vec2};
 
 const WIDTH: f32 = 460.0;
@@ -19,14 +21,18 @@ pub struct CommandPalette {
     current: usize,
     /// An action that must be held.
     held: Option<Action>,
+    is_open: bool,
 }
 
 impl CommandPalette {
     /// Draws it, while it is open.
     pub fn show(&mut self, ui: &Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
-        if !scene.view.palette {
+        let Some(begins) = scene.view.palette else {
             *self = Self::default();
             return;
+        };
+        if !std::mem::replace(&mut self.is_open, true) {
+            self.begin(ui, begins);
         }
         let window = ui.ctx().content_rect();
         let area = Area::new(Id::unique("palette")).order(Order::Foreground);
@@ -38,8 +44,16 @@ impl CommandPalette {
         });
         let escaped = ui.input(|i| i.key_pressed(Key::Escape));
         if escaped || shown.response.clicked_elsewhere() {
-            queue.view(ViewCommand::Palette(false));
+            queue.view(ViewCommand::Palette(None));
         }
+    }
+
+    /// With a text in its field, to be typed on.
+    fn begin(&mut self, ui: &Ui, text: &str) {
+        text.clone_into(&mut self.query);
+        let mut state = TextEditState::default();
+        state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(text.chars().count()))));
+        state.store(ui.ctx(), field_id());
     }
 
     fn contents(&mut self, ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
@@ -53,7 +67,7 @@ impl CommandPalette {
         });
         let entered = ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter));
         let field = egui::TextEdit::singleline(&mut self.query)
-            .id(Id::unique("palette query"))
+            .id(field_id())
             .hint_text("What do you want to do?  A few letters are enough")
             .desired_width(f32::INFINITY);
         let typed = ui.add(field);
@@ -109,9 +123,13 @@ impl CommandPalette {
             return;
         }
         // first, for what was chosen may open it again
-        queue.view(ViewCommand::Palette(false));
+        queue.view(ViewCommand::Palette(None));
         queue.push(command.clone());
     }
+}
+
+fn field_id() -> Id {
+    Id::unique("palette query")
 }
 
 /// A dangerous action is not done by Enter alone.
@@ -121,7 +139,7 @@ fn hold(ui: &mut Ui, action: &Action, queue: &mut Queue) {
     if field::hold_button(ui, &action.name, p.warning, ui.available_width())
         && let Ok(command) = &action.command
     {
-        queue.view(ViewCommand::Palette(false));
+        queue.view(ViewCommand::Palette(None));
         queue.push(command.clone());
     }
 }
@@ -135,6 +153,7 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
         return actions;
     }
     actions.extend(alternates::of(scene));
+    actions.extend(bindings::of(scene));
     actions.extend(places::of(scene.document.plan()));
     let score = |action: &Action| fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
     let mut scored: Vec<(i32, Action)> =

@@ -1,7 +1,6 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
 pub mod alternates;
-mod bind;
 mod drag;
 mod drop;
 mod keyboard;

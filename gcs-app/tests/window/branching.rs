@@ -29,9 +29,8 @@ fn ways(window: &Window) -> Vec<String> {
 fn a_new_way_is_drawn_from_a_leg_and_taken_back_in_one_step_each() {
     let mut window = window();
     let before = ways(&window);
-    window.harness.get_by_label("TF side2").click_secondary();
+    window.row_menu(("TF side2", 0), "Draw a new way from it");
     window.steps(3);
-    window.click("Draw a new way from it");
     assert!(window.shows("Draw legs on a new way from side2"));
     let at = window.centre("Map");
     window.click_at(at + vec2(40.0, 90.0));

@@ -4,6 +4,7 @@
 
 mod announcing;
 mod arranging;
+mod binding;
 mod branching;
 mod comparing;
 mod connecting;

@@ -25,13 +25,13 @@ fn a_few_letters_and_enter_do_what_they_find() {
     assert!(window.shows("Units Aviation"));
     window.press(Key::Enter);
     assert_eq!(window.app().view().units, Units::Aviation);
-    assert!(!window.app().view().palette);
+    assert!(window.app().view().palette.is_none());
     window.ask_for("fire and forget");
     assert!(window.shows("Nothing has these letters"));
     window.press(Key::Enter);
-    assert!(window.app().view().palette);
+    assert!(window.app().view().palette.is_some());
     window.press(Key::Escape);
-    assert!(!window.app().view().palette);
+    assert!(window.app().view().palette.is_none());
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn what_is_not_possible_says_why_and_does_nothing() {
     let row = window.harness.get_by_label("Flight Push the plan to the vehicle");
     assert!(egui_kittest::kittest::NodeT::accesskit_node(&row).is_disabled());
     window.press(Key::Enter);
-    assert!(window.app().view().palette && window.asked().is_none());
+    assert!(window.app().view().palette.is_some() && window.asked().is_none());
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn keys_change_the_size_and_a_key_of_the_palette_is_shown() {
     assert!((window.app().view().scale.get() - 0.8).abs() < 1e-6, "no smaller");
     window.harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::P);
     window.steps(3);
-    assert!(window.app().view().palette);
+    assert!(window.app().view().palette.is_some());
 }
 
 #[test]

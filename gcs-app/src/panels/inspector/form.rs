@@ -1,7 +1,7 @@
 //! The rows of a part: drawn from its description, whatever it is.
 
 use super::page::Page;
-use super::{level, list, value};
+use super::{bind, level, list, value};
 use crate::panels::field;
 use egui::Ui;
 use flight_plan::describe::{Change, OneOf, Row};
@@ -54,17 +54,22 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     let labels: Vec<&str> = one.ways.iter().map(|way| way.label).collect();
     let inside = way.and_then(|way| one.ways.get(way)).map_or(&[][..], |way| way.rows);
     let name = page.name(one.label);
+    let binding = bind::place_of(page, one);
     let (chosen, below) = field::row_with_help(ui, one.label, one.help, |ui| {
         let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
         let alone = inside.split_first().filter(|_| short && !page.is_several());
-        let Some((Row::Property(property), [])) = alone else {
-            return (field::choice(ui, &name, &labels, way), None);
+        let chosen = match alone {
+            Some((Row::Property(property), [])) => {
+                let chosen = within(ui, WAY_WIDTH, |ui| field::choice(ui, &name, &labels, way));
+                let room = ui.available_width() - if binding.is_some() { bind::WIDTH } else { 0.0 };
+                (chosen, Some((property, within(ui, room, |ui| value::field(ui, page, property)))))
+            }
+            _ => (field::choice(ui, &name, &labels, way), None),
         };
-        let chosen = ui.scope(|ui| {
-            ui.set_max_width(WAY_WIDTH);
-            field::choice(ui, &name, &labels, way)
-        });
-        (chosen.inner, Some((property, value::field(ui, page, property))))
+        if let Some(binding) = &binding {
+            bind::place(ui, page, binding);
+        }
+        chosen
     });
     match below {
         Some((property, below)) => value::finish(ui, page, property, below),
@@ -73,6 +78,14 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     if let Some(way) = chosen {
         page.change(&Change::Choose(*one, way));
     }
+}
+
+fn within<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.scope(|ui| {
+        ui.set_max_width(width);
+        add(ui)
+    })
+    .inner
 }
 
 /// Bytes of a way that has room beside its value.

@@ -3,7 +3,7 @@
 use super::super::{Scene, field};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use flight_plan::describe::{Change, Draft, Kind, Property, Row, Subject};
-use flight_plan::{Edit, Element, FlightPlan, Id};
+use flight_plan::{Edit, Element, FlightPlan, Id, create};
 
 /// A part of the plan, down to one of its elements.
 pub struct Page<'a, 's> {
@@ -127,6 +127,19 @@ impl<'a, 's> Page<'a, 's> {
     /// Sets a property.
     pub fn set(&mut self, property: &Property, value: Option<String>) {
         self.change(&Change::Set(*property, value));
+    }
+
+    /// A new variable with a number's value, which gives it from then on.
+    pub fn bind_to_new(&mut self, property: &Property, value: f64) {
+        let of = self.element().attribute("id").unwrap_or(&self.element().name);
+        let (name, add) = create::named_variable(self.plan(), &format!("{of}_{}", property.attribute), value);
+        match self.edit(&Change::Set(*property, Some(format!("= {name}")))) {
+            Ok(bind) => {
+                self.queue.edit(Edit::All(vec![add, bind]));
+                self.queue.view(ViewCommand::Select(Some(Selection::Variable(name))));
+            }
+            Err(why) => self.queue.view(ViewCommand::Notice(why)),
+        }
     }
 
     /// Sets a property as its field is changed: a drag becomes one undo step.

@@ -2,7 +2,7 @@
 
 use super::formula::{self, Typing};
 use super::page::Page;
-use super::{inherited, together};
+use super::{bind, inherited, together};
 use crate::coordinates;
 use crate::panels::field;
 use crate::theme;
@@ -212,6 +212,11 @@ fn number_or_formula(
         };
         page.set(property, Some(other));
         return None;
+    }
+    if let (None, Ok(number)) = (source, value.parse::<f64>())
+        && !page.is_several()
+    {
+        bind::number(ui, page, property, number);
     }
     below
 }

@@ -1,9 +1,8 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
 use super::alternates;
-use super::bind;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
-use crate::panels::Scene;
+use crate::panels::{Scene, binding};
 use aircraft::Profile;
 use egui::{Button, Ui};
 use flight_plan::create::{self, LegChoice, Shape};
@@ -71,11 +70,12 @@ fn on_map(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     if let Selection::Leg(leg) = of
         && scene.selected_legs().len() < 2
     {
-        let way = ui.button("Draw a new way from it").on_hover_text("A branch, drawn on the map leg by leg");
+        let button = Button::new("Draw a new way from it").shortcut_text("W");
+        let way = ui.add(button).on_hover_text("A branch, drawn on the map leg by leg");
         if way.clicked() {
             queue.view(ViewCommand::DrawWay(leg.clone()));
         }
-        bind::show(ui, scene, leg, queue);
+        binding::of_leg(ui, scene, leg, queue);
     }
     if let Selection::Procedure(_) = of
         && ui.button("Place it on the map").clicked()

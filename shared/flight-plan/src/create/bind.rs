@@ -74,25 +74,14 @@ pub fn put_at(plan: &FlightPlan, leg: &Id, place: &Place) -> Option<Edit> {
     Some(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
 }
 
-/// A number of a leg that a variable can give.
+/// A number of a leg that a variable can give: one of [`Leg::numbers`], by its name in the document.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Numeric {
-    /// One of [`Leg::numbers`], by its name in the document.
-    Own(&'static str),
-    /// Its altitude.
-    Altitude,
-    /// Its airspeed.
-    Speed,
-}
+pub struct Numeric(pub &'static str);
 
 impl Numeric {
     /// Those that are given on a leg, with their values.
     pub fn of(leg: &Leg) -> Vec<(Self, &Value<f64>)> {
-        let numbers = leg.numbers().into_iter();
-        let own = numbers.filter_map(|(name, value)| Some((Self::Own(name), value?)));
-        let altitude = leg.altitude.as_ref().map(|altitude| (Self::Altitude, &altitude.metres));
-        let speed = leg.speed_mps.as_ref().map(|speed| (Self::Speed, speed));
-        own.chain(altitude).chain(speed).collect()
+        leg.numbers().into_iter().filter_map(|(name, value)| Some((Self(name), value?))).collect()
     }
 
     /// The variable that it consists of.
@@ -103,30 +92,13 @@ impl Numeric {
         }
     }
 
-    /// What it is called in the document.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Own(name) => name,
-            Self::Altitude => "altitude",
-            Self::Speed => "speed",
-        }
-    }
-
     /// The edit that sets it.
-    pub fn set(self, leg: &Leg, value: Value<f64>) -> Option<Edit> {
-        let of = leg.id.clone();
-        Some(match self {
-            Self::Own(name) => Edit::SetNumber { leg: of, name: name.into(), value: Some(value) },
-            Self::Altitude => {
-                let reference = leg.altitude.as_ref()?.reference;
-                Edit::SetAltitude { of, altitude: Some(crate::Altitude { metres: value, reference }) }
-            }
-            Self::Speed => Edit::SetSpeed { of, speed_mps: Some(value) },
-        })
+    pub fn set(self, leg: &Leg, value: Value<f64>) -> Edit {
+        Edit::SetNumber { leg: leg.id.clone(), name: self.0.into(), value: Some(value) }
     }
 
     /// The edit that makes it what a variable says.
-    pub fn bind(self, leg: &Leg, variable: &Id) -> Option<Edit> {
+    pub fn bind(self, leg: &Leg, variable: &Id) -> Edit {
         self.set(leg, Value::Expression(variable.as_str().into()))
     }
 
@@ -134,19 +106,26 @@ impl Numeric {
     pub fn make_variable(self, plan: &FlightPlan, leg: &Leg) -> Option<(Id, Edit)> {
         let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;
         let Value::Constant(now) = value else { return None };
-        let name = plan.unique_id(&plain(&format!("{}_{}", leg.id, self.name())));
-        let edits = vec![add(&name, VariableValue::Number(*now)), self.bind(leg, &name)?];
-        Some((name, Edit::All(edits)))
+        let (name, add) = named_variable(plan, &format!("{}_{}", leg.id, self.0), *now);
+        let bind = self.bind(leg, &name);
+        Some((name, Edit::All(vec![add, bind])))
     }
 
     /// The edit that gives it a value of its own again: what its variable says at the start. `None`: it is not bound to one.
     pub fn unbind(self, plan: &FlightPlan, leg: &Leg) -> Option<Edit> {
         let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;
         match plan.variable(&Self::bound_to(value)?)?.initial {
-            VariableValue::Number(now) => self.set(leg, Value::Constant(now)),
+            VariableValue::Number(now) => Some(self.set(leg, Value::Constant(now))),
             _ => None,
         }
     }
+}
+
+/// A new number variable, called after what it is for.
+pub fn named_variable(plan: &FlightPlan, of: &str, initial: f64) -> (Id, Edit) {
+    let name = plan.unique_id(&plain(of));
+    let add = add(&name, VariableValue::Number(initial));
+    (name, add)
 }
 
 fn is_name(source: &str) -> bool {

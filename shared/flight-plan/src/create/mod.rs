@@ -3,6 +3,7 @@
 
 mod arrange;
 mod bind;
+mod binding;
 mod branch;
 mod course;
 mod kind;
@@ -12,7 +13,8 @@ mod thing;
 mod trial;
 
 pub use arrange::{delete_legs, duplicate, fork, loop_around, procedure_of, shift, unloop};
-pub use bind::{Numeric, bind, bound_to, put_at, unbind, variable_of_fix, variable_of_leg};
+pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
+pub use binding::{Binding, bindings};
 pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};

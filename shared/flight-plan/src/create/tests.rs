@@ -194,11 +194,10 @@ fn a_number_becomes_a_variable_and_comes_back() {
     let plan = insert(&plan, orbit, Spot::EndOf("mission".into())).apply(&plan).unwrap();
     let radius = |plan: &FlightPlan| {
         let leg = plan.leg(&id).unwrap().leg.clone();
-        let found =
-            Numeric::of(&leg).into_iter().find(|(n, _)| *n == Numeric::Own("radius")).unwrap().1.clone();
+        let found = Numeric::of(&leg).into_iter().find(|(n, _)| *n == Numeric("radius")).unwrap().1.clone();
         (leg, found)
     };
-    let number = Numeric::Own("radius");
+    let number = Numeric("radius");
     let (name, edit) = number.make_variable(&plan, &radius(&plan).0).unwrap();
     let bound = edit.apply(&plan).unwrap();
     assert_eq!((name.as_str(), errors(&bound)), ("orbit1_radius", Vec::new()));

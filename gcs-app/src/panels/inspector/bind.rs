@@ -1,0 +1,57 @@
+//! The menu beside a value that makes it what a variable says.
+
+use super::page::Page;
+use crate::panels::binding;
+use crate::theme;
+use egui::{Popup, RichText, Role, Ui, WidgetInfo};
+use flight_plan::create::{Binding, bindings};
+use flight_plan::describe::{Kind, OneOf, Property, Row, Subject};
+use flight_plan::{Id, Use, VariableValue};
+
+/// Of its button, screen points.
+pub const WIDTH: f32 = 26.0;
+
+/// Beside a number: the variables that can give it, or a new one.
+pub fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: f64) {
+    menu(ui, page, property.label, |ui, page| {
+        for variable in &page.plan().variables {
+            let is_number = matches!(variable.initial, VariableValue::Number(_));
+            if is_number && ui.button(variable.name.as_str()).clicked() {
+                page.set(property, Some(format!("= {}", variable.name)));
+                ui.close();
+            }
+        }
+        if ui.button(binding::NEW).on_hover_text(binding::ABOUT_NEW).clicked() {
+            page.bind_to_new(property, value);
+            ui.close();
+        }
+    });
+}
+
+/// A leg's place or area, where this row says it.
+pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<Binding> {
+    let gives_place =
+        |property: &Property| matches!(property.kind, Kind::Formula(Use::Position | Use::Polygon));
+    let says = |row: &Row| matches!(row, Row::Property(property) if gives_place(property));
+    let is_it = one.ways.iter().flat_map(|way| way.rows).any(says);
+    let leg: &Id = match page.subject() {
+        Subject::Leg(leg) if is_it && !page.is_several() => page.leg_or_stage().filter(|own| *own == leg)?,
+        _ => return None,
+    };
+    bindings(page.plan(), leg).into_iter().find(|binding| binding.number.is_none())
+}
+
+/// Beside where a leg goes.
+pub fn place(ui: &mut Ui, page: &mut Page<'_, '_>, binding: &Binding) {
+    menu(ui, page, &binding.name, |ui, page| binding::show(ui, binding, page.queue));
+}
+
+fn menu(ui: &mut Ui, page: &mut Page<'_, '_>, of: &str, show: impl FnOnce(&mut Ui, &mut Page<'_, '_>)) {
+    let name = page.name(&format!("{of}: bind to a variable"));
+    let response = ui.small_button("🔗").on_hover_text(&name);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    Popup::menu(&response).show(|ui| {
+        ui.label(RichText::new("Bind to the variable").color(theme::of(ui).weak));
+        show(ui, page);
+    });
+}

@@ -1,0 +1,98 @@
+//! Values that become what a variable says: from the inspector, by key, and in the palette.
+
+use super::{SQUARE, Window};
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use flight_plan::{Place, Value, VariableValue};
+
+/// A square with a position and a number.
+fn window() -> Window {
+    let variables = r#"<variables><variable name="fire" type="position" initial="36.322 -84.168"/><variable name="fast" type="number" unit="m/s" initial="24"/></variables>"#;
+    let mut window = Window::open(&SQUARE.replace("<mainPlan", &format!("{variables}<mainPlan")));
+    window.until_analysed();
+    window
+}
+
+fn speed(window: &Window, leg: &str) -> Option<Value<f64>> {
+    window.plan().leg(&leg.into()).unwrap().leg.speed_mps.clone()
+}
+
+#[test]
+fn a_number_is_bound_beside_its_field() {
+    let mut window = window();
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    window.click_beginning("Airspeed: ");
+    window.steps(2);
+    let before = window.plan();
+    window.click_role(Role::Button, "Airspeed: bind to a variable");
+    window.steps(2);
+    let offered = window.harness.query_by_role_and_label(Role::Button, "fire");
+    assert!(offered.is_none(), "a position is no speed");
+    window.click_role(Role::Button, "fast");
+    assert_eq!(speed(&window, "side2"), Some(Value::Expression("fast".into())));
+    window.steps(2);
+    window.click_role(Role::Button, "Airspeed: number or formula");
+    assert_eq!(speed(&window, "side2"), Some(Value::Constant(24.0)), "what the variable says, as its own");
+    window.press_ctrl(Key::Z);
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before);
+    window.click_role(Role::Button, "Airspeed: bind to a variable");
+    window.steps(2);
+    window.click_role(Role::Button, "A new variable with its value");
+    window.steps(2);
+    assert_eq!(window.selected(), "side2_speed");
+    let made = window.plan().variable(&"side2_speed".into()).unwrap().initial.clone();
+    assert!(matches!(made, VariableValue::Number(_)));
+    assert_eq!(speed(&window, "side2"), Some(Value::Expression("side2_speed".into())));
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn where_a_leg_goes_is_bound_beside_its_field() {
+    let mut window = window();
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    window.press(Key::T);
+    let at = window.centre("Map");
+    window.tap_at(at);
+    window.press(Key::V);
+    let leg = window.selected();
+    window.click_role(Role::Button, "Place: bind to a variable");
+    window.steps(2);
+    window.click_role(Role::Button, "fire");
+    let place = |window: &Window| window.plan().leg(&leg.as_str().into()).unwrap().leg.place().cloned();
+    assert_eq!(place(&window), Some(Place::Position(Value::Expression("fire".into()))));
+    window.steps(2);
+    window.click_role(Role::Button, "Place: bind to a variable");
+    window.steps(2);
+    window.click_role(Role::Button, "Nothing: a value of its own");
+    assert!(matches!(place(&window), Some(Place::Position(Value::Constant(_)))));
+}
+
+#[test]
+fn binding_and_a_new_way_have_keys() {
+    let mut window = window();
+    window.press(Key::B);
+    assert!(window.app().view().palette.is_none(), "nothing is selected");
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    window.press(Key::T);
+    let at = window.centre("Map");
+    window.tap_at(at);
+    window.press(Key::V);
+    let leg = window.selected();
+    window.press(Key::B);
+    window.harness.event(egui::Event::Text("place fire".into()));
+    window.steps(3);
+    assert!(window.shows(&format!("Bind the place of {leg} to fire")));
+    window.press(Key::Enter);
+    let place = window.plan().leg(&leg.as_str().into()).unwrap().leg.place().cloned();
+    assert_eq!(place, Some(Place::Position(Value::Expression("fire".into()))));
+    window.press(Key::W);
+    assert!(window.shows(&format!("Draw legs on a new way from {leg}")));
+}

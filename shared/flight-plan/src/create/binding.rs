@@ -1,0 +1,120 @@
+//! What of a leg a variable can give: its place or area and its numbers, each with the edits that make it so.
+
+use super::bind::{Numeric, bind, bound_to, unbind, variable_of_leg};
+use crate::{Edit, FlightPlan, Id, Leg, VariableValue};
+
+/// Something of a leg that a variable can give.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Binding {
+    /// For people: `Place`, `Area`, `Inner radius`.
+    pub name: String,
+    /// Which number it is; `None`: the place or the area.
+    pub number: Option<Numeric>,
+    /// The variable that it consists of.
+    pub bound: Option<Id>,
+    /// The variables that can give it, each with the edit that binds it.
+    pub choices: Vec<(Id, Edit)>,
+    /// A new variable with its value, and the edit that makes and binds it.
+    pub new: Option<(Id, Edit)>,
+    /// Gives it a value of its own again.
+    pub free: Option<Edit>,
+}
+
+/// All of a leg, its place or area first.
+pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
+    let Some(leg) = plan.leg(leg).map(|context| context.leg) else { return Vec::new() };
+    let numbers = Numeric::of(leg).into_iter().map(|(number, value)| Binding {
+        name: words(number.0),
+        number: Some(number),
+        bound: Numeric::bound_to(value),
+        choices: edits(
+            plan,
+            |value| matches!(value, VariableValue::Number(_)),
+            |name| Some(number.bind(leg, name)),
+        ),
+        new: number.make_variable(plan, leg),
+        free: number.unbind(plan, leg),
+    });
+    place(plan, leg).into_iter().chain(numbers).collect()
+}
+
+/// Where a leg goes, or its area.
+fn place(plan: &FlightPlan, leg: &Leg) -> Option<Binding> {
+    let (bound, new) = (bound_to(leg), variable_of_leg(plan, &leg.id));
+    let variable = bound.as_ref().and_then(|name| plan.variable(name));
+    let is_area = variable.map_or(leg.place().is_none(), |v| matches!(v.initial, VariableValue::Polygon(_)));
+    let is_any = bound.is_some() || new.is_some() || leg.place().is_some();
+    let fits =
+        |value: &VariableValue| matches!(value, VariableValue::Position(_) | VariableValue::Polygon(_));
+    is_any.then(|| Binding {
+        name: if is_area { "Area" } else { "Place" }.into(),
+        number: None,
+        bound,
+        choices: edits(plan, fits, |name| bind(plan, &leg.id, name)),
+        new,
+        free: unbind(plan, &leg.id),
+    })
+}
+
+fn edits(
+    plan: &FlightPlan,
+    fits: impl Fn(&VariableValue) -> bool,
+    bind: impl Fn(&Id) -> Option<Edit>,
+) -> Vec<(Id, Edit)> {
+    let variables = plan.variables.iter().filter(|variable| fits(&variable.initial));
+    variables.filter_map(|variable| Some((variable.name.clone(), bind(&variable.name)?))).collect()
+}
+
+/// `innerRadius` as people write it.
+fn words(name: &str) -> String {
+    let mut words = String::with_capacity(name.len() + 2);
+    for (index, c) in name.chars().enumerate() {
+        match c.is_ascii_uppercase() {
+            true => words.extend([' ', c.to_ascii_lowercase()]),
+            false if index == 0 => words.push(c.to_ascii_uppercase()),
+            false => words.push(c),
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: &str = r#"<flightPlan version="1" id="p">
+      <variables><variable name="fire" type="position" initial="46.1 8.1"/><variable name="reach" type="number" initial="400"/></variables>
+      <mainPlan><stage id="s" type="mission">
+        <orbit id="o" radius="300" turns="2" turn="left"><centre lat="46" lon="8"/></orbit>
+        <TF id="t" at="= fire" speed="= reach"/>
+      </stage></mainPlan>
+    </flightPlan>"#;
+
+    #[test]
+    fn names_of_the_document_are_said_in_words() {
+        assert_eq!(words("innerRadius"), "Inner radius");
+        assert_eq!(words("course"), "Course");
+    }
+
+    #[test]
+    fn what_a_variable_can_give_is_bound_made_and_freed() {
+        let plan = crate::read(PLAN).plan;
+        let of = |plan: &FlightPlan, leg: &str| bindings(plan, &leg.into());
+        let orbit = of(&plan, "o");
+        let names: Vec<&str> = orbit.iter().map(|binding| binding.name.as_str()).collect();
+        assert!(names.starts_with(&["Place"]) && names.contains(&"Radius"), "{names:?}");
+        let radius = orbit.iter().find(|binding| binding.name == "Radius").unwrap();
+        assert_eq!((radius.choices.len(), &radius.bound, &radius.free), (1, &None, &None));
+        let (_, bound) = &radius.choices[0];
+        let bound = bound.apply(&plan).unwrap();
+        let radius = of(&bound, "o").into_iter().find(|binding| binding.name == "Radius").unwrap();
+        assert_eq!(radius.bound, Some("reach".into()));
+        assert!(radius.new.is_none() && radius.free.unwrap().apply(&bound).is_ok());
+        let track = of(&plan, "t");
+        let bound: Vec<Option<&str>> = track.iter().map(|b| b.bound.as_ref().map(Id::as_str)).collect();
+        assert_eq!(bound, [Some("fire"), Some("reach")]);
+        let (made, edit) = orbit[0].new.clone().unwrap();
+        assert!(edit.apply(&plan).unwrap().variable(&made).is_some());
+        assert!(of(&plan, "nothing").is_empty());
+    }
+}
