@@ -3,11 +3,12 @@
 use super::Canvas;
 use super::new_leg::{self, Aim};
 use crate::map::polyline::{self, Style};
+use crate::map::sketch::Handled;
 use crate::map::view::Mercator;
 use crate::theme::Palette;
 use egui::{Painter, Stroke};
-use flight_plan::create::Way;
-use flight_plan::{EmergencyChoice, FlightPlan, Id, Leg, LegContext, Spot};
+use flight_plan::create::{Way, bound_to};
+use flight_plan::{EmergencyChoice, FlightPlan, Id, Leg, LegContext, Place, Spot};
 use geometry::LatLon;
 
 /// Most bands from one place.
@@ -57,15 +58,37 @@ pub fn behind(canvas: &Canvas<'_>, aim: &Aim) -> Vec<Band> {
     bands
 }
 
-/// From a leg that is there: to what follows it and to what it comes from, which is the second value.
-pub fn around(canvas: &Canvas<'_>, leg: &Id) -> (Vec<Band>, Option<LatLon>) {
-    let Some(context) = canvas.scene.document.plan().leg(leg) else { return (Vec::new(), None) };
+/// From legs that are there: to what follows them.
+pub fn around(canvas: &Canvas<'_>, legs: &[Id]) -> Vec<Band> {
+    let contexts: Vec<LegContext<'_>> =
+        legs.iter().filter_map(|leg| canvas.scene.document.plan().leg(leg)).collect();
     let mut bands = Vec::new();
-    follow(canvas, &context, DEEPEST, &mut bands);
-    alternates(canvas, &context, &mut bands);
+    contexts.iter().for_each(|context| follow(canvas, context, DEEPEST, &mut bands));
+    contexts.iter().for_each(|context| alternates(canvas, context, &mut bands));
     bands.truncate(MOST);
-    let before = new_leg::approach(canvas, &Aim::Spot(Spot::Before(leg.clone())));
-    (bands, before.map(|before| before.from))
+    bands
+}
+
+/// Where a leg comes from.
+pub fn before(canvas: &Canvas<'_>, leg: &Id) -> Option<LatLon> {
+    new_leg::approach(canvas, &Aim::Spot(Spot::Before(leg.clone()))).map(|before| before.from)
+}
+
+/// The legs that go to what is dragged: a waypoint's own, or those of a fix or a variable.
+pub fn legs_to(plan: &FlightPlan, dragged: &Handled) -> Vec<Id> {
+    let goes_there = |leg: &Leg| match dragged {
+        Handled::Fix(fix) => matches!(leg.place(), Some(Place::Fix(id)) if id == fix),
+        Handled::Variable(name) => bound_to(leg).as_ref() == Some(name),
+        _ => false,
+    };
+    match dragged {
+        Handled::Waypoint(leg) => vec![leg.clone()],
+        Handled::Fix(_) | Handled::Variable(_) => {
+            let legs = plan.all_legs().into_iter().map(|context| context.leg);
+            legs.filter(|leg| goes_there(leg)).take(MOST).map(|leg| leg.id.clone()).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn following<'a>(context: &LegContext<'a>) -> Option<&'a Leg> {
@@ -129,5 +152,31 @@ pub fn paint(painter: &Painter, canvas: &Canvas<'_>, from: LatLon, bands: &[Band
             false => (p.weak, Style::Dotted),
         };
         polyline::draw(painter, &parts, Stroke::new(1.4, colour), style, p.halo);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fix_and_a_variable_drag_every_leg_that_goes_there() {
+        let plan = flight_plan::read(
+            r#"<flightPlan version="1" id="p">
+              <fixes><fix id="A" at="46.0 8.0"/></fixes>
+              <variables><variable name="fire" type="position" initial="46.1 8.1"/></variables>
+              <mainPlan><stage id="s" type="mission">
+                <TF id="a" fix="A"/><TF id="f" at="= fire"/><TF id="p" lat="46" lon="8.2"/><TF id="b" fix="A"/>
+              </stage></mainPlan>
+            </flightPlan>"#,
+        )
+        .plan;
+        let legs = |dragged: Handled| -> Vec<String> {
+            legs_to(&plan, &dragged).iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(legs(Handled::Fix("A".into())), ["a", "b"]);
+        assert_eq!(legs(Handled::Variable("fire".into())), ["f"]);
+        assert_eq!(legs(Handled::Waypoint("p".into())), ["p"]);
+        assert!(legs(Handled::Radius("p".into())).is_empty());
     }
 }

@@ -16,7 +16,7 @@ use aircraft::Profile;
 use egui::{Align2, Key, Painter, Pos2, Rect, vec2};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{
-    Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Spot, Value, VariableValue, ZoneShape,
+    Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Problem, Scan, Spot, Value, VariableValue, ZoneShape,
 };
 use geometry::LatLon;
 
@@ -220,14 +220,13 @@ impl Select {
         if let Some(mark) = &self.dragged {
             snap::paint(painter, mark, canvas, p);
         }
-        let Some(leg) = handle.what.leg().filter(|_| matches!(handle.what, Handled::Waypoint(_))) else {
-            return;
-        };
-        let (bands, before) = bands::around(canvas, leg);
-        bands::paint(painter, canvas, handle.at, &bands, p);
+        let legs = bands::legs_to(canvas.scene.document.plan(), &handle.what);
+        let Some(leg) = legs.first() else { return };
+        bands::paint(painter, canvas, handle.at, &bands::around(canvas, &legs), p);
         let at = canvas.view.place(handle.at) + vec2(12.0, 26.0);
-        let fault = canvas.scene.problems().find(|q| q.is_error() && q.subject.as_ref() == Some(leg));
-        let (words, colour) = match (fault, before) {
+        let is_fault = |q: &&Problem| q.is_error() && q.subject.as_ref().is_some_and(|of| legs.contains(of));
+        let fault = canvas.scene.problems().find(is_fault);
+        let (words, colour) = match (fault, bands::before(canvas, leg)) {
             (Some(problem), _) => (problem.message.clone(), p.warning),
             (None, Some(from)) => (way(from, handle.at, canvas.scene.units()), p.text),
             (None, None) => return,
