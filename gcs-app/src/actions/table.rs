@@ -111,8 +111,8 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "redo", "Redo", &[ctrl_shift(Key::Z), ctrl(Key::Y)], redo),
     entry(Group::Edit, "delete", "Delete what is selected", &[plain(Key::Delete)], delete),
     entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
-    entry(Group::Edit, "earlier", "Move the selected legs or stage up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
-    entry(Group::Edit, "later", "Move the selected legs or stage down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
+    entry(Group::Edit, "earlier", "Move what is selected up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
+    entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
     entry(Group::Edit, "bind", "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
     entry(Group::Edit, "select-nothing", "Close help or tour, or select nothing", &[plain(Key::Escape)], escape),
@@ -211,7 +211,6 @@ fn redo(scene: &Scene<'_>) -> Asked {
 }
 
 const NOTHING: &str = "Select something of the plan first";
-const NO_LEG: &str = "Select a leg or a stage first";
 
 fn delete(scene: &Scene<'_>) -> Asked {
     let plan = scene.document.plan();
@@ -252,7 +251,7 @@ fn bind(scene: &Scene<'_>) -> Asked {
     view(ViewCommand::Palette(Some("bind the ")))
 }
 
-/// Moves the selected legs, or the stage, among their neighbours.
+/// Moves what is selected among its neighbours.
 fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
     const NO_NEIGHBOUR: &str = "It has no neighbour there";
     let plan = scene.document.plan();
@@ -262,7 +261,8 @@ fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
             legs if legs.len() > 1 => create::shift_legs(plan, &legs, offset),
             _ => create::shift(plan, leg, offset),
         },
-        _ => return Err(NO_LEG),
+        Some(other) => create::shift_thing(plan, other.id(), offset),
+        None => return Err(NOTHING),
     };
     document(DocumentCommand::Edit(moved.ok_or(NO_NEIGHBOUR)?))
 }

@@ -79,6 +79,29 @@ fn rows_are_dragged_to_other_places_alone_and_together() {
 }
 
 #[test]
+fn things_are_put_in_order_by_drag_by_key_and_by_menu() {
+    let mut window = opened(SQUARE);
+    let fixes =
+        |window: &Window| -> String { window.plan().fixes.iter().map(|fix| fix.id.as_str()).collect() };
+    assert_eq!(fixes(&window), "ABCD");
+    window.drop_row("FIX D", "FIX B", 0.2);
+    assert_eq!(fixes(&window), "ADBC");
+    window.click("Undo");
+    assert_eq!(fixes(&window), "ABCD", "one step");
+    window.click("FIX A");
+    window.press_with(Modifiers::ALT, Key::ArrowDown);
+    assert_eq!((fixes(&window).as_str(), window.selected().as_str()), ("BACD", "A"));
+    window.row_menu(("FIX A", 0), "Move up");
+    assert_eq!(fixes(&window), "ABCD");
+    window.drag_row("FIX A", "RWY R05", 0.5);
+    assert!(window.shows("It goes among those of its own list"));
+    let at = window.row("RWY R05", 0.5);
+    window.harness.drop_at(at);
+    window.steps(3);
+    assert_eq!(fixes(&window), "ABCD");
+}
+
+#[test]
 fn a_drop_where_it_cannot_be_says_why_and_changes_nothing() {
     let mut window = opened(SQUARE);
     let before = window.plan();

@@ -229,6 +229,13 @@ pub enum Edit {
         /// Its identifier.
         id: Id,
     },
+    /// Takes a fix, runway, variable, zone, procedure or emergency plan elsewhere in its list.
+    MoveThing {
+        /// Its identifier.
+        id: Id,
+        /// Before which of its list; `None`: to the end.
+        before: Option<Id>,
+    },
     /// Adds a stage at the end.
     AppendStage {
         /// Of which emergency plan; `None`: of the main plan.
@@ -376,6 +383,7 @@ impl Edit {
             Edit::Add(thing) => things::add(plan, thing),
             Edit::Replace { id, with } => return things::replace(plan, id, with),
             Edit::Remove { id } => return things::remove(plan, id),
+            Edit::MoveThing { id, before } => return things::relocate(plan, id, before.as_ref()),
             Edit::AppendStage { to, stage } => return lists::append_stage(plan, to.as_ref(), stage),
             Edit::InsertStage { stage, before } => {
                 return lists::insert_stage(plan, stage.as_ref().clone(), before);

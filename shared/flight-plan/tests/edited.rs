@@ -79,7 +79,7 @@ fn arriving() -> FlightPlan {
 type Choice = (u8, usize, usize, f64, f64);
 
 fn choice() -> impl Strategy<Value = Choice> {
-    (0..20_u8, any::<usize>(), any::<usize>(), -0.02..0.02, -0.02..0.02)
+    (0..21_u8, any::<usize>(), any::<usize>(), -0.02..0.02, -0.02..0.02)
 }
 
 /// One of some things, if there are any.
@@ -117,6 +117,7 @@ fn edit(plan: &FlightPlan, (kind, a, b, north, east): Choice) -> Option<Edit> {
         16 => Edit::Remove { id: one(&stages, a)? },
         17 => changed(&|leg| leg.id = other.id.clone()),
         18 => Edit::SetEmergency { of: (a % 2 == 0).then_some(leg.id), cause: None, plan: None },
+        19 => Edit::MoveThing { id: one(&plan.fixes, a)?.id, before: one(&plan.fixes, b).map(|fix| fix.id) },
         _ => Edit::Rename { id: leg.id, name: format!("{metres}") },
     })
 }

@@ -1,7 +1,7 @@
 //! Rows on their way to another place: a line shows where they would go, or a sentence why they can't.
 
 use super::alternates;
-use super::drop::{At, Found, LegSpot, Mark, for_alternate, for_legs, for_stage};
+use super::drop::{At, Found, LegSpot, Mark, for_alternate, for_legs, for_stage, for_thing};
 use super::row::{HEIGHT, depth, indent};
 use super::rows::Row;
 use crate::command::{Queue, Selection};
@@ -26,6 +26,8 @@ enum What {
     Legs(Vec<Id>),
     Stage(Id),
     Alternate(Id),
+    /// A fix, a zone and the like.
+    Thing(Selection),
 }
 
 /// A place for what is dragged.
@@ -33,6 +35,8 @@ enum Where {
     Legs(LegSpot),
     Stage(StageSpot),
     Alternate(Option<Id>),
+    /// Before which one of its list.
+    Thing(Option<Id>),
 }
 
 /// What a drop here would do.
@@ -82,7 +86,7 @@ impl Drag {
             },
             Selection::Stage(id) => What::Stage(id.clone()),
             Selection::Emergency(id) => What::Alternate(id.clone()),
-            _ => return None,
+            other => What::Thing(other.clone()),
         };
         let name = match &what {
             What::Legs(legs) if legs.len() > 1 => format!("{} legs", legs.len()),
@@ -133,7 +137,13 @@ impl Drag {
         Ok(match &self.what {
             What::Legs(_) => for_legs(rows, at).map(|(mark, spot)| (mark, Where::Legs(spot)))?,
             What::Stage(_) => for_stage(rows, at).map(|(mark, spot)| (mark, Where::Stage(spot)))?,
-            What::Alternate(_) => for_alternate(rows, at).map(|(mark, of)| (mark, Where::Alternate(of)))?,
+            What::Alternate(id) => match for_thing(rows, at, &Selection::Emergency(id.clone())) {
+                Ok((mark, before)) => (mark, Where::Thing(before)),
+                Err(_) => for_alternate(rows, at).map(|(mark, of)| (mark, Where::Alternate(of)))?,
+            },
+            What::Thing(thing) => {
+                for_thing(rows, at, thing).map(|(mark, before)| (mark, Where::Thing(before)))?
+            }
         })
     }
 
@@ -144,6 +154,10 @@ impl Drag {
                 create::into_branch(plan, legs, &fork, &branch)?
             }
             (What::Stage(stage), Where::Stage(spot)) => create::relocate_stage(plan, stage, &spot),
+            (What::Alternate(id), Where::Thing(before)) => create::relocate_thing(plan, id, before.as_ref()),
+            (What::Thing(thing), Where::Thing(before)) => {
+                create::relocate_thing(plan, thing.id(), before.as_ref())
+            }
             (_, Where::Alternate(of)) => return Ok(Outcome::Associate(of)),
             _ => None,
         };

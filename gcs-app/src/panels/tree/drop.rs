@@ -140,6 +140,23 @@ pub(super) fn for_alternate(rows: &[Row], at: At) -> Found<Option<Id>> {
     }
 }
 
+/// For a thing that has a list of its own, a fix or a zone: before which one of its list; `None`: to its end.
+pub(super) fn for_thing(rows: &[Row], at: At, thing: &Selection) -> Found<Option<Id>> {
+    const NOWHERE: &str = "It goes among those of its own list.";
+    let is_alike = |row: &Row| {
+        let same = |other: &Selection| std::mem::discriminant(other) == std::mem::discriminant(thing);
+        row.selection.as_ref().is_some_and(same)
+    };
+    let row = rows.get(at.row).filter(|row| is_alike(row)).ok_or(NOWHERE)?;
+    if at.down < 0.5 {
+        let mark = Mark::Above { row: at.row, depth: row.depth };
+        return Ok((mark, row.selection.as_ref().map(|selection| selection.id().clone())));
+    }
+    let next = end(rows, at.row);
+    let before = rows.get(next).filter(|row| is_alike(row)).and_then(|row| row.selection.as_ref());
+    Ok((Mark::Below { row: next - 1, depth: row.depth }, before.map(|selection| selection.id().clone())))
+}
+
 /// After a row and all that is in it.
 fn end(rows: &[Row], row: usize) -> usize {
     let depth = rows.get(row).map_or(0, |row| row.depth);
@@ -245,6 +262,19 @@ mod tests {
         );
         assert_eq!(spot(10, 0.5), Ok((Mark::Onto(10), StageSpot::EndOf(Some("home".into())))));
         assert!(spot(9, 0.5).is_err());
+    }
+
+    #[test]
+    fn a_thing_goes_among_those_of_its_list() {
+        let plan = PLAN.replace("</fixes>", r#"<fix id="B" at="46.0 8.1"/></fixes>"#);
+        let rows = rows(&flight_plan::read(plan).plan, &BTreeSet::new());
+        let row = |key: &str| rows.iter().position(|row| row.key == key).unwrap();
+        let (a, b) = (row("FIX A"), row("FIX B"));
+        let spot = |row, down| for_thing(&rows, At { row, down, depth: 0 }, &Selection::Fix("B".into()));
+        assert_eq!(spot(a, 0.2), Ok((Mark::Above { row: a, depth: 1 }, Some("A".into()))));
+        assert_eq!(spot(a, 0.8), Ok((Mark::Below { row: a, depth: 1 }, Some("B".into()))));
+        assert_eq!(spot(b, 0.8), Ok((Mark::Below { row: b, depth: 1 }, None)));
+        assert!(spot(1, 0.5).is_err());
     }
 
     #[test]

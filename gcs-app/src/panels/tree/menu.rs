@@ -114,11 +114,15 @@ fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
         Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
         Selection::Leg(leg) => of_leg(plan, leg),
         Selection::Stage(stage) => vec![
-            Entry::new("Move up", "", create::shift_stage(plan, stage, -1)),
-            Entry::new("Move down", "", create::shift_stage(plan, stage, 1)),
-            Entry::new("Delete", "", Some(create::remove(plan, stage))),
+            Entry::new("Move up", "Ctrl+Up", create::shift_stage(plan, stage, -1)),
+            Entry::new("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
+            Entry::new("Delete", "Del", Some(create::remove(plan, stage))),
         ],
-        other => vec![Entry::new("Delete", "", Some(create::remove(plan, other.id())))],
+        other => vec![
+            Entry::new("Move up", "Ctrl+Up", create::shift_thing(plan, other.id(), -1)),
+            Entry::new("Move down", "Ctrl+Down", create::shift_thing(plan, other.id(), 1)),
+            Entry::new("Delete", "Del", Some(create::remove(plan, other.id()))),
+        ],
     }
 }
 

@@ -19,7 +19,9 @@ pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, call, convert, leg};
-pub use rearrange::{StageSpot, into_branch, relocate, relocate_stage, shift_legs};
+pub use rearrange::{
+    StageSpot, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
+};
 pub use thing::{
     add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
 };

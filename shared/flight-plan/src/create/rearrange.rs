@@ -113,6 +113,38 @@ pub fn relocate_stage(plan: &FlightPlan, stage: &Id, at: &StageSpot) -> Option<E
     }
 }
 
+/// Takes a fix, runway, variable, zone, procedure or emergency plan before another one of its list, or (`None`) to its end.
+/// `None`: it is there already, or the other is not of its list.
+pub fn relocate_thing(plan: &FlightPlan, id: &Id, before: Option<&Id>) -> Option<Edit> {
+    let list = list_of_things(plan, id)?;
+    let index = list.iter().position(|other| *other == id)?;
+    let next = list.get(index + 1).copied();
+    let is_there = before == Some(id) || before == next;
+    let is_possible = before.is_none_or(|before| list.contains(&before));
+    (is_possible && !is_there).then(|| Edit::MoveThing { id: id.clone(), before: before.cloned() })
+}
+
+/// The same past its neighbour: up (`-1`) or down (`1`).
+pub fn shift_thing(plan: &FlightPlan, id: &Id, by: isize) -> Option<Edit> {
+    let list = list_of_things(plan, id)?;
+    let to = list.iter().position(|other| *other == id)?.checked_add_signed(by)?;
+    list.get(to)?;
+    let before = if by < 0 { to } else { to + 1 };
+    relocate_thing(plan, id, list.get(before).copied())
+}
+
+fn list_of_things<'a>(plan: &'a FlightPlan, id: &Id) -> Option<Vec<&'a Id>> {
+    let lists: [Vec<&Id>; 6] = [
+        plan.fixes.iter().map(|f| &f.id).collect(),
+        plan.runways.iter().map(|r| &r.id).collect(),
+        plan.zones.iter().map(|z| &z.id).collect(),
+        plan.procedures.iter().map(|p| &p.id).collect(),
+        plan.emergency_plans.iter().map(|e| &e.id).collect(),
+        plan.variables.iter().map(|v| &v.name).collect(),
+    ];
+    lists.into_iter().find(|list| list.contains(&id))
+}
+
 /// The legs that are meant, in the order of the plan.
 fn in_order<'a>(plan: &'a FlightPlan, legs: &[Id]) -> Vec<&'a Arc<Leg>> {
     let outer: HashSet<&Id> = outermost(plan, legs).into_iter().collect();

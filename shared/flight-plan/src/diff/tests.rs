@@ -45,7 +45,7 @@ fn each_change_is_told_in_words() {
     let zone = Thing::Zone(crate::Zone { ceiling: None, ..old.zones[0].clone() });
     let emergency =
         EmergencyPlan { id: "other".into(), stages: Vec::new(), ..old.emergency_plans[0].clone() };
-    let cases: [(Edit, &[&str]); 16] = [
+    let cases: [(Edit, &[&str]); 17] = [
         (number("cf", "course", Some(45.0)), &["leg cf changed: course = 90.0 → 45"]),
         (number("scan", "heading", None), &["leg scan changed: heading 45 removed"]),
         (number("creeping", "heading", Some(10.0)), &["leg creeping changed: heading 10 added"]),
@@ -82,6 +82,7 @@ fn each_change_is_told_in_words() {
         ),
         (Edit::Add(Box::new(Thing::EmergencyPlan(emergency))), &["emergency plan other added"]),
         (Edit::MoveStage { stage: "patterns".into(), before: "basic".into() }, &["stage patterns moved"]),
+        (Edit::MoveThing { id: "done".into(), before: None }, &["variable done moved"]),
         (
             Edit::SetEmergency { of: None, cause: None, plan: None },
             &["plan changed: emergency return removed"],

@@ -264,6 +264,16 @@ fn things_are_added_replaced_and_removed() {
         let none = Edit::Remove { id: id.into() }.apply(&once).unwrap();
         assert!(back.apply(&none).is_err(), "{id}");
     }
+    let names = |plan: &FlightPlan| plan.variables.iter().map(|v| v.name.to_string()).collect::<Vec<_>>();
+    let all = names(&plan);
+    let moved = |id: &str, before: Option<&str>| {
+        Edit::MoveThing { id: id.into(), before: before.map(Id::new) }.apply(&plan).map(|plan| names(&plan))
+    };
+    let (first, second) = (all[0].as_str(), all[1].as_str());
+    assert_eq!(moved(second, Some(first)).unwrap()[..2], [second, first]);
+    assert_eq!(moved(first, None).unwrap().last().map(String::as_str), Some(first));
+    assert_eq!(moved(first, Some(first)).unwrap(), all);
+    assert!(moved(first, Some("range")).is_err(), "of another list");
     let without = renamed(&Edit::Remove { id: "patterns".into() });
     assert!(without.stage(&"patterns".into()).is_none());
     let before = |plan: &FlightPlan| plan.stages.iter().map(|s| s.id.to_string()).collect::<Vec<_>>();

@@ -43,6 +43,30 @@ pub(super) fn remove(plan: &mut FlightPlan, id: &Id) -> Result<(), EditError> {
     Err(EditError::Unknown(id.clone()))
 }
 
+pub(super) fn relocate(plan: &mut FlightPlan, id: &Id, before: Option<&Id>) -> Result<(), EditError> {
+    let moved = shift(&mut plan.fixes, |f| &f.id, id, before)
+        || shift(&mut plan.runways, |r| &r.id, id, before)
+        || shift(&mut plan.zones, |z| &z.id, id, before)
+        || shift(&mut plan.procedures, |p| &p.id, id, before)
+        || shift(&mut plan.emergency_plans, |e| &e.id, id, before)
+        || shift(&mut plan.variables, |v| &v.name, id, before);
+    found(moved.then_some(()), id)
+}
+
+/// False: one of the two is not there.
+fn shift<T>(list: &mut Vec<T>, of: impl Fn(&T) -> &Id, id: &Id, before: Option<&Id>) -> bool {
+    let index = |list: &[T], id: &Id| list.iter().position(|item| of(item) == id);
+    let Some(from) = index(list, id) else { return false };
+    if before.is_some_and(|before| index(list, before).is_none()) {
+        return false;
+    }
+    let moved = list.remove(from);
+    // before itself: where it was
+    let to = before.map_or(list.len(), |before| index(list, before).unwrap_or(from));
+    list.insert(to, moved);
+    true
+}
+
 /// Removes the first item that is meant; false: there is none.
 fn take<T>(list: &mut Vec<T>, meant: impl Fn(&T) -> bool) -> bool {
     let index = list.iter().position(meant);
