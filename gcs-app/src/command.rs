@@ -156,6 +156,8 @@ pub enum ViewCommand {
     Search,
     /// Show it in the plan and type another name for it.
     Rename(Selection),
+    /// Take the keyboard to the next panel, or (`-1`) the one before.
+    StepPanel(isize),
     /// Show a panel, or hide it.
     ShowPanel(PanelId, bool),
     /// Open the dialog of the maps, or close it.

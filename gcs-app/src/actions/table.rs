@@ -57,6 +57,9 @@ const fn ctrl(key: Key) -> KeyboardShortcut {
 const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
+const fn with_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
 
 const fn alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::ALT, key)
@@ -130,6 +133,8 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
     choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
     choice(Group::Maps, "rings", "Range rings", |s| Kind::Switch(s.view.edge.rings), |s| view(ViewCommand::Edge(Edge { rings: !s.view.edge.rings, ..s.view.edge }))),
+    entry(Group::Panel, "next-panel", "Keyboard to the next panel", &[plain(Key::F6)], |_| view(ViewCommand::StepPanel(1))),
+    entry(Group::Panel, "previous-panel", "Keyboard to the panel before", &[with_shift(Key::F6)], |_| view(ViewCommand::StepPanel(-1))),
     entry(Group::Panel, "default-layout", "Default layout", &[], |_| view(ViewCommand::ResetLayout)),
 
     choice(Group::Units, "units-si", Units::Si.label(), |s| Kind::Choice(s.units() == Units::Si), |_| view(ViewCommand::Units(Units::Si))),

@@ -393,6 +393,10 @@ impl App {
         if ctx.zoom_factor() != self.view.scale.get() {
             ctx.set_zoom_factor(self.view.scale.get());
         }
+        match std::mem::take(&mut self.view.panel_step) {
+            0 => {}
+            by => self.dock.step_keyboard(by, ctx),
+        }
         if std::mem::take(&mut self.view.search) {
             tree::focus_search(ctx);
         }

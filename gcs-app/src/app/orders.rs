@@ -199,6 +199,7 @@ impl App {
                 self.dock.show_panel(crate::panels::tree::ID, true);
                 self.view.rename = Some(what);
             }
+            ViewCommand::StepPanel(by) => self.view.panel_step = by,
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,

@@ -1,5 +1,6 @@
 //! What is in the tiles: the map and the panels, each with its title.
 
+use super::stops::Stop;
 use super::{GAP, MAP, TAB_BAR};
 use crate::command::Queue;
 use crate::map::MapState;
@@ -25,6 +26,7 @@ pub struct Content<'a> {
     crowded: BTreeSet<PanelId>,
     closed: Vec<PanelId>,
     map_rect: Option<Rect>,
+    stops: Vec<Stop>,
 }
 
 impl<'a> Content<'a> {
@@ -44,6 +46,7 @@ impl<'a> Content<'a> {
             crowded: BTreeSet::new(),
             closed: Vec::new(),
             map_rect: None,
+            stops: Vec::new(),
         }
     }
 
@@ -57,6 +60,10 @@ impl<'a> Content<'a> {
 
     pub(super) fn take_closed(&mut self) -> Vec<PanelId> {
         std::mem::take(&mut self.closed)
+    }
+
+    pub(super) fn take_stops(&mut self) -> Vec<Stop> {
+        std::mem::take(&mut self.stops)
     }
 
     pub(super) fn map_rect(&self) -> Option<Rect> {
@@ -129,6 +136,11 @@ const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 8 };
 impl Behavior<PanelId> for Content<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, tile: TileId, pane: &mut PanelId) -> UiResponse {
         let id = *pane;
+        let (name, keyboard) = match self.panel(id) {
+            Some(panel) => (panel.name(), panel.keyboard()),
+            None => ("Map", self.map.keyboard()),
+        };
+        self.stops.push(Stop::new(ui, name, keyboard));
         if id == MAP {
             self.map_rect = Some(ui.max_rect());
             self.map.show(ui, self.scene, self.queue);

@@ -4,6 +4,7 @@
 mod content;
 mod fit;
 mod layout;
+mod stops;
 
 pub use content::Content;
 
@@ -12,6 +13,7 @@ use egui::{Rect, Ui};
 use egui_tiles::{Tile, TileId, Tree};
 use layout::Stored;
 use std::collections::BTreeSet;
+use stops::Stop;
 
 type PanelTree = Tree<PanelId>;
 
@@ -31,6 +33,8 @@ pub struct Dock {
     /// Panels that the operator has hidden; they keep their places.
     hidden: BTreeSet<PanelId>,
     wanted: fit::Wanted,
+    /// The map and the panels that were drawn last.
+    stops: Vec<Stop>,
 }
 
 impl Dock {
@@ -45,6 +49,7 @@ impl Dock {
             tree: PanelTree::empty(egui::Id::unique("dock")),
             hidden: BTreeSet::new(),
             wanted: Default::default(),
+            stops: Vec::new(),
         };
         // a test shows that it is sound
         Self::of(&Stored::default_of(panels), panels).unwrap_or_else(empty)
@@ -54,7 +59,7 @@ impl Dock {
         let ids = || panels.iter().map(|panel| panel.id());
         let known: Vec<PanelId> = std::iter::once(MAP).chain(ids()).collect();
         let hidden = ids().filter(|id| stored.hidden.contains(*id)).collect();
-        Some(Self { tree: stored.tree(&known)?, hidden, wanted: Default::default() })
+        Some(Self { tree: stored.tree(&known)?, hidden, wanted: Default::default(), stops: Vec::new() })
     }
 
     /// Stores the layout for the next run.
@@ -97,7 +102,13 @@ impl Dock {
         for panel in content.take_closed() {
             self.show_panel(panel, false);
         }
+        self.stops = content.take_stops();
         content.map_rect()
+    }
+
+    /// Takes the keyboard to the next panel, or (`-1`) the one before.
+    pub fn step_keyboard(&self, by: isize, ctx: &egui::Context) {
+        stops::step(&self.stops, by, ctx);
     }
 
     fn panes(&self) -> Vec<(TileId, PanelId)> {

@@ -115,6 +115,11 @@ impl MapState {
         }
     }
 
+    /// What of it gets the keyboard, once it was drawn.
+    pub fn keyboard(&self) -> Option<egui::Id> {
+        self.navigation.widget()
+    }
+
     /// Each tool's card, and whether it is in use.
     pub fn tool_cards(&self) -> Vec<(&'static tools::Card, bool)> {
         self.tools.cards().collect()

@@ -25,6 +25,11 @@ pub struct Navigation {
 }
 
 impl Navigation {
+    /// The map's widget, once it was drawn.
+    pub fn widget(&self) -> Option<Id> {
+        self.widget
+    }
+
     /// Takes the keys that move the map, unless another widget has the focus.
     pub fn keys(&mut self, ctx: &Context) {
         let pressed = |key| ctx.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key)) as f32;

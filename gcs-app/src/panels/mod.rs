@@ -100,6 +100,11 @@ pub trait Panel: std::fmt::Debug {
         true
     }
 
+    /// What in it gets the keyboard when that comes to the panel; `None`: the panel as a whole.
+    fn keyboard(&self) -> Option<egui::Id> {
+        None
+    }
+
     /// A row of small things beside its title.
     fn header(&mut self, _ui: &mut Ui, _scene: &Scene<'_>, _queue: &mut Queue) {}
 
@@ -150,6 +155,8 @@ pub struct ViewState {
     pub palette: Option<&'static str>,
     /// The topic of the help that is read, by its key.
     pub help: Option<String>,
+    /// So many panels further the keyboard is about to go.
+    pub panel_step: isize,
     /// The plan's search is about to get the keyboard.
     pub search: bool,
     /// What is about to be renamed in the plan's tree.

@@ -75,6 +75,9 @@ impl Panel for Tree {
     fn place(&self) -> Place {
         Place::Left { height: 570.0 }
     }
+    fn keyboard(&self) -> Option<egui::Id> {
+        (!self.rows.is_empty()).then(|| row::id(&self.cursor.key))
+    }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let typed = search::field(ui, &mut self.sought);
         if typed.changed {

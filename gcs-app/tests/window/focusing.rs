@@ -1,7 +1,7 @@
 //! The keyboard alone: Tab goes through the window, and what has the keyboard is to be seen.
 
 use super::{SQUARE, Window};
-use egui::{Key, Rect, Shape};
+use egui::{Key, Modifiers, Rect, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 
 fn focused(window: &Window) -> Option<(String, Rect)> {
@@ -19,6 +19,30 @@ fn has_ring(window: &Window, rect: Rect) -> bool {
         }
         _ => false,
     })
+}
+
+#[test]
+fn f6_goes_from_panel_to_panel_and_into_them() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let goes_to = |window: &mut Window, modifiers, expected: &str| {
+        window.harness.key_press_modifiers(modifiers, Key::F6);
+        window.steps(3);
+        let (label, rect) = focused(window).expect(expected);
+        assert_eq!(label, expected);
+        assert!(has_ring(window, rect), "{label}");
+    };
+    for panel in ["Main plan", "Problems", "Map", "Profile", "Inspector", "Main plan"] {
+        goes_to(&mut window, Modifiers::NONE, panel);
+    }
+    window.press(Key::ArrowDown);
+    assert_eq!(window.selected(), "take-off", "the arrows walk the plan at once");
+    goes_to(&mut window, Modifiers::SHIFT, "Inspector");
+    window.press(Key::Tab);
+    let (label, rect) = focused(&window).unwrap();
+    assert!(rect.left() > window.centre("Map").x, "Tab leads into the panel: {label}");
+    goes_to(&mut window, Modifiers::SHIFT, "Profile");
+    goes_to(&mut window, Modifiers::NONE, "Inspector");
 }
 
 #[test]
