@@ -15,7 +15,7 @@ use crate::desktop;
 use crate::document::Document;
 use crate::export::{self, Exported};
 use crate::formats::FileFormat;
-use crate::jobs::{Jobs, Progress};
+use crate::jobs::{Job, Jobs, Progress};
 use flight_plan::FlightPlan;
 use interchange::Format;
 use std::panic::AssertUnwindSafe;
@@ -175,6 +175,11 @@ impl Files {
     /// What is being done with files.
     pub fn jobs(&self) -> &Jobs {
         &self.jobs
+    }
+
+    /// Shows work that has begun elsewhere, which can be cancelled like any other.
+    pub fn adopt(&mut self, job: Job) {
+        self.jobs.add(job);
     }
 
     /// The result of this work is no longer wanted.

@@ -76,6 +76,16 @@ pub struct Job {
     since_s: Option<f64>,
 }
 
+impl Job {
+    /// Work that nobody sees yet: see [`Jobs::add`].
+    pub fn begin(label: String) -> (Self, Running) {
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        let id = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        let progress = Progress::default();
+        (Self { id, label, progress: progress.clone(), since_s: None }, Running { id, progress })
+    }
+}
+
 /// All work that is being done, the oldest first.
 #[derive(Debug, Default)]
 pub struct Jobs(Vec<Job>);
@@ -83,11 +93,14 @@ pub struct Jobs(Vec<Job>);
 impl Jobs {
     /// Work begins; it lasts as long as what this gives is held.
     pub fn begin(&mut self, label: String) -> Running {
-        static LAST: AtomicU64 = AtomicU64::new(0);
-        let id = LAST.fetch_add(1, Ordering::Relaxed) + 1;
-        let progress = Progress::default();
-        self.0.push(Job { id, label, progress: progress.clone(), since_s: None });
-        Running { id, progress }
+        let (job, running) = Job::begin(label);
+        self.add(job);
+        running
+    }
+
+    /// Work that has begun elsewhere.
+    pub fn add(&mut self, job: Job) {
+        self.0.push(job);
     }
 
     /// Its result is no longer wanted.

@@ -1,7 +1,8 @@
 //! What a demo tells whoever watches it: written by the flight's thread, read by the window.
 
+use crate::jobs::{Job, Running};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Where the story has come to.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -25,7 +26,14 @@ pub struct End {
 
 /// Shared by those who tell it and those who listen.
 #[derive(Debug, Clone, Default)]
-pub struct Story(Arc<Mutex<Chapter>>);
+pub struct Story(Arc<Mutex<Told>>);
+
+#[derive(Debug, Default)]
+struct Told {
+    chapter: Chapter,
+    /// Work that the listener has not heard of yet.
+    work: Vec<Job>,
+}
 
 impl Story {
     /// What is happening now, and what comes next.
@@ -40,11 +48,27 @@ impl Story {
 
     /// Where it has come to.
     pub fn chapter(&self) -> Chapter {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.told().chapter.clone()
+    }
+
+    /// Work begins; it lasts as long as what this gives is held, and whoever listens shows it and may cancel it.
+    pub fn work(&self, label: &str) -> Running {
+        let (job, running) = Job::begin(label.to_owned());
+        self.told().work.push(job);
+        running
+    }
+
+    /// The work that has begun since this was asked last.
+    pub fn take_work(&self) -> Vec<Job> {
+        std::mem::take(&mut self.told().work)
     }
 
     fn change(&self, change: impl FnOnce(&mut Chapter)) {
-        // a chapter is whole whatever happened to who wrote it
-        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        change(&mut self.told().chapter);
+    }
+
+    fn told(&self) -> MutexGuard<'_, Told> {
+        // what is told is whole whatever happened to who told it
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -295,6 +295,7 @@ impl App {
         self.go_on_quitting();
         if let Some((story, chapter)) = &mut self.story {
             *chapter = story.chapter();
+            story.take_work().into_iter().for_each(|job| self.files.adopt(job));
         }
         self.tend_messages(ctx, now_s);
     }

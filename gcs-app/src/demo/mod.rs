@@ -18,7 +18,7 @@ use crate::app;
 use crate::document::Document;
 use crate::headless::wind;
 use crate::report::{self, Findings, Record};
-use crate::story::End;
+use crate::story::{End, Story};
 use aircraft::Wind;
 use anyhow::Context;
 use components::{Components, Setup, VEHICLE};
@@ -198,29 +198,43 @@ async fn fly_with(
     let ending = ending(&flight, &mut components, prepared).await;
     flight.leave().await;
     let wall_s = began.elapsed().as_secs_f64();
-    let good = ending.and_then(|ending| conclude(args, prepared, &ending, wall_s));
+    let good = ending.and_then(|ending| conclude(args, prepared, &ending, wall_s, &watcher.story));
     let failure = flown.as_ref().err().or(good.as_ref().err());
-    watcher.story.end(&last_words(failure, good.as_ref().is_ok_and(|good| *good)), end(args, &good));
+    watcher.story.end(&last_words(failure, good.as_ref().ok()), end(args, &good));
     stay_open(watcher, flown.as_ref().err()).await;
     components.stop().await;
     // why the flight failed says more than why its report did
     flown?;
-    let good = good?;
+    let good = good?.is_good;
     Ok(ExitCode::from(u8::from(!good)))
 }
 
-fn last_words(failure: Option<&anyhow::Error>, good: bool) -> String {
-    match failure {
-        Some(failure) => format!("The demo has failed: {failure:#}"),
-        None if good => "The mission was flown as planned. Close the window to end the demo.".into(),
-        None => "The mission was not flown as planned: its report says what was different.".into(),
+/// What came of a flight.
+struct Conclusion {
+    /// It was flown as planned.
+    is_good: bool,
+    /// Its report was made.
+    is_reported: bool,
+}
+
+fn last_words(failure: Option<&anyhow::Error>, conclusion: Option<&Conclusion>) -> String {
+    match (failure, conclusion) {
+        (Some(failure), _) => format!("The demo has failed: {failure:#}"),
+        (None, Some(conclusion)) if conclusion.is_good => {
+            "The mission was flown as planned. Close the window to end the demo.".into()
+        }
+        (None, Some(conclusion)) if conclusion.is_reported => {
+            "The mission was not flown as planned: its report says what was different.".into()
+        }
+        (None, _) => "The mission was not flown as planned.".into(),
     }
 }
 
 /// How it ended, with its report if one was written.
-fn end(args: &Args, good: &anyhow::Result<bool>) -> End {
+fn end(args: &Args, conclusion: &anyhow::Result<Conclusion>) -> End {
+    let of = |what: fn(&Conclusion) -> bool| conclusion.as_ref().is_ok_and(what);
     let report = std::path::absolute(args.report.join("report.html")).ok();
-    End { good: good.as_ref().is_ok_and(|good| *good), report: report.filter(|path| path.exists()) }
+    End { good: of(|c| c.is_good), report: report.filter(|path| of(|c| c.is_reported) && path.exists()) }
 }
 
 /// Ends the recording: what was recorded, and how the aircraft stands.
@@ -246,16 +260,26 @@ async fn stay_open(watcher: &Watcher, failure: Option<&anyhow::Error>) {
     watcher.gone().await;
 }
 
-/// Judges the flight, writes the report, prints the summary; gives whether everything is as planned.
-fn conclude(args: &Args, prepared: &Prepared, ending: &Ending, wall_s: f64) -> anyhow::Result<bool> {
+/// Judges the flight, writes the report unless that is cancelled, prints the summary.
+fn conclude(
+    args: &Args,
+    prepared: &Prepared,
+    ending: &Ending,
+    wall_s: f64,
+    story: &Story,
+) -> anyhow::Result<Conclusion> {
     let mut record: Record = prepared.record(ending, &args.wind);
     record.verdict = judge::verdict(&record, &Findings::of(&record), &ending.outcome);
     if record.flown.points().is_empty() {
-        return Ok(false);
+        return Ok(Conclusion { is_good: false, is_reported: false });
     }
-    let findings = report::write(&record, &args.report)?;
-    summary::print(&record, &findings, wall_s, &args.report);
-    Ok(record.verdict.iter().all(|(holds, _)| *holds))
+    let work = story.work("Making the report");
+    let findings = report::write(&record, &args.report, work.progress())?;
+    if let Some(findings) = &findings {
+        summary::print(&record, findings, wall_s, &args.report);
+    }
+    let is_good = record.verdict.iter().all(|(holds, _)| *holds);
+    Ok(Conclusion { is_good, is_reported: findings.is_some() })
 }
 
 #[cfg(test)]

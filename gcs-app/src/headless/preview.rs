@@ -4,6 +4,7 @@ use super::output::Output;
 use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
+use crate::jobs::Progress;
 use crate::report;
 use flight_exec::rehearse::Preview;
 use flight_plan::Id;
@@ -76,7 +77,8 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
             target.overwriting.write(picture, &report::diagram::png(&program, &preview, stage.as_ref())?)?;
         }
         None => {
-            report::write(&forecast::record(&loaded, &program, &preview, &air.wind), &target.out)?;
+            let record = forecast::record(&loaded, &program, &preview, &air.wind);
+            report::write(&record, &target.out, &Progress::default())?;
         }
     }
     match target.json {

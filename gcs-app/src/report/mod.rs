@@ -28,6 +28,7 @@ pub(crate) use record::tests::record as made_up_record;
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
 pub use tables::{clock, from_authored};
 
+use crate::jobs::Progress;
 use std::path::Path;
 
 /// What was measured, to judge the flight by.
@@ -71,11 +72,12 @@ impl Findings {
 pub const FILES: [&str; 6] =
     ["map.png", "profile.png", "legs.csv", "report.md", "report.html", "events.jsonl"];
 
-/// Writes the [`FILES`] into `folder`, which is made if need be; gives what was measured.
+/// Writes the [`FILES`] into `folder`, which is made if need be; gives what was measured. `None`: it was cancelled, and nothing is
+/// written.
 ///
 /// # Errors
 /// The folder can't be written, or there is nothing to draw.
-pub fn write(record: &Record, folder: &Path) -> anyhow::Result<Findings> {
+pub fn write(record: &Record, folder: &Path, progress: &Progress) -> anyhow::Result<Option<Findings>> {
     use anyhow::Context;
     std::fs::create_dir_all(folder)
         .with_context(|| format!("can't make the report folder {}: choose another one", folder.display()))?;
@@ -85,14 +87,22 @@ pub fn write(record: &Record, folder: &Path) -> anyhow::Result<Findings> {
         std::fs::write(&path, bytes)
             .with_context(|| format!("can't write {}: is the disk full?", path.display()))
     };
-    let contents = [
-        map::png(record, &findings)?,
-        profile::png(record)?,
-        tables::csv(&findings).into_bytes(),
-        tables::markdown(record, &findings).into_bytes(),
-        tables::html(record, &findings).into_bytes(),
-        tables::events(record).into_bytes(),
+    let parts: [&dyn Fn() -> anyhow::Result<Vec<u8>>; FILES.len()] = [
+        &|| map::png(record, &findings),
+        &|| profile::png(record),
+        &|| Ok(tables::csv(&findings).into_bytes()),
+        &|| Ok(tables::markdown(record, &findings).into_bytes()),
+        &|| Ok(tables::html(record, &findings).into_bytes()),
+        &|| Ok(tables::events(record).into_bytes()),
     ];
+    let mut contents = Vec::with_capacity(parts.len());
+    for part in parts {
+        progress.set(contents.len() as u64, FILES.len() as u64);
+        contents.push(part()?);
+        if progress.is_cancelled() {
+            return Ok(None);
+        }
+    }
     FILES.into_iter().zip(contents).try_for_each(|(name, bytes)| save(name, bytes))?;
-    Ok(findings)
+    Ok(Some(findings))
 }

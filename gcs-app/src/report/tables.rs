@@ -192,6 +192,7 @@ pub fn events(record: &Record) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::jobs::{Jobs, Progress};
     use crate::report;
 
     #[test]
@@ -213,7 +214,7 @@ mod tests {
     fn a_whole_report_is_written() {
         let folder = tempfile::tempdir().unwrap();
         let record = report::record::tests::record();
-        let findings = report::write(&record, folder.path()).unwrap();
+        let findings = report::write(&record, folder.path(), &Progress::default()).unwrap().unwrap();
         assert_eq!(findings.passages.len(), record.flown.passages().len());
         assert!(findings.worst("TF").unwrap().worst_m() > 3.0 && findings.worst("RF").is_none());
         for name in ["map.png", "profile.png"] {
@@ -228,9 +229,21 @@ mod tests {
     }
 
     #[test]
+    fn a_report_that_was_cancelled_leaves_no_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut jobs = Jobs::default();
+        let running = jobs.begin("Making the report".into());
+        jobs.cancel(running.id());
+        let record = report::record::tests::record();
+        assert!(report::write(&record, folder.path(), running.progress()).unwrap().is_none());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
     fn a_folder_that_cannot_be_made_is_named() {
         let file = tempfile::NamedTempFile::new().unwrap();
-        let error = report::write(&report::record::tests::record(), &file.path().join("sub")).unwrap_err();
+        let record = report::record::tests::record();
+        let error = report::write(&record, &file.path().join("sub"), &Progress::default()).unwrap_err();
         assert!(format!("{error:#}").contains("choose another"), "{error:#}");
     }
 }

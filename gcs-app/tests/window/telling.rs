@@ -92,6 +92,19 @@ fn a_demo_says_what_happens_and_what_comes_next_and_offers_its_report() {
 }
 
 #[test]
+fn the_report_of_a_demo_is_made_in_sight_and_can_be_cancelled() {
+    let mut window = Window::open(SQUARE);
+    let story = Story::default();
+    window.harness.state_mut().listen_to(story.clone());
+    let work = story.work("Making the report");
+    work.progress().set(2, 6);
+    window.steps(30);
+    assert!(window.shows("Making the report"));
+    window.click("Cancel: Making the report");
+    assert!(work.progress().is_cancelled() && !window.shows("Making the report"));
+}
+
+#[test]
 fn the_tour_leads_to_what_is_there_and_is_offered_once() {
     let mut window = Window::open(SQUARE);
     window.harness.state_mut().offer_tour();
