@@ -7,8 +7,8 @@ mod watch;
 
 pub use listing::Entry;
 pub use reading::{Content, Imported};
-pub(crate) use saving::write_whole;
 pub use saving::{Over, Stamp, Writing};
+pub(crate) use saving::{write_together, write_whole};
 pub use watch::Watched;
 
 use crate::desktop;

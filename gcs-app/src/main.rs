@@ -63,7 +63,10 @@ fn main() -> ExitCode {
         .with_env_filter(tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| LOG.into()))
         .with_writer(std::io::stderr)
         .init();
-    let cli = Cli::parse();
+    let cli = match stdio::arguments::<Cli>() {
+        Ok(cli) => cli,
+        Err(status) => return status,
+    };
     status(match cli.command {
         Some(Task::Demo(args)) => demo::run(&args),
         Some(Task::Headless(command)) => headless::run(&command),
@@ -94,7 +97,7 @@ fn open(window: Window) -> anyhow::Result<ExitCode> {
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
         eprintln!("legwork: {error:#}");
-        ExitCode::from(2)
+        ExitCode::from(stdio::USAGE)
     })
 }
 

@@ -1,6 +1,5 @@
 //! Command line of `onboard-agent`.
 
-use clap::Parser;
 use onboard_agent::config::{Cli, Options, Task};
 use onboard_agent::registry::SERVICES;
 use onboard_agent::single_instance::AlreadyRunning;
@@ -13,7 +12,10 @@ const STARTED_WRONGLY: u8 = supervisor::USAGE as u8;
 const FAILED: u8 = 1;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match stdio::arguments::<Cli>() {
+        Ok(cli) => cli,
+        Err(status) => return status,
+    };
     service::logging::init("info,zenoh=error");
     match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
         Ok(runtime) => runtime.block_on(perform(cli.task)),
@@ -55,12 +57,10 @@ async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
 fn describe() -> ExitCode {
     let descriptions: Vec<_> = SERVICES.iter().map(|entry| entry.spec.describe()).collect();
     match serde_json::to_string_pretty(&descriptions) {
-        Ok(text) => {
-            use std::io::Write;
-            // a reader that has gone away is no failure
-            let _ = writeln!(std::io::stdout().lock(), "{text}");
-            ExitCode::SUCCESS
-        }
+        Ok(text) => match stdio::line(format_args!("{text}")) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => failed(stdio::USAGE, &error.into()),
+        },
         Err(error) => failed(FAILED, &error.into()),
     }
 }

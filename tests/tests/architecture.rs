@@ -17,7 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("wire", &["geodesy", "contract", "flight-plan", "flight-exec"]),
     ("usal", &["contract"]),
     ("autopilot-link", &[]),
-    ("sim", &["geometry", "aircraft", "autopilot-link"]),
+    ("sim", &["geometry", "aircraft", "autopilot-link", "stdio"]),
     ("journal", &["flight-exec"]),
     ("recording", &[]),
     (
@@ -35,9 +35,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "wire",
             "autopilot-link",
             "service",
+            "stdio",
         ],
     ),
     ("service", &["usal"]),
+    ("stdio", &[]),
     (
         "gcs-app",
         &[
@@ -52,6 +54,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "wire",
             "onboard-agent",
             "sim",
+            "stdio",
         ],
     ),
     ("system-tests", &["geometry", "usal"]),

@@ -46,5 +46,5 @@ fn write_png(file: &Path, image: &egui::ColorImage) -> Result<(), String> {
         pixel.copy_from_slice(&[colour.r(), colour.g(), colour.b(), 255]);
     }
     let png = pixmap.encode_png().map_err(|e| e.to_string())?;
-    std::fs::write(file, png).map_err(|e| format!("{}: {e}", file.display()))
+    crate::files::write_whole(file, &png).map(drop).map_err(|e| format!("{}: {e}", file.display()))
 }

@@ -256,7 +256,7 @@ async fn stay_open(watcher: &Watcher, failure: Option<&anyhow::Error>) {
     if let Some(failure) = failure {
         eprintln!("legwork: {failure:#}");
     }
-    println!("Close the window to end the demo.");
+    eprintln!("Close the window to end the demo.");
     watcher.gone().await;
 }
 
@@ -276,7 +276,7 @@ fn conclude(
     let work = story.work("Making the report");
     let findings = report::write(&record, &args.report, work.progress())?;
     if let Some(findings) = &findings {
-        summary::print(&record, findings, wall_s, &args.report);
+        summary::print(&record, findings, wall_s, &args.report)?;
     }
     let is_good = record.verdict.iter().all(|(holds, _)| *holds);
     Ok(Conclusion { is_good, is_reported: findings.is_some() })

@@ -4,13 +4,16 @@ use crate::report::{Findings, Record, clock, from_authored};
 use std::path::Path;
 
 /// The leg table, the verdict and where the report is, on standard output.
-pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) {
-    say!("{}", table(findings));
+///
+/// # Errors
+/// Standard output can't be written.
+pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) -> std::io::Result<()> {
+    say!("{}", table(findings))?;
     for coverage in &findings.coverages {
-        say!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0);
+        say!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0)?;
     }
     for (holds, sentence) in &record.verdict {
-        say!("{} {sentence}", if *holds { "ok  " } else { "FAIL" });
+        say!("{} {sentence}", if *holds { "ok  " } else { "FAIL" })?;
     }
     let flown_s = record.flown.duration_s();
     say!(
@@ -18,12 +21,12 @@ pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) {
         clock(flown_s),
         flown_s / wall_s.max(0.1),
         folder.join("report.html").display()
-    );
+    )?;
     let good = record.verdict.iter().all(|(holds, _)| *holds);
     say!(
         "{}",
         if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." }
-    );
+    )
 }
 
 fn table(findings: &Findings) -> String {

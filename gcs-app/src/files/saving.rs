@@ -108,21 +108,66 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<Option<S
     if path.metadata().is_ok_and(|is| !is.is_file() && !is.is_dir()) {
         return std::fs::write(path, bytes).map(|()| None);
     }
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let (temporary, mut file) = new_file_in(folder)?;
-    let written = (|| {
+    let temporary = Temporary::beside(path, bytes)?;
+    let stamp = temporary.stamp;
+    temporary.take_place()?;
+    Ok(stamp)
+}
+
+/// Several files that belong together: while one of them can't be written, none takes its place.
+pub(crate) fn write_together(files: &[(PathBuf, Vec<u8>)]) -> std::io::Result<()> {
+    let of = |path: &Path, error: std::io::Error| {
+        std::io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+    };
+    let mut written = Vec::new();
+    for (path, bytes) in files {
+        if path.metadata().is_ok_and(|is| !is.is_file()) {
+            return Err(of(
+                path,
+                std::io::Error::new(ErrorKind::AlreadyExists, "there is something that is no file"),
+            ));
+        }
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.clone());
+        written.push(Temporary::beside(&place, bytes).map_err(|error| of(path, error))?);
+    }
+    files
+        .iter()
+        .zip(written)
+        .try_for_each(|((path, _), file)| file.take_place().map_err(|error| of(path, error)))
+}
+
+/// A whole file on disk beside its place; it is removed again unless it takes it.
+struct Temporary {
+    path: PathBuf,
+    place: PathBuf,
+    stamp: Option<Stamp>,
+}
+
+impl Temporary {
+    fn beside(place: &Path, bytes: &[u8]) -> std::io::Result<Self> {
+        let (path, mut file) = new_file_in(folder_of(place))?;
+        let mut temporary = Self { path, place: place.to_owned(), stamp: None };
         file.write_all(bytes)?;
         file.sync_all()?;
-        let stamp = Stamp::from_meta(&file.metadata()?);
-        std::fs::rename(&temporary, path)?;
-        File::open(folder)?.sync_all()?;
-        Ok(stamp)
-    })();
-    if written.is_err() {
-        // nothing of use is in it
-        let _ = std::fs::remove_file(&temporary);
+        temporary.stamp = Stamp::from_meta(&file.metadata()?);
+        Ok(temporary)
     }
-    written
+
+    fn take_place(self) -> std::io::Result<()> {
+        std::fs::rename(&self.path, &self.place)?;
+        File::open(folder_of(&self.place))?.sync_all()
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // nothing of use is in it; when it has taken its place it is not here any more
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// A file under a name that nothing else has, not even another save of the same file at the same time.
@@ -194,6 +239,20 @@ mod tests {
         assert!(why.contains("plan.xml was not saved"), "{why}");
         assert_eq!(std::fs::read_to_string(path.join("inside")).unwrap(), "old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
+    }
+
+    #[test]
+    fn files_that_belong_together_are_written_all_or_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let (first, second) = (folder.path().join("a"), folder.path().join("b"));
+        let files = |text: &str| [(first.clone(), text.into()), (second.clone(), text.into())];
+        write_together(&files("old")).unwrap();
+        std::fs::remove_file(&second).unwrap();
+        std::fs::create_dir(&second).unwrap();
+        let error = write_together(&files("new")).unwrap_err().to_string();
+        assert!(error.contains(&second.display().to_string()), "{error}");
+        assert_eq!(std::fs::read_to_string(&first).unwrap(), "old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "no temporary file is left");
     }
 
     #[test]

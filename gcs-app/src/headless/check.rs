@@ -29,7 +29,7 @@ pub struct Circumstances {
 /// if the plan may be flown, else 1.
 ///
 /// # Errors
-/// A file can't be read.
+/// A file can't be read, or standard output not written.
 pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow::Result<ExitCode> {
     let loaded = source.load()?;
     let mut problems = loaded.problems();
@@ -37,10 +37,10 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
         problems.extend(reviewed(&loaded, circumstances.air.conditions()));
     }
     if json {
-        say!("{:#}", document(&source.file, &loaded.reading.plan, &problems, &loaded.notes));
+        say!("{:#}", document(&source.file, &loaded.reading.plan, &problems, &loaded.notes))?;
     } else {
         foreign::print_notes(&source.file, &loaded.notes);
-        print(&source.file, &problems);
+        print(&source.file, &problems)?;
     }
     Ok(status(&problems))
 }
@@ -59,8 +59,8 @@ fn reviewed(loaded: &Loaded, conditions: Conditions) -> Vec<Problem> {
 }
 
 /// Prints problems for people, and how many there are.
-pub fn print(file: &Path, problems: &[Problem]) {
-    problems.iter().for_each(|problem| say!("{}", line(file, problem)));
+fn print(file: &Path, problems: &[Problem]) -> std::io::Result<()> {
+    problems.iter().try_for_each(|problem| say!("{}", line(file, problem)))?;
     let errors = problems.iter().filter(|p| p.is_error()).count();
     match (errors, problems.len() - errors) {
         (0, 0) => say!("{}: good, no problems", file.display()),

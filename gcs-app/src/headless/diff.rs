@@ -40,8 +40,8 @@ pub fn run(old: &Source, new: &Path, moment: &Moment, air: Air, json: bool) -> a
     };
     match json {
         true => say!("{:#}", document(&changes, takeover.as_ref())),
-        false => lines(&changes, takeover.as_ref()).iter().for_each(|line| say!("{line}")),
-    }
+        false => lines(&changes, takeover.as_ref()).iter().try_for_each(|line| say!("{line}")),
+    }?;
     let acceptable = takeover.is_none_or(|takeover| takeover.is_ok_and(|report| report.acceptable));
     Ok(ExitCode::from(u8::from(!(changes.is_empty() && acceptable))))
 }

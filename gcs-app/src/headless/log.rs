@@ -58,11 +58,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         good &= contents.ending != Ending::Foreign && (!args.check || is_whole(&contents));
         match args.json {
             true => documents.push(document(path, &contents)),
-            false => print(path, &contents),
+            false => print(path, &contents)?,
         }
     }
     if args.json {
-        say!("{:#}", json!(documents));
+        say!("{:#}", json!(documents))?;
     }
     if let Some((to, format)) = export {
         let left_out = flights.left_out();
@@ -106,20 +106,25 @@ fn vehicles(contents: &Contents) -> BTreeSet<String> {
     contents.channels.values().filter_map(|c| Some(c.topic.parse::<usal::Key>().ok()?.vehicle)).collect()
 }
 
-fn print(path: &Path, contents: &Contents) {
+fn print(path: &Path, contents: &Contents) -> std::io::Result<()> {
     let vehicles: Vec<String> = vehicles(contents).into_iter().collect();
     let named = if vehicles.is_empty() { "no vehicle".to_owned() } else { vehicles.join(", ") };
     let bytes = contents.bytes;
-    say!("{}: {}, {bytes} bytes, {} messages of {named}", path.display(), state(contents), contents.messages);
+    say!(
+        "{}: {}, {bytes} bytes, {} messages of {named}",
+        path.display(),
+        state(contents),
+        contents.messages
+    )?;
     if let Some((first, last)) = contents.span_ns {
         let seconds = last.saturating_sub(first) as f64 / 1e9;
-        say!("  {} to {}, {seconds:.1} s, {} chunks", time(first), time(last), contents.chunks);
+        say!("  {} to {}, {seconds:.1} s, {} chunks", time(first), time(last), contents.chunks)?;
     }
     for channel in contents.channels.values() {
-        say!("  {:>9}  {}  {}", channel.messages, shown(&channel.topic), schema(&channel.schema));
+        say!("  {:>9}  {}  {}", channel.messages, shown(&channel.topic), schema(&channel.schema))?;
     }
     for attachment in &contents.attachments {
-        say!("  attachment {}, {} bytes", shown(&attachment.name), attachment.bytes);
+        say!("  attachment {}, {} bytes", shown(&attachment.name), attachment.bytes)?;
     }
     for finding in &contents.findings {
         eprintln!("{}: {finding}", path.display());
@@ -127,6 +132,7 @@ fn print(path: &Path, contents: &Contents) {
     if contents.more_findings > 0 {
         eprintln!("{}: and {} more", path.display(), contents.more_findings);
     }
+    Ok(())
 }
 
 fn schema(name: &str) -> String {

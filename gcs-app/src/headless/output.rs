@@ -2,7 +2,6 @@
 
 use crate::files::write_whole;
 use anyhow::{Context, bail};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Standard input or output on the command line.
@@ -23,9 +22,7 @@ impl Output {
     /// The file exists and `--force` was not given, or it can't be written.
     pub fn write(&self, to: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         if to.as_os_str() == DASH {
-            // a reader that has gone away is no failure
-            let _ = std::io::stdout().lock().write_all(bytes);
-            return Ok(());
+            return Ok(stdio::bytes(bytes)?);
         }
         self.allow(to)?;
         write_whole(to, bytes).map(drop).with_context(|| format!("can't write {}", to.display()))

@@ -84,7 +84,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     match target.json {
         true => say!("{:#}", document(&source.file, &preview, pictures)),
         false => say!("{}", line(&source.file, &preview, pictures)),
-    }
+    }?;
     Ok(check::print_errors(&source.file, &forbidden))
 }
 

@@ -72,21 +72,14 @@ impl Findings {
 pub const FILES: [&str; 6] =
     ["map.png", "profile.png", "legs.csv", "report.md", "report.html", "events.jsonl"];
 
-/// Writes the [`FILES`] into `folder`, which is made if need be; gives what was measured. `None`: it was cancelled, and nothing is
-/// written.
+/// Writes the [`FILES`] into `folder`, all or none; the folder is made if need be. Gives what was measured. `None`: it was
+/// cancelled, and nothing is written.
 ///
 /// # Errors
 /// The folder can't be written, or there is nothing to draw.
 pub fn write(record: &Record, folder: &Path, progress: &Progress) -> anyhow::Result<Option<Findings>> {
     use anyhow::Context;
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("can't make the report folder {}: choose another one", folder.display()))?;
     let findings = Findings::of(record);
-    let save = |name: &str, bytes: Vec<u8>| {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes)
-            .with_context(|| format!("can't write {}: is the disk full?", path.display()))
-    };
     let parts: [&dyn Fn() -> anyhow::Result<Vec<u8>>; FILES.len()] = [
         &|| map::png(record, &findings),
         &|| profile::png(record),
@@ -103,6 +96,16 @@ pub fn write(record: &Record, folder: &Path, progress: &Progress) -> anyhow::Res
             return Ok(None);
         }
     }
-    FILES.into_iter().zip(contents).try_for_each(|(name, bytes)| save(name, bytes))?;
+    let files: Vec<_> =
+        FILES.into_iter().zip(contents).map(|(name, bytes)| (folder.join(name), bytes)).collect();
+    let is_new = !folder.exists();
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("can't make the report folder {}: choose another one", folder.display()))?;
+    let written = crate::files::write_together(&files);
+    if written.is_err() && is_new {
+        // what is not empty stays
+        let _ = std::fs::remove_dir(folder);
+    }
+    written.context("the report was not written")?;
     Ok(Some(findings))
 }

@@ -6,6 +6,7 @@ use sim::config::{parse_home, parse_wind};
 use sim::{Config, Control, FaultRequest, Home, Link};
 use std::io::BufRead;
 use std::net::SocketAddr;
+use std::process::ExitCode;
 
 /// A simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does.
 ///
@@ -85,27 +86,49 @@ fn read_controls(controls: &tokio::sync::mpsc::Sender<Control>) {
         }
         match line.parse::<Control>() {
             Ok(control) => {
-                println!("ok {}", line.trim());
+                answer(format_args!("ok {}", line.trim()));
                 if controls.blocking_send(control).is_err() {
                     return;
                 }
             }
-            Err(error) => println!("error {error}"),
+            Err(error) => answer(format_args!("error {error}")),
         }
     }
 }
 
-fn main() -> anyhow::Result<()> {
+/// The flight goes on although nobody can be told.
+fn answer(line: std::fmt::Arguments<'_>) {
+    if let Err(error) = stdio::line(line) {
+        tracing::warn!("{error}");
+    }
+}
+
+fn main() -> ExitCode {
     tracing_subscriber::fmt().with_writer(std::io::stderr).init();
-    let config = Options::parse().config()?;
+    let outcome = match stdio::arguments::<Options>() {
+        Ok(options) => options.config().and_then(simulate),
+        Err(status) => return status,
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("legwork-sim: {error:#}");
+            ExitCode::from(stdio::USAGE)
+        }
+    }
+}
+
+fn simulate(config: Config) -> anyhow::Result<()> {
     let (link, seed) = (config.link, config.seed);
     let handle = sim::spawn(config)?;
-    println!("seed {seed}");
+    stdio::line(format_args!("seed {seed}"))?;
     match link {
-        Link::Tcp(_) => println!("listening on tcp {}", handle.address()),
-        Link::Udp(_) => println!("listening on udp {}", handle.address()),
-        Link::UdpOut(target) => println!("sending to udp {target} from {}", handle.address()),
-    }
+        Link::Tcp(_) => stdio::line(format_args!("listening on tcp {}", handle.address())),
+        Link::Udp(_) => stdio::line(format_args!("listening on udp {}", handle.address())),
+        Link::UdpOut(target) => {
+            stdio::line(format_args!("sending to udp {target} from {}", handle.address()))
+        }
+    }?;
     let controls = handle.controls();
     std::thread::spawn(move || read_controls(&controls));
     handle.join();

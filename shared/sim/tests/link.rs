@@ -251,6 +251,22 @@ fn faults_and_the_track_log_through_the_handle() {
     handle.stop();
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_on_a_full_disk_is_exit_status_2() {
+    for arguments in [&["--help"][..], &["--tcp", "127.0.0.1:0"]] {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let run = Command::new(env!("CARGO_BIN_EXE_legwork-sim"))
+            .args(arguments)
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.code() == Some(2) && said.contains("standard output can't be written"), "{said}");
+    }
+}
+
 #[test]
 fn the_binary_prints_its_address_and_obeys_lines() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_legwork-sim"))
