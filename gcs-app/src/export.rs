@@ -6,7 +6,7 @@ use crate::jobs::Progress;
 use aircraft::{Profile, Wind};
 use flight_exec::Conditions;
 use flight_exec::rehearse::{Preview, PreviewError, Scenario};
-use flight_plan::{FlightPlan, Problem, Program};
+use flight_plan::{FlightPlan, Id, Problem, Program};
 use interchange::{Export, Format, Note, Step};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -25,6 +25,17 @@ pub struct Exported {
     pub notes: Vec<Note>,
     /// The file's content.
     pub bytes: Vec<u8>,
+}
+
+impl Exported {
+    /// What could not be carried over, said of names, not identifiers.
+    pub fn in_names(mut self, plan: &FlightPlan) -> Self {
+        for note in &mut self.notes {
+            note.place = plan.label(&Id::new(&note.place)).to_owned();
+            note.message = plan.in_names(&note.message);
+        }
+        self
+    }
 }
 
 /// Why there are no waypoints to be written.
@@ -143,6 +154,21 @@ mod tests {
         let exported = of_square(|_| {}, &progress).unwrap();
         assert!(exported.waypoints > 4 && !exported.notes.is_empty(), "{exported:?}");
         assert!(exported.bytes.starts_with(b"<?xml") && progress.share().is_some());
+    }
+
+    #[test]
+    fn losses_are_told_by_name() {
+        let exported = of_square(|_| {}, &Progress::default()).unwrap();
+        let plan = FlightPlan {
+            fixes: vec![flight_plan::Fix {
+                id: Id::new(&exported.notes[0].place),
+                name: "Far side".into(),
+                position: geometry::LatLon::new(46.0, 8.0),
+                description: String::new(),
+            }],
+            ..FlightPlan::default()
+        };
+        assert_eq!(exported.in_names(&plan).notes[0].place, "Far side");
     }
 
     #[test]

@@ -292,7 +292,7 @@ impl Files {
     pub fn export(&mut self, plan: Arc<FlightPlan>, format: Format, terrain: Arc<dyn Terrain>) {
         self.job(format!("Exporting as {}", crate::formats::label(format)), move |progress| {
             match export::export(&plan, format, terrain, progress) {
-                Ok(exported) => FileEvent::Exported(Box::new(exported)),
+                Ok(exported) => FileEvent::Exported(Box::new(exported.in_names(&plan))),
                 Err(why) => FileEvent::Failed(why),
             }
         });

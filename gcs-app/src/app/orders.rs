@@ -85,7 +85,7 @@ impl App {
     /// Says why an edit could not be done.
     pub(super) fn tell(&mut self, done: Result<(), String>) {
         if let Err(why) = done {
-            self.view.notice = Some(why);
+            self.view.notice = Some(self.document.plan().in_names(&why));
         }
     }
 

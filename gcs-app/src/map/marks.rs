@@ -34,7 +34,8 @@ pub fn draw_failures(
         failure(painter, view.place(end.position), why, p);
     }
     if let Some((problem, at)) = first_error(scene).zip(error_at) {
-        failure(painter, view.place(at), &problem.message, p);
+        let why = scene.document.plan().in_names(&problem.message);
+        failure(painter, view.place(at), &why, p);
     }
 }
 

@@ -63,7 +63,8 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
     let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
     let size = egui::vec2(ui.available_width(), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let name = format!("Problem: {}", problem.message);
+    let message = told(scene.document.plan(), problem);
+    let name = format!("Problem: {message}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
@@ -79,7 +80,7 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
         }
         // what has no room stands in the tooltip
         let mut job = LayoutJob::simple(
-            format!("{}{place}", problem.message),
+            format!("{message}{place}"),
             FontId::proportional(12.0),
             p.text,
             ui.available_width(),
@@ -88,11 +89,20 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &m
         let text = ui.painter().layout_job(job);
         ui.painter().galley(ui.cursor().min, text, p.text);
     });
-    let response = response.on_hover_text(format!("{}\n{}", problem.code, problem.message));
+    let response = response.on_hover_text(format!("{}\n{message}", problem.code));
     if response.clicked()
         && let Some(selection) = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id))
     {
         queue.view(ViewCommand::JumpTo(selection));
+    }
+}
+
+/// Whose problem it is, and what; by names, where the plan has names.
+pub fn told(plan: &FlightPlan, problem: &Problem) -> String {
+    let message = plan.in_names(&problem.message);
+    match &problem.subject {
+        Some(subject) => format!("{}: {message}", plan.label(subject)),
+        None => message,
     }
 }
 

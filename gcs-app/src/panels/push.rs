@@ -7,12 +7,14 @@ use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::{Color32, Panel, RichText, ScrollArea, Ui};
-use flight_plan::{Change, Id};
+use flight_plan::{Change, FlightPlan, Id};
 
 /// Screen points.
 const WIDTH: f32 = 260.0;
 /// So many changes are written out.
 const MOST_CHANGES: usize = 200;
+/// So many legs are named.
+const MOST_LEGS: usize = 40;
 
 /// Draws the proposal's answer, while there is one.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -43,31 +45,32 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         ui.label(RichText::new("── on the map: this plan").color(p.accent));
         ui.label(RichText::new("╌╌ on the map: the plan aboard").color(p.contingency));
     }
-    next(ui, proposal, scene.units(), p);
+    next(ui, proposal, scene, p);
     ui.separator();
     ScrollArea::vertical().id_salt("push").auto_shrink(false).show(ui, |ui| {
+        let plan = scene.document.plan();
         for problem in &report.problems {
-            ui.label(RichText::new(format!("⚠ {problem}")).color(p.caution));
+            ui.label(RichText::new(format!("⚠ {}", plan.in_names(problem))).color(p.caution));
         }
-        difference(ui, "+", "added", &report.added, p.good);
-        difference(ui, "~", "changed", &report.changed, p.accent);
-        difference(ui, "−", "removed", &report.removed, p.weak);
+        difference(ui, "+", "added", plan, &report.added, p.good);
+        difference(ui, "~", "changed", plan, &report.changed, p.accent);
+        difference(ui, "−", "removed", plan, &report.removed, p.weak);
         if report.added.is_empty() && report.changed.is_empty() && report.removed.is_empty() {
             ui.label(RichText::new("No leg differs from the plan aboard.").color(p.weak));
         }
-        changes(ui, &proposal.changes, p);
+        changes(ui, plan, &proposal.changes, p);
     });
 }
 
 /// Each change in words: `leg patrol changed: count 2 → 3`.
-fn changes(ui: &mut Ui, changes: &[Change], p: &Palette) {
+fn changes(ui: &mut Ui, plan: &FlightPlan, changes: &[Change], p: &Palette) {
     if changes.is_empty() {
         return;
     }
     ui.add_space(6.0);
     super::group_title(ui, "In the document");
     for change in changes.iter().take(MOST_CHANGES) {
-        ui.label(change.to_string());
+        ui.label(change.in_names(plan));
     }
     if let Some(more) = changes.len().checked_sub(MOST_CHANGES).filter(|more| *more > 0) {
         ui.label(RichText::new(format!("and {more} more")).color(p.weak));
@@ -84,11 +87,11 @@ fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
     ui.label(RichText::new(text).strong().color(colour));
 }
 
-fn difference(ui: &mut Ui, sign: &str, what: &str, legs: &[Id], colour: Color32) {
+fn difference(ui: &mut Ui, sign: &str, what: &str, plan: &FlightPlan, legs: &[Id], colour: Color32) {
     if legs.is_empty() {
         return;
     }
-    let shown: Vec<&str> = legs.iter().take(40).map(Id::as_str).collect();
+    let shown: Vec<&str> = legs.iter().take(MOST_LEGS).map(|leg| plan.label(leg)).collect();
     let more = legs.len().saturating_sub(shown.len());
     let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
     ui.horizontal_wrapped(|ui| {
@@ -98,14 +101,15 @@ fn difference(ui: &mut Ui, sign: &str, what: &str, legs: &[Id], colour: Color32)
 }
 
 /// Where the aircraft would go, and when: on its way, or into the leg that was chosen.
-fn next(ui: &mut Ui, proposal: &Proposal, units: Units, p: &Palette) {
+fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
+    let units = scene.units();
     let report = &proposal.report;
     let chosen = report.entries.iter().find(|entry| Some(&entry.leg) == proposal.entry.as_ref());
     let (leg, position, way) = match chosen {
         Some(entry) => (Some(&entry.leg), Some(entry.position), Some((entry.in_m, entry.in_s))),
         None => (report.next_leg.as_ref(), report.next_position, report.next_in_m.zip(report.next_in_s)),
     };
-    let leg = leg.map_or_else(|| "–".to_owned(), Id::to_string);
+    let leg = leg.map_or("–", |leg| scene.document.leg_label(leg));
     let place = position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
@@ -126,14 +130,15 @@ fn in_so_far(way: Option<(f64, f64)>, units: Units) -> String {
 fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
     ui.vertical(|ui| {
         ui.label("The leg it is on is gone. Enter at:");
-        let current = proposal.entry.as_ref().map_or("choose a leg", Id::as_str);
+        let current = proposal.entry.as_ref().map_or("choose a leg", |leg| scene.document.leg_label(leg));
         egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {
             for context in
                 scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main)
             {
                 let leg = &context.leg.id;
                 let way = proposal.report.entries.iter().find(|entry| entry.leg == *leg);
-                let text = format!("{leg}{}", in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units()));
+                let name = scene.document.leg_label(leg);
+                let text = format!("{name}{}", in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units()));
                 if ui.selectable_label(proposal.entry.as_ref() == Some(leg), text).clicked() {
                     queue.fly(FlyCommand::EnterAt(leg.clone()));
                 }

@@ -141,11 +141,12 @@ fn the_inspector_edits_what_is_selected() {
 
 #[test]
 fn a_problem_leads_to_its_place() {
-    let broken = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" fix="NOWHERE"/>"#);
-    let mut window = Window::open(&broken);
+    let far = r#"<TF id="side2" name="Far side" fix="NOWHERE"/>"#;
+    let mut window = Window::open(&SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, far));
     window.until_analysed();
     assert!(!window.shows("This plan can be flown"));
-    window.harness.query_all_by_label_contains("Problem: ").next().unwrap().click();
+    // people read its name, not its identifier
+    window.harness.query_all_by_label_contains("Problem: Far side: ").next().unwrap().click();
     window.steps(3);
     assert_eq!(window.app().view().selection, Some(Selection::Leg("side2".into())));
 }

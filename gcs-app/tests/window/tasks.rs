@@ -225,7 +225,8 @@ fn three_faults_are_found_and_mended() {
         window.until_analysed();
         let problems = window.app().analysis().problems.clone();
         let error = problems.iter().find(|problem| problem.is_error()).unwrap();
-        window.click_role(Role::Button, &format!("Problem: {}", error.message));
+        let told = gcs_app::panels::problems::told(&window.plan(), error);
+        window.click_role(Role::Button, &format!("Problem: {told}"));
         match window.selected().as_str() {
             "side2" => window.choose_option("Fix", "B"),
             "side3" => window.fill_in(Role::SpinButton, "Airspeed", "22"),

@@ -11,6 +11,7 @@ pub mod expression;
 pub mod history;
 mod ids;
 pub mod model;
+mod names;
 pub mod problem;
 pub mod procedure;
 pub mod program;

@@ -101,15 +101,15 @@ fn has_legs(kind: StageKind) -> bool {
 /// Where that is, for people.
 pub fn words(aim: &Aim, plan: &FlightPlan) -> String {
     match aim {
-        Aim::Spot(Spot::Before(id)) => format!("before {id}"),
-        Aim::Spot(Spot::After(id)) => format!("behind {id}"),
-        Aim::Spot(Spot::EndOf(id)) => format!("at the end of {id}"),
-        Aim::Way { from, way: Way::New } => format!("on a new way from {from}"),
+        Aim::Spot(Spot::Before(id)) => format!("before {}", plan.label(id)),
+        Aim::Spot(Spot::After(id)) => format!("behind {}", plan.label(id)),
+        Aim::Spot(Spot::EndOf(id)) => format!("at the end of {}", plan.label(id)),
+        Aim::Way { from, way: Way::New } => format!("on a new way from {}", plan.label(from)),
         Aim::Way { from, way: Way::Branch(branch) } => {
             let branches = plan.any_leg(from).and_then(Leg::as_fork).map_or(&[][..], |fork| fork.branches);
             let label = branches.iter().find(|b| b.id == *branch).map(|b| b.label.as_str());
             let label = label.filter(|label| !label.is_empty()).unwrap_or(branch.as_str());
-            format!("on “{label}” from {from}")
+            format!("on “{label}” from {}", plan.label(from))
         }
     }
 }

@@ -227,7 +227,7 @@ impl Select {
         let is_fault = |q: &&Problem| q.is_error() && q.subject.as_ref().is_some_and(|of| legs.contains(of));
         let fault = canvas.scene.problems().find(is_fault);
         let (words, colour) = match (fault, bands::before(canvas, leg)) {
-            (Some(problem), _) => (problem.message.clone(), p.warning),
+            (Some(problem), _) => (canvas.scene.document.plan().in_names(&problem.message), p.warning),
             (None, Some(from)) => (way(from, handle.at, canvas.scene.units()), p.text),
             (None, None) => return,
         };

@@ -105,8 +105,8 @@ fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
     let program = match compile(tried, &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
         Err(problems) => {
-            let fault =
-                problems.into_iter().find(|problem| problem.is_error()).map(|problem| problem.message);
+            let fault = problems.iter().find(|problem| problem.is_error());
+            let fault = fault.map(|problem| plan.in_names(&problem.message));
             return Trial { fault, ..Trial::default() };
         }
     };

@@ -2,6 +2,7 @@
 
 use super::{remark, reset_button};
 use crate::command::{Queue, ViewCommand};
+use crate::panels::problems::told;
 use crate::panels::{Scene, group_title};
 use crate::theme;
 use crate::units::Unit;
@@ -132,7 +133,9 @@ fn problems(ui: &mut Ui, scene: &Scene<'_>) {
     for problem in new {
         let colour = if problem.is_error() { p.warning } else { p.caution };
         let symbol = if problem.is_error() { "✖" } else { "⚠" };
-        let text = RichText::new(format!("{symbol} {}", problem.message)).size(11.5).color(colour);
+        let text = RichText::new(format!("{symbol} {}", told(scene.document.plan(), problem)))
+            .size(11.5)
+            .color(colour);
         ui.add(egui::Label::new(text).wrap());
     }
 }

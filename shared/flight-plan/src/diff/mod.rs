@@ -39,17 +39,27 @@ pub struct Change {
 impl std::fmt::Display for Change {
     /// `leg o1 changed: altitude 300 → 400`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.part)?;
-        if let Some(id) = &self.id {
-            write!(f, " {id}")?;
-        }
-        f.write_str(match self.fate {
-            ChangeKind::Added => " added",
-            ChangeKind::Removed => " removed",
-            ChangeKind::Changed => " changed",
-            ChangeKind::Moved => " moved",
-        })?;
-        if self.words.is_empty() { Ok(()) } else { write!(f, ": {}", self.words.join(", ")) }
+        f.write_str(&self.told(self.id.as_ref().map(Id::as_str)))
+    }
+}
+
+impl Change {
+    /// For people, with what the plan calls it.
+    pub fn in_names(&self, plan: &FlightPlan) -> String {
+        self.told(self.id.as_ref().map(|id| plan.label(id)))
+    }
+
+    fn told(&self, name: Option<&str>) -> String {
+        let fate = match self.fate {
+            ChangeKind::Added => "added",
+            ChangeKind::Removed => "removed",
+            ChangeKind::Changed => "changed",
+            ChangeKind::Moved => "moved",
+        };
+        let of: Vec<&str> = std::iter::once(self.part).chain(name).chain([fate]).collect();
+        let words =
+            if self.words.is_empty() { String::new() } else { format!(": {}", self.words.join(", ")) };
+        format!("{}{words}", of.join(" "))
     }
 }
 
