@@ -31,7 +31,9 @@ impl FileFormat {
     /// By content first: a name may lie. What is nothing else is a plan of ours, and broken if need be.
     pub fn of(path: &Path, bytes: &[u8]) -> Self {
         let by_content = Format::by_content(bytes).filter(|format| match format {
-            Format::Kml | Format::Gpx => root(bytes).is_none_or(|root| root == format.name()),
+            Format::Kml | Format::Gpx => {
+                root(bytes).is_none_or(|root| format.roots().contains(&root.as_str()))
+            }
             _ => true,
         });
         match (by_content, Self::by_path(path)) {
@@ -117,6 +119,8 @@ mod tests {
         assert_eq!(of("a.kml", "garbage"), FileFormat::Other(Format::Kml));
         assert_eq!(of("-", "<flightPlan/>"), FileFormat::Legwork);
         assert_eq!(of("-", "<?xml version='1.0'?><!-- no <oops> --><kml/>"), FileFormat::Other(Format::Kml));
+        assert_eq!(of("-", "<Document><Placemark/></Document>"), FileFormat::Other(Format::Kml));
+        assert_eq!(of("a.xml", "<flightPlan><Placemark/></flightPlan>"), FileFormat::Legwork);
         // that it speaks of KML doesn't make it one
         assert_eq!(of("a.xml", "<missionPlan><!-- from <kml> --></missionPlan>"), FileFormat::Legwork);
         assert_eq!(of("a.xml", "<flightPlan><!-- from <gpx> --></flightPlan>"), FileFormat::Legwork);

@@ -112,11 +112,8 @@ fn check_kind(path: &Path, head: &[u8]) -> Result<(), String> {
     if head.starts_with(b"PK\x03\x04") {
         return Ok(());
     }
-    let is_text = match std::str::from_utf8(head) {
-        // a character may be cut at the end
-        Err(error) if error.error_len().is_some() => false,
-        _ => !head.contains(&0),
-    };
+    // older programs write Latin-1, where any byte is a character
+    let is_text = !head.contains(&0);
     match is_text {
         true => Ok(()),
         false => Err(format!("it is no text. Legwork opens its own plans (xml) and {}.", formats::names())),

@@ -46,6 +46,9 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         FileFormat::Legwork => {
             written_whole(selection)?;
             let mut loaded = source.load()?;
+            if loaded.is_empty {
+                return Ok(nothing(&source.file, &loaded.notes, target.json));
+            }
             selection.prepare(&mut loaded)?;
             if loaded.reading.has_errors() {
                 return Ok(check::print_errors(&source.file, &loaded.reading.problems));
@@ -77,6 +80,13 @@ fn written_whole(selection: &Selection) -> anyhow::Result<()> {
     bail!(
         "{option} chooses a branch or an emergency plan, and XML holds all of them: leave it out, or name another format"
     )
+}
+
+/// An import that nothing came of is no plan.
+fn nothing(file: &Path, notes: &[Note], json: bool) -> ExitCode {
+    print(file, notes, json);
+    eprintln!("{}: nothing in this file could become part of a plan: nothing was written", file.display());
+    ExitCode::from(1)
 }
 
 fn print(file: &Path, notes: &[Note], json: bool) {
@@ -133,6 +143,19 @@ mod tests {
         assert_eq!(convert(&source, &strict).unwrap(), format!("{:?}", ExitCode::from(1)));
         let nameless = convert(&source, &target(folder.path().join("a"))).unwrap_err();
         assert!(nameless.to_string().contains("--to"), "{nameless}");
+    }
+
+    #[test]
+    fn an_import_that_nothing_came_of_is_a_failure() {
+        let folder = tempfile::tempdir().unwrap();
+        let empty = folder.path().join("empty.geojson");
+        std::fs::write(&empty, r#"{"type": "FeatureCollection", "features": []}"#).unwrap();
+        let source = Source { file: empty, ..Source::default() };
+        for name in ["a.xml", "a.csv"] {
+            let there = folder.path().join(name);
+            assert_eq!(convert(&source, &target(there.clone())).unwrap(), format!("{:?}", ExitCode::from(1)));
+            assert!(!there.exists());
+        }
     }
 
     #[test]

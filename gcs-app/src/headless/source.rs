@@ -42,6 +42,8 @@ pub struct Loaded {
     pub notes: Vec<Note>,
     /// It came from another program's format: places in the document mean nothing to its author.
     pub converted: bool,
+    /// It came from there, and nothing of the file became part of the plan.
+    pub is_empty: bool,
     /// The aircraft, or why there is none.
     pub profile: Result<Profile, String>,
     /// The ground.
@@ -60,7 +62,13 @@ impl Source {
             None => self.surround(&bytes),
             Some(import) => {
                 let document = flight_plan::write(&import.plan);
-                Ok(Loaded { notes: import.notes, converted: true, ..self.surround(document.as_bytes())? })
+                let is_empty = import.is_empty();
+                Ok(Loaded {
+                    notes: import.notes,
+                    converted: true,
+                    is_empty,
+                    ..self.surround(document.as_bytes())?
+                })
             }
         }
     }
@@ -75,7 +83,14 @@ impl Source {
             Some(path) => Ok(profile_from(path)?),
             None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),
         };
-        Ok(Loaded { reading, notes: Vec::new(), converted: false, profile, terrain: self.load_terrain()? })
+        Ok(Loaded {
+            reading,
+            notes: Vec::new(),
+            converted: false,
+            is_empty: false,
+            profile,
+            terrain: self.load_terrain()?,
+        })
     }
 
     fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
@@ -97,7 +112,7 @@ impl Loaded {
     pub fn of(plan: &FlightPlan, terrain: Arc<dyn Terrain>) -> Self {
         let reading = flight_plan::read(flight_plan::write(plan));
         let profile = Profile::by_name(&reading.plan.aircraft).map_err(|error| error.to_string());
-        Self { reading, notes: Vec::new(), converted: true, profile, terrain }
+        Self { reading, notes: Vec::new(), converted: true, is_empty: false, profile, terrain }
     }
 
     /// Everything that is wrong: document, plan, aircraft.

@@ -1,6 +1,6 @@
 //! GeoJSON, RFC 7946.
 
-use crate::drawing::{Drawing, Feature, Shape, Vertex, level, open_ring};
+use crate::drawing::{self, Drawing, Feature, Shape, Vertex, level, open_ring};
 use crate::note::Notes;
 use crate::qgc::bounded_json;
 use crate::synthetic::altitude;
@@ -13,7 +13,8 @@ use std::str::FromStr;
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
-    let file = GeoJson::from_str(bounded_json(bytes)?).map_err(|error| {
+    let mut drawing = Drawing::default();
+    let file = GeoJson::from_str(&bounded_json(bytes, &mut drawing.notes)?).map_err(|error| {
         Error::malformed("file", format!("this is no complete GeoJSON document: {error}"))
     })?;
     let features = match file {
@@ -27,7 +28,6 @@ pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
     if features.len() > MAX_ITEMS {
         return Err(Error::TooMany { what: "features", limit: MAX_ITEMS });
     }
-    let mut drawing = Drawing::default();
     for (index, feature) in features.into_iter().enumerate() {
         self::feature(index, feature, &mut drawing)?;
     }
@@ -134,15 +134,14 @@ impl Reader<'_> {
             [lon, lat, metres, ..] => (*lon, *lat, Some(*metres)),
             _ => (f64::NAN, f64::NAN, None),
         };
-        let at = LatLon::new(lat, lon);
-        if !at.is_valid() {
+        let Some(at) = drawing::position(lat, lon, self.place, self.notes) else {
             self.notes.again(
                 "no-position",
                 self.place,
                 "coordinates that are no longitude and latitude are left out",
             );
             return None;
-        }
+        };
         let metres = metres.filter(|m| m.abs() < 1e5);
         if metres.is_some() && !self.ours {
             self.notes.again(

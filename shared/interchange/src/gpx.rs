@@ -1,13 +1,13 @@
 //! GPX 1.1 (read: 1.0, too): routes and tracks as lines, waypoints as points. Elevations are metres AMSL.
 //! Source: the schema at topografix.com/GPX/1/1.
 
-use crate::drawing::{Drawing, Feature, LABEL, Shape, Vertex};
+use crate::Error;
+use crate::drawing::{self, Drawing, Feature, LABEL, Shape, Vertex};
 use crate::note::Notes;
 use crate::synthetic::altitude;
+use crate::text::text_of;
 use crate::xml::{self, Element, escaped};
-use crate::{Error, text_of};
 use flight_plan::{AltitudeReference, Value};
-use geometry::LatLon;
 use std::fmt::Write;
 
 /// What is read of the file, and of a route or track.
@@ -20,14 +20,14 @@ const CREATOR: &str = "Legwork";
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
-    let root = xml::parse(text_of(bytes)?)?;
+    let mut drawing = Drawing::default();
+    let root = xml::parse(&text_of(bytes, &mut drawing.notes)?)?;
     if root.name != "gpx" {
         return Err(Error::malformed(
             root.place(),
             format!("this is no GPX file: its root is <{}>", shown(&root.name)),
         ));
     }
-    let mut drawing = Drawing::default();
     let metadata = root.child("metadata").unwrap_or(&root);
     drawing.name = metadata.text_of("name").to_owned();
     // before GPX 1.1 the name stood in the root itself
@@ -73,8 +73,9 @@ fn line(named: &Element, element: &Element, ours: bool, drawing: &mut Drawing) -
 
 fn vertex(element: &Element, ours: bool, notes: &mut Notes) -> Option<Vertex> {
     let degrees = |name: &str| element.attribute(name).and_then(|v| v.trim().parse::<f64>().ok());
-    let position = degrees("lat").zip(degrees("lon")).map(|(lat, lon)| LatLon::new(lat, lon));
-    let Some(position) = position.filter(|p| p.is_valid()) else {
+    let read = degrees("lat").zip(degrees("lon"));
+    let position = read.and_then(|(lat, lon)| drawing::position(lat, lon, &element.place(), notes));
+    let Some(position) = position else {
         notes.again("no-position", element.place(), "a point without a good `lat` and `lon` is left out");
         return None;
     };

@@ -1,15 +1,18 @@
 //! KML 2.2: placemarks with points, lines, rings, polygons and collections of them.
 //! Source: OGC 12-007r2. Own marks are written as `ExtendedData`.
 
-use crate::drawing::{Drawing, Feature, Shape, Vertex, level, open_ring};
+use crate::drawing::{self, Drawing, Feature, Shape, Vertex, level, open_ring};
 use crate::note::Notes;
 use crate::synthetic::altitude;
+use crate::text::text_of;
 use crate::xml::{self, Element, escaped};
-use crate::{Error, MAX_POINTS, text_of};
+use crate::{Error, MAX_POINTS};
 use flight_plan::{Altitude, AltitudeReference, Value};
 use geometry::LatLon;
 use std::fmt::Write;
 
+/// What a file begins with, or what is copied out of one.
+pub const ROOTS: [&str; 4] = ["kml", "Document", "Folder", "Placemark"];
 /// How things look, which a plan doesn't say.
 const STYLES: &[&str] = &[
     "Style",
@@ -40,12 +43,18 @@ const READ: &[&str] = &[
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Drawing, Error> {
-    let root = xml::parse(text_of(bytes)?)?;
-    if root.name != "kml" {
+    let mut drawing = Drawing::default();
+    let root = xml::parse(&text_of(bytes, &mut drawing.notes)?)?;
+    if !ROOTS.contains(&root.name.as_str()) {
         return Err(Error::malformed(root.place(), "this is no KML file: its root is not <kml>"));
     }
-    let mut reader = Reader { drawing: Drawing::default(), points: 0 };
-    reader.container(&root)?;
+    let mut reader = Reader { drawing, points: 0 };
+    if root.name == "kml" {
+        reader.container(&root)?;
+    } else {
+        // a part of a file, as it is copied from Google Earth
+        reader.container(&Element { children: vec![root], ..Element::default() })?;
+    }
     Ok(reader.drawing)
 }
 
@@ -148,7 +157,7 @@ impl Reader {
             if self.points > MAX_POINTS {
                 return Err(Error::TooMany { what: "points", limit: MAX_POINTS });
             }
-            match vertex(tuple, reference) {
+            match vertex(tuple, reference, &element.place(), &mut self.drawing.notes) {
                 Some(vertex) => vertices.push(vertex),
                 None => {
                     let message = "coordinates that are no longitude, latitude and altitude are left out";
@@ -180,13 +189,17 @@ fn place(placemark: &Element) -> String {
     if name.is_empty() { placemark.place() } else { format!("{} ({name})", placemark.place()) }
 }
 
-fn vertex(tuple: &str, reference: Option<AltitudeReference>) -> Option<Vertex> {
+fn vertex(
+    tuple: &str,
+    reference: Option<AltitudeReference>,
+    place: &str,
+    notes: &mut Notes,
+) -> Option<Vertex> {
     let mut numbers = tuple.split(',').map(str::parse::<f64>);
     let (lon, lat) = (numbers.next()?.ok()?, numbers.next()?.ok()?);
     let metres = numbers.next().transpose().ok()?.filter(|m| m.abs() < 1e5);
-    let position = LatLon::new(lat, lon);
     let altitude = metres.zip(reference).map(|(m, r)| altitude(m, r));
-    position.is_valid().then(|| Vertex::new(position, altitude))
+    Some(Vertex::new(drawing::position(lat, lon, place, notes)?, altitude))
 }
 
 fn positions(ring: Vec<Vertex>) -> Vec<LatLon> {

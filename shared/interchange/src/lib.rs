@@ -13,12 +13,14 @@ mod geojson;
 mod gpx;
 mod kml;
 mod kmz;
+mod lists;
 mod losses;
 mod mission;
 mod names;
 mod note;
 mod qgc;
 mod synthetic;
+mod text;
 mod track;
 mod wpl;
 mod xml;
@@ -79,9 +81,23 @@ impl Format {
 
     /// By a name or an extension, in any case.
     pub fn by_name(name: &str) -> Option<Self> {
-        let other = [("wpl", Format::Waypoints), ("json", Format::GeoJson)];
+        let other = [
+            ("wpl", Format::Waypoints),
+            ("fen", Format::Waypoints),
+            ("ral", Format::Waypoints),
+            ("json", Format::GeoJson),
+        ];
         let found = Self::ALL.into_iter().chain(other).find(|(known, _)| name.eq_ignore_ascii_case(known));
         found.map(|(_, format)| format)
+    }
+
+    /// The names of the element that such a document is; empty where it is no XML.
+    pub fn roots(self) -> &'static [&'static str] {
+        match self {
+            Format::Kml => &kml::ROOTS,
+            Format::Gpx => &["gpx"],
+            _ => &[],
+        }
     }
 
     /// By what a file begins with.
@@ -94,10 +110,20 @@ impl Format {
             () if head.starts_with('{') && is_qgc_plan(head, bytes) => Some(Format::Plan),
             () if head.starts_with('{') => Some(Format::GeoJson),
             () if head.starts_with('<') && head.contains("<gpx") => Some(Format::Gpx),
-            () if head.starts_with('<') && head.contains("<kml") => Some(Format::Kml),
+            () if head.starts_with('<') && kml::ROOTS.iter().any(|root| opens(head, root)) => {
+                Some(Format::Kml)
+            }
+            () if lists::is_one(head) => Some(Format::Waypoints),
             () => None,
         }
     }
+}
+
+/// There is a tag of this name.
+fn opens(head: &str, name: &str) -> bool {
+    head.match_indices('<')
+        .filter_map(|(at, _)| head.get(at + 1..)?.strip_prefix(name))
+        .any(|rest| rest.starts_with(|c: char| c.is_whitespace() || matches!(c, '>' | '/')))
 }
 
 /// QGC sorts its keys: `fileType` comes early, but a hand-made file may have it at the end.
@@ -113,6 +139,16 @@ pub struct Import {
     pub plan: FlightPlan,
     /// What was assumed and what could not be carried over, in the order of the file.
     pub notes: Vec<Note>,
+}
+
+impl Import {
+    /// Nothing of the file became part of the plan: the conversion failed, and the notes say why.
+    pub fn is_empty(&self) -> bool {
+        let plan = &self.plan;
+        let flies = plan.stages.iter().any(|stage| !stage.legs.is_empty() || stage.runway.is_some());
+        let keeps = !plan.fixes.is_empty() || !plan.zones.is_empty() || !plan.runways.is_empty();
+        !flies && !keeps
+    }
 }
 
 /// A waypoint that is flown.
@@ -230,14 +266,6 @@ pub fn write(format: Format, export: &Export<'_>) -> Result<Written, Error> {
     Ok(Written { bytes, notes: notes.into_vec() })
 }
 
-/// UTF-8 without a byte order mark.
-fn text_of(bytes: &[u8]) -> Result<&str, Error> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        Error::malformed(format!("byte {}", error.valid_up_to()), "not UTF-8 text: save the file as UTF-8")
-    })?;
-    Ok(text.trim_start_matches('\u{feff}'))
-}
-
 /// A whole number that is written as a float; one beyond the range is the greatest or the least.
 #[expect(clippy::cast_possible_truncation, reason = "a cast of floats saturates")]
 fn saturated(number: f64) -> i64 {
@@ -260,6 +288,12 @@ mod tests {
             ("<?xml version=\"1.0\"?>\n<gpx version=\"1.1\">", Some(Format::Gpx)),
             ("<kml xmlns=\"http://www.opengis.net/kml/2.2\">", Some(Format::Kml)),
             ("PK\x03\x04", Some(Format::Kmz)),
+            ("<?xml version=\"1.0\"?><Placemark><Point/></Placemark>", Some(Format::Kml)),
+            ("<Document><Placemark/></Document>", Some(Format::Kml)),
+            ("<Documents/>", None),
+            ("# fence\n36.1 -84.2\n36.2 -84.2\n", Some(Format::Waypoints)),
+            ("RALLY 36.1 -84.2 90 40 0 0\n", Some(Format::Waypoints)),
+            ("36.1 -84.2 300\n", None),
             ("<flightPlan/>", None),
             ("", None),
         ] {

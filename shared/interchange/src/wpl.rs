@@ -6,7 +6,8 @@ use crate::losses::{self, Kept};
 use crate::mission::{self, Entry, Item, Mission, commands};
 use crate::note::Notes;
 use crate::synthetic::Assumptions;
-use crate::{Error, Export, Import, MAX_ITEMS, text_of};
+use crate::text::text_of;
+use crate::{Error, Export, Import, MAX_ITEMS, lists};
 use std::fmt::Write;
 
 /// Fields of a line.
@@ -15,7 +16,11 @@ const FIELDS: usize = 12;
 /// Reads a list.
 pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
     let mut notes = Notes::default();
-    let mut lines = text_of(bytes)?.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
+    let text = text_of(bytes, &mut notes)?;
+    if lists::is_one(&text) {
+        return lists::read(&text, assumptions, notes);
+    }
+    let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
     let header = lines.next().map(|(_, line)| line).unwrap_or_default();
     match header.split_whitespace().collect::<Vec<_>>()[..] {
         ["QGC", "WPL", "110"] => {}
@@ -45,6 +50,10 @@ fn assembled(items: Vec<Item>) -> Result<Mission, Error> {
     let mut mission = Mission::default();
     for (index, item) in items.into_iter().enumerate() {
         match (item.number, index) {
+            // lists of fences and rally points may have no home
+            (0, 0) if commands::FENCES.contains(&item.command) || item.command == commands::RALLY_POINT => {
+                mission.entries.push(Entry::Item(item));
+            }
             (0, 0) => {
                 mission.home = item.position();
                 let metres = item.param(7);

@@ -66,7 +66,7 @@ fn a_waypoint_list() {
         [
             "take-off on runway at 60 home",
             "mission",
-            "  loop2: 1000 times",
+            "  loop2: until battery < 0.4",
             "    item2: TF 36.327 -84.16, 100 home",
             "    loop4: 3 times",
             "      item4: TF 36.33 -84.15 over, 90 agl, 20 m/s",

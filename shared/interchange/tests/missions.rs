@@ -55,8 +55,10 @@ fn a_loiter_on_the_spot_keeps_place_and_altitude() {
             "  item5: orbit 36.3209 -84.1537, 100 m, 3 times Right",
             "  item6: TF 36.33 -84.16, 90 home",
             "  item7: HA 36.33 -84.16 Right, 150 home, end wait 20",
-            "  item8: HM 36.34 -84.16 Right",
-            "  item9: HM 36.34 -84.17 Right, 0 amsl",
+            "  circle8: until battery < 0.4",
+            "    item8: orbit 36.34 -84.16, 100 m, 1 times Right",
+            "  circle9: until battery < 0.4",
+            "    item9: orbit 36.34 -84.17, 100 m, 1 times Right, 0 amsl",
         ]
     );
     assert_eq!(said(&import, "loiter-altitude"), ["line 6"]);

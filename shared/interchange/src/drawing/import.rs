@@ -1,6 +1,7 @@
 //! A drawing as a plan.
 
 use super::{Drawing, Feature, LABEL, Shape, Vertex, ends};
+use crate::mission::SAME_M;
 use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
@@ -180,7 +181,8 @@ impl Importer<'_> {
 
     fn line(&mut self, feature: &Feature, line: &[Vertex]) {
         self.undescribed(feature);
-        let line = self.without_ends(feature, line);
+        let way = self.without_ends(feature, line);
+        let line = self.apart(feature, way);
         if line.is_empty() {
             return;
         }
@@ -200,6 +202,22 @@ impl Importer<'_> {
             stage.legs.push(way.into());
         }
         self.plan.stages.push(stage);
+    }
+
+    /// Neighbouring points at one place are one: no track leads from one to the other. The last one says how high it is left.
+    fn apart(&mut self, feature: &Feature, line: &[Vertex]) -> Vec<Vertex> {
+        let mut kept: Vec<Vertex> = Vec::new();
+        for vertex in line {
+            match kept.last_mut().filter(|last| last.position.distance_m(vertex.position) < SAME_M) {
+                Some(last) => {
+                    last.altitude = vertex.altitude.clone().or(last.altitude.take());
+                    let message = "a point where the one before is becomes one with it";
+                    self.notes.again("duplicate-waypoint", &feature.place, message);
+                }
+                None => kept.push(vertex.clone()),
+            }
+        }
+        kept
     }
 
     /// Legs and stages have names, and no descriptions.

@@ -15,11 +15,15 @@ use crate::xml::held;
 use crate::{Error, MAX_BYTES, MAX_ITEMS, MAX_POINTS};
 use flight_plan::Altitude;
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 
 /// Mark of a path: what kind of point it begins with.
 const BEGINS: &str = "begins_with";
 /// Mark of a path: what kind of point it ends with.
 const ENDS: &str = "ends_with";
+
+/// A longitude that is farther out is a mistake: one turn more than there is.
+const MAX_LONGITUDE_DEG: f64 = 540.0;
 
 /// Mark of a fix: what people call it.
 pub const LABEL: &str = "label";
@@ -151,6 +155,18 @@ impl Feature {
         let position = LatLon::new(self.number(lat)?, self.number(lon)?);
         position.is_valid().then_some(position)
     }
+}
+
+/// A position that was read. Programs that draw across 180° count on beyond it: that is brought into range.
+pub fn position(lat_deg: f64, lon_deg: f64, place: &str, notes: &mut Notes) -> Option<LatLon> {
+    let within = LatLon::new(lat_deg, lon_deg);
+    if within.is_valid() {
+        return Some(within);
+    }
+    let turned = (lon_deg.abs() <= MAX_LONGITUDE_DEG).then(|| LatLon::new(lat_deg, normalise_180(lon_deg)));
+    let turned = turned.filter(|position| position.is_valid())?;
+    notes.again("longitude-range", place, "a longitude beyond 180° is counted from the other side");
+    Some(turned)
 }
 
 /// The altitude of an area that is drawn with this outer ring: that of its first corner.

@@ -44,6 +44,22 @@ pub const VIDEO_START_CAPTURE: u16 = 2500;
 /// Video: stop.
 pub const VIDEO_STOP_CAPTURE: u16 = 2501;
 
+/// Where to go when a fence is crossed.
+pub const FENCE_RETURN: u16 = 5000;
+/// A corner of a polygon to stay inside of: number of corners.
+pub const FENCE_INCLUSION: u16 = 5001;
+/// A corner of a polygon to keep out of: number of corners.
+pub const FENCE_EXCLUSION: u16 = 5002;
+/// A circle to stay inside of: radius m.
+pub const FENCE_CIRCLE_INCLUSION: u16 = 5003;
+/// A circle to keep out of: radius m.
+pub const FENCE_CIRCLE_EXCLUSION: u16 = 5004;
+/// All of them.
+pub const FENCES: [u16; 5] =
+    [FENCE_RETURN, FENCE_INCLUSION, FENCE_EXCLUSION, FENCE_CIRCLE_INCLUSION, FENCE_CIRCLE_EXCLUSION];
+/// A rally point.
+pub const RALLY_POINT: u16 = 5100;
+
 /// Altitude above mean sea level.
 pub const FRAME_GLOBAL: u16 = 0;
 /// No position: a command.
@@ -120,12 +136,6 @@ const DESCRIBED: &[(u16, &str)] = &[
     (601, "DO_JUMP_TAG"),
     (1000, "DO_GIMBAL_MANAGER_PITCHYAW"),
     (3000, "DO_VTOL_TRANSITION"),
-    (5000, "NAV_FENCE_RETURN_POINT"),
-    (5001, "NAV_FENCE_POLYGON_VERTEX_INCLUSION"),
-    (5002, "NAV_FENCE_POLYGON_VERTEX_EXCLUSION"),
-    (5003, "NAV_FENCE_CIRCLE_INCLUSION"),
-    (5004, "NAV_FENCE_CIRCLE_EXCLUSION"),
-    (5100, "NAV_RALLY_POINT"),
 ];
 
 /// What people call a command that is not carried over: `command 183 (DO_SET_SERVO)`.

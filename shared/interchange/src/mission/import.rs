@@ -4,7 +4,7 @@ use super::altitudes::Datum;
 use super::commands as cmd;
 use super::placed::{Placed, action, leg, waypoint};
 use super::runways::Runways;
-use super::{Entry, Item, Mission, jumps, rally};
+use super::{Entry, Item, Mission, fences, jumps, rally};
 use crate::names::Names;
 use crate::note::Notes;
 use crate::synthetic::{self, Assumptions};
@@ -16,7 +16,8 @@ use geometry::LatLon;
 pub const FLY_OVER_M: f64 = 5.0;
 
 /// A mission as a plan.
-pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
+pub fn read(mut mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Import {
+    fences::take(&mut mission, &mut notes);
     let mut names = Names::default();
     let runways = Runways::new(assumptions, &mut names);
     let mut plan = synthetic::plan(assumptions, mission.vehicle(), &mut notes);
@@ -47,8 +48,8 @@ pub fn read(mission: Mission, assumptions: &Assumptions, mut notes: Notes) -> Im
         plan.zones.push(zone);
     }
     rally::add(&mut plan, &mission.rally, home_amsl_m, assumptions, (&mut names, &mut notes));
-    if plan.stages.is_empty() {
-        notes.push("empty", "file", "there is no mission in this file");
+    if plan.stages.is_empty() && plan.zones.is_empty() && plan.runways.is_empty() {
+        notes.push("empty", "file", "there is no mission in this file, and no fence or rally point");
     }
     Import { plan, notes: notes.into_vec() }
 }
@@ -187,6 +188,9 @@ impl Importer<'_> {
                 format!("a waypoint at {} {} is left out: it has no position", item.param(5), item.param(6));
             return self.notes.push("no-position", &item.place, message);
         };
+        if self.is_at(position) && self.merge(item) {
+            return;
+        }
         if item.command == cmd::SPLINE_WAYPOINT {
             self.notes.again("spline", &item.place, "a spline waypoint becomes a straight track");
         }
@@ -229,7 +233,10 @@ impl Importer<'_> {
     fn looped(&mut self, item: &Item, repeats: f64) {
         let Some(made) = self.legs.last() else { return };
         if repeats < 0.0 {
-            let message = format!("a jump for ever becomes a loop of {} passes", jumps::FOR_EVER);
+            let message = format!(
+                "a jump for ever becomes a loop until `{}`: what the energy allows; change its condition, or end it with the command skip leg",
+                jumps::ENOUGH
+            );
             self.notes.push("endless-jump", &item.place, message);
         }
         if made.depth > 1 {

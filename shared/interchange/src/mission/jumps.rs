@@ -2,12 +2,12 @@
 
 use super::placed::{Placed, leg};
 use crate::names::Names;
-use flight_plan::{IterativeForm, LegKind, TurnDirection, Value};
+use flight_plan::{IterativeForm, Leg, LegKind, TurnDirection, Value};
 
 /// Deepest nest of loops.
 const MAX_DEPTH: usize = 8;
-/// Passes of a jump that is never to end.
-pub const FOR_EVER: f64 = 1000.0;
+/// When what is never to end ends: there is energy left to come home.
+pub const ENOUGH: &str = "battery < 0.4";
 
 /// Makes a loop of the legs from item `target` to the last one; they were flown once when the jump comes, so `repeats` more
 /// make `repeats` + 1 passes. Negative: for ever.
@@ -44,15 +44,20 @@ pub fn close(
     }
     let body: Vec<_> = legs.drain(begin..).collect();
     let first = body.first().map_or(number, |l| l.first);
-    let passes = if repeats < 0.0 { FOR_EVER } else { repeats.round().min(1e9) + 1.0 };
-    let kind = LegKind::Iterative {
-        form: IterativeForm::Forward,
-        count: Some(Value::Constant(passes)),
-        until: None,
-        turn: TurnDirection::Right,
-        body: body.into_iter().map(|l| l.leg.into()).collect(),
-    };
+    let passes = (repeats > 0.0).then(|| repeats.round().min(1e9) + 1.0);
+    let kind = repeated(body.into_iter().map(|l| l.leg).collect(), passes);
     let id = names.take(&format!("loop{first}"), "loop");
     legs.push(Placed { leg: leg(id, kind), first, last: number, depth });
     Ok(())
+}
+
+/// A loop over these legs; without a number of passes it ends when there is just enough energy left.
+pub fn repeated(body: Vec<Leg>, passes: Option<f64>) -> LegKind {
+    LegKind::Iterative {
+        form: IterativeForm::Forward,
+        count: passes.map(Value::Constant),
+        until: passes.is_none().then(|| ENOUGH.into()),
+        turn: TurnDirection::Right,
+        body: body.into_iter().map(Into::into).collect(),
+    }
 }

@@ -2,10 +2,10 @@
 
 use super::commands as cmd;
 use super::import::Importer;
-use super::placed::{place, waypoint};
+use super::placed::{self, Placed, place, waypoint};
 use super::runways::SAME_M;
-use super::{Item, placed::Placed};
-use flight_plan::{Act, Altitude, Holding, HoldingLength, LegKind, TurnDirection, Value};
+use super::{Item, jumps};
+use flight_plan::{Act, Altitude, Holding, HoldingLength, Leg, LegKind, TurnDirection, Value};
 use geometry::LatLon;
 
 /// Straight legs of the racetrack that replaces an endless circle, metres.
@@ -33,6 +33,9 @@ impl Importer<'_> {
             cmd::LOITER_TO_ALTITUDE => {
                 self.hold_until_level(item, altitude, racetrack(position, turn, signed_m.abs()))
             }
+            _ if signed_m != 0.0 && signed_m.is_finite() => {
+                self.circle(item, altitude, position, signed_m.abs(), turn)
+            }
             _ => {
                 let holding = racetrack(position, turn, signed_m.abs());
                 self.push_at(item, altitude, LegKind::Hm { holding, until: None, max_laps: None });
@@ -44,6 +47,31 @@ impl Importer<'_> {
             }
         }
         self.arrive(Some(position));
+    }
+
+    /// A holding would have the aircraft's own radius: a loop of single turns keeps that of the circle.
+    fn circle(
+        &mut self,
+        item: &Item,
+        altitude: Option<Altitude>,
+        centre: LatLon,
+        radius_m: f64,
+        turn: TurnDirection,
+    ) {
+        let (radius_m, turns) = (Value::Constant(radius_m), Value::Constant(1.0));
+        self.push_at(item, altitude, LegKind::Orbit { centre: place(centre), radius_m, turns, turn });
+        if let Some(Placed { leg: mut circle, first, last, .. }) = self.legs.pop() {
+            let id = self.names.take(&format!("circle{}", item.number), "circle");
+            // once, not in each turn
+            let actions = std::mem::take(&mut circle.actions);
+            let leg = Leg { actions, ..placed::leg(id, jumps::repeated(vec![circle], None)) };
+            self.legs.push(Placed { leg, first, last, depth: 1 });
+        }
+        let message = format!(
+            "an endless circle becomes a loop of single turns until `{}`: what the energy allows; change its condition, or end it with the command skip leg",
+            jumps::ENOUGH
+        );
+        self.notes.again("endless-circle", &item.place, &message);
     }
 
     /// ArduPilot takes a height of 0 as the present one: there is no altitude of its own then, and that of the leg before counts.
@@ -131,6 +159,47 @@ impl Importer<'_> {
         }
     }
 
+    /// The leg before ends here: there is no track to fly.
+    pub(super) fn is_at(&self, position: LatLon) -> bool {
+        let at_its_place = |placed: &Placed| {
+            let last = last_flown(&placed.leg);
+            matches!(last.kind, LegKind::Tf(_) | LegKind::Df { .. } | LegKind::Ha(_) | LegKind::Hm { .. })
+        };
+        self.last.is_some_and(|last| last.distance_m(position) < SAME_M)
+            && self.legs.last().is_some_and(at_its_place)
+    }
+
+    /// A waypoint where the aircraft is becomes part of the leg before, or a holding to its altitude. False: neither is possible.
+    pub(super) fn merge(&mut self, item: &Item) -> bool {
+        let Some(before) = self.legs.last() else { return false };
+        let (is_leg, number) = (can_wait(before), item.number);
+        if !is_leg && item.param(1) > 0.0 {
+            return false;
+        }
+        let altitude = self.altitude(item);
+        if altitude.is_some() && altitude != self.level {
+            let message = "a waypoint above or below the one before becomes a holding to its altitude (HA)";
+            self.notes.again("climb-on-the-spot", &item.place, message);
+            if let Some(position) = item.position() {
+                self.push_at(item, altitude, LegKind::Ha(racetrack(position, TurnDirection::Right, 0.0)));
+            }
+        } else {
+            let message = "a waypoint where the one before is becomes one with it";
+            self.notes.again("duplicate-waypoint", &item.place, message);
+            if is_leg {
+                self.flush_at_end();
+            }
+        }
+        if item.param(1) > 0.0 {
+            self.at_end(Act::Wait { seconds: Value::Constant(item.param(1)) });
+        }
+        // a jump to either of them leads to the same leg
+        if let Some(placed) = self.legs.last_mut().filter(|_| is_leg) {
+            (placed.first, placed.last) = (number, placed.last.max(number));
+        }
+        true
+    }
+
     pub(super) fn delay(&mut self, item: &Item) {
         let seconds = item.param(1);
         if seconds > 0.0 && self.legs.last().is_some_and(can_wait) {
@@ -147,6 +216,10 @@ impl Importer<'_> {
             last.last = last.last.max(item.number);
         }
     }
+}
+
+fn last_flown(leg: &Leg) -> &Leg {
+    leg.body().last().map_or(leg, |last| last_flown(last))
 }
 
 /// A leg, not a loop, can wait at its end.

@@ -6,6 +6,7 @@ mod altitudes;
 pub mod commands;
 mod ends;
 mod export;
+pub mod fences;
 mod import;
 mod jumps;
 mod loiters;
@@ -15,6 +16,7 @@ mod runways;
 
 pub use export::{Flown, home, items};
 pub use import::read;
+pub use runways::SAME_M;
 
 use crate::synthetic::Vehicle;
 use flight_plan::{Leg, Zone};

@@ -3,7 +3,7 @@
 use super::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
-use crate::synthetic::{Assumptions, altitude, stage};
+use crate::synthetic::{Assumptions, altitude, runway, stage};
 use flight_plan::{
     Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, Place, StageKind, Value,
 };
@@ -21,6 +21,9 @@ pub fn add(
     assumptions: &Assumptions,
     (names, notes): (&mut Names, &mut Notes),
 ) {
+    if plan.stages.is_empty() {
+        return as_runways(plan, rally, home_amsl_m, assumptions, (names, notes));
+    }
     for (place, position, height_m) in rally {
         let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
         let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -62,6 +65,25 @@ pub fn add(
     }
     if let Some(first) = plan.emergency_plans.first() {
         plan.emergency = EmergencyChoice { by_cause: vec![(None, first.id.clone())] };
+    }
+}
+
+/// Without a mission there is no runway that an emergency plan could lead to: each rally point becomes one.
+fn as_runways(
+    plan: &mut FlightPlan,
+    rally: &[(String, LatLon, Option<f64>)],
+    home_amsl_m: Option<f64>,
+    assumptions: &Assumptions,
+    (names, notes): (&mut Names, &mut Notes),
+) {
+    for (place, position, _) in rally {
+        let id = names.take("rally", "rally");
+        let message = format!(
+            "rally point becomes runway `{id}`: an aeroplane lands there, it does not circle; remove it where it can't"
+        );
+        notes.push("rally-as-runway", place, message);
+        let (elevation_m, length_m) = (home_amsl_m.unwrap_or(0.0), assumptions.runway_length_m);
+        plan.runways.push(runway(id, *position, elevation_m, 0.0, length_m, place, notes));
     }
 }
 

@@ -1,13 +1,14 @@
 //! Geofences as zones.
 
 use super::json::{flag, list, number, of, position};
+use crate::mission::fences;
 use crate::note::Notes;
 use crate::{Error, MAX_POINTS};
-use flight_plan::{Id, Zone, ZoneKind, ZoneShape};
+use flight_plan::{Zone, ZoneKind, ZoneShape};
 use serde_json::{Value, json};
 
 /// What is understood of a `geoFence`.
-const KEYS: [&str; 4] = ["breachReturn", "circles", "polygons", "version"];
+const KEYS: [&str; 5] = ["breachReturn", "circles", "polygon", "polygons", "version"];
 
 /// The zones of a `geoFence`.
 pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
@@ -35,9 +36,27 @@ pub fn read(fence: &Value, notes: &mut Notes) -> Result<Vec<Zone>, Error> {
             _ => notes.push("bad-fence", place, "this circle is left out: it has no good centre and radius"),
         }
     }
+    // version 1 had one polygon, to stay inside of
+    let old: Option<Vec<_>> = list(fence, "polygon").iter().take(MAX_POINTS).map(position).collect();
+    match old {
+        Some(corners) if corners.len() >= 3 => zones.push(fences::of(true, ZoneShape::Polygon(corners))),
+        Some(corners) if corners.is_empty() => {}
+        _ => notes.push(
+            "bad-fence",
+            "fence",
+            "the polygon of this fence is left out: it has no three good corners",
+        ),
+    }
     for key in fence.as_object().into_iter().flat_map(|f| f.keys()).filter(|k| !KEYS.contains(&k.as_str())) {
         let key: String = key.chars().take(60).collect();
         let message = format!("`{key}` of the fence is left out: it is not known, or of a version before 2");
+        notes.push("fence-version", "fence", message);
+    }
+    if let Some(version) = fence.get("version").filter(|version| version.as_u64() != Some(2)) {
+        let version: String = version.to_string().chars().take(20).collect();
+        let message = format!(
+            "this fence is of version {version}, and version 2 is known: look whether all of it came over"
+        );
         notes.push("fence-version", "fence", message);
     }
     if several(&zones) {
@@ -64,10 +83,7 @@ fn zone(fence: &Value, shape: ZoneShape, place: &str, notes: &mut Notes) -> Zone
         let message = "this fence doesn't say whether to stay inside: it is taken as one to keep out of";
         notes.push("fence-kind", place, message);
     }
-    let kind = if flag(fence, "inclusion") { ZoneKind::KeepIn } else { ZoneKind::KeepOut };
-    let name = if kind == ZoneKind::KeepIn { "keep-in" } else { "keep-out" };
-    let (floor, ceiling) = (None, None);
-    Zone { id: Id::new(name), name: String::new(), kind, shape, floor, ceiling, active: Vec::new() }
+    fences::of(flag(fence, "inclusion"), shape)
 }
 
 /// The `geoFence` of zones.

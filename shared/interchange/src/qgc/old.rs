@@ -66,7 +66,9 @@ pub fn params(item: &Json) -> Option<[f64; 7]> {
         [] if !place.is_empty() => &named,
         listed => listed,
     };
-    let beside = if listed.len() <= 4 { place } else { &[] };
+    // some writers leave the place in `params` empty and keep it in `coordinate`
+    let placed = listed.iter().skip(4).any(|p| p.as_f64().is_some_and(|number| number != 0.0));
+    let beside = if placed { &[] } else { place };
     let all = listed.iter().take(7).enumerate().chain((4..7).zip(beside));
     for (index, value) in all {
         if let Some(param) = params.get_mut(index) {

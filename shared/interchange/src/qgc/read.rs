@@ -5,8 +5,10 @@ use super::{fence, old, pattern, way};
 use crate::mission::{self, Approach, Entry, Item, Mission, commands};
 use crate::note::Notes;
 use crate::synthetic::{Assumptions, Vehicle};
-use crate::{Error, Import, MAX_ITEMS, text_of};
+use crate::text::text_of;
+use crate::{Error, Import, MAX_ITEMS};
 use serde_json::Value;
+use std::borrow::Cow;
 
 /// Most values in a file: each takes memory while it is read.
 pub const MAX_VALUES: usize = 8_000_000;
@@ -29,8 +31,8 @@ const MISSION_KEYS: &[&str] = &[
 ];
 
 /// JSON whose number of values is bounded before it is read.
-pub fn bounded_json(bytes: &[u8]) -> Result<&str, Error> {
-    let text = text_of(bytes)?;
+pub fn bounded_json<'a>(bytes: &'a [u8], notes: &mut Notes) -> Result<Cow<'a, str>, Error> {
+    let text = text_of(bytes, notes)?;
     let values = bytes.iter().filter(|b| matches!(b, b',' | b'[' | b'{')).count();
     if values > MAX_VALUES {
         return Err(Error::TooMany { what: "values", limit: MAX_VALUES });
@@ -40,16 +42,17 @@ pub fn bounded_json(bytes: &[u8]) -> Result<&str, Error> {
 
 /// Reads a file.
 pub fn read(bytes: &[u8], assumptions: &Assumptions) -> Result<Import, Error> {
-    let file: Value = serde_json::from_str(bounded_json(bytes)?).map_err(|error| {
+    let mut notes = Notes::default();
+    let file: Value = serde_json::from_str(&bounded_json(bytes, &mut notes)?).map_err(|error| {
         Error::malformed(format!("line {}", error.line()), format!("not a complete JSON document: {error}"))
     })?;
     if file.get("fileType").and_then(Value::as_str) != Some("Plan") {
         return Err(Error::malformed("file", "this is no QGroundControl plan: fileType is not \"Plan\""));
     }
-    let mut notes = Notes::default();
     let mission = file.get("mission").unwrap_or(&Value::Null);
     unknown(&file, KEYS, "file", &mut notes);
     unknown(mission, MISSION_KEYS, "mission", &mut notes);
+    versions(&file, &mut notes);
     let vehicle = vehicle(mission, &mut notes);
     let items = list(mission, "items");
     if items.len() > MAX_ITEMS {
@@ -76,6 +79,24 @@ fn unknown(object: &Value, known: &[&str], place: &str, notes: &mut Notes) {
     {
         let key: String = key.chars().take(60).collect();
         notes.push("unknown-key", place, format!("`{key}` is not known and left out"));
+    }
+}
+
+/// Versions other than QGC 4's are told: what is unlike it may be read wrongly. The fence's are told where they are read.
+fn versions(file: &Value, notes: &mut Notes) {
+    let part = |key: &str| file.get(key).unwrap_or(&Value::Null);
+    let parts = [("file", file, 1), ("mission", part("mission"), 2), ("rallyPoints", part("rallyPoints"), 2)];
+    for (place, part, known) in parts {
+        match part.get("version") {
+            Some(version) if version.as_u64() != Some(known) => {
+                let version: String = version.to_string().chars().take(20).collect();
+                let message = format!(
+                    "this is of version {version}, and version {known} is known: look whether all of it came over, or save it with QGroundControl 4"
+                );
+                notes.push("plan-version", place, message);
+            }
+            _ => {}
+        }
     }
 }
 

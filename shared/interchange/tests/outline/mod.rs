@@ -42,6 +42,7 @@ fn leg(leg: &Leg, depth: usize, lines: &mut Vec<String>) {
         LegKind::Orbit { centre, radius_m, turns, turn } => {
             format!("orbit {}, {} m, {} times {turn:?}", place(centre), value(radius_m), value(turns))
         }
+        LegKind::Iterative { until: Some(until), .. } => format!("until {until}"),
         LegKind::Iterative { count, .. } => format!("{} times", count.as_ref().map_or(0.0, value)),
         LegKind::Scan(scan) => {
             let Area::Polygon { corners, holes } = &scan.area else { panic!("{scan:?}") };
