@@ -170,7 +170,8 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
     );
     let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
     theme::card(&chip).show(&mut chip, |ui| {
-        ui.add(egui::Label::new(status).wrap());
+        // a click on it goes to the map
+        ui.add(egui::Label::new(status).selectable(false).wrap());
         ui.horizontal_wrapped(|ui| tools.options(ui, scene));
     });
 }

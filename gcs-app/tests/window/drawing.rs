@@ -228,3 +228,22 @@ fn a_zone_is_selected_by_its_edge() {
     assert!(matches!(window.plan().zones[0].shape, ZoneShape::Circle { .. }));
     assert!(window.centre("Radius of keep-out-1").distance(rim + vec2(30.0, 0.0)) < 3.0);
 }
+
+#[test]
+fn a_click_on_what_covers_the_map_goes_through_or_is_explained() {
+    let (mut window, _) = super::flying::flying();
+    window.steps(60 * 5);
+    window.press(Key::T);
+    let message = window.harness.get_by_label_contains("Put aside: uav1: nothing is heard").rect();
+    window.harness.hover_at(message.left_center() - vec2(40.0, 0.0));
+    window.steps(2);
+    assert!(window.shows("The map is covered where the pointer is"));
+    window.harness.hover_at(window.centre("Map"));
+    window.steps(2);
+    assert!(!window.shows("The map is covered"));
+    // what the tool itself says covers nothing
+    let legs = window.plan().all_legs().len();
+    let status = window.harness.get_by_label_contains("Draw legs at the end of").rect().center();
+    window.click_at(status);
+    assert_eq!(window.plan().all_legs().len(), legs + 1);
+}

@@ -7,8 +7,7 @@ use super::{Asked, Canvas, Card, Grip, Pointer, Tool, Touch, all, guided, is_gui
 use crate::command::Queue;
 use crate::panels::Scene;
 use crate::theme::Palette;
-use egui::Rect;
-use egui::{Context, CursorIcon, Key, Modifiers, Response, Role, Sense, Ui, Vec2};
+use egui::{Context, CursorIcon, Key, Modifiers, Order, Rect, Response, Role, Sense, Ui, Vec2};
 
 /// Keys that a tool in use may take.
 const KEYS: [Key; 4] = [Key::Escape, Key::Enter, Key::Backspace, Key::Delete];
@@ -30,6 +29,8 @@ pub struct Toolbox {
     guided: guided::Guided,
     /// The guide asks for something: its tool is in use, whichever was chosen.
     is_guided: bool,
+    /// The pointer is over something that lies over the map: a click there does not reach the tool.
+    is_covered: bool,
 }
 
 impl Default for Toolbox {
@@ -43,6 +44,7 @@ impl Default for Toolbox {
             pressed: Vec::new(),
             guided: guided::Guided::default(),
             is_guided: false,
+            is_covered: false,
         }
     }
 }
@@ -73,7 +75,9 @@ impl Toolbox {
 
     /// What the tool in use says.
     pub fn status(&self, scene: &Scene<'_>) -> Option<String> {
-        self.in_use()?.status(scene)
+        let status = self.in_use()?.status(scene)?;
+        let covered = "The map is covered where the pointer is: click beside that.";
+        Some(if self.is_covered { covered.to_owned() } else { status })
     }
 
     /// Draws the choices that the tool in use offers.
@@ -140,6 +144,7 @@ impl Toolbox {
         p: &Palette,
     ) -> Option<Asked> {
         self.is_guided = is_guided(canvas.scene);
+        self.is_covered = !self.is_guided && is_covered(map, canvas);
         let tool: &mut dyn Tool = match self.is_guided {
             true => &mut self.guided,
             false => self.tools.get_mut(self.current)?.as_mut(),
@@ -192,6 +197,14 @@ impl Toolbox {
 /// A click with Shift or Ctrl adds to what is selected.
 fn adds(ctx: &Context) -> bool {
     ctx.input(|i| i.modifiers.shift || i.modifiers.command)
+}
+
+/// The pointer is over the map, and a card or message lies between.
+fn is_covered(map: &Response, canvas: &Canvas<'_>) -> bool {
+    let at = map.ctx.pointer_hover_pos().filter(|at| canvas.view.rect.contains(*at));
+    let layer = at.and_then(|at| map.ctx.layer_id_at(at));
+    // what is open for a moment is no cover: a menu, a list, a tooltip
+    layer.is_some_and(|layer| layer != map.layer_id && layer.order == Order::Middle)
 }
 
 fn widget(ui: &Ui, grip: &Grip) -> Response {
