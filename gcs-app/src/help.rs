@@ -31,7 +31,8 @@ pictures!(
     "plan-alternates", "plan-coast-patrol", "plan-navaid-inspection", "plan-pipeline", "plan-search", "rf",
     "scan-interleaved", "scan", "sector", "spiral", "tf", "track-line", "tutorial-departure", "tutorial-emergency",
     "tutorial-look", "tutorial-ridge", "tutorial-scan", "tutorial-zones", "variables", "zones",
-    "guide-new", "guide-drawn", "guide-plan", "guide-palette", "guide-flying",
+    "guide-new", "guide-drawn", "guide-plan", "guide-palette", "guide-flying", "guide-alternates", "guide-import",
+    "guide-considered", "guide-decision", "guide-emergency",
 );
 
 /// What stands below one heading.

@@ -27,12 +27,18 @@ pub const NARROW: f32 = 600.0;
 
 /// From one tool to the next, screen points.
 const TOOL: f32 = 36.0;
+/// From the legend's upper edge to the map's lower one, screen points.
+const LEGEND: f32 = 100.0;
 
-/// Draws scale bar, legend and sources.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+/// Draws scale bar, legend and sources; there are so many tools.
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, p: &Palette) {
     scale(painter, view, scene.units(), p);
     if view.rect.width() >= NARROW {
-        legend(painter, view.rect, p);
+        // beside the tools where they reach down to it
+        let (reach, columns) = (12.0 + TOOL * tools as f32, tools.div_ceil(in_column(view.rect)));
+        let is_beside = columns > 1 || reach > view.rect.height() - LEGEND;
+        let aside = if is_beside { 8.0 + TOOL * columns as f32 } else { 0.0 };
+        legend(painter, view.rect.with_min_x(view.rect.left() + aside), p);
     }
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
     let sources = std::iter::once(assets::ATTRIBUTION.to_owned()).chain(scene.layers.attributions());
@@ -141,9 +147,7 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let cards: Vec<_> = tools.cards().collect();
-    // a second column where the map is too low for one
-    let in_column = (((map.height() - 12.0) / TOOL) as usize).max(1);
-    let columns = cards.chunks(in_column);
+    let columns = cards.chunks(in_column(map));
     let beside_tools = 16.0 + TOOL * columns.len() as f32;
     let mut shown = Rect::NOTHING;
     for (index, cards) in columns.enumerate() {
@@ -174,6 +178,11 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         ui.add(egui::Label::new(status).selectable(false).wrap());
         ui.horizontal_wrapped(|ui| tools.options(ui, scene));
     });
+}
+
+/// So many tools are in a column: there is a second one where the map is too low for one.
+fn in_column(map: Rect) -> usize {
+    (((map.height() - 12.0) / TOOL) as usize).max(1)
 }
 
 fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {

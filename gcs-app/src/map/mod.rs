@@ -280,7 +280,7 @@ impl MapState {
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);
-        furniture::draw(&painter, view, scene, p);
+        furniture::draw(&painter, view, scene, self.tools.cards().count(), p);
         chips::show(ui, view, scene, queue);
         // over what can be grabbed, too
         let over = ui.rect_contains_pointer(view.rect).then(|| ui.ctx().pointer_hover_pos()).flatten();

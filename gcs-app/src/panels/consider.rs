@@ -82,7 +82,7 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
 
 /// `Skip side2, fly side3 next`.
 fn effect(considered: &Considered, vehicle: &Vehicle) -> String {
-    let name = |leg: &Id| vehicle.leg_name(leg);
+    let name = |leg: &Id| vehicle.name_of(leg);
     let next = match &considered.foresight {
         Some(Ok(foresight)) => foresight.next_leg.as_ref(),
         _ => None,
@@ -133,8 +133,8 @@ fn cautions(foresight: &Foresight, units: Units) -> Vec<String> {
 }
 
 fn facts(foresight: &Foresight, vehicle: &Vehicle, units: Units) -> Vec<String> {
-    let next = foresight.next_leg.as_ref().map(|leg| format!("Flies next: {}", vehicle.leg_name(leg)));
-    let named = foresight.left_out.iter().take(MOST_LEGS).map(|leg| vehicle.leg_name(leg));
+    let next = foresight.next_leg.as_ref().map(|leg| format!("Flies next: {}", vehicle.name_of(leg)));
+    let named = foresight.left_out.iter().take(MOST_LEGS).map(|leg| vehicle.name_of(leg));
     let named: Vec<String> = named.collect();
     let left_out = match foresight.left_out.len().checked_sub(named.len()) {
         _ if named.is_empty() => "Left out: nothing".to_owned(),

@@ -68,13 +68,13 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
     let leg = chosen.as_ref().or(raised).filter(|leg| main().any(|id| id == *leg)).or(main().next());
     let Some(leg) = leg.cloned() else { return };
-    if ui.button(format!("Return to the main plan at {}", scene.vehicle.leg_name(&leg))).clicked() {
+    if ui.button(format!("Return to the main plan at {}", scene.vehicle.name_of(&leg))).clicked() {
         queue.consider(Command::ReturnToMain { leg: leg.clone() });
     }
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
     let shown = combo.show_ui(ui, |ui| {
         for other in main() {
-            if ui.selectable_label(*other == leg, scene.vehicle.leg_name(other)).clicked() {
+            if ui.selectable_label(*other == leg, scene.vehicle.name_of(other)).clicked() {
                 ui.data_mut(|d| d.insert_temp(id, other.clone()));
             }
         }

@@ -56,14 +56,15 @@ fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
     let status = &scene.vehicle.status;
     let age = age_of(status, scene.now_s);
     let place = status.as_ref().and_then(|s| s.value.place.as_ref());
-    let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", p.stage, p.leg));
+    let name = |id| scene.vehicle.name_of(id);
+    let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", name(&p.stage), name(&p.leg)));
     value_with_age(ui, "Leg", &leg, age);
     if let Some(place) = place.filter(|p| !p.iterations.is_empty()) {
         let loops: Vec<String> = place.iterations.iter().map(iteration).collect();
         value_with_age(ui, "Iteration", &loops.join(" ▸ "), age);
     }
     if let Some(alternate) = status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref()) {
-        value_with_age(ui, "Alternate", alternate.as_str(), age);
+        value_with_age(ui, "Alternate", &name(alternate), age);
     }
     let navigation = &scene.vehicle.navigation;
     let u = scene.units();

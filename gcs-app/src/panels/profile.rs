@@ -6,6 +6,7 @@ use crate::forecast::{Forecast, Passage, Point};
 use crate::map::coverage;
 use crate::theme::{self, Palette};
 use crate::units;
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 /// The panel.
@@ -69,7 +70,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
     // what was flown before is left of the plot
     let shown = Rect::everything_right_of(axes.plot.left() - 8.0);
     let painter = painter.with_clip_rect(shown.intersect(rect));
-    draw_stages(&painter, &axes, forecast, p);
+    draw_stages(&painter, &axes, scene, p);
     draw_ground(&painter, &axes, forecast, p);
     draw_path(&painter, &axes, scene, p);
     draw_cursor(&painter, &axes, scene, p);
@@ -158,20 +159,24 @@ fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     }
 }
 
+/// A band that is narrower has no name, screen points.
+const LEAST_BAND: f32 = 24.0;
+
 /// One band above the plot per stage, with its name where there is room.
-fn draw_stages(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette) {
+fn draw_stages(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    let (forecast, plan) = (scene.forecast(), scene.document.plan());
     let mut band: Option<(&Passage, f32)> = None;
     for passage in &forecast.passages {
         if band.is_none_or(|(b, _)| b.stage != passage.stage) {
             let x = forecast.points.get(passage.first).map_or(axes.plot.left(), |point| axes.x(point.time_s));
             if let Some((before, from)) = band {
-                draw_band(painter, axes, before.stage.as_str(), from, x, p);
+                draw_band(painter, axes, plan.label(&before.stage), from, x, p);
             }
             band = Some((passage, x));
         }
     }
     if let Some((last, from)) = band {
-        draw_band(painter, axes, last.stage.as_str(), from, axes.plot.right(), p);
+        draw_band(painter, axes, plan.label(&last.stage), from, axes.plot.right(), p);
     }
 }
 
@@ -183,8 +188,10 @@ fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: 
     let rect =
         Rect::from_min_max(pos2(from + 1.0, axes.plot.top() - 17.0), pos2(to - 1.0, axes.plot.top() - 3.0));
     painter.rect_filled(rect, 2.0, p.line);
-    let galley = painter.layout_no_wrap(name.into(), FontId::proportional(10.5), p.text);
-    if galley.size().x + 4.0 < rect.width() {
+    if rect.width() > LEAST_BAND {
+        let mut job = LayoutJob::simple_singleline(name.into(), FontId::proportional(10.5), p.text);
+        job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
+        let galley = painter.layout_job(job);
         painter.galley(rect.center() - galley.size() / 2.0, galley, p.text);
     }
     painter.vline(from, axes.plot.y_range(), Stroke::new(1.0, p.line));

@@ -336,11 +336,10 @@ impl Vehicle {
         self.status.as_ref().map_or(Phase::Idle, |s| s.value.phase)
     }
 
-    /// What people call a leg of the plan aboard; its identifier, where nobody named it.
-    pub fn leg_name(&self, id: &Id) -> String {
-        let leg = self.aboard.as_ref().and_then(|aboard| aboard.plan.leg(id));
-        let name = leg.map(|context| context.leg.name.clone()).filter(|name| !name.is_empty());
-        name.unwrap_or_else(|| id.to_string())
+    /// What people call a part of the plan aboard; its identifier, where nobody named it.
+    pub fn name_of(&self, id: &Id) -> String {
+        let name = self.aboard.as_ref().map(|aboard| aboard.plan.label(id));
+        name.unwrap_or(id.as_str()).to_owned()
     }
 
     /// The leg being flown.

@@ -7,7 +7,8 @@ use egui::Key;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-fn fixture(name: &str) -> PathBuf {
+/// A file of another program.
+pub fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/interchange/tests/fixtures").join(name)
 }
 

@@ -1,9 +1,14 @@
 //! What the window looks like, compared with pictures that are kept; those of the guide among them.
 
+use super::considering::{considered, foresight};
 use super::creating::{EMPTY, drawn_survey};
+use super::emergency::in_emergency;
 use super::flying::flying;
+use super::interchange::{drop_file, fixture};
+use super::vehicle::decision;
 use super::*;
 use egui::Key;
+use gcs_app::link::Reply;
 
 const SMALL: Vec2 = vec2(960.0, 600.0);
 
@@ -66,4 +71,45 @@ fn in_flight() {
     window.picture("flying");
     let mut light = with_theme(window, "theme light");
     light.guide_picture("guide-flying");
+}
+
+#[test]
+fn alternates_of_a_plan() {
+    let text = include_str!("../../../assets/plans/alternates.xml");
+    let mut window = with_theme(opened(text, vec2(1280.0, 900.0)), "theme light");
+    window.select_row(("SCAN Ridge", 0));
+    window.steps(2);
+    let at = window.harness.get_by_label("ORB Peak").rect().center();
+    window.harness.hover_at(at);
+    // until it tells what is in force there
+    window.steps(90);
+    window.guide_picture("guide-alternates");
+}
+
+#[test]
+fn plan_of_another_program() {
+    let mut window = with_theme(opened(SQUARE, SMALL), "theme light");
+    drop_file(&mut window, &fixture("survey.plan"));
+    window.until("the import", |app| app.view().imported.is_some());
+    window.steps(20);
+    window.guide_picture("guide-import");
+}
+
+#[test]
+fn cards_in_flight() {
+    let (mut window, mut value) = flying();
+    window.receive_attitude();
+    value.decision = Some(decision(Some("again")));
+    window.receive_status(value);
+    with_theme(window, "theme light").guide_picture("guide-decision");
+    let (mut window, ticket) = considered();
+    window.receive_attitude();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    with_theme(window, "theme light").guide_picture("guide-considered");
+    let mut window = with_theme(in_emergency(), "theme light");
+    window.receive_attitude();
+    for told in ["nothing is heard any more. It flies on by its plan", "is heard again"] {
+        window.click(&format!("Put aside: uav1: {told}"));
+    }
+    window.guide_picture("guide-emergency");
 }

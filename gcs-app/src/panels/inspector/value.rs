@@ -213,8 +213,10 @@ fn number_or_formula(
         page.set(property, Some(other));
         return None;
     }
+    let room = bind::WIDTH * if property.without.is_some() { 2.0 } else { 1.0 };
     if let (None, Ok(number)) = (source, value.parse::<f64>())
         && !page.is_several()
+        && ui.available_width() >= room
     {
         bind::number(ui, page, property, number);
     }
