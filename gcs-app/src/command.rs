@@ -12,7 +12,7 @@ use flight_exec::rehearse::WhatIf;
 use flight_plan::template::Outline;
 use flight_plan::{Cause, Edit, Id, Place};
 use geometry::LatLon;
-use interchange::Format;
+use interchange::{Areas, Format};
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
 
@@ -42,6 +42,8 @@ pub enum DocumentCommand {
     Dropped(PathBuf),
     /// Put the plan of another program that was read in the document's place.
     TakeImport,
+    /// Reads the other program's file again, with its drawn areas as this.
+    ImportAreasAs(Areas),
     /// Put the plan into another program's format.
     Export(Format),
     /// Ask where to write what was exported.

@@ -17,7 +17,7 @@ use crate::export::{self, Exported};
 use crate::formats::FileFormat;
 use crate::jobs::{Job, Jobs, Progress};
 use flight_plan::FlightPlan;
-use interchange::Format;
+use interchange::{Areas, Format};
 use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -195,7 +195,7 @@ impl Files {
     /// Reads the document's own file again.
     pub fn reread(&mut self, path: PathBuf) {
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, progress) {
+            match reading::read(&path, Areas::default(), progress) {
                 Ok(Content::Plan(theirs)) => FileEvent::Reread { path, theirs },
                 Ok(Content::Foreign(_)) => {
                     FileEvent::Failed(format!("{} is no flight plan any more.", path.display()))
@@ -265,8 +265,13 @@ impl Files {
 
     /// Reads a file.
     pub fn open(&mut self, path: PathBuf) {
+        self.open_with(path, Areas::default());
+    }
+
+    /// Reads a file; another program's with its areas as something else.
+    pub fn open_with(&mut self, path: PathBuf, areas: Areas) {
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, progress) {
+            match reading::read(&path, areas, progress) {
                 Ok(content) => FileEvent::Opened(content),
                 Err(why) => FileEvent::Failed(why),
             }

@@ -9,7 +9,7 @@ use crate::layers::{LayerCommand, Source};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::Level;
-use interchange::{Format, Note};
+use interchange::{Areas, Format, Note};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -138,6 +138,12 @@ impl App {
             self.tell_losses(format!("Imported {name}"), &imported.import.notes, now_s);
             self.shelf.open(&mut self.document, Document::unsaved(imported.import.plan.clone()));
             self.show_another();
+        }
+    }
+
+    pub(super) fn import_areas_as(&mut self, areas: Areas) {
+        if let Some(imported) = &self.view.imported {
+            self.files.open_with(imported.path.clone(), areas);
         }
     }
 

@@ -53,6 +53,7 @@ impl App {
             }
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
             DocumentCommand::TakeImport => self.take_import(now_s),
+            DocumentCommand::ImportAreasAs(areas) => self.import_areas_as(areas),
             DocumentCommand::Export(format) => self.export(format),
             DocumentCommand::AskExport => self.ask_export(),
             DocumentCommand::ExportTo { path, over } => self.export_to(path, over),

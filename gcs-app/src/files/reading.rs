@@ -5,7 +5,7 @@ use crate::document::Document;
 use crate::formats::{self, FileFormat};
 use crate::jobs::Progress;
 use crate::layers;
-use interchange::{Format, Import};
+use interchange::{Areas, Assumptions, Format, Import};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -37,12 +37,14 @@ pub struct Imported {
     pub path: PathBuf,
     /// The file's format.
     pub format: Format,
+    /// What its areas were taken for.
+    pub areas: Areas,
     /// What it means.
     pub import: Import,
 }
 
-/// Reads it; the sentence says why that can't be, and what to do.
-pub(super) fn read(path: &Path, progress: &Progress) -> Result<Content, String> {
+/// Reads it, with drawn areas as what is asked for; the sentence says why that can't be, and what to do.
+pub(super) fn read(path: &Path, areas: Areas, progress: &Progress) -> Result<Content, String> {
     let stamp = Stamp::of(path);
     let bytes = bytes(path, progress).map_err(|why| format!("{} can't be opened: {why}", path.display()))?;
     match FileFormat::of(path, &bytes) {
@@ -56,9 +58,13 @@ pub(super) fn read(path: &Path, progress: &Progress) -> Result<Content, String> 
             Ok(Content::Plan(Box::new(document)))
         }
         FileFormat::Other(format) => {
-            let import = formats::import(format, path, &bytes, &formats::assumptions(path));
+            let assumptions = Assumptions { areas, ..formats::assumptions(path) };
+            let import = formats::import(format, path, &bytes, &assumptions);
             let import = import.map_err(|error| format!("{error:#}"))?;
-            Ok(Content::Foreign(Box::new(Imported { path: path.to_owned(), format, import })))
+            if import.is_empty() {
+                return Err(format!("nothing in {} could become part of a plan.", path.display()));
+            }
+            Ok(Content::Foreign(Box::new(Imported { path: path.to_owned(), format, areas, import })))
         }
     }
 }
@@ -125,7 +131,7 @@ mod tests {
     use super::*;
 
     fn why(path: &Path) -> String {
-        read(path, &Progress::default()).unwrap_err()
+        read(path, Areas::default(), &Progress::default()).unwrap_err()
     }
 
     #[test]
@@ -175,11 +181,13 @@ mod tests {
         let path = folder.path().join("mission.xml");
         let wpl = b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.3 -84.1 100 1\n2 0 3 211 0 0 0 0 0 0 0 1\n";
         std::fs::write(&path, wpl).unwrap();
-        let Ok(Content::Foreign(imported)) = read(&path, &Progress::default()) else { panic!() };
+        let Ok(Content::Foreign(imported)) = read(&path, Areas::default(), &Progress::default()) else {
+            panic!()
+        };
         assert_eq!((imported.format, imported.import.plan.name.as_str()), (Format::Waypoints, "mission"));
         assert!(imported.import.notes.iter().any(|note| note.code == "command-not-carried"));
         std::fs::write(&path, "<flightPlan/>").unwrap();
-        assert!(matches!(read(&path, &Progress::default()), Ok(Content::Plan(_))));
+        assert!(matches!(read(&path, Areas::default(), &Progress::default()), Ok(Content::Plan(_))));
     }
 
     #[test]

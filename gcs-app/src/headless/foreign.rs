@@ -3,7 +3,7 @@
 use crate::formats::{self, FileFormat};
 use flight_plan::Runway;
 use geometry::LatLon;
-use interchange::{Assumptions, Format, Import, Note};
+use interchange::{Areas, Assumptions, Format, Import, Note};
 use std::path::Path;
 
 /// How a file is read that isn't a flight plan of ours.
@@ -24,6 +24,9 @@ pub struct Foreign {
     /// Distance between the tracks over areas that name none, metres.
     #[arg(long, value_name = "METRES", value_parser = positive)]
     pub spacing: Option<f64>,
+    /// What drawn areas become: `scan`, `keep-in` or `keep-out` (zones).
+    #[arg(long, value_name = "WHAT", value_parser = areas, default_value = "scan")]
+    pub areas: Areas,
 }
 
 /// A format's name on the command line.
@@ -33,6 +36,11 @@ pub struct Foreign {
 pub fn format(name: &str) -> Result<FileFormat, String> {
     let known = || Format::ALL.map(|(name, _)| name).join(", ");
     FileFormat::by_name(name).ok_or_else(|| format!("write one of xml, {}", known()))
+}
+
+fn areas(name: &str) -> Result<Areas, String> {
+    let found = Areas::ALL.into_iter().find(|(known, _)| *known == name);
+    found.map(|(_, areas)| areas).ok_or_else(|| "write scan, keep-in or keep-out".into())
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -79,6 +87,7 @@ impl Foreign {
             aircraft: self.plan_for.clone(),
             height_agl_m: self.height.unwrap_or(usual.height_agl_m),
             spacing_m: self.spacing.unwrap_or(usual.spacing_m),
+            areas: self.areas,
             runway: self.runway.clone(),
             ..usual
         }
@@ -97,6 +106,12 @@ mod tests {
     #[test]
     fn formats_there_are_are_listed() {
         assert!(format("dwg").unwrap_err().contains("geojson"));
+    }
+
+    #[test]
+    fn areas_there_are_are_listed() {
+        assert_eq!(areas("keep-out"), Ok(Areas::KeepOut));
+        assert!(areas("zone").unwrap_err().contains("keep-in"));
     }
 
     #[test]

@@ -7,7 +7,7 @@ macro_rules! with_examples {
             $("  ", $line, "\n",)*
             "\nExit status:\n",
             "  0  fine; warnings and notes are allowed\n",
-            "  1  the plan or its path has errors, can't be flown, or plans differ\n",
+            "  1  the plan or its path has errors, can't be flown, or plans differ; nothing of another program's file is a plan\n",
             "  2  wrong usage, or a file that can't be read or written\n",
             "\nFormats:\n",
             "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written.\n",
@@ -40,6 +40,7 @@ pub const CONVERT: &str = with_examples!(
     "legwork convert survey.plan survey.xml",
     "legwork convert fire-watch.xml fire-watch.plan",
     "legwork convert route.gpx route.xml --runway 36.319,-84.173,349,52,600 --height 120",
+    "legwork convert no-fly.kml no-fly.xml --areas keep-out",
     "legwork convert fire-watch.xml - --to waypoints --emergency north-strip --at sweep",
 );
 

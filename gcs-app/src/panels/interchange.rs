@@ -8,7 +8,7 @@ use crate::files::Imported;
 use crate::{formats, theme};
 use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
 use flight_plan::FlightPlan;
-use interchange::Note;
+use interchange::{Areas, Note};
 
 const WIDTH: f32 = 560.0;
 const LIST_HEIGHT: f32 = 220.0;
@@ -48,6 +48,9 @@ fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue
     if !document.is_nobodys() {
         ui.label(format!("It takes the place of “{}”. Undo brings that back.", document.plan().name));
     }
+    if imported.import.has_areas() {
+        areas(ui, imported, queue);
+    }
     notes(ui, "Assumed, changed or left out", &imported.import.notes);
     ui.horizontal(|ui| {
         if ui.add(primary_button("Import the plan", theme::of(ui))).clicked() {
@@ -55,6 +58,23 @@ fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue
         }
         if ui.button("Cancel").clicked() {
             queue.view(ViewCommand::PutImportAside);
+        }
+    });
+}
+
+/// What the drawn areas are: nobody but the user can say.
+fn areas(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
+    ui.horizontal(|ui| {
+        ui.label("Its areas are");
+        for (label, areas) in [
+            ("scanned", Areas::Scan),
+            ("zones to stay inside of", Areas::KeepIn),
+            ("zones to keep out of", Areas::KeepOut),
+        ] {
+            let chosen = imported.areas == areas;
+            if ui.radio(chosen, label).clicked() && !chosen {
+                queue.document(DocumentCommand::ImportAreasAs(areas));
+            }
         }
     });
 }

@@ -64,6 +64,27 @@ fn dropped_files_are_known_by_their_content() {
 }
 
 #[test]
+fn areas_of_a_drawing_are_what_the_user_says() {
+    let mut window = window("");
+    drop_file(&mut window, &fixture("places.kml"));
+    until_imported(&mut window);
+    let zones = |window: &Window| window.app().view().imported.as_ref().map(|i| i.import.plan.zones.len());
+    assert_eq!(zones(&window), Some(0));
+    window.click("zones to keep out of");
+    window.until("the import as a zone", |app| {
+        app.view().imported.as_ref().is_some_and(|imported| imported.areas == interchange::Areas::KeepOut)
+    });
+    assert_eq!(zones(&window), Some(1));
+    window.click("Import the plan");
+    assert_eq!(window.plan().zones.len(), 1);
+    // one without areas has no such question
+    let mut window = self::window("");
+    drop_file(&mut window, &fixture("tour.gpx"));
+    until_imported(&mut window);
+    assert!(!window.shows("zones to keep out of"));
+}
+
+#[test]
 fn what_is_no_plan_or_too_long_is_refused_in_words_and_nothing_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(SQUARE);

@@ -27,7 +27,7 @@ mod xml;
 
 pub use drawing::{Feature, Shape, Vertex};
 pub use note::Note;
-pub use synthetic::Assumptions;
+pub use synthetic::{Areas, Assumptions};
 pub use track::{RecordedFlight, TrackEvent, TrackPoint, write_flights};
 
 use flight_exec::Waypoint;
@@ -148,6 +148,11 @@ impl Import {
         let flies = plan.stages.iter().any(|stage| !stage.legs.is_empty() || stage.runway.is_some());
         let keeps = !plan.fixes.is_empty() || !plan.zones.is_empty() || !plan.runways.is_empty();
         !flies && !keeps
+    }
+
+    /// The file has drawn areas that don't say what they are: [`Assumptions::areas`] chose.
+    pub fn has_areas(&self) -> bool {
+        self.notes.iter().any(|note| drawing::AREA_NOTES.contains(&note.code))
     }
 }
 

@@ -5,6 +5,24 @@ use aircraft::Profile;
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Runway, Stage, StageKind, Value};
 use geometry::LatLon;
 
+/// What an area of a drawing becomes, if the drawing doesn't say.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Areas {
+    /// It is scanned.
+    #[default]
+    Scan,
+    /// A zone to stay inside of.
+    KeepIn,
+    /// A zone to keep out of.
+    KeepOut,
+}
+
+impl Areas {
+    /// All of them, with their names.
+    pub const ALL: [(&'static str, Areas); 3] =
+        [("scan", Areas::Scan), ("keep-in", Areas::KeepIn), ("keep-out", Areas::KeepOut)];
+}
+
 /// What is taken where a file says nothing; each use of one is a note.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumptions {
@@ -20,6 +38,8 @@ pub struct Assumptions {
     pub loiter_radius_m: f64,
     /// Distance between tracks over an area that names none, metres.
     pub spacing_m: f64,
+    /// What a drawn area becomes.
+    pub areas: Areas,
     /// The runway to take off from and to land on, instead of one that is made up; a drawing gets take-off and landing only
     /// with it.
     pub runway: Option<Runway>,
@@ -34,6 +54,7 @@ impl Default for Assumptions {
             runway_length_m: 600.0,
             loiter_radius_m: 80.0,
             spacing_m: 100.0,
+            areas: Areas::default(),
             runway: None,
         }
     }

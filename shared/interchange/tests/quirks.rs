@@ -3,7 +3,7 @@
 
 mod outline;
 
-use interchange::{Assumptions, Format, Import, read};
+use interchange::{Areas, Assumptions, Format, Import, read};
 use outline::outline;
 
 fn import(format: Format, bytes: &[u8]) -> Import {
@@ -183,4 +183,25 @@ fn longitudes_beyond_180_degrees() {
     }
     let far = import(Format::GeoJson, br#"{"type":"Point","coordinates":[999,10]}"#);
     assert_eq!(said(&far, "no-position"), 1);
+}
+
+#[test]
+fn areas_become_what_is_asked_for() {
+    let ring = "[[-84,36],[-83.9,36],[-83.9,36.1],[-84,36]]";
+    let json = format!(
+        r#"{{"type":"Feature","properties":{{"name":"Air base"}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}"#
+    );
+    for (areas, line, code) in [
+        (Areas::Scan, "Air-base-stage", "area-as-scan"),
+        (Areas::KeepIn, "Air-base keep-in of 3 corners", "area-as-zone"),
+        (Areas::KeepOut, "Air-base keep-out of 3 corners", "area-as-zone"),
+    ] {
+        let assumptions = Assumptions { areas, ..Assumptions::default() };
+        let import = read(Format::GeoJson, json.as_bytes(), &assumptions).unwrap();
+        assert_eq!((outline(&import.plan)[0].as_str(), said(&import, code)), (line, 1));
+        assert!(import.has_areas());
+        assert!(import.plan.zones.iter().all(|zone| zone.name == "Air base"));
+    }
+    let point = import(Format::GeoJson, br#"{"type":"Point","coordinates":[-84,36]}"#);
+    assert!(!point.has_areas());
 }

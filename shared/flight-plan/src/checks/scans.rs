@@ -45,15 +45,47 @@ fn area(view: &Inspection, leg: &Leg, area: &Area, problems: &mut Vec<Problem>) 
         }
         Area::Polygon { corners, holes } => {
             let wrong = not_simple(corners, holes);
-            problems.extend(wrong.map(|what| Problem::error("bad-polygon", what).of(&leg.id)));
+            let fix = || untied(corners, holes).and_then(|corners| with_corners(leg, corners));
+            problems.extend(
+                wrong.map(|what| Problem::error("bad-polygon", what).of(&leg.id).perhaps_fixed_by(fix())),
+            );
         }
         // a polygon variable takes nothing but simple polygons
         Area::Expression(_) => {}
     }
 }
 
+fn with_corners(leg: &Leg, ordered: Vec<LatLon>) -> Option<Edit> {
+    changed(leg, |kind| {
+        let (LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. })) = kind
+        else {
+            return None;
+        };
+        let Area::Polygon { corners, .. } = area else { return None };
+        *corners = ordered;
+        Some(())
+    })
+}
+
+/// The four corners of a bow tie in the order around them: as a bounding box was written, row by row.
+pub(super) fn untied(corners: &[LatLon], holes: &[Vec<LatLon>]) -> Option<Vec<LatLon>> {
+    let &[a, b, c, d] = corners else { return None };
+    let is_area = |corners: &[LatLon; 4]| is_simple(corners, holes);
+    let ordered = [[a, b, d, c], [a, c, b, d]].into_iter().find(is_area);
+    ordered.filter(|_| !is_simple(corners, holes)).map(Vec::from)
+}
+
+fn is_simple(corners: &[LatLon], holes: &[Vec<LatLon>]) -> bool {
+    LocalFrame::around(corners).is_some_and(|frame| Polygon::from_geo(&frame, corners, holes).is_ok())
+}
+
 /// Why rings are no area, and what to do.
 pub(super) fn not_simple(corners: &[LatLon], holes: &[Vec<LatLon>]) -> Option<String> {
+    if untied(corners, holes).is_some() {
+        return Some(
+            "put the four corners of the area in order around it: as they are, they make a bow tie".into(),
+        );
+    }
     match LocalFrame::around(corners).map(|frame| Polygon::from_geo(&frame, corners, holes)) {
         None => Some("give the area at least three corners, or a centre and a radius".into()),
         Some(Err(error)) => Some(format!("correct the area: {error}")),
@@ -99,6 +131,13 @@ mod tests {
             (&area(&square, &[(8.0, 2.0), (12.0, 2.0), (12.0, 4.0)]), &["bad-polygon"]),
             (&contour, &["bad-polygon"]),
         ]);
+    }
+
+    #[test]
+    fn a_bow_tie_is_put_in_order() {
+        let rows = area(&[(0.0, 0.0), (10.0, 0.0), (0.0, 8.0), (10.0, 8.0)], &[]);
+        let crossed = area(&[(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)], &[]);
+        fixed_legs(&[(&rows, "bad-polygon"), (&crossed, "bad-polygon")]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! that is not below the ceiling; `zone-times`: a time that ends before it begins.
 
 use super::Inspection;
-use super::scans::not_simple;
+use super::scans::{not_simple, untied};
 use crate::{Altitude, AltitudeReference, Edit, Problem, Thing, Value, Zone, ZoneShape};
 
 /// Greatest radius of a zone, metres.
@@ -43,7 +43,14 @@ fn outline(zone: &Zone, problems: &mut Vec<Problem>) {
         }
         ZoneShape::Polygon(corners) => not_simple(corners, &[]),
     };
-    problems.extend(wrong.map(|message| Problem::error("bad-zone", message).of(&zone.id)));
+    let problem = wrong.map(|message| Problem::error("bad-zone", message).of(&zone.id));
+    problems.extend(problem.map(|problem| problem.perhaps_fixed_by(in_order(zone))));
+}
+
+fn in_order(zone: &Zone) -> Option<Edit> {
+    let ZoneShape::Polygon(corners) = &zone.shape else { return None };
+    let shape = ZoneShape::Polygon(untied(corners, &[])?);
+    Some(replaced(zone, Zone { shape, ..zone.clone() }))
 }
 
 fn limits(view: &Inspection, zone: &Zone, problems: &mut Vec<Problem>) {
@@ -127,6 +134,7 @@ mod tests {
         assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)])), [""; 0]);
         assert_eq!(codes(&polygon(&crossing)), ["bad-zone"]);
         assert_eq!(codes(&polygon(&[(0.0, 0.0), (0.1, 0.0)])), ["bad-zone"]);
+        fixed(&polygon(&crossing), "bad-zone");
     }
 
     #[test]

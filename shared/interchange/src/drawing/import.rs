@@ -5,7 +5,7 @@ use crate::mission::SAME_M;
 use crate::mission::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
-use crate::synthetic::{self, Assumptions, Vehicle};
+use crate::synthetic::{self, Areas, Assumptions, Vehicle};
 use crate::xml::held;
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
@@ -102,9 +102,11 @@ impl Importer<'_> {
             ("keep-out", Shape::Area { outer, holes, .. }) => {
                 self.zone(&feature, ZoneKind::KeepOut, outer, holes)
             }
-            (_, Shape::Area { outer, holes, altitude }) => {
-                self.area(&feature, outer, holes, altitude.as_ref())
-            }
+            (_, Shape::Area { outer, holes, altitude }) => match self.assumptions.areas {
+                Areas::Scan => self.area(&feature, outer, holes, altitude.as_ref()),
+                Areas::KeepIn => self.area_as_zone(&feature, ZoneKind::KeepIn, outer, holes),
+                Areas::KeepOut => self.area_as_zone(&feature, ZoneKind::KeepOut, outer, holes),
+            },
         }
     }
 
@@ -250,17 +252,29 @@ impl Importer<'_> {
             (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
             _ => ZoneShape::Polygon(outer.to_vec()),
         };
-        // zones are drawn by us alone: with the identifier as name, and the name as description
-        let (id, name) = (self.names.take(&feature.name, "zone"), feature.description.clone());
+        let id = self.names.take(&feature.name, "zone");
+        // those of ours have the identifier as name, and the name as description
+        let ours = feature.mark("legwork").is_some();
+        let name = if ours { &feature.description } else { &feature.name }.clone();
         let (floor, ceiling) = (None, None);
         self.plan.zones.push(Zone { id, name, kind, shape, floor, ceiling, active: Vec::new() });
+    }
+
+    fn area_as_zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
+        let message = match kind {
+            ZoneKind::KeepIn => "an area becomes a zone to stay inside of, at every height",
+            ZoneKind::KeepOut => "an area becomes a zone to keep out of, at every height",
+        };
+        self.notes.again("area-as-zone", &feature.place, message);
+        self.undescribed(feature);
+        self.zone(feature, kind, outer, holes);
     }
 
     fn area(&mut self, feature: &Feature, outer: &[LatLon], holes: &[Vec<LatLon>], drawn: Option<&Altitude>) {
         let id: Id = self.names.take(&feature.name, "area");
         let spacing_m = self.assumptions.spacing_m;
         let message = format!(
-            "area `{id}` is scanned with tracks {spacing_m:.0} m apart: change that, or make a zone of it"
+            "area `{id}` is scanned with tracks {spacing_m:.0} m apart: change that, or import areas as zones"
         );
         self.notes.push("area-as-scan", &feature.place, message);
         self.undescribed(feature);

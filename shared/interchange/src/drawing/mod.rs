@@ -25,6 +25,9 @@ const ENDS: &str = "ends_with";
 /// A longitude that is farther out is a mistake: one turn more than there is.
 const MAX_LONGITUDE_DEG: f64 = 540.0;
 
+/// Notes about what an area became.
+pub const AREA_NOTES: [&str; 2] = ["area-as-scan", "area-as-zone"];
+
 /// Mark of a fix: what people call it.
 pub const LABEL: &str = "label";
 

@@ -38,12 +38,16 @@ impl Importer<'_> {
             }
             _ => {
                 let holding = racetrack(position, turn, signed_m.abs());
-                self.push_at(item, altitude, LegKind::Hm { holding, until: None, max_laps: None });
-                self.notes.again(
-                    "loiter-as-racetrack",
-                    &item.place,
-                    "an endless circle becomes a holding until released (HM)",
+                self.push_at(
+                    item,
+                    altitude,
+                    LegKind::Hm { holding, until: Some(jumps::ENOUGH.into()), max_laps: None },
                 );
+                let message = format!(
+                    "an endless circle without a radius becomes a holding (HM) until released, or until `{}`",
+                    jumps::ENOUGH
+                );
+                self.notes.again("loiter-as-racetrack", &item.place, &message);
             }
         }
         self.arrive(Some(position));

@@ -30,6 +30,42 @@ pub fn is_mixed(leg: &Leg, way: &[Step]) -> bool {
     mixed.unwrap_or(false)
 }
 
+/// How long the way over an area is, and how long it would be from one track to the one beside it, metres; `None` for what is not flown
+/// track by track.
+pub fn lengths_m(leg: &Leg, way: &[Step]) -> Option<(f64, f64)> {
+    let LegKind::Scan(scan) = &leg.kind else { return None };
+    if scan.style == ScanStyle::CrissCross {
+        return None;
+    }
+    let heading_deg = scan.heading_deg.as_ref().and_then(pattern::constant)?;
+    let spacing_m = pattern::metres(&scan.spacing)?;
+    let places: Vec<LatLon> = way.iter().map(|step| step.waypoint.position).collect();
+    let flown_m = places.windows(2).map(|pair| if let [a, b] = pair { a.distance_m(*b) } else { 0.0 }).sum();
+    let seen = seen_along(&places, *places.first()?, heading_deg);
+    // least and greatest place along each track, and where it is to the right
+    let mut tracks: Vec<(f64, f64, f64)> = seen
+        .chunk_by(|a, b| (a.1 - b.1).abs() < ON_TRACK * spacing_m)
+        .filter_map(|track| {
+            let (first, last) = track.first().zip(track.last())?;
+            Some((first.0.min(last.0), first.0.max(last.0), first.1))
+        })
+        .filter(|(least, most, _)| most - least > ON_TRACK * spacing_m)
+        .collect();
+    tracks.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let along_m: f64 = tracks.iter().map(|(least, most, _)| most - least).sum();
+    let turns_m: f64 = tracks
+        .windows(2)
+        .enumerate()
+        .map(|(index, pair)| match pair {
+            // forth and back
+            [(_, a, one), (_, b, next)] if index % 2 == 0 => (a - b).hypot(one - next),
+            [(a, _, one), (b, _, next)] => (a - b).hypot(one - next),
+            _ => 0.0,
+        })
+        .sum();
+    Some((flown_m, along_m + turns_m))
+}
+
 /// Each place as metres along a direction, and to the right of it.
 fn seen_along(places: &[LatLon], origin: LatLon, course_deg: f64) -> Vec<(f64, f64)> {
     let (frame, along) = (LocalFrame::new(origin), Vec2::from_bearing_rad(course_deg.to_radians()));

@@ -69,8 +69,11 @@ fn note_track_order(
         let leg = way.first().and_then(|first| legs.get(first.waypoint.leg.as_str()));
         let leg = leg.map(|context| context.leg).filter(|leg| whole(leg) && order::is_mixed(leg, way));
         if let Some(leg) = leg.filter(|leg| noted.insert(leg.id.as_str())) {
-            let message = "neighbouring tracks in the file are not flown one after the other: if QGC computes the pattern again, it flies them in its own order";
-            notes.again("track-order", leg.id.as_str(), message);
+            let message = "neighbouring tracks in the file are not flown one after the other, because the aircraft turns too wide for that: if QGC computes the pattern again, it flies them in its own order";
+            let compared = order::lengths_m(leg, way).map_or(String::new(), |(flown_m, in_order_m)| {
+                format!(", {:.1} km instead of {:.1} km", in_order_m / 1e3, flown_m / 1e3)
+            });
+            notes.push("track-order", leg.id.as_str(), format!("{message}{compared}"));
         }
     }
 }
