@@ -6,6 +6,11 @@ use crate::panels::Scene;
 use flight_plan::Edit;
 use flight_plan::create::bindings;
 
+/// The action that opens the palette with these.
+pub const ID: &str = "bind";
+/// What is typed there then.
+pub const QUERY: &str = "bind the ";
+
 /// `Bind the radius of orbit1 to reach`.
 pub fn of(scene: &Scene<'_>) -> Vec<Action> {
     let Some(Selection::Leg(leg)) = &scene.view.selection else { return Vec::new() };

@@ -1,6 +1,6 @@
 //! The actions, one a line: group, identifier, name, kind, keys, and what it asks for or why it can't.
 
-use super::{Action, Group, Kind};
+use super::{Action, Group, Kind, bindings};
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
@@ -117,7 +117,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "earlier", "Move what is selected up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
     entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
-    entry(Group::Edit, "bind", "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
+    entry(Group::Edit, bindings::ID, "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
     entry(Group::Edit, "select-nothing", "Close help or tour, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
@@ -253,7 +253,7 @@ fn bind(scene: &Scene<'_>) -> Asked {
     if create::bindings(scene.document.plan(), one_leg(scene)?).is_empty() {
         return Err("The selected leg has no place and no number");
     }
-    view(ViewCommand::Palette(Some("bind the ")))
+    view(ViewCommand::Palette(Some(bindings::QUERY)))
 }
 
 /// Moves what is selected among its neighbours.

@@ -147,8 +147,11 @@ fn hold(ui: &mut Ui, action: &Action, queue: &mut Queue) {
 /// What answers the query, the best first. The places of the plan are many: they are there when something is typed.
 fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     let mut actions = all(scene, fittings);
-    // it is here already
-    actions.retain(|action| action.id != "palette");
+    // what led here is here already
+    let led_here = |action: &Action| {
+        action.id == "palette" || (action.id == bindings::ID && query.starts_with(bindings::QUERY))
+    };
+    actions.retain(|action| !led_here(action));
     if query.trim().is_empty() {
         return actions;
     }

@@ -7,7 +7,10 @@ use crate::map::coverage;
 use crate::theme::{self, Palette};
 use crate::units;
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -70,7 +73,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
     // what was flown before is left of the plot
     let shown = Rect::everything_right_of(axes.plot.left() - 8.0);
     let painter = painter.with_clip_rect(shown.intersect(rect));
-    draw_stages(&painter, &axes, scene, p);
+    draw_stages(ui, &painter, &axes, scene, p);
     draw_ground(&painter, &axes, forecast, p);
     draw_path(&painter, &axes, scene, p);
     draw_cursor(&painter, &axes, scene, p);
@@ -163,24 +166,24 @@ fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
 const LEAST_BAND: f32 = 24.0;
 
 /// One band above the plot per stage, with its name where there is room.
-fn draw_stages(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+fn draw_stages(ui: &Ui, painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let (forecast, plan) = (scene.forecast(), scene.document.plan());
     let mut band: Option<(&Passage, f32)> = None;
     for passage in &forecast.passages {
         if band.is_none_or(|(b, _)| b.stage != passage.stage) {
             let x = forecast.points.get(passage.first).map_or(axes.plot.left(), |point| axes.x(point.time_s));
             if let Some((before, from)) = band {
-                draw_band(painter, axes, plan.label(&before.stage), from, x, p);
+                draw_band(ui, painter, axes, plan.label(&before.stage), from, x, p);
             }
             band = Some((passage, x));
         }
     }
     if let Some((last, from)) = band {
-        draw_band(painter, axes, plan.label(&last.stage), from, axes.plot.right(), p);
+        draw_band(ui, painter, axes, plan.label(&last.stage), from, axes.plot.right(), p);
     }
 }
 
-fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: &Palette) {
+fn draw_band(ui: &Ui, painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: &Palette) {
     let from = from.max(axes.plot.left());
     if to < from {
         return;
@@ -193,6 +196,10 @@ fn draw_band(painter: &Painter, axes: &Axes, name: &str, from: f32, to: f32, p: 
         job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
         let galley = painter.layout_job(job);
         painter.galley(rect.center() - galley.size() / 2.0, galley, p.text);
+        // all of it, where that is cut
+        let band = ui.interact(rect, ui.scope_id().with(("band", from.to_bits())), Sense::hover());
+        band.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Stage {name}")));
+        band.on_hover_text(name);
     }
     painter.vline(from, axes.plot.y_range(), Stroke::new(1.0, p.line));
 }

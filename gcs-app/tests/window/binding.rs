@@ -4,7 +4,7 @@ use super::{SQUARE, Window};
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use flight_plan::{Place, Value, VariableValue};
+use flight_plan::{Place, Value, VariableValue, create};
 
 /// A square with a position and a number.
 fn window() -> Window {
@@ -75,6 +75,27 @@ fn where_a_leg_goes_is_bound_beside_its_field() {
 }
 
 #[test]
+fn the_area_of_a_scan_is_bound_beside_its_choice() {
+    let mut window = window();
+    window.select_row(("TF side2", 0));
+    window.press(Key::A);
+    let at = window.centre("Map");
+    for by in [egui::vec2(0.0, 0.0), egui::vec2(90.0, 0.0), egui::vec2(90.0, 60.0)] {
+        window.tap_at(at + by);
+    }
+    window.press(Key::Enter);
+    window.press(Key::V);
+    let scan = window.selected();
+    window.click_role(Role::Button, "Area: bind to a variable");
+    window.steps(2);
+    window.click_role(Role::Button, "A new variable with its value");
+    let plan = window.plan();
+    let made = plan.variable(&window.selected().as_str().into()).unwrap();
+    assert!(matches!(made.initial, VariableValue::Polygon(_)));
+    assert_eq!(create::bound_to(plan.leg(&scan.as_str().into()).unwrap().leg), Some(made.name.clone()));
+}
+
+#[test]
 fn binding_and_a_new_way_have_keys() {
     let mut window = window();
     window.press(Key::B);
@@ -90,6 +111,7 @@ fn binding_and_a_new_way_have_keys() {
     window.harness.event(egui::Event::Text("place fire".into()));
     window.steps(3);
     assert!(window.shows(&format!("Bind the place of {leg} to fire")));
+    assert!(!window.shows("Bind the selected leg"), "that led here");
     window.press(Key::Enter);
     let place = window.plan().leg(&leg.as_str().into()).unwrap().leg.place().cloned();
     assert_eq!(place, Some(Place::Position(Value::Expression("fire".into()))));

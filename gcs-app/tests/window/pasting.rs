@@ -87,7 +87,7 @@ fn what_cannot_be_pasted_is_refused_in_words() {
         ("hello".into(), "neither legs nor a place"),
         ("<html/>".into(), "no flight plan"),
         ("<kml/>".into(), "no point, line or area"),
-        ("<kml".into(), "That KML can't be pasted"),
+        ("<kml>".into(), "That KML can't be pasted"),
         (format!("<kml>{}</kml>", " ".repeat(5 << 20)), "more than 4 MB"),
     ] {
         window.paste(&text);

@@ -6,7 +6,7 @@ use crate::theme;
 use egui::{Popup, RichText, Role, Ui, WidgetInfo};
 use flight_plan::create::{Binding, bindings};
 use flight_plan::describe::{Kind, OneOf, Property, Row, Subject};
-use flight_plan::{Id, Use, VariableValue};
+use flight_plan::{Use, VariableValue};
 
 /// Of its button, screen points.
 pub const WIDTH: f32 = 26.0;
@@ -34,8 +34,10 @@ pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<Binding> {
         |property: &Property| matches!(property.kind, Kind::Formula(Use::Position | Use::Polygon));
     let says = |row: &Row| matches!(row, Row::Property(property) if gives_place(property));
     let is_it = one.ways.iter().flat_map(|way| way.rows).any(says);
-    let leg: &Id = match page.subject() {
-        Subject::Leg(leg) if is_it && !page.is_several() => page.leg_or_stage().filter(|own| *own == leg)?,
+    // of an area or a centre, the leg has one at most
+    let is_own = page.leg_or_stage().is_some() || ["area", "centre"].contains(&page.element().name.as_str());
+    let leg = match page.subject() {
+        Subject::Leg(leg) if is_it && is_own && !page.is_several() => leg,
         _ => return None,
     };
     bindings(page.plan(), leg).into_iter().find(|binding| binding.number.is_none())

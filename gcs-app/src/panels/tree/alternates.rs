@@ -1,6 +1,5 @@
 //! Emergency plans of legs, stages and the whole plan: what is in force where, and the menu that chooses the cause.
 
-use super::title;
 use crate::command::{Queue, Selection};
 use crate::panels::Scene;
 use crate::panels::what_if::cause_name;
@@ -115,16 +114,12 @@ pub(super) fn explain(ui: &mut Ui, text: &str, plan: &FlightPlan, all: &Alternat
 
 /// Who names it.
 fn origin(plan: &FlightPlan, in_force: &InForce) -> String {
-    let Some(from) = &in_force.from else { return "the plan".into() };
-    let leg = || plan.any_leg(from).map(|leg| leg.name.as_str());
-    let name = plan.stage(from).map(|stage| stage.name.as_str()).or_else(leg).unwrap_or_default();
-    title(name, from.as_str())
+    in_force.from.as_ref().map_or("the plan", |from| plan.label(from)).to_owned()
 }
 
 /// Of an emergency plan.
 pub fn plan_name(plan: &FlightPlan, id: &Id) -> String {
-    let name = plan.emergency_plan(id).map_or("", |emergency| emergency.name.as_str());
-    title(name, id.as_str())
+    plan.label(id).to_owned()
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ impl Row {
 
 /// The rows of a plan, but for those inside of what is folded.
 pub(super) fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
-    let mut builder = Builder { rows: Vec::new(), folded };
+    let mut builder = Builder { plan, rows: Vec::new(), folded };
     let whole = Arc::new(Alternates::default().within(&plan.emergency, None));
     for group in Group::ALL.into_iter().filter(|group| group.is_shown(plan)) {
         let alternates = (group == Group::Stages && !plan.stages.is_empty()).then(|| whole.clone());
@@ -60,6 +60,7 @@ pub(super) fn rows(plan: &FlightPlan, folded: &BTreeSet<String>) -> Vec<Row> {
 }
 
 struct Builder<'a> {
+    plan: &'a FlightPlan,
     rows: Vec<Row>,
     folded: &'a BTreeSet<String>,
 }
@@ -146,7 +147,10 @@ impl Builder<'_> {
         self.legs(leg.body(), depth + 1, alternates.as_ref());
         let default = leg.as_fork().and_then(|fork| fork.default);
         for branch in branches {
-            let to = branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {next}"));
+            let to = branch
+                .next
+                .as_ref()
+                .map_or_else(|| "→ on".into(), |next| format!("→ {}", self.plan.label(next)));
             let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
             self.push(Row {
                 key: format!("branch {} of {}", branch.id, leg.id),
