@@ -5,12 +5,15 @@ use interchange::{Assumptions, Error, Export, Format, MAX_BYTES, MAX_ITEMS, read
 use proptest::prelude::*;
 use std::io::{Cursor, Write};
 
-const FIXTURES: [(Format, &[u8]); 5] = [
+const FIXTURES: [(Format, &[u8]); 8] = [
     (Format::Plan, include_bytes!("fixtures/survey.plan")),
     (Format::Waypoints, include_bytes!("fixtures/patrol.waypoints")),
     (Format::Kml, include_bytes!("fixtures/places.kml")),
     (Format::GeoJson, include_bytes!("fixtures/places.geojson")),
     (Format::Gpx, include_bytes!("fixtures/tour.gpx")),
+    (Format::Waypoints, include_bytes!("corpus/mission-planner-fence.waypoints")),
+    (Format::Waypoints, include_bytes!("corpus/mavproxy-fence.txt")),
+    (Format::Waypoints, include_bytes!("corpus/mavproxy-rally.txt")),
 ];
 
 fn all(bytes: &[u8]) {
@@ -107,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn any_mission_items(items in prop::collection::vec((prop::sample::select(vec![16, 17, 18, 19, 20, 21, 22, 31, 82, 84, 85, 93, 177, 178, 189, 203, 206, 2000, 9999]), 0..12u16, prop::collection::vec(prop_oneof![Just(0.0), -5.0..30.0f64, any::<f64>()], 7)), 0..40)) {
+    fn any_mission_items(items in prop::collection::vec((prop::sample::select(vec![16, 17, 18, 19, 20, 21, 22, 31, 82, 84, 85, 93, 177, 178, 189, 203, 206, 2000, 5000, 5001, 5002, 5004, 5100, 9999]), 0..12u16, prop::collection::vec(prop_oneof![Just(0.0), -5.0..30.0f64, any::<f64>()], 7)), 0..40)) {
         let mut list = "QGC WPL 110\n".to_owned();
         for (number, (command, frame, params)) in items.iter().enumerate() {
             let params: String = params.iter().map(|p| format!("{p}\t")).collect();
