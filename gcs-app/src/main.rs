@@ -96,7 +96,7 @@ fn open(window: Window) -> anyhow::Result<ExitCode> {
 
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
-        eprintln!("legwork: {error:#}");
+        eprintln!("legwork: {}", flight_plan::legible(&format!("{error:#}")));
         ExitCode::from(stdio::USAGE)
     })
 }

@@ -30,7 +30,7 @@ impl Screenshot {
         let (file, closing) = (self.file.clone(), ctx.clone());
         ctx.request_screenshot(move |image: Arc<egui::ColorImage>| {
             if let Err(why) = write_png(&file, &image) {
-                eprintln!("legwork: no picture: {why}");
+                complain!("legwork: no picture: {why}");
             }
             closing.send_viewport_cmd(egui::ViewportCommand::Close);
             closing.request_repaint();

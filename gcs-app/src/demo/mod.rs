@@ -84,7 +84,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let prepared = plan::prepare(args)?;
     let windowed = !args.headless && app::has_display();
     if !windowed && !args.headless {
-        eprintln!("no display here: flying without a window");
+        complain!("no display here: flying without a window");
     }
     let speed = args.speed.unwrap_or(if windowed { WATCHABLE_SPEED } else { 0.0 });
     if windowed { with_window(args, prepared, speed) } else { without_window(args, &prepared, speed) }
@@ -100,7 +100,7 @@ fn limit(planned_s: f64, speed: f64) -> Duration {
 fn give_up_after(limit: Duration) {
     std::thread::spawn(move || {
         std::thread::sleep(limit);
-        eprintln!("legwork: the demo has not ended after {} s: given up", limit.as_secs());
+        complain!("legwork: the demo has not ended after {} s: given up", limit.as_secs());
         std::process::exit(2);
     });
 }
@@ -141,7 +141,7 @@ fn open_window(args: &Args, document: Document, endpoint: &Receiver<String>, wat
     match app::run(options) {
         Ok(()) => watcher.leave(),
         Err(error) => {
-            eprintln!("{error}\ngoing on without a window");
+            complain!("{error}\ngoing on without a window");
             watcher.give_up();
         }
     }
@@ -254,9 +254,9 @@ async fn stay_open(watcher: &Watcher, failure: Option<&anyhow::Error>) {
         return;
     }
     if let Some(failure) = failure {
-        eprintln!("legwork: {failure:#}");
+        complain!("legwork: {failure:#}");
     }
-    eprintln!("Close the window to end the demo.");
+    complain!("Close the window to end the demo.");
     watcher.gone().await;
 }
 

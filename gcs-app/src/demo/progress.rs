@@ -42,7 +42,7 @@ impl Progress {
     /// A line above the bar.
     pub fn tell(&self, line: &str) {
         if self.bar.is_hidden() {
-            eprintln!("{line}");
+            complain!("{line}");
         } else {
             self.bar.println(line);
         }

@@ -8,7 +8,7 @@ use std::path::Path;
 /// # Errors
 /// Standard output can't be written.
 pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) -> std::io::Result<()> {
-    say!("{}", table(findings))?;
+    table(findings).lines().try_for_each(|row| say!("{row}"))?;
     for coverage in &findings.coverages {
         say!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0)?;
     }

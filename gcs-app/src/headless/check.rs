@@ -2,6 +2,7 @@
 
 use super::source::Loaded;
 use super::{Source, foreign};
+use crate::say;
 use flight_exec::Conditions;
 use flight_plan::{Edit, FlightPlan, Problem};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -37,7 +38,7 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
         problems.extend(reviewed(&loaded, circumstances.air.conditions()));
     }
     if json {
-        say!("{:#}", document(&source.file, &loaded.reading.plan, &problems, &loaded.notes))?;
+        say::document(&document(&source.file, &loaded.reading.plan, &problems, &loaded.notes))?;
     } else {
         foreign::print_notes(&source.file, &loaded.notes);
         print(&source.file, &problems)?;
@@ -83,7 +84,7 @@ pub fn line(file: &Path, problem: &Problem) -> String {
 
 /// Complains about problems where something else is printed; gives the exit status.
 pub fn print_errors(file: &Path, problems: &[Problem]) -> ExitCode {
-    problems.iter().for_each(|problem| eprintln!("{}", line(file, problem)));
+    problems.iter().for_each(|problem| complain!("{}", line(file, problem)));
     status(problems)
 }
 

@@ -5,6 +5,7 @@ use super::select::Selection;
 use super::wind::Air;
 use super::{Source, check, expand, foreign};
 use crate::formats::FileFormat;
+use crate::say;
 use anyhow::bail;
 use interchange::{Export, Note};
 use std::path::{Path, PathBuf};
@@ -91,7 +92,12 @@ fn nothing(file: &Path, notes: &[Note], json: bool) -> ExitCode {
 
 fn print(file: &Path, notes: &[Note], json: bool) {
     match json {
-        true => eprintln!("{:#}", serde_json::json!({"file": file.display().to_string(), "notes": notes})),
+        true => {
+            eprintln!(
+                "{}",
+                say::json(&serde_json::json!({"file": file.display().to_string(), "notes": notes}))
+            );
+        }
         false => foreign::print_notes(file, notes),
     }
 }

@@ -4,6 +4,7 @@ use super::output::DASH;
 use super::source::{Loaded, Source};
 use super::wind::Air;
 use super::{check, forecast, select};
+use crate::say;
 use anyhow::{anyhow, bail};
 use flight_exec::ProposalReport;
 use flight_exec::rehearse::{Act, Scenario, Trigger, When};
@@ -39,7 +40,7 @@ pub fn run(old: &Source, new: &Path, moment: &Moment, air: Air, json: bool) -> a
         None => None,
     };
     match json {
-        true => say!("{:#}", document(&changes, takeover.as_ref())),
+        true => say::document(&document(&changes, takeover.as_ref())),
         false => lines(&changes, takeover.as_ref()).iter().try_for_each(|line| say!("{line}")),
     }?;
     let acceptable = takeover.is_none_or(|takeover| takeover.is_ok_and(|report| report.acceptable));
@@ -52,7 +53,7 @@ fn readable(source: &Source) -> anyhow::Result<Option<Loaded>> {
     super::foreign::print_notes(&source.file, &loaded.notes);
     if loaded.reading.has_errors() {
         check::print_errors(&source.file, &loaded.reading.problems);
-        eprintln!("{} can't be compared: correct its errors first", source.file.display());
+        complain!("{} can't be compared: correct its errors first", source.file.display());
         return Ok(None);
     }
     Ok(Some(loaded))

@@ -111,7 +111,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     });
     match flown {
         Ok((_, preview)) if !preview.not_fired.is_empty() => {
-            eprintln!("{}: the flight never reaches the named leg", source.file.display());
+            complain!("{}: the flight never reaches the named leg", source.file.display());
             Ok(Err(ExitCode::from(1)))
         }
         Ok((_, preview)) if !selection.goes_without(&forecast::left_out(&preview), &source.file) => {
@@ -127,11 +127,11 @@ fn print_unflown(file: &Path, unflown: &Unflown) -> ExitCode {
     match unflown {
         Unflown::Errors(problems) => return check::print_errors(file, problems),
         Unflown::Forbidden(problems) => {
-            eprintln!("{shown}: the path must not be flown; --anyway writes it all the same");
+            complain!("{shown}: the path must not be flown; --anyway writes it all the same");
             return check::print_errors(file, problems);
         }
-        Unflown::Endless(error) => eprintln!("{shown}: {}", forecast::why(error)),
-        Unflown::Refused { seconds, reason } => eprintln!("{shown}: refused after {seconds:.0} s: {reason}"),
+        Unflown::Endless(error) => complain!("{shown}: {}", forecast::why(error)),
+        Unflown::Refused { seconds, reason } => complain!("{shown}: refused after {seconds:.0} s: {reason}"),
     }
     ExitCode::from(1)
 }

@@ -96,7 +96,7 @@ impl Foreign {
 
 /// Notes for people, on standard error: the result may go to standard output.
 pub fn print_notes(path: &Path, notes: &[Note]) {
-    notes.iter().for_each(|note| eprintln!("{}: {note}", path.display()));
+    notes.iter().for_each(|note| complain!("{}: {note}", path.display()));
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use crate::jobs::Progress;
 use crate::report;
+use crate::say;
 use flight_exec::rehearse::Preview;
 use flight_plan::Id;
 use std::path::{Path, PathBuf};
@@ -59,12 +60,12 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
-            eprintln!("{}: {}", source.file.display(), forecast::why(&error));
+            complain!("{}: {}", source.file.display(), forecast::why(&error));
             return Ok(ExitCode::from(1));
         }
     };
     if let Some((seconds, refusal)) = preview.refusals.first() {
-        eprintln!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
+        complain!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
         return Ok(ExitCode::from(1));
     }
     if !selection.goes_without(&forecast::left_out(&preview), &source.file) {
@@ -82,7 +83,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         }
     }
     match target.json {
-        true => say!("{:#}", document(&source.file, &preview, pictures)),
+        true => say::document(&document(&source.file, &preview, pictures)),
         false => say!("{}", line(&source.file, &preview, pictures)),
     }?;
     Ok(check::print_errors(&source.file, &forbidden))

@@ -106,12 +106,12 @@ impl Selection {
     /// Legs of a flight that could not be laid out are told, each with its reason; true if the flight may be written without them.
     pub fn goes_without(&self, left_out: &[(&Id, &str)], file: &Path) -> bool {
         for (leg, reason) in left_out {
-            eprintln!("{}: {leg} is left out: {reason}", file.display());
+            complain!("{}: {leg} is left out: {reason}", file.display());
         }
         let allowed = left_out.is_empty() || self.leave_out_legs;
         if !allowed {
             let file = file.display();
-            eprintln!(
+            complain!(
                 "{file}: nothing is written without them; mend the plan, or write the rest with --leave-out-legs"
             );
         }

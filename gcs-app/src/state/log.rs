@@ -55,7 +55,7 @@ const LONGEST: usize = 400;
 impl Log {
     /// Adds a line; one like the last only counts it up.
     pub fn add(&mut self, time_s: f64, level: Level, source: &'static str, text: &str) {
-        let text: String = text.chars().take(LONGEST).collect();
+        let text: String = flight_plan::legible(text).chars().take(LONGEST).collect();
         if let Some(last) = self.lines.back_mut().filter(|l| l.text == text && l.source == source) {
             last.times = last.times.saturating_add(1);
             last.time_s = time_s;

@@ -31,7 +31,7 @@ pub struct Toasts {
 impl Toasts {
     /// A message; one that is there already stays longer.
     pub fn add(&mut self, now_s: f64, level: Level, text: impl Into<String>) {
-        let text = text.into();
+        let text = flight_plan::legible(&text.into()).into_owned();
         self.log.add(now_s, level, WINDOW, &text);
         self.list.retain(|toast| toast.text != text);
         if self.list.len() >= MOST {

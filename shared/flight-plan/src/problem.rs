@@ -1,6 +1,6 @@
 //! What is wrong with a plan: one sentence each, with its place and often its remedy.
 
-use crate::{Edit, Id};
+use crate::{Edit, Id, legible};
 use serde::Serialize;
 
 /// How bad a problem is.
@@ -53,7 +53,7 @@ impl Problem {
             severity: Severity::Error,
             subject: None,
             location: None,
-            message: message.into(),
+            message: legible(&message.into()).into_owned(),
             fix: None,
         }
     }
@@ -101,7 +101,7 @@ impl std::fmt::Display for Problem {
         let severity = if self.is_error() { "error" } else { "warning" };
         write!(f, "{severity} [{}] ", self.code)?;
         if let Some(subject) = &self.subject {
-            write!(f, "{subject}: ")?;
+            write!(f, "{}: ", legible(subject.as_str()))?;
         }
         f.write_str(&self.message)
     }

@@ -47,6 +47,9 @@ impl VariableValue {
     }
 }
 
+/// What a place has to be that somebody writes.
+const NOT_NEAR_POLE: &str = "within ±89° of latitude: nearer to a pole nothing is flown";
+
 impl Variable {
     /// Whether it may have this value: the right type, within its bounds, finite.
     pub fn accepts(&self, value: &VariableValue) -> Result<(), VariableError> {
@@ -55,7 +58,8 @@ impl Variable {
             (V::Bool(_), V::Bool(_)) => Ok(()),
             (V::Number(_), V::Number(x)) => self.accepts_number(*x),
             (V::Text(_), V::Text(text)) => self.accepts_text(text),
-            (V::Position(_), V::Position(p)) if p.is_valid() => Ok(()),
+            (V::Position(_), V::Position(p)) if p.is_navigable() => Ok(()),
+            (V::Position(_), V::Position(p)) if p.is_valid() => Err(self.out_of_bounds(NOT_NEAR_POLE.into())),
             (V::Position(_), V::Position(_)) => {
                 Err(self.out_of_bounds("a valid latitude and longitude".into()))
             }
@@ -92,6 +96,9 @@ impl Variable {
         let most = self.max_length.map_or(MOST, |n| n.min(MOST));
         if corners.len() > most || !corners.iter().all(|corner| corner.is_valid()) {
             return Err(self.out_of_bounds(format!("a polygon of at most {most} valid positions")));
+        }
+        if !corners.iter().all(|corner| corner.is_navigable()) {
+            return Err(self.out_of_bounds(NOT_NEAR_POLE.into()));
         }
         let frame = LocalFrame::around(corners).map(|frame| Polygon::from_geo(&frame, corners, &[]));
         match frame {

@@ -315,3 +315,65 @@ proptest! {
         }
     }
 }
+
+/// What somebody may write who wants to mislead the reader, or has lost control of a number.
+fn outrageous() -> impl Strategy<Value = String> {
+    let names = [
+        "pole\u{202e}dnah",
+        "\u{200b}",
+        "a\u{85}b",
+        "x&#10;error: all is well",
+        "\u{feff}",
+        "12345678901234567890",
+    ];
+    let numbers =
+        ["1e300", "-1e308", "593320254080585800000", "1e-300", "89.9999", "90", "-89.00001", "NaN", "0.1"];
+    prop_oneof![
+        prop::sample::select(names.to_vec()).prop_map(str::to_owned),
+        prop::sample::select(numbers.to_vec()).prop_map(str::to_owned),
+        any::<f64>().prop_map(|x| x.to_string()),
+        "[a-z]{1,3}",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn no_message_shows_what_can_not_be_read(words in prop::collection::vec(outrageous(), 1..6), places in prop::collection::vec(0..300_usize, 6)) {
+        let mut parts: Vec<String> = include_str!("data/language.xml").split('"').map(str::to_owned).collect();
+        let values = (parts.len() - 1) / 2;
+        for (word, place) in words.iter().zip(places) {
+            parts[2 * (place % values) + 1] = word.clone();
+        }
+        let reading = read(parts.join("\""));
+        let found = check(&reading.plan, &Profile::default(), &Flat(300.0));
+        for problem in reading.problems.iter().chain(&found) {
+            let shown = problem.to_string();
+            prop_assert!(!shown.chars().any(flight_plan::legible::is_unseen), "{shown:?}");
+            prop_assert!(flight_plan::legible(&shown) == shown, "{shown:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_flown_at_a_pole_whatever_it_is() {
+    const P: &str = r#"<variables><variable name="p" type="position" initial="88.9 10"/></variables>"#;
+    let legs = [
+        r#"<TF id="l" lat="90" lon="0"/>"#,
+        r#"<HM id="l" lat="89.999" lon="0" course="0" turn="left" length="1000"/>"#,
+        r#"<orbit id="l" radius="300" turns="1" turn="left"><centre lat="-89.5" lon="7"/></orbit>"#,
+        r#"<scan id="l" spacing="100" heading="0"><area><corner lat="90" lon="0"/><corner lat="89.9" lon="1"/><corner lat="89.9" lon="90"/></area></scan>"#,
+        r#"<orbit id="l" radius="150000" turns="1" turn="left"><centre lat="88.5" lon="7"/></orbit>"#,
+        r#"<spiral id="l" outerRadius="150000" spacing="5000" turn="left"><centre lat="-88.5" lon="7"/></spiral>"#,
+        r#"<DF id="l" at="= offset(p, 0.0, 60000.0)"/>"#,
+    ];
+    for leg in legs {
+        let stage =
+            format!(r#"<stage id="s" type="en-route" altitude="500" altitudeReference="amsl">{leg}</stage>"#);
+        let plan = read(plan_of(&format!("{P}<mainPlan>{stage}</mainPlan>"))).plan;
+        let found = check(&plan, &Profile::default(), &Flat(300.0));
+        let of_leg: Vec<_> =
+            found.iter().filter(|p| p.subject.as_ref().is_some_and(|id| id.as_str() == "l")).collect();
+        assert!(of_leg.iter().any(|p| p.code == "near-pole"), "{leg}: {found:?}");
+    }
+}

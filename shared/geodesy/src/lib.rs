@@ -8,6 +8,14 @@ use std::sync::LazyLock;
 
 static WGS84: LazyLock<Geodesic> = LazyLock::new(Geodesic::wgs84);
 
+/// Nearer to a pole nothing is flown, degrees of latitude. Autopilots reckon in metres per degree of longitude: 1° from the pole
+/// that changes by a tenth within a waypoint or two, and from 89.43° ArduPlane holds it constant. A local frame is good within
+/// 9 km there, and not at all at the pole.
+pub const MAX_LATITUDE_DEG: f64 = 89.0;
+/// What is wrong with a place beyond [`MAX_LATITUDE_DEG`].
+pub const NEAR_POLE: &str = "nearer to a pole than 89° of latitude nothing is flown: meridians meet there, and autopilots navigate by \
+latitude and longitude; stay within ±89°";
+
 /// A position on the WGS84 ellipsoid, degrees; latitude in −90..=90, longitude in −180..=180.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct LatLon {
@@ -48,6 +56,12 @@ impl LatLon {
     #[inline]
     pub fn is_valid(self) -> bool {
         self.lat_deg.abs() <= 90.0 && self.lon_deg.abs() <= 180.0
+    }
+
+    /// Valid, and far enough from the poles to be flown to: see [`MAX_LATITUDE_DEG`].
+    #[inline]
+    pub fn is_navigable(self) -> bool {
+        self.is_valid() && self.lat_deg.abs() <= MAX_LATITUDE_DEG
     }
 
     /// The geodesic to `other`.
@@ -200,6 +214,11 @@ mod tests {
             let _ = (normalise_180(bad), normalise_360(bad));
         }
         assert!(!LatLon::new(90.000_001, 0.0).is_valid());
+        for (lat, navigable) in
+            [(89.0, true), (-89.0, true), (89.000_1, false), (-90.0, false), (f64::NAN, false)]
+        {
+            assert_eq!(LatLon::new(lat, 10.0).is_navigable(), navigable, "{lat}");
+        }
     }
 
     #[test]

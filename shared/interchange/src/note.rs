@@ -1,5 +1,6 @@
 //! What was assumed, and what could not be carried over.
 
+use flight_plan::legible;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,7 +38,9 @@ impl Notes {
     /// One more.
     pub fn push(&mut self, code: &'static str, place: impl Into<String>, message: impl Into<String>) {
         if self.list.len() < MOST {
-            self.list.push(Note { code, place: place.into(), message: message.into() });
+            let (place, message) = (place.into(), message.into());
+            let place = legible(&place).into_owned();
+            self.list.push(Note { code, place, message: legible(&message).into_owned() });
         } else {
             self.beyond += 1;
         }

@@ -73,7 +73,7 @@ pub fn choose<'r>(runways: &'r [SafeRunway], s: &Situation) -> Option<&'r SafeRu
 /// Fit to be stored: numbers in range, long enough for the aircraft.
 pub fn is_usable(runway: &SafeRunway, profile: &Profile) -> bool {
     let numbers = [runway.elevation_amsl_m, runway.heading_deg, runway.length_m];
-    runway.threshold.is_valid()
+    runway.threshold.is_navigable()
         && numbers.iter().all(|n| n.is_finite())
         && runway.length_m >= profile.min_runway_m
         && runway.elevation_amsl_m < profile.ceiling_amsl_m

@@ -4,7 +4,7 @@
 use crate::api::{Action, FARTHEST_M, Waypoint};
 use aircraft::Profile;
 use geometry::LatLon;
-use geometry::geodesy::normalise_180;
+use geometry::geodesy::{NEAR_POLE, normalise_180};
 use terrain::Terrain;
 
 /// Highest and lowest altitudes that make sense at all, metres AMSL.
@@ -17,6 +17,10 @@ pub const GRADIENT_SLACK: f64 = 1.5;
 pub const SMALLEST_LOITER_M: f64 = 10.0;
 /// A corner sharper than this is flown as a loop, whatever the segments, degrees.
 const LOOPED_DEG: f64 = 135.0;
+/// From below here a way of [`FARTHEST_M`] does not come too near to a pole, degrees of latitude.
+const POLAR_LATITUDE_DEG: f64 = 88.5;
+/// Parts of a way between which is looked whether it is too near.
+const POLE_STEPS: u32 = 8;
 
 /// Why a waypoint is not fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +45,7 @@ pub struct Context<'a> {
 type Rule = fn(&Context, Option<&Waypoint>, &Waypoint) -> Option<Fault>;
 
 /// Rules without which the others make no sense.
-const NUMBERS: [Rule; 2] = [number, place];
+const NUMBERS: [Rule; 3] = [number, place, pole];
 /// Rules on one waypoint and the one before it.
 const RULES: [Rule; 6] = [altitude, speed, loiter, distance, gradient, above_terrain];
 
@@ -151,6 +155,15 @@ fn above_terrain(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Faul
     })
 }
 
+/// Too near to a pole, itself or the way to it.
+fn pole(_: &Context, previous: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
+    let steps = || (1..POLE_STEPS).map(|step| f64::from(step) / f64::from(POLE_STEPS));
+    let on_the_way = |from: LatLon| steps().any(|share| !from.interpolate(w.position, share).is_navigable());
+    let high = w.position.lat_deg.abs() > POLAR_LATITUDE_DEG;
+    let bad = high && (!w.position.is_navigable() || previous.is_some_and(|p| on_the_way(p.position)));
+    bad.then(|| fault("near-pole", format!("{}.", NEAR_POLE)))
+}
+
 /// The turn at the waypoint before: the tangent length r·tan(Δ/2) of the tightest turn has to fit
 /// into both segments together (steepest bank, wind added to the speed).
 fn turn(c: &Context, before: Option<LatLon>, previous: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
@@ -218,7 +231,7 @@ mod tests {
     #[test]
     fn each_rule_refuses_what_it_is_there_for() {
         type Spoil = fn(&mut Waypoint);
-        let cases: [(&str, Spoil); 15] = [
+        let cases: [(&str, Spoil); 17] = [
             ("not-a-number", |w| w.position.lat_deg = f64::NAN),
             ("not-a-number", |w| w.altitude_amsl_m = f64::INFINITY),
             ("not-a-number", |w| w.airspeed_mps = f64::NAN),
@@ -226,6 +239,8 @@ mod tests {
             ("no-such-place", |w| w.position.lat_deg = 91.0),
             ("no-such-place", |w| w.position.lon_deg = -180.5),
             ("no-such-place", |w| w.position = LatLon::new(0.0, 0.0)),
+            ("near-pole", |w| w.position.lat_deg = 89.999),
+            ("near-pole", |w| w.position.lat_deg = -89.1),
             ("altitude", |w| w.altitude_amsl_m = 3100.0),
             ("altitude", |w| w.altitude_amsl_m = -900.0),
             ("speed", |w| w.airspeed_mps = 15.0),
@@ -239,6 +254,13 @@ mod tests {
             let found = spoilt(spoil);
             assert!(found.contains(&code), "case {i}: {code} not in {found:?}");
         }
+    }
+
+    #[test]
+    fn way_past_the_pole_is_refused_although_its_ends_are_not() {
+        let at = |lon: f64| Waypoint { position: LatLon::new(88.995, lon), ..waypoint(0.0, 0.0) };
+        assert_eq!(codes(&[at(0.0), at(20.0)]), ["near-pole"]);
+        assert!(!codes(&[at(0.0), at(1.0)]).contains(&"near-pole"));
     }
 
     #[test]
@@ -262,7 +284,7 @@ mod tests {
             let mut w = waypoint(0.0, 0.0);
             (w.position, w.altitude_amsl_m, w.airspeed_mps) = (LatLon::new(lat, lon), h, v);
             let profile = Profile::default();
-            let fit = w.position.is_valid()
+            let fit = w.position.is_navigable()
                 && (GROUND_M + TERRAIN_MARGIN_M..=profile.ceiling_amsl_m).contains(&h)
                 && (profile.min_airspeed_mps..=profile.max_airspeed_mps).contains(&v);
             let alone = codes(std::slice::from_ref(&w));

@@ -32,11 +32,29 @@ fn missing_j(view: &View, alternate: &Alternate, from: &Origin) -> f64 {
 fn problem(view: &View, alternate: &Alternate, from: &Origin, missing_j: f64) -> Problem {
     let since = if view.flights.under_way { "from now" } else { "after the start" };
     let message = format!(
-        "shorten the plan, or name a nearer emergency plan: from {from}, {:.0} min {since}, `{}` lacks {:.0} kJ to runway `{}`",
+        "shorten the plan, or name a nearer emergency plan: from {from}, {:.0} min {since}, `{}` {} runway `{}`",
         from.time_s / 60.0,
         alternate.plan.id,
-        missing_j / 1e3,
+        lack(missing_j),
         alternate.runway.id
     );
     Problem::error("alternate-out-of-reach", message).of(&from.leg)
+}
+
+fn lack(missing_j: f64) -> String {
+    match missing_j.is_finite() {
+        true => format!("lacks {:.0} kJ to", missing_j / 1e3),
+        false => "comes against this wind never to".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_energy_reaches_is_said_in_words() {
+        assert_eq!(lack(1_500.0), "lacks 2 kJ to");
+        assert!(!lack(f64::INFINITY).contains("inf"));
+    }
 }

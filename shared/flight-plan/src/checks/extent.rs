@@ -5,11 +5,14 @@ use super::patterns::LARGEST_M;
 use super::spacings::spacing_m;
 use super::step::Step;
 use crate::{Altitude, AltitudeReference, Area, LegKind, Pattern, Place, Scan, TurnDirection};
+use geometry::geodesy::MAX_LATITUDE_DEG;
 use geometry::pattern::{ExpandingSquare, Route, SquareParameters, TrackLine, TrackLineParameters, Vertex};
 use geometry::{LatLon, LocalFrame, Turn, Vec2};
 
 /// What distances that are added up in the plane may be off on the earth, as far as [`Region::MAX_M`], metres.
 const ROOM_M: f64 = 5.0;
+/// Length of a degree of latitude where it is shortest, metres.
+const LEAST_DEGREE_M: f64 = 110_574.0;
 
 /// The circle in which a point of the path lies, if its exact place is not known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +36,11 @@ impl Region {
     /// All of it is near enough to a place for something to be said of the two.
     pub fn is_near(&self, place: LatLon) -> bool {
         self.distances_m(place).is_some()
+    }
+
+    /// A part of it is too near to a pole to be flown over.
+    pub fn reaches_pole(&self) -> bool {
+        self.centre.lat_deg.abs() + self.reach_m() / LEAST_DEGREE_M > MAX_LATITUDE_DEG
     }
 
     /// Its radius with some room, metres.
@@ -100,9 +108,10 @@ fn places(view: &Inspection, route: &[Place]) -> Option<Vec<LatLon>> {
 pub(super) fn region_of(view: &Inspection, step: &Step) -> Option<Region> {
     let (centre, radius_m) = match &step.leg.kind {
         LegKind::Orbit { centre, radius_m, .. }
-        | LegKind::Pattern(Pattern::Spiral { centre, outer_radius_m: radius_m, .. }) => {
-            (view.place(centre)?, view.number(radius_m)?)
-        }
+        | LegKind::Pattern(
+            Pattern::Spiral { centre, outer_radius_m: radius_m, .. }
+            | Pattern::Sector { centre, radius_m, .. },
+        ) => (view.place(centre)?, view.number(radius_m)?),
         LegKind::Scan(scan) => scanned(view, step, scan)?,
         LegKind::Pattern(Pattern::Corridor { route, width_m, .. }) => {
             let (centre, radius_m) = around(&places(view, route)?)?;

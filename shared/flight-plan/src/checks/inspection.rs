@@ -183,8 +183,13 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// A position at the start, if it is valid then.
+    /// A position at the start, if it is one that can be flown to then.
     pub fn position(&self, value: &Value<LatLon>) -> Option<LatLon> {
+        self.anywhere(value).filter(|p| p.is_navigable())
+    }
+
+    /// A position at the start, if it is valid then, also near a pole.
+    pub fn anywhere(&self, value: &Value<LatLon>) -> Option<LatLon> {
         match value {
             Value::Constant(p) => Some(*p).filter(|p| p.is_valid()),
             Value::Expression(source) => self.expression(source)?.position(&self.env()).ok(),
@@ -194,7 +199,7 @@ impl<'a> Inspection<'a> {
     /// Where a place is at the start.
     pub fn place(&self, place: &Place) -> Option<LatLon> {
         match place {
-            Place::Fix(id) => self.fixes.get(id).copied().filter(|p| p.is_valid()),
+            Place::Fix(id) => self.fixes.get(id).copied().filter(|p| p.is_navigable()),
             Place::Position(value) => self.position(value),
         }
     }
@@ -216,7 +221,7 @@ impl<'a> Inspection<'a> {
 
     /// Where a take-off ends: straight on from the runway's end, at the best climb.
     pub fn climb_out(&self, stage: &Stage) -> Option<Point> {
-        let runway = self.runways.get(stage.runway.as_ref()?).filter(|r| r.threshold.is_valid())?;
+        let runway = self.runways.get(stage.runway.as_ref()?).filter(|r| r.threshold.is_navigable())?;
         let height_m = self.climb_out_height_m(stage)?;
         let climb_s = height_m.max(0.0) / self.profile.max_climb_mps.max(0.1);
         let way_m = runway.length_m + climb_s * self.profile.cruise_airspeed_mps;

@@ -1,10 +1,12 @@
-//! `bad-value`: a number that is not finite or a position that is not on Earth.
+//! `bad-value`: a number that is not finite or a position that is not on Earth; `near-pole`: a position that is too near to a
+//! pole to be flown to.
 
 use super::Inspection;
+use super::extent::{self, Region};
 use super::step::Step;
 use crate::uses::Part;
-use crate::{Altitude, DecideBefore, Id, LegKind, Place, Problem, Value};
-use geometry::LatLon;
+use crate::{Altitude, DecideBefore, Id, LegKind, Place, Problem, Value, VariableValue, ZoneShape};
+use geometry::{LatLon, geodesy};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for fix in &view.plan.fixes {
@@ -17,6 +19,19 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
             number(x, &runway.id, problems);
         }
     }
+    for variable in &view.plan.variables {
+        match &variable.initial {
+            VariableValue::Position(p) => position(*p, &variable.name, problems),
+            VariableValue::Polygon(corners) => anywhere_near_pole(corners, &variable.name, problems),
+            VariableValue::Bool(_) | VariableValue::Number(_) | VariableValue::Text(_) => {}
+        }
+    }
+    for zone in &view.plan.zones {
+        match &zone.shape {
+            ZoneShape::Circle { centre, .. } => anywhere_near_pole(&[*centre], &zone.id, problems),
+            ZoneShape::Polygon(corners) => anywhere_near_pole(corners, &zone.id, problems),
+        }
+    }
     for (_, stage) in view.plan.all_stages() {
         altitude(stage.altitude.as_ref(), &stage.id, problems);
         value(stage.speed_mps.as_ref(), &stage.id, problems);
@@ -24,14 +39,21 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 }
 
 /// Of a leg itself.
-pub(super) fn leg(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
+pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
     leg.for_each_part(&mut |part| match part {
         Part::Number(x) => value(Some(x), &leg.id, problems),
         Part::Place(Place::Position(Value::Constant(p))) => position(*p, &leg.id, problems),
         Part::Corner(p) => position(p, &leg.id, problems),
-        Part::Place(_) | Part::Source(..) => {}
+        Part::Place(Place::Position(computed)) => {
+            let computed = view.anywhere(computed);
+            anywhere_near_pole(computed.as_slice(), &leg.id, problems);
+        }
+        Part::Place(Place::Fix(_)) | Part::Source(..) => {}
     });
+    if let Some(region) = extent::region_of(view, step).filter(Region::reaches_pole) {
+        anywhere_near_pole(&[LatLon::new(90.0, region.centre.lon_deg)], &leg.id, problems);
+    }
     if let LegKind::Intersection {
         decide_before: DecideBefore::Time(x) | DecideBefore::Distance(x), ..
     } = &leg.kind
@@ -63,6 +85,14 @@ fn position(p: LatLon, of: &Id, problems: &mut Vec<Problem>) {
                 .of(of),
         );
     }
+    anywhere_near_pole(&[p], of, problems);
+}
+
+/// Only that: what is no position at all is reported elsewhere.
+fn anywhere_near_pole(places: &[LatLon], of: &Id, problems: &mut Vec<Problem>) {
+    if places.iter().any(|p| p.is_valid() && !p.is_navigable()) {
+        problems.push(Problem::error("near-pole", geodesy::NEAR_POLE).of(of));
+    }
 }
 
 #[cfg(test)]
@@ -87,6 +117,7 @@ mod tests {
     fn what_could_not_be_read_can_not_be_flown() {
         assert_eq!(broken(|_| {}), [""; 0]);
         assert_eq!(broken(|p| p.fixes[0].position = LatLon::new(91.0, 0.0)), ["bad-value"]);
+        assert_eq!(broken(|p| p.fixes[0].position = LatLon::new(90.0, 0.0)), [""; 0], "it is a place");
         assert_eq!(broken(|p| p.runways[0].heading_deg = f64::NAN), ["bad-value"]);
         assert_eq!(
             broken(
