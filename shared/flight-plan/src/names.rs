@@ -46,7 +46,6 @@ fn quoted(text: &str) -> Option<(&str, &str, &str)> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
 
     #[test]
     fn names_stand_in_the_place_of_identifiers() {
