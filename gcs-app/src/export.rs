@@ -1,9 +1,10 @@
 //! The waypoints of a plan in another program's format, for the command line and the window alike: flown ahead of time,
 //! then written, with a list of what the format can't hold.
 
+use crate::headless::wind::Air;
 use crate::headless::{Loaded, forecast};
 use crate::jobs::Progress;
-use aircraft::{Profile, Wind};
+use aircraft::Profile;
 use flight_exec::Conditions;
 use flight_exec::rehearse::{Preview, PreviewError, Scenario};
 use flight_plan::{FlightPlan, Id, Problem, Program};
@@ -106,7 +107,7 @@ pub fn export(
             !progress.is_cancelled()
         };
         let scenario = Scenario::default();
-        forecast::fly_reporting(program, profile, &loaded.terrain, Wind::CALM, &scenario, &mut report)
+        forecast::fly_reporting(program, profile, &loaded.terrain, Air::default(), &scenario, &mut report)
     })
     .map_err(|unflown| why(&sentence(&unflown)))?;
     if let Some((leg, reason)) = forecast::left_out(&preview).first() {

@@ -7,6 +7,7 @@ use flight_exec::{Action, Conditions};
 use flight_plan::{Leg, LegKind, Place, Value};
 use gcs_app::export::{flown, steps};
 use gcs_app::formats::{self, FileFormat};
+use gcs_app::headless::wind::Air;
 use gcs_app::headless::{Loaded, forecast};
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Import, Note, Step};
@@ -83,7 +84,7 @@ fn become_of(format: Format, import: &Import, lines: &mut Vec<String>) {
         format!("{:?} {} of {of}{remedy}", p.severity, p.code)
     }));
     let fly = |program: &_, profile: &_| {
-        let calm = aircraft::Wind::CALM;
+        let calm = Air::default();
         forecast::fly_reporting(program, profile, &loaded.terrain, calm, &Scenario::default(), &mut |_| true)
     };
     match flown(&loaded, None, fly) {

@@ -4,6 +4,7 @@ use super::Args;
 use super::flight::Ending;
 use super::mission::{self, Step, When};
 use crate::assets;
+use crate::headless::wind::Air;
 use crate::headless::{Loaded, Source, forecast, wind};
 use crate::report::{Record, Track, assemble, authored};
 use aircraft::{Profile, Wind};
@@ -98,8 +99,9 @@ fn preview(
     let mut asked_s: Vec<f64> = Vec::new();
     loop {
         let scenario = mission::scenario(steps, &program.plan, compile, &asked_s)?;
-        let preview = forecast::fly(program, profile, &loaded.terrain, wind, &scenario)
-            .context("the plan can't be flown to its end")?;
+        let preview =
+            forecast::fly(program, profile, &loaded.terrain, Air { wind, ..Air::default() }, &scenario)
+                .context("the plan can't be flown to its end")?;
         let asked: Vec<f64> = preview
             .events
             .iter()

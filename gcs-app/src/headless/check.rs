@@ -33,6 +33,7 @@ pub struct Circumstances {
 /// A file can't be read, or standard output not written.
 pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow::Result<ExitCode> {
     let loaded = source.load()?;
+    circumstances.air.suits(&loaded.reading.plan)?;
     let mut problems = loaded.problems();
     if !circumstances.quick {
         problems.extend(reviewed(&loaded, circumstances.air.conditions()));

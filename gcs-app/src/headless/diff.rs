@@ -93,6 +93,7 @@ fn takeover(
     pass: Option<u64>,
     air: Air,
 ) -> anyhow::Result<Takeover> {
+    air.suits(&before.reading.plan)?;
     let (flown, _) = flight_plan::instantiate(&before.reading.plan);
     let leg = select::known_leg(&flown, leg)?;
     let refused = |file: &Source, problems: Vec<Problem>| {
@@ -115,7 +116,7 @@ fn takeover(
     let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
     // the flight ends where it reaches the place; any other end comes before that
-    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air.wind, &scenario)
+    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air, &scenario)
         .map_err(|why| anyhow!("the old plan never reaches {place}: {why}"))?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");

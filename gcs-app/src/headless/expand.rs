@@ -103,11 +103,12 @@ pub struct Flown {
 /// A file can't be read, or there is no such way.
 pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<Result<Flown, ExitCode>> {
     let mut loaded = source.load()?;
+    air.suits(&loaded.reading.plan)?;
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let conditions = (!selection.anyway).then(|| air.conditions());
     let flown = export::flown(&loaded, conditions, |program, profile| {
-        forecast::fly(program, profile, &loaded.terrain, air.wind, &scenario)
+        forecast::fly(program, profile, &loaded.terrain, air, &scenario)
     });
     match flown {
         Ok((_, preview)) if !preview.not_fired.is_empty() => {
@@ -197,6 +198,43 @@ mod tests {
                 flown.preview.waypoints.iter().map(|w| w.waypoint.altitude_amsl_m).collect();
             assert_eq!(altitudes, [300.0; 3]);
         }
+    }
+
+    /// Its only leg names no place but the corners of its area.
+    const NOWHERE: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="In the air" aircraft="trainer"><mainPlan>
+        <stage id="m" type="mission" altitude="300" altitudeReference="amsl"><iterative id="twice" form="forward" count="2">
+        <scan id="s" spacing="200"><area><corner lat="0.5" lon="0.5"/><corner lat="0.5" lon="0.51"/><corner lat="0.51" lon="0.51"/>
+        <corner lat="0.51" lon="0.5"/></area></scan></iterative></stage></mainPlan></flightPlan>"#;
+
+    fn begun(plan: &str, begin: Option<&str>) -> anyhow::Result<Result<Flown, ExitCode>> {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            air: Air,
+        }
+        let options = begin.map(|place| format!("--begin={place}"));
+        let line = <Line as clap::Parser>::parse_from(["expand".to_owned()].into_iter().chain(options));
+        let (_file, source) = source(plan.as_bytes());
+        fly(&source, line.air, &Selection { anyway: true, ..Selection::default() })
+    }
+
+    #[test]
+    fn a_plan_without_take_off_begins_where_it_is_said_to_or_at_its_first_corner() {
+        let first = |begin| {
+            let flown = begun(NOWHERE, Some(begin)).unwrap().unwrap_or_else(|_| panic!("not flown"));
+            flown.preview.waypoints.first().unwrap().waypoint.position
+        };
+        let (from_south, from_north) = (first("0.48,0.505,300,0"), first("0.53,0.505,300,180"));
+        assert!(from_south.lat_deg < from_north.lat_deg, "{from_south:?}, {from_north:?}");
+        let unsaid = begun(NOWHERE, None).unwrap().unwrap_or_else(|_| panic!("not flown"));
+        assert_eq!(unsaid.preview.waypoints.len(), 2 * 2 * 6, "from its first corner");
+    }
+
+    #[test]
+    fn a_plan_that_takes_off_begins_nowhere_else() {
+        let square = include_str!("../../../assets/plans/square.xml");
+        let error = begun(square, Some("36.3,-84.1,500,0")).err().unwrap();
+        assert!(error.to_string().contains("--begin"), "{error}");
     }
 
     /// Their altitudes count from ground that nothing is known of.

@@ -1,6 +1,7 @@
 //! A plan flown ahead of time, with a line of progress.
 
 use super::source::Loaded;
+use super::wind::Air;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
 use aircraft::{Profile, Wind};
 use flight_exec::Event;
@@ -28,7 +29,7 @@ pub fn fly(
     program: &Arc<Program>,
     profile: &Profile,
     terrain: &Arc<dyn Terrain>,
-    wind: Wind,
+    air: Air,
     scenario: &Scenario,
 ) -> Result<Preview, PreviewError> {
     let legs: HashMap<Id, u64> = program
@@ -42,7 +43,7 @@ pub fn fly(
     // without its style the bar is plain
     bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar.enable_steady_tick(Duration::from_millis(120));
-    let result = fly_reporting(program, profile, terrain, wind, scenario, &mut |advance| {
+    let result = fly_reporting(program, profile, terrain, air, scenario, &mut |advance| {
         let leg = advance.place.as_ref().map(|p| &p.leg);
         bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
         bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
@@ -60,25 +61,32 @@ pub fn fly_reporting(
     program: &Arc<Program>,
     profile: &Profile,
     terrain: &Arc<dyn Terrain>,
-    wind: Wind,
+    air: Air,
     scenario: &Scenario,
     report: &mut dyn FnMut(&Advance) -> bool,
 ) -> Result<Preview, PreviewError> {
     let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
-    let start = start(program, terrain.as_ref());
-    preview_with(program, profile, terrain, wind, start, scenario, &options, report)
+    let start = start(program, terrain.as_ref(), air.begin);
+    preview_with(program, profile, terrain, air.wind, start, scenario, &options, report)
 }
 
 /// Why a flight ahead of time came to no end; who gives the commands can choose for the plan.
 pub fn why(error: &PreviewError) -> String {
     match error {
         PreviewError::Waiting { .. } => format!("{error}, or choose a branch with --decide LEG=BRANCH"),
+        PreviewError::NoStart => {
+            "the plan has neither a take-off nor a place to begin at: say where in flight it begins with --begin LAT,LON,ALT,COURSE"
+                .into()
+        }
         _ => error.to_string(),
     }
 }
 
-/// On the runway, or before the first place of a plan that doesn't take off.
-fn start(program: &Program, terrain: &dyn Terrain) -> Start {
+/// On the runway; of a plan that doesn't take off, where it is said to begin, or before its first place.
+fn start(program: &Program, terrain: &dyn Terrain, begin: Option<Start>) -> Start {
+    if let Some(begin) = begin {
+        return begin;
+    }
     match Start::of(program, terrain) {
         Some(Start::InFlight { position, altitude_amsl_m, heading_deg }) => {
             let position = position.destination(180.0, BEFORE_FIRST_M);
@@ -153,7 +161,7 @@ mod tests {
         let (_file, source) = source(square.as_bytes());
         let loaded = source.load().unwrap();
         let (program, profile) = loaded.compile().unwrap();
-        let calm = Wind::default();
+        let calm = Air::default();
         let error =
             fly(&Arc::new(program), &profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
         assert!(why(&error).contains("--decide"), "{}", why(&error));

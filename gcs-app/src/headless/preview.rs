@@ -44,6 +44,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         None => report::FILES.iter().try_for_each(|name| target.overwriting.allow(&target.out.join(name)))?,
     }
     let mut loaded = source.load()?;
+    air.suits(&loaded.reading.plan)?;
     foreign::print_notes(&source.file, &loaded.notes);
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
@@ -57,7 +58,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
     let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air.wind, &scenario) {
+    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
             complain!("{}: {}", source.file.display(), forecast::why(&error));

@@ -2,6 +2,9 @@
 
 use aircraft::Wind;
 use flight_exec::Conditions;
+use flight_exec::rehearse::Start;
+use flight_plan::FlightPlan;
+use geometry::LatLon;
 
 /// Strongest wind that is accepted, m/s.
 const MAX_MPS: f64 = 50.0;
@@ -15,13 +18,29 @@ pub struct Air {
     /// When the flight starts (UTC, as 2026-06-01T06:00:00Z); without it every zone counts as active.
     #[arg(long, value_name = "TIME")]
     pub start: Option<jiff::Timestamp>,
+    /// Where a plan without a take-off begins, in flight (m AMSL, degrees true) [default: before its first place].
+    #[arg(long, value_name = "LAT,LON,ALT,COURSE", value_parser = in_flight, allow_hyphen_values = true)]
+    pub begin: Option<Start>,
 }
 
 impl Air {
+    /// A plan that takes off begins on its runway.
+    ///
+    /// # Errors
+    /// It is said where in flight such a plan begins.
+    pub fn suits(&self, plan: &FlightPlan) -> anyhow::Result<()> {
+        match (self.begin, plan.home()) {
+            (Some(_), Some(runway)) => {
+                anyhow::bail!("leave --begin out: the plan takes off, and begins on runway `{}`", runway.id)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The conditions of a review.
     pub fn conditions(&self) -> Conditions {
         let start_unix_s = self.start.map(jiff::Timestamp::as_second);
-        Conditions { wind: self.wind, start_unix_s, ..Conditions::default() }
+        Conditions { wind: self.wind, start_unix_s, begin: self.begin, ..Conditions::default() }
     }
 }
 
@@ -43,6 +62,21 @@ pub fn parse(text: &str) -> Result<Wind, String> {
     }
 }
 
+/// `LAT,LON,ALT,COURSE`.
+fn in_flight(text: &str) -> Result<Start, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[lat, lon, altitude_amsl_m, heading_deg])
+            if LatLon::new(lat, lon).is_navigable()
+                && (-500.0..=12_000.0).contains(&altitude_amsl_m)
+                && (0.0..=360.0).contains(&heading_deg) =>
+        {
+            Ok(Start::InFlight { position: LatLon::new(lat, lon), altitude_amsl_m, heading_deg })
+        }
+        _ => Err("write LAT,LON,ALT,COURSE, as 36.319,-84.173,500,52: degrees, m AMSL, degrees true".into()),
+    }
+}
+
 /// For people: `5 m/s from 270°`, or `calm`.
 pub fn shown(wind: &Wind) -> String {
     if wind.speed_mps() < 0.05 {
@@ -54,6 +88,24 @@ pub fn shown(wind: &Wind) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn places_in_flight() {
+        let expected =
+            Start::InFlight { position: LatLon::new(36.3, -84.1), altitude_amsl_m: 500.0, heading_deg: 52.0 };
+        assert_eq!(in_flight("36.3, -84.1,500,52"), Ok(expected));
+        for bad in [
+            "",
+            "36,-84,500",
+            "36,-84,500,52,1",
+            "89.5,0,500,0",
+            "36,-84,nan,0",
+            "36,-84,1e9,0",
+            "36,-84,500,361",
+        ] {
+            assert!(in_flight(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn winds() {

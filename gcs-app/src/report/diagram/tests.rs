@@ -1,7 +1,7 @@
 use super::*;
+use crate::headless::wind::Air;
 use crate::headless::{Source, forecast};
 use crate::report::canvas::count;
-use aircraft::Wind;
 use flight_exec::rehearse::Scenario;
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ fn fragment(name: &str) -> (Arc<Program>, Preview) {
     let loaded = Source { file, ..Source::default() }.load().unwrap();
     let (program, profile) = loaded.compile().unwrap();
     let program = Arc::new(program);
-    let calm = Wind::default();
+    let calm = Air::default();
     let preview = forecast::fly(&program, &profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
     (program, preview)
 }

@@ -1,6 +1,6 @@
 //! Where a flight ahead of time begins.
 
-use flight_plan::{AltitudeReference, Env, FlightState, Program, Variables};
+use flight_plan::{AltitudeReference, Env, FlightState, Leg, Program, Variables, transform};
 use geometry::LatLon;
 use terrain::Terrain;
 
@@ -21,8 +21,8 @@ pub enum Start {
 }
 
 impl Start {
-    /// On the runway that a plan takes off from; without a take-off, over the first place that it names, as high as it asks to be
-    /// there (of the first leg or stage that says so). `None`: it names no place.
+    /// On the runway that a plan takes off from; without a take-off, over the first place that it names (of an area: its first
+    /// corner), as high as it asks to be there (of the first leg or stage that says so). `None`: it names no place.
     pub fn of(program: &Program, terrain: &dyn Terrain) -> Option<Self> {
         if program.plan.home().is_some() {
             return Some(Self::Runway);
@@ -31,7 +31,11 @@ impl Start {
         let flight = FlightState::on_ground(LatLon::new(0.0, 0.0));
         let env = Env { variables: &variables, flight };
         let legs = program.flown().all_legs();
-        let position = legs.iter().find_map(|c| program.eval_place(c.leg.place()?, &env).ok())?;
+        let place = |leg: &Leg| match leg.place() {
+            Some(place) => program.eval_place(place, &env).ok(),
+            None => transform::places(&program.plan, leg).first().copied(),
+        };
+        let position = legs.iter().find_map(|c| place(c.leg))?;
         let own = legs.iter().find_map(|c| c.leg.altitude.as_ref().or(c.stage.altitude.as_ref()));
         let metres = own.and_then(|a| program.eval_number(&a.metres, &env).ok()).unwrap_or(0.0);
         let ground_m = match own.map(|a| a.reference) {

@@ -6,6 +6,7 @@
 //! behind the waypoints that can't be altered any more, with the energy that is left. By the preview, with real counts, conditions and energy:
 //! the plan as it stands, the plan with the branches of each of those flights, and each of those emergency plans from that point.
 
+use super::Conditions;
 use super::alternates::Origin;
 use super::emergency_coverage::EmergencyCoverage;
 use super::flown::{Flown, Point, fly, tireless};
@@ -136,11 +137,17 @@ struct Beginning {
 }
 
 impl Flights {
-    pub fn of(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain>, wind: Wind) -> Self {
+    pub fn of(
+        program: &Arc<Program>,
+        profile: &Profile,
+        terrain: &Arc<dyn Terrain>,
+        conditions: Conditions,
+    ) -> Self {
+        let wind = conditions.wind;
         let executor = executor(program, profile, terrain);
         let (tireless, under_way) = (tireless(profile), false);
         let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
-        Self::flown(&given, beginning(program, terrain.as_ref()))
+        Self::flown(&given, beginning(program, terrain.as_ref(), conditions.begin))
     }
 
     /// Those ahead of a flight under way; `None`: nothing is being flown, or nothing is known of the aircraft.
@@ -347,7 +354,7 @@ fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain
 }
 
 /// On the runway; without a take-off, over the first place that the plan names, at the height at which it asks to be there.
-fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
+fn beginning(program: &Program, terrain: &dyn Terrain, begin: Option<Start>) -> Beginning {
     if let Some(runway) = program.plan.home() {
         return Beginning {
             position: runway.threshold,
@@ -357,11 +364,13 @@ fn beginning(program: &Program, terrain: &dyn Terrain) -> Beginning {
             used_j: 0.0,
         };
     }
-    let (position, altitude_amsl_m) = match Start::of(program, terrain) {
-        Some(Start::InFlight { position, altitude_amsl_m, .. }) => (position, altitude_amsl_m),
-        Some(Start::Runway) | None => (LatLon::new(0.0, 0.0), 0.0),
+    let (position, altitude_amsl_m, heading_deg) = match begin.or_else(|| Start::of(program, terrain)) {
+        Some(Start::InFlight { position, altitude_amsl_m, heading_deg }) => {
+            (position, altitude_amsl_m, heading_deg)
+        }
+        Some(Start::Runway) | None => (LatLon::new(0.0, 0.0), 0.0, 0.0),
     };
-    Beginning { position, altitude_amsl_m, heading_deg: 0.0, on_ground: false, used_j: 0.0 }
+    Beginning { position, altitude_amsl_m, heading_deg, on_ground: false, used_j: 0.0 }
 }
 
 /// The branches of a way at the intersections that it comes to, in the plan's order.

@@ -45,6 +45,7 @@ mod waypoints;
 mod wind;
 mod zones;
 
+use crate::rehearse::Start;
 pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_turn};
 use aircraft::{Profile, Wind};
 use alternates::Origin;
@@ -69,6 +70,8 @@ pub struct Conditions {
     /// When it starts (of a flight under way: now), seconds since 1970-01-01T00:00:00Z; `None`: not known, zones are taken as
     /// always active.
     pub start_unix_s: Option<i64>,
+    /// Where a plan without a take-off begins; `None`: over the first place that it names.
+    pub begin: Option<Start>,
     /// What is kept in reserve.
     pub margins: Margins,
 }
@@ -138,7 +141,7 @@ pub fn review(
     terrain: &Arc<dyn Terrain>,
     conditions: Conditions,
 ) -> Vec<Problem> {
-    let flights = Flights::of(program, profile, terrain, conditions.wind);
+    let flights = Flights::of(program, profile, terrain, conditions);
     let variables = Variables::initial(program.flown());
     View::new(program, profile, terrain.as_ref(), conditions, variables, flights).problems()
 }

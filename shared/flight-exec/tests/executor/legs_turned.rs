@@ -57,11 +57,13 @@ fn a_coded_first_turn_leads_round_when_the_fix_is_on_the_other_side() {
 fn a_course_that_can_not_be_joined_is_told_and_its_leg_passed() {
     let variables = r#"<variable name="p" type="position" initial="35.52 -84.15"/>"#;
     // a value can't be near a pole, but what is computed from it can
-    let legs = r#"<TF id="a" fix="B1"/><CF id="c" at="= offset(p, 0, 111600)" course="90"/><TF id="z" fix="A3"/>"#;
+    let legs =
+        r#"<TF id="a" fix="B1"/><CF id="c" at="= offset(p, 0, 111600)" course="90"/><TF id="z" fix="A3"/>"#;
     let mut rig = Rig::flying(&document_with(legs, variables, ""));
     rig.fly_to("a");
     let a_degree_from_the_pole = VariableValue::Position(LatLon::new(89.0, 0.0));
-    rig.command(flight_exec::Command::SetVariable { name: "p".into(), value: a_degree_from_the_pole }).unwrap();
+    rig.command(flight_exec::Command::SetVariable { name: "p".into(), value: a_degree_from_the_pole })
+        .unwrap();
     rig.fly_to_the_end();
     assert_eq!(rig.legs(), "a z");
     let refused = |e: &Event| matches!(e, Event::PatternRefused { leg, reason } if leg.as_str() == "c" && reason.contains("can't be joined"));
