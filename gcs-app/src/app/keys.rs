@@ -20,10 +20,13 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Q
     // the longer ones first: Ctrl-Z is part of Ctrl-Shift-Z
     keys.sort_by_key(|(key, _)| !(key.modifiers.shift || key.modifiers.alt));
     for (key, action) in keys {
-        if let Ok(command) = &action.command
-            && is_pressed(ctx, key)
-        {
-            queue.push(command.clone());
+        match &action.command {
+            Ok(command) if is_pressed(ctx, key) => queue.push(command.clone()),
+            // nothing to redo: the key goes no further, to Undo
+            Err(_) if key.modifiers.command && key.modifiers.shift => {
+                is_pressed(ctx, key);
+            }
+            _ => {}
         }
     }
 }

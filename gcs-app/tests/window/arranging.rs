@@ -44,11 +44,6 @@ impl Window {
         self.harness.drop_at(at);
         self.steps(3);
     }
-
-    fn press_with(&mut self, modifiers: Modifiers, key: Key) {
-        self.harness.key_press_modifiers(modifiers, key);
-        self.steps(3);
-    }
 }
 
 #[test]

@@ -215,6 +215,8 @@ fn undo_brings_back_the_plan_before_new_and_open() {
     }
     assert_eq!(window.app().document().path(), Some(second.as_path()));
     assert!(!window.is_enabled("Redo") && window.is_enabled("Undo"));
+    window.press_with(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, egui::Key::Z);
+    assert_eq!(window.app().document().path(), Some(second.as_path()), "nothing to redo is no undo");
 }
 
 #[test]

@@ -176,8 +176,13 @@ impl Window {
 
     /// Presses a key with Ctrl, or Command on a Mac.
     fn press_ctrl(&mut self, key: egui::Key) {
+        self.press_with(egui::Modifiers::COMMAND, key);
+    }
+
+    /// Presses a key with others that are held down.
+    fn press_with(&mut self, modifiers: egui::Modifiers, key: egui::Key) {
         self.gestures += 1;
-        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, key);
+        self.harness.key_press_modifiers(modifiers, key);
         self.steps(3);
     }
 
