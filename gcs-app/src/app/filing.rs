@@ -168,6 +168,7 @@ impl App {
     pub(super) fn show_another(&mut self) {
         self.view.select(None);
         self.view.cursor_s = None;
+        self.view.alarm = None;
         self.view.changed_outside = None;
         self.map.fit();
     }

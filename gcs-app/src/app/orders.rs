@@ -108,6 +108,7 @@ impl App {
             Replacement::New => {
                 self.shelf.open(&mut self.document, Document::default());
                 self.view.select(None);
+                self.view.alarm = None;
             }
             Replacement::AskOpen => self.files.ask_open(false),
             Replacement::AskImport => self.files.ask_open(true),

@@ -9,7 +9,7 @@ use crate::theme::Palette;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
-use flight_plan::{Cause, Problem};
+use flight_plan::{Cause, FlightPlan, Problem};
 use geometry::LatLon;
 
 /// Longest text beside a mark, characters.
@@ -79,7 +79,7 @@ pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Pal
         if !reaches(found) {
             cross(painter, at, p.warning, p);
         }
-        text::on_plate(painter, at + vec2(12.0, 6.0), &label(found), 11.5, p);
+        text::on_plate(painter, at + vec2(12.0, 6.0), &label(found, scene.document.plan()), 11.5, p);
     }
 }
 
@@ -87,10 +87,10 @@ fn reaches(found: &Diversion) -> bool {
     found.reach(0.0, 0.0) != flight_exec::rehearse::Reach::Out
 }
 
-fn label(found: &Diversion) -> String {
+fn label(found: &Diversion, flown: &FlightPlan) -> String {
     let margins = Margins::default();
     let reach = reach_name(found.reach(margins.glide_m, margins.energy_share));
-    let plan = found.plan.as_ref().map_or("no plan", |(plan, _)| plan.as_str());
+    let plan = found.plan.as_ref().map_or("no plan", |(plan, _)| flown.label(plan));
     format!("{}: {plan}, {reach}", cause_name(found.cause))
 }
 

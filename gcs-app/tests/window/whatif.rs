@@ -140,6 +140,9 @@ fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_
     window.until("the way from there", |app| {
         app.analysis().diversion().is_some_and(|d| d.time_s < at_s && Some(d.time_s) == app.view().cursor_s)
     });
+    window.press_ctrl(egui::Key::N);
+    assert!(window.plan().stages.is_empty());
+    assert!(window.app().view().alarm.is_none(), "another plan");
 }
 
 /// The same flight with the same alarm.

@@ -75,7 +75,8 @@ fn outcome(ui: &mut Ui, scene: &Scene<'_>) {
         return remark(ui, "Being computed…");
     };
     let p = theme::of(ui);
-    for (index, line) in words::diversion(found, scene.units()).into_iter().enumerate() {
+    for (index, line) in words::diversion(found, scene.document.plan(), scene.units()).into_iter().enumerate()
+    {
         let text = RichText::new(line).size(12.5);
         let text = if index == 0 { text.strong().color(p.text) } else { text.color(p.weak) };
         ui.add(egui::Label::new(text).wrap());

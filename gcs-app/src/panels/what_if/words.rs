@@ -58,14 +58,14 @@ fn value_in_words(value: &VariableValue, unit: &str) -> String {
 }
 
 /// What would happen after an alarm: what counts first, then the rest.
-pub fn diversion(diversion: &Diversion, units: Units) -> Vec<String> {
+pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec<String> {
     let margins = Margins::default();
     let verdict = reach_name(diversion.reach(margins.glide_m, margins.energy_share));
     let alarm = cause_name(diversion.cause);
     let Some((plan, runway)) = &diversion.plan else {
         return vec![format!("{alarm}: no emergency plan answers here. The gateway's Safe mode decides.")];
     };
-    let mut lines = vec![format!("{alarm}: {plan}, runway {runway}: {verdict}")];
+    let mut lines = vec![format!("{alarm}: {}, runway {runway}: {verdict}", flown.label(plan))];
     let glide = diversion.glide.as_ref().map(|g| glide(g, margins.glide_m, units));
     let powered = match &diversion.powered {
         Ok(flown) => powered(flown),
@@ -142,7 +142,7 @@ mod tests {
             powered: Err("the aircraft has not taken off".into()),
             glide: Some(glide),
         };
-        let words = |found: &Diversion| diversion(found, Units::Si);
+        let words = |found: &Diversion| diversion(found, &FlightPlan::default(), Units::Si);
         assert_eq!(
             words(&found),
             [
