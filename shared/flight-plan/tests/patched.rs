@@ -317,7 +317,8 @@ proptest! {
         let patched = patch(&text, &new);
         prop_assert_eq!(read(&patched).problems, []);
         prop_assert_eq!(&read(&patched).plan, &new);
-        if !random::has_duplicates(&new) {
+        // of two parts with one id, in the text or in the new plan, nobody can tell which one a comment belongs to
+        if !random::has_duplicates(&plan) && !random::has_duplicates(&new) {
             prop_assert_eq!(patched.matches("<!--").count(), text.matches("<!--").count(), "{}\n\n{}", text, patched);
         }
     }
