@@ -14,6 +14,17 @@ fn window() -> Window {
     window
 }
 
+/// A track leg that was drawn behind the second one, and is selected.
+fn drawn_leg(window: &mut Window) -> String {
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    window.press(Key::T);
+    let at = window.centre("Map");
+    window.tap_at(at);
+    window.press(Key::V);
+    window.selected()
+}
+
 fn speed(window: &Window, leg: &str) -> Option<Value<f64>> {
     window.plan().leg(&leg.into()).unwrap().leg.speed_mps.clone()
 }
@@ -55,13 +66,7 @@ fn a_number_is_bound_beside_its_field() {
 #[test]
 fn where_a_leg_goes_is_bound_beside_its_field() {
     let mut window = window();
-    window.select_row(("TF side2", 0));
-    window.steps(2);
-    window.press(Key::T);
-    let at = window.centre("Map");
-    window.tap_at(at);
-    window.press(Key::V);
-    let leg = window.selected();
+    let leg = drawn_leg(&mut window);
     window.click_role(Role::Button, "Place: bind to a variable");
     window.steps(2);
     window.click_role(Role::Button, "fire");
@@ -100,13 +105,7 @@ fn binding_and_a_new_way_have_keys() {
     let mut window = window();
     window.press(Key::B);
     assert!(window.app().view().palette.is_none(), "nothing is selected");
-    window.select_row(("TF side2", 0));
-    window.steps(2);
-    window.press(Key::T);
-    let at = window.centre("Map");
-    window.tap_at(at);
-    window.press(Key::V);
-    let leg = window.selected();
+    let leg = drawn_leg(&mut window);
     window.press(Key::B);
     window.harness.event(egui::Event::Text("place fire".into()));
     window.steps(3);
