@@ -94,8 +94,6 @@ impl std::fmt::Debug for App {
 
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
-/// And so often while none is, as long as something is known of one.
-const SLOW_REFRESH: Duration = Duration::from_secs(1);
 /// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
 #[derive(Debug, Clone, Copy)]
 struct Now {
@@ -108,6 +106,12 @@ struct Now {
 impl Now {
     fn read(ctx: &egui::Context) -> Self {
         Self { window_s: ctx.input(|i| i.time), utc: jiff::Timestamp::now() }
+    }
+
+    /// Until the clock in the bar shows another second, and what is known is a second older.
+    fn until_next_second(&self) -> Duration {
+        let past = self.utc.subsec_millisecond().rem_euclid(1000);
+        Duration::from_millis(u64::from((1000 - past).unsigned_abs()))
     }
 }
 
@@ -432,9 +436,9 @@ impl eframe::App for App {
         self.ask_before_closing(ctx);
         if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
-        } else if self.vehicles.shown().received_s.is_some() {
-            // without a link values grow old just the same
-            ctx.request_repaint_after(SLOW_REFRESH);
+        } else if !ctx.input(|i| i.viewport().minimized.unwrap_or(false)) {
+            // the clock goes on, and without a link values grow old just the same
+            ctx.request_repaint_after(Now::read(ctx).until_next_second());
         }
     }
 

@@ -8,6 +8,7 @@ use geometry::LatLon;
 use std::net::TcpListener;
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::ThreadId;
+use std::time::Duration;
 use terrain::Terrain;
 
 /// Elevations that nobody but the window's own thread gets until the gate is opened.
@@ -82,4 +83,20 @@ fn frames_go_on_while_a_server_of_tiles_does_not_answer() {
         (silent.local_addr().unwrap().to_string(), 0)
     );
     assert!(window.app().view().notice.is_none());
+}
+
+#[test]
+fn the_clock_goes_on_in_a_window_that_nobody_touches() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.steps(200);
+    let delays = |window: &Window| -> Vec<_> {
+        window.harness.output().viewport_output.values().map(|out| out.repaint_delay).collect()
+    };
+    let [delay] = delays(&window)[..] else { panic!("one viewport") };
+    assert!(delay > Duration::ZERO && delay <= Duration::from_secs(1), "{delay:?}");
+    let viewport = window.harness.ctx.viewport_id();
+    window.harness.input_mut().viewports.entry(viewport).or_default().minimized = Some(true);
+    window.steps(5);
+    assert!(delays(&window).iter().all(|delay| *delay > Duration::from_secs(1)), "nobody sees it");
 }
