@@ -141,9 +141,15 @@ pub fn small_button(ui: &mut Ui, symbol: &str, name: &str) -> bool {
 
 /// A text, taken when the field is left or Enter is pressed.
 pub fn text(ui: &mut Ui, name: &str, current: &str) -> Option<String> {
+    text_or_hint(ui, name, current, "")
+}
+
+/// The same; the hint stands there as long as nothing else does.
+pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Option<String> {
     let id = ui.auto_id_with(("field", name));
     let mut draft = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
-    let edit = egui::TextEdit::singleline(&mut draft).id(id).desired_width(ui.available_width() - 30.0);
+    let edit = egui::TextEdit::singleline(&mut draft).id(id).hint_text(hint);
+    let edit = edit.desired_width(ui.available_width() - 30.0);
     let response = ui.add(edit);
     let label = name.to_owned();
     response.widget_info(|| {

@@ -2,7 +2,7 @@
 //! airspeeds are typed where they stand.
 
 mod rows;
-mod typed;
+pub(super) mod typed;
 
 use super::in_place::{InPlace, Typed};
 use super::tree::title;
@@ -31,6 +31,8 @@ pub struct Table {
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
     editing: Option<Editing>,
+    /// What was selected with a leg before it was clicked: the click may be the first of a double click.
+    before_click: Vec<Id>,
 }
 
 /// The cell that the keyboard is at.
@@ -291,14 +293,26 @@ impl Table {
             Done::Typed(Typed::Text(text)) => self.finish(row, column, &text, scene, queue),
             Done::Edited => {
                 self.cursor = Cursor { row, column, moved: false };
+                self.select_again(scene, queue);
                 self.edit(scene);
             }
             Done::Chosen => {
                 self.cursor = Cursor { row, column, moved: false };
+                self.before_click = scene.selected_legs();
                 self.choose(ui, scene, queue);
             }
         }
         ui.memory_mut(|m| m.request_focus(cursor_id()));
+    }
+
+    /// A double click into one of several legs is meant for all of them.
+    fn select_again(&mut self, scene: &Scene<'_>, queue: &mut Queue) {
+        let Some(Selection::Leg(leg)) = self.current(scene) else { return };
+        let together = std::mem::take(&mut self.before_click);
+        if together.contains(&leg) {
+            queue.view(ViewCommand::Select(Some(Selection::Leg(leg.clone()))));
+            together.into_iter().filter(|id| *id != leg).for_each(|id| queue.view(ViewCommand::Toggle(id)));
+        }
     }
 
     /// With Ctrl or Shift, legs are selected together.

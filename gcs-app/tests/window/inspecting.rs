@@ -5,7 +5,9 @@ use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::describe::{Description, Draft, Row, Subject};
-use flight_plan::{Act, Element, FlightPlan, Id, Leg, LegKind, Trigger, Value};
+use flight_plan::{
+    Act, Altitude, AltitudeReference, Edit, Element, FlightPlan, Id, Leg, LegKind, Trigger, Value,
+};
 use gcs_app::command::{Command, DocumentCommand, Queue, Selection, ViewCommand};
 use gcs_app::document::Document;
 use gcs_app::layers::Layers;
@@ -99,6 +101,13 @@ impl Panels {
 
     fn leg_of(&self, id: &str) -> Leg {
         self.plan().any_leg(&Id::new(id)).unwrap().clone()
+    }
+
+    fn set_altitude(&mut self, leg: &str, metres: f64, reference: AltitudeReference) {
+        let altitude = Some(Altitude { metres: Value::Constant(metres), reference });
+        let edit = Edit::SetAltitude { of: leg.into(), altitude };
+        self.0.state_mut().document.edit(&edit).unwrap();
+        self.0.run_steps(2);
     }
 
     fn click(&mut self, label: &str) {
@@ -400,4 +409,30 @@ fn several_legs_show_what_is_the_same_or_mixed_and_are_set_and_added_to_together
     panels.0.state_mut().view.toggle("orbit".into());
     panels.0.run_steps(3);
     assert!(!panels.names().contains("Spacing: mixed") && panels.shows("Airspeed"));
+}
+
+#[test]
+fn altitudes_of_several_legs_that_differ_are_mixed_and_set_by_one_step() {
+    let mut panels = Panels::leg("scan");
+    panels.set_altitude("scan", 120.0, AltitudeReference::Home);
+    panels.set_altitude("crossing", 90.0, AltitudeReference::Agl);
+    let before = panels.plan();
+    panels.0.state_mut().view.toggle("crossing".into());
+    panels.0.run_steps(3);
+    assert!(!panels.names().contains("Altitude"), "no leg's altitude is shown for that of all");
+    panels.write(Role::TextInput, "Altitude: mixed", "high");
+    panels.enter();
+    assert!(panels.0.state().notice.as_ref().unwrap().contains("is no number in m"));
+    panels.write(Role::TextInput, "Altitude: mixed", "150 AGL");
+    panels.enter();
+    for leg in ["scan", "crossing"] {
+        let altitude = panels.leg_of(leg).altitude.unwrap();
+        let set = (altitude.metres, altitude.reference);
+        assert_eq!(set, (Value::Constant(150.0), AltitudeReference::Agl), "{leg}");
+    }
+    assert!(panels.names().contains("Altitude"), "they have one now");
+    panels.undo();
+    assert_eq!(panels.plan(), before, "one step");
+    panels.click("Leave out the altitude");
+    assert!(panels.leg_of("scan").altitude.is_none() && panels.leg_of("crossing").altitude.is_none());
 }

@@ -38,6 +38,14 @@ impl Window {
         self.press(Key::Enter);
     }
 
+    /// Clicks a place with the Shift key held down.
+    fn with_shift(&mut self, at: Pos2) {
+        self.harness.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+        self.click_at(at);
+        self.harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+        self.steps(3);
+    }
+
     fn write(&mut self, text: &str) {
         self.harness.event(egui::Event::Text(text.into()));
         self.steps(2);
@@ -106,6 +114,35 @@ fn legs_that_are_selected_are_changed_together_by_keyboard() {
     assert_eq!(window.altitude("side4"), Some((110.0, AltitudeReference::Home)));
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn legs_that_are_selected_are_changed_together_by_a_double_click() {
+    let mut window = opened(SQUARE);
+    let before = window.plan();
+    window.click("TF side3");
+    // or the next click would be the second of a double click
+    window.steps(30);
+    let at = window.cell("Altitude of side2");
+    window.with_shift(at);
+    assert!(window.shows("2 legs"));
+    window.steps(30);
+    window.click_at(at);
+    assert!(!window.shows("2 legs"), "a click chooses one of them");
+    window.click_at(at);
+    assert!(window.shows("2 legs"), "a double click is for both");
+    window.write("90 AGL");
+    window.press(Key::Enter);
+    for leg in ["side2", "side3"] {
+        assert_eq!(window.altitude(leg), Some((90.0, AltitudeReference::Agl)), "{leg}");
+    }
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+    // one that is not among them is changed alone
+    window.until_analysed();
+    window.type_into("TF side4", "Altitude of side3", "70");
+    assert_eq!(window.altitude("side3"), Some((70.0, AltitudeReference::Home)));
+    assert_eq!(window.altitude("side4"), Some((110.0, AltitudeReference::Home)));
 }
 
 const MANY: usize = 100_000;

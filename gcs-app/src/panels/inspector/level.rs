@@ -1,11 +1,13 @@
-//! An altitude with what it is measured from: one row, or what holds where there is none.
+//! An altitude with what it is measured from: one row, or what holds where there is none or where legs differ.
 
 use super::page::Page;
 use super::{inherited, value};
+use crate::command::ViewCommand;
 use crate::panels::field;
+use crate::panels::table::typed;
 use egui::Ui;
-use flight_plan::Edit;
-use flight_plan::describe::{Change, OneOf, Property, Row};
+use flight_plan::describe::{Change, OneOf, Property, Row, Subject};
+use flight_plan::{AltitudeReference, Edit};
 
 /// It is an altitude and its reference, or nothing.
 pub fn is_level(one: &OneOf) -> bool {
@@ -15,12 +17,14 @@ pub fn is_level(one: &OneOf) -> bool {
 /// Draws it.
 pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     let way = one.way(page.element());
-    if page.elements().any(|element| one.way(element) != way) {
-        return value::mixed(ui, page, one.label, one.help, way.map(|way| Change::Choose(*one, way)));
-    }
     let Some([Row::Property(metres), Row::Property(reference)]) = one.ways.first().map(|way| way.rows) else {
         return;
     };
+    let said = |element| (metres.value(element), reference.value(element));
+    let first = said(page.element());
+    if page.is_several() && page.elements().any(|element| said(element) != first) {
+        return mixed(ui, page, one);
+    }
     match way {
         Some(0) => own(ui, page, one, metres, reference),
         _ => absent(ui, page, one),
@@ -50,6 +54,27 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
             });
             remove(ui, page, one);
         });
+    }
+}
+
+/// Legs that differ: what is typed is for all of them.
+fn mixed(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
+    let name = page.name(&format!("{}: mixed", one.label));
+    let typed = field::row_with_help(ui, one.label, one.help, |ui| {
+        let typed = field::text_or_hint(ui, &name, "", "mixed: type one for all");
+        remove(ui, page, one);
+        typed
+    });
+    let Some(text) = typed else { return };
+    match typed::altitude(text.trim(), AltitudeReference::Amsl, page.scene.units().altitude()) {
+        Ok(altitude) => {
+            let legs = page.drafts().iter().filter_map(|draft| match draft.subject() {
+                Subject::Leg(leg) => Some(leg),
+                _ => None,
+            });
+            page.queue.edit(typed::set_altitudes(legs, &altitude));
+        }
+        Err(why) => page.queue.view(ViewCommand::Notice(why)),
     }
 }
 

@@ -7,7 +7,7 @@ use flight_plan::{Altitude, AltitudeReference, Edit, Id, Value};
 
 /// A column that can be changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Column {
+pub enum Column {
     Name,
     Altitude,
     Airspeed,
@@ -33,7 +33,7 @@ impl Column {
     }
 
     /// What the field begins with: `1400 AMSL`.
-    pub fn text(self, name: &str, said: &Said, units: Units) -> String {
+    pub(super) fn text(self, name: &str, said: &Said, units: Units) -> String {
         match self {
             Self::Name => name.to_owned(),
             Self::Altitude => said.altitude.as_ref().map_or_else(String::new, |said| {
@@ -48,7 +48,7 @@ impl Column {
     }
 
     /// The edit that a text asks for, of all these legs; or what is wrong with it.
-    pub fn edit(self, text: &str, legs: &[Id], said: &Said, units: Units) -> Result<Edit, String> {
+    pub(super) fn edit(self, text: &str, legs: &[Id], said: &Said, units: Units) -> Result<Edit, String> {
         let text = text.trim();
         Ok(match self {
             Self::Name => {
@@ -60,8 +60,7 @@ impl Column {
                 let reference = said.altitude.as_ref().map(|said| said.value.reference);
                 let altitude =
                     altitude(text, reference.unwrap_or(AltitudeReference::Amsl), units.altitude())?;
-                let set = |of: &Id| Edit::SetAltitude { of: of.clone(), altitude: altitude.clone() };
-                Edit::All(legs.iter().map(set).collect())
+                set_altitudes(legs.iter(), &altitude)
             }
             Self::Airspeed => {
                 let speed_mps = number(text, units.speed())?;
@@ -70,6 +69,11 @@ impl Column {
             }
         })
     }
+}
+
+/// The same altitude for all of these.
+pub fn set_altitudes<'a>(of: impl Iterator<Item = &'a Id>, altitude: &Option<Altitude>) -> Edit {
+    Edit::All(of.map(|of| Edit::SetAltitude { of: of.clone(), altitude: altitude.clone() }).collect())
 }
 
 /// What stands for a name that it has not is not one.
@@ -86,7 +90,7 @@ fn number_text(value: &Value<f64>, unit: Unit) -> String {
 }
 
 /// An altitude with what it is measured from, if that is said; nothing: it is inherited.
-fn altitude(text: &str, usual: AltitudeReference, unit: Unit) -> Result<Option<Altitude>, String> {
+pub fn altitude(text: &str, usual: AltitudeReference, unit: Unit) -> Result<Option<Altitude>, String> {
     const WORDS: [(&str, AltitudeReference); 6] = [
         ("above home", AltitudeReference::Home),
         ("home", AltitudeReference::Home),
