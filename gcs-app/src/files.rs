@@ -215,7 +215,7 @@ impl Files {
         let desktop = self.desktop;
         self.work(move || {
             let others: Vec<&str> =
-                Format::ALL.map(|(name, _)| name).into_iter().filter(|name| *name != "csv").collect();
+                Format::ALL.iter().filter(|(_, format)| format.is_read()).map(|(name, _)| *name).collect();
             let dialog = rfd::FileDialog::new();
             let dialog = match foreign {
                 false => dialog.add_filter("Flight plan", &["xml"]).add_filter("Other programs", &others),

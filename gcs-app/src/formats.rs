@@ -31,7 +31,7 @@ impl FileFormat {
     /// By content first: a name may lie. What is nothing else is a plan of ours, and broken if need be.
     pub fn of(path: &Path, bytes: &[u8]) -> Self {
         let by_content = Format::by_content(bytes).filter(|format| match format {
-            Format::Kml | Format::Gpx => {
+            Format::Kml | Format::Gpx | Format::FpXml => {
                 root(bytes).is_none_or(|root| format.roots().contains(&root.as_str()))
             }
             _ => true,
@@ -47,7 +47,10 @@ impl FileFormat {
 impl FileFormat {
     /// It is not only written.
     pub fn is_read(self) -> bool {
-        self != Self::Other(Format::Csv)
+        match self {
+            Self::Legwork => true,
+            Self::Other(format) => format.is_read(),
+        }
     }
 }
 
@@ -61,12 +64,13 @@ pub fn label(format: Format) -> &'static str {
         Format::GeoJson => "GeoJSON",
         Format::Gpx => "GPX",
         Format::Csv => "CSV",
+        Format::FpXml => "FlightPlan XML with TFLeg, IterativeLeg, …",
     }
 }
 
 /// The formats that are read besides our own.
 pub fn names() -> String {
-    let read = Format::ALL.iter().filter(|(_, format)| FileFormat::Other(*format).is_read());
+    let read = Format::ALL.iter().filter(|(_, format)| format.is_read());
     read.map(|(_, format)| label(*format)).collect::<Vec<_>>().join(", ")
 }
 
@@ -118,6 +122,8 @@ mod tests {
         assert_eq!(of("a.xml", "QGC WPL 110\n"), FileFormat::Other(Format::Waypoints));
         assert_eq!(of("a.kml", "garbage"), FileFormat::Other(Format::Kml));
         assert_eq!(of("-", "<flightPlan/>"), FileFormat::Legwork);
+        assert_eq!(of("a.xml", "<FlightPlan><MainFP/></FlightPlan>"), FileFormat::Other(Format::FpXml));
+        assert_eq!(of("a.xml", "<flightPlan><!-- from <MainFP> --></flightPlan>"), FileFormat::Legwork);
         assert_eq!(of("-", "<?xml version='1.0'?><!-- no <oops> --><kml/>"), FileFormat::Other(Format::Kml));
         assert_eq!(of("-", "<Document><Placemark/></Document>"), FileFormat::Other(Format::Kml));
         assert_eq!(of("a.xml", "<flightPlan><Placemark/></flightPlan>"), FileFormat::Legwork);

@@ -122,7 +122,7 @@ mod tests {
         let (_plan, source) = source(SQUARE);
         let folder = tempfile::tempdir().unwrap();
         let good = format!("{:?}", ExitCode::SUCCESS);
-        for (name, format) in interchange::Format::ALL {
+        for (name, format) in interchange::Format::ALL.into_iter().filter(|(_, format)| format.is_written()) {
             let there = folder.path().join(format!("square.{name}"));
             assert_eq!(convert(&source, &target(there.clone())).unwrap(), good, "{name}");
             let error = convert(&source, &target(there.clone())).unwrap_err();

@@ -22,7 +22,7 @@ pub struct Written {
     /// CSV of all that is sent, with tokens and times (what comes without options, too).
     #[arg(long, conflicts_with_all = ["json", "to"])]
     pub csv: bool,
-    /// Another program's format: plan, waypoints, kml, kmz, geojson or gpx; csv is what `legwork convert` writes.
+    /// Another program's format: plan, waypoints, kml, kmz, geojson, gpx or fpxml; csv is what `legwork convert` writes.
     #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]
     pub to: Option<FileFormat>,
     /// A file instead of standard output; its extension is the format.

@@ -10,7 +10,7 @@ macro_rules! with_examples {
             "  1  the plan or its path has errors, can't be flown, or plans differ; nothing of another program's file is a plan\n",
             "  2  wrong usage, or a file that can't be read or written\n",
             "\nFormats:\n",
-            "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written.\n",
+            "  xml (Legwork), plan (QGroundControl), waypoints (QGC WPL 110), kml, kmz, geojson, gpx; csv is only written,\n  fpxml (XML with <MainFP> and TFLeg, IterativeLeg, IntersectionLeg, Scan) only read.\n",
             "  Both kinds of csv begin with number or token, leg, position, altitude, airspeed, action, fly_over: `expand` lists what is\n",
             "  sent (also waypoints that are replaced before they are reached) and when the aircraft steers to them; `convert` what is flown, by passage.\n",
             "  Formats are found by content and name. `-` is standard input or output. Nothing is overwritten without --force."

@@ -9,6 +9,7 @@
 
 pub mod csv;
 mod drawing;
+mod fpxml;
 mod geojson;
 mod gpx;
 mod kml;
@@ -60,11 +61,13 @@ pub enum Format {
     Gpx,
     /// Comma-separated waypoints, RFC 4180: written only.
     Csv,
+    /// XML of stages and legs, as the research on leg-based plans published it: read only.
+    FpXml,
 }
 
 impl Format {
     /// Every format, with its name, which is its extension too.
-    pub const ALL: [(&'static str, Format); 7] = [
+    pub const ALL: [(&'static str, Format); 8] = [
         ("plan", Format::Plan),
         ("waypoints", Format::Waypoints),
         ("kml", Format::Kml),
@@ -72,7 +75,18 @@ impl Format {
         ("geojson", Format::GeoJson),
         ("gpx", Format::Gpx),
         ("csv", Format::Csv),
+        ("fpxml", Format::FpXml),
     ];
+
+    /// It is not only written.
+    pub fn is_read(self) -> bool {
+        self != Format::Csv
+    }
+
+    /// It is not only read.
+    pub fn is_written(self) -> bool {
+        self != Format::FpXml
+    }
 
     /// Its name, which is its extension too.
     pub fn name(self) -> &'static str {
@@ -96,6 +110,7 @@ impl Format {
         match self {
             Format::Kml => &kml::ROOTS,
             Format::Gpx => &["gpx"],
+            Format::FpXml => &fpxml::ROOTS,
             _ => &[],
         }
     }
@@ -110,6 +125,7 @@ impl Format {
             () if head.starts_with('{') && is_qgc_plan(head, bytes) => Some(Format::Plan),
             () if head.starts_with('{') => Some(Format::GeoJson),
             () if head.starts_with('<') && head.contains("<gpx") => Some(Format::Gpx),
+            () if head.starts_with('<') && fpxml::is_one(head) => Some(Format::FpXml),
             () if head.starts_with('<') && kml::ROOTS.iter().any(|root| opens(head, root)) => {
                 Some(Format::Kml)
             }
@@ -208,6 +224,11 @@ pub enum Error {
     /// A format that is only written.
     #[error("CSV is only written, not read: convert the file that it was made from")]
     WriteOnly,
+    /// A format that is only read.
+    #[error(
+        "flight plans in research XML are only read, not written: save the plan, or export another format"
+    )]
+    ReadOnly,
 }
 
 impl Error {
@@ -232,6 +253,7 @@ pub fn read(format: Format, bytes: &[u8], assumptions: &Assumptions) -> Result<I
         Format::GeoJson => drawing::read(geojson::read(bytes)?, assumptions),
         Format::Gpx => drawing::read(gpx::read(bytes)?, assumptions),
         Format::Csv => Err(Error::WriteOnly),
+        Format::FpXml => fpxml::read(bytes, assumptions),
     }
 }
 
@@ -248,7 +270,7 @@ pub fn features(format: Format, bytes: &[u8]) -> Result<Vec<Feature>, Error> {
         Format::Kmz => kmz::read(bytes)?,
         Format::GeoJson => geojson::read(bytes)?,
         Format::Gpx => gpx::read(bytes)?,
-        Format::Plan | Format::Waypoints | Format::Csv => return Ok(Vec::new()),
+        Format::Plan | Format::Waypoints | Format::Csv | Format::FpXml => return Ok(Vec::new()),
     };
     Ok(drawing.features)
 }
@@ -256,7 +278,7 @@ pub fn features(format: Format, bytes: &[u8]) -> Result<Vec<Feature>, Error> {
 /// Writes a file.
 ///
 /// # Errors
-/// The writer of the format failed.
+/// The writer of the format failed, or there is none.
 pub fn write(format: Format, export: &Export<'_>) -> Result<Written, Error> {
     let mut notes = Notes::default();
     let bytes = match format {
@@ -267,6 +289,7 @@ pub fn write(format: Format, export: &Export<'_>) -> Result<Written, Error> {
         Format::GeoJson => geojson::write(&drawing::of(export, format, &mut notes))?,
         Format::Gpx => gpx::write(&drawing::of(export, format, &mut notes)),
         Format::Csv => csv::write(export, &mut notes),
+        Format::FpXml => return Err(Error::ReadOnly),
     };
     Ok(Written { bytes, notes: notes.into_vec() })
 }
@@ -300,6 +323,8 @@ mod tests {
             ("RALLY 36.1 -84.2 90 40 0 0\n", Some(Format::Waypoints)),
             ("36.1 -84.2 300\n", None),
             ("<flightPlan/>", None),
+            ("<FlightPlan><Locale/><MainFP/></FlightPlan>", Some(Format::FpXml)),
+            ("<fp:FlightPlan xmlns:fp='x'><fp:MainFP/></fp:FlightPlan>", Some(Format::FpXml)),
             ("", None),
         ] {
             assert_eq!(Format::by_content(text.as_bytes()), expected, "{text}");

@@ -1,5 +1,6 @@
 //! What other formats leave open and a plan needs: aircraft, runways, heights and spacings.
 
+use crate::names::Names;
 use crate::note::Notes;
 use aircraft::Profile;
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Runway, Stage, StageKind, Value};
@@ -109,6 +110,19 @@ pub fn stage(id: Id, name: &str, kind: StageKind) -> Stage {
         speed_mps: None,
         legs: Vec::new(),
     }
+}
+
+/// The runway that is given, with a take-off from it and a landing on it.
+pub fn ends(assumptions: &Assumptions, names: &mut Names) -> Option<(Runway, [Stage; 2])> {
+    let given = assumptions.runway.as_ref()?;
+    let runway = Runway { id: names.take(given.id.as_str(), "runway"), ..given.clone() };
+    let mut end = |kind, name: &str| Stage {
+        runway: Some(runway.id.clone()),
+        ..stage(names.take(name, name), "", kind)
+    };
+    let mut ends = [end(StageKind::TakeOff, "take-off"), end(StageKind::Land, "land")];
+    ends[0].altitude = Some(altitude(assumptions.height_agl_m, AltitudeReference::Home));
+    Some((runway, ends))
 }
 
 /// What a file says of the aircraft that flies it.

@@ -51,7 +51,7 @@ pub fn write_flights(format: Format, flights: &[RecordedFlight]) -> Result<Vec<u
         Format::Gpx => Ok(gpx(flights)),
         Format::Kml => Ok(kml::write(&drawing(flights))),
         Format::GeoJson => geojson::write(&drawing(flights)),
-        Format::Plan | Format::Waypoints | Format::Kmz => Err(Error::malformed(
+        Format::Plan | Format::Waypoints | Format::Kmz | Format::FpXml => Err(Error::malformed(
             format.name(),
             "this format holds plans, not flights: choose csv, kml, gpx or geojson",
         )),

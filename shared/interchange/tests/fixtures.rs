@@ -59,6 +59,33 @@ fn a_qgc_plan() {
 }
 
 #[test]
+fn stages_of_legs_that_name_each_other() {
+    let import = import(Format::FpXml, include_bytes!("corpus/research-inspection.xml"));
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "Departure",
+            "  out: DF 36.33 -84.18, 650 amsl, 22 m/s",
+            "  in: CF 36.345 -84.18 course 0, 700 amsl",
+            "Beacon",
+            "  rounds: 3 times",
+            "    north: TF 36.36 -84.18 over, 750 amsl",
+            "    arc: RF 36.36 -84.16 around 36.36 -84.17 Right, 750 amsl",
+            "    south: TF 36.345 -84.16, 750 amsl",
+            "  choose: fork wide to the next close to close wait to wait",
+            "  wide: scan of 4 corners, 250 m, overshoot 0, Nearest, 800 amsl, 22 m/s, then Beacon.end",
+            "  close: 2 times, then Beacon.end",
+            "    first: DF 36.35 -84.15, 800 amsl",
+            "    second: TF 36.365 -84.15, 800 amsl",
+            "  wait: HM 36.34 -84.15 Left, 800 amsl",
+            "  Beacon.end: fork",
+            "Go-Home",
+            "  home: TF 36.325 -84.17, 500 amsl, 20 m/s",
+        ]
+    );
+}
+
+#[test]
 fn a_waypoint_list() {
     let import = import(Format::Waypoints, include_bytes!("fixtures/patrol.waypoints"));
     assert_eq!(

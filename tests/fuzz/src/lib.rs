@@ -16,7 +16,7 @@ mod recording;
 pub use condition::cel;
 pub use document::xml;
 pub use executor::executor;
-pub use foreign::{geojson, gpx, kml, kmz, plan, waypoints};
+pub use foreign::{fpxml, geojson, gpx, kml, kmz, plan, waypoints};
 pub use journal::journal;
 pub use recording::recording;
 
@@ -32,6 +32,7 @@ pub const TARGETS: [Target; 11] = [
     ("kml", kml),
     ("kmz", kmz),
     ("geojson", geojson),
+    ("fpxml", fpxml),
     ("gpx", gpx),
     ("journal", journal),
     ("recording", recording),

@@ -53,6 +53,7 @@ mod testing;
 
 pub use incremental_cache::IncrementalCache;
 pub(crate) use inspection::Expressions;
+pub use scans::untied;
 
 use crate::ids::Ids;
 use crate::{FlightPlan, Id, Problem};

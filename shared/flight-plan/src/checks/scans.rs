@@ -68,7 +68,7 @@ fn with_corners(leg: &Leg, ordered: Vec<LatLon>) -> Option<Edit> {
 }
 
 /// The four corners of a bow tie in the order around them: as a bounding box was written, row by row.
-pub(super) fn untied(corners: &[LatLon], holes: &[Vec<LatLon>]) -> Option<Vec<LatLon>> {
+pub fn untied(corners: &[LatLon], holes: &[Vec<LatLon>]) -> Option<Vec<LatLon>> {
     let &[a, b, c, d] = corners else { return None };
     let is_area = |corners: &[LatLon; 4]| is_simple(corners, holes);
     let ordered = [[a, b, d, c], [a, c, b, d]].into_iter().find(is_area);

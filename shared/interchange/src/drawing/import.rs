@@ -32,12 +32,13 @@ pub fn read(mut drawing: Drawing, assumptions: &Assumptions) -> Result<Import, E
     if !drawing.name.is_empty() {
         plan.name = held(&drawing.name);
     }
-    plan.runways.extend(
-        assumptions.runway.iter().map(|r| Runway { id: names.take(r.id.as_str(), "runway"), ..r.clone() }),
-    );
-    let mut importer =
-        Importer { assumptions, names, notes: drawing.notes, plan, land: None, made_up: Vec::new() };
-    importer.ends(StageKind::TakeOff, "take-off");
+    let mut land = None;
+    if let Some((runway, [take_off, landing])) = synthetic::ends(assumptions, &mut names) {
+        plan.runways.push(runway);
+        plan.stages.push(take_off);
+        land = Some(landing);
+    }
+    let mut importer = Importer { assumptions, names, notes: drawing.notes, plan, land, made_up: Vec::new() };
     // runways first: paths take off from them and land on them
     let is_runway = |f: &Feature| f.mark("legwork") == Some("runway");
     let (runways, others): (Vec<_>, Vec<_>) = drawing.features.into_iter().partition(is_runway);
@@ -65,7 +66,6 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     fn finish(&mut self) {
-        self.ends(StageKind::Land, "land");
         self.plan.stages.extend(self.land.take());
         for runway in self.plan.runways.iter_mut().filter(|r| r.heading_deg.is_nan()) {
             // nothing takes off from it
@@ -77,16 +77,6 @@ impl Importer<'_> {
                 .into_iter()
                 .for_each(|runway| synthetic::note_assumed_runway(runway, place, &mut self.notes));
         }
-    }
-
-    /// Take-off or landing, where a runway is given.
-    fn ends(&mut self, kind: StageKind, name: &str) {
-        let Some(runway) = self.assumptions.runway.as_ref().map(|r| r.id.clone()) else { return };
-        let mut stage = synthetic::stage(self.names.take(name, name), "", kind);
-        stage.runway = Some(runway);
-        stage.altitude = (kind == StageKind::TakeOff)
-            .then(|| synthetic::altitude(self.assumptions.height_agl_m, AltitudeReference::Home));
-        self.plan.stages.push(stage);
     }
 
     fn feature(&mut self, feature: Feature) {

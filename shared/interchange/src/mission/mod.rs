@@ -8,7 +8,7 @@ mod ends;
 mod export;
 pub mod fences;
 mod import;
-mod jumps;
+pub mod jumps;
 mod loiters;
 pub mod placed;
 pub mod rally;

@@ -37,6 +37,13 @@ fn leg(leg: &Leg, depth: usize, lines: &mut Vec<String>) {
     let kind = match &leg.kind {
         LegKind::Df { to, .. } => format!("DF {}", waypoint(to)),
         LegKind::Tf(to) => format!("TF {}", waypoint(to)),
+        LegKind::Rf { to, centre, turn } => format!("RF {} around {} {turn:?}", waypoint(to), at(*centre)),
+        LegKind::Cf { to, course_deg } => format!("CF {} course {}", waypoint(to), value(course_deg)),
+        LegKind::Intersection { branches, .. } => {
+            let named =
+                |branch: &flight_plan::Branch| format!(" {} to {}", branch.id, id(branch.next.as_ref()));
+            format!("fork{}", branches.iter().map(named).collect::<String>())
+        }
         LegKind::Ha(holding) => format!("HA {} {:?}", waypoint(&holding.fix), holding.turn),
         LegKind::Hm { holding, .. } => format!("HM {} {:?}", waypoint(&holding.fix), holding.turn),
         LegKind::Orbit { centre, radius_m, turns, turn } => {
@@ -64,9 +71,15 @@ fn leg(leg: &Leg, depth: usize, lines: &mut Vec<String>) {
     };
     let speed = leg.speed_mps.as_ref().map_or(String::new(), |s| format!(", {} m/s", value(s)));
     let actions: String = leg.actions.iter().map(|a| format!(", {}", action(a))).collect();
+    let next = leg.next.as_ref().map_or(String::new(), |next| format!(", then {next}"));
     let indent = "  ".repeat(depth);
-    lines.push(format!("{indent}{}: {kind}{}{speed}{actions}", leg.id, height(", ", leg.altitude.as_ref())));
+    let altitude = height(", ", leg.altitude.as_ref());
+    lines.push(format!("{indent}{}: {kind}{altitude}{speed}{actions}{next}", leg.id));
     leg.body().iter().for_each(|inside| self::leg(inside, depth + 1, lines));
+}
+
+fn id(id: Option<&flight_plan::Id>) -> &str {
+    id.map_or("the next", |id| id.as_str())
 }
 
 fn action(action: &LegAction) -> String {
