@@ -205,11 +205,12 @@ impl Reader<'_> {
             let next = match (named.is_empty(), flat.index.get(&named)) {
                 (true, _) => behind.copied(),
                 (false, Some(next)) if place.contains_key(next) => Some(*next),
-                // a body says itself what its order is
-                (false, Some(_)) => behind.filter(|_| is_body).copied(),
-                (false, None) => {
-                    self.unknown(element, &named);
-                    None
+                (false, found) => {
+                    if found.is_none() {
+                        self.unknown(element, &named);
+                    }
+                    // a body says itself what its order is
+                    behind.filter(|_| is_body).copied()
                 }
             };
             after.insert(*leg, next.map_or(After::End, After::Leg));
