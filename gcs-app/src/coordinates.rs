@@ -4,7 +4,7 @@
 mod degrees;
 mod grid;
 mod plus_code;
-mod world;
+pub mod world;
 
 use crate::assets::places::Group;
 use flight_plan::{FlightPlan, Id, Place, Value};
@@ -65,7 +65,8 @@ fn plain(text: &str, known: &Known<'_>) -> Result<LatLon, String> {
 }
 
 fn unreadable(text: &str, known: &Known<'_>) -> String {
-    let alike = known.world.map(|world| world::like(text, world)).unwrap_or_default();
+    let alike = known.world.map(|world| world::like(text, world, world::SUGGESTED)).unwrap_or_default();
+    let alike: Vec<&str> = alike.iter().map(|place| place.name).collect();
     match alike.is_empty() {
         true => format!("“{text}” {UNREADABLE}."),
         false => format!("There are several places like “{text}”: write {}.", alike.join(", or ")),

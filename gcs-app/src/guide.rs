@@ -32,6 +32,32 @@ pub struct Guide {
     pub height_m: f64,
     /// What the next clicks on the map answer.
     pub drawing: Option<Drawing>,
+    /// What was typed and is no place yet.
+    pub search: Option<Search>,
+    /// The card was closed.
+    pub closed: bool,
+}
+
+/// A text that says no place, or several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Into which field it was typed.
+    pub field: &'static str,
+    /// The text.
+    pub typed: String,
+    /// What it may mean.
+    pub named: Vec<Named>,
+}
+
+/// A place that has a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Named {
+    /// The name, of an airport with its code.
+    pub name: String,
+    /// What is near, for people.
+    pub region: String,
+    /// Where it is.
+    pub at: LatLon,
 }
 
 /// An answer that is given on the map.
@@ -90,6 +116,8 @@ pub enum Answer {
     Form(Box<Guide>),
     /// The next clicks on the map answer this, or nothing.
     Draw(Option<Drawing>),
+    /// No answer: the card is closed.
+    Close,
 }
 
 impl Default for Guide {
@@ -104,6 +132,8 @@ impl Default for Guide {
             radius_m: 800.0,
             height_m: 150.0,
             drawing: Some(Drawing::Place),
+            search: None,
+            closed: false,
         }
     }
 }
@@ -112,11 +142,31 @@ impl Guide {
     /// Takes an answer.
     pub fn take(&mut self, answer: Answer) {
         match answer {
-            Answer::Place(at) => (self.threshold, self.drawing) = (Some(at), None),
+            Answer::Place(at) => (self.threshold, self.drawing, self.search) = (Some(at), None, None),
             Answer::Runway(threshold, end) => self.take_runway(threshold, end),
             Answer::Mission(extent) => (self.extent, self.drawing) = (Some(extent), None),
             Answer::Form(form) => *self = *form,
             Answer::Draw(drawing) => self.drawing = drawing,
+            Answer::Close => (self.closed, self.drawing) = (true, None),
+        }
+    }
+
+    /// Opens the card again; what was answered before stays.
+    pub fn open(&mut self) {
+        self.closed = false;
+        self.drawing = self.threshold.is_none().then_some(Drawing::Place);
+    }
+
+    /// A place that an answer brings in, to be shown.
+    pub fn new_place(&self, answer: &Answer) -> Option<LatLon> {
+        match answer {
+            Answer::Place(at) => Some(*at),
+            Answer::Form(form) if form.threshold != self.threshold => form.threshold,
+            Answer::Form(form) => {
+                let middle = |extent: &Option<Extent>| extent.as_ref().map(Extent::centre);
+                middle(&form.extent).filter(|at| self.extent().map(|e| e.centre()) != Some(*at))
+            }
+            _ => None,
         }
     }
 

@@ -4,9 +4,10 @@ use super::{Action, Group, Kind, bindings};
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
+use crate::guide::Answer;
 use crate::help::topic_of;
 use crate::map::furniture::Edge;
-use crate::panels::{Scene, bar, flight};
+use crate::panels::{Scene, bar, flight, start};
 use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
@@ -118,7 +119,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
     entry(Group::Edit, bindings::ID, "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
-    entry(Group::Edit, "select-nothing", "Close help or tour, or select nothing", &[plain(Key::Escape)], escape),
+    entry(Group::Edit, "select-nothing", "Close help, tour or card, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
     entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
@@ -178,11 +179,14 @@ fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
 }
 
-/// The help lies over everything: it goes first, then the tour.
+/// The help lies over everything: it goes first, then the tour, then the card for a new mission.
 fn escape(scene: &Scene<'_>) -> Asked {
     view(match (&scene.view.help, scene.view.tour) {
         (Some(_), _) => ViewCommand::Help(None),
         (None, Some(_)) => ViewCommand::Tour(None),
+        (None, None) if scene.view.selection.is_none() && start::is_wanted(scene) => {
+            ViewCommand::Guide(Answer::Close)
+        }
         (None, None) => ViewCommand::Select(None),
     })
 }

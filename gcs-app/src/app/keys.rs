@@ -2,7 +2,7 @@
 
 use crate::actions::{Action, Fittings, all};
 use crate::command::Queue;
-use crate::panels::{Scene, table};
+use crate::panels::{Scene, field, table};
 use egui::{Context, Event, Key, KeyboardShortcut};
 
 /// Turns keys into commands.
@@ -10,7 +10,7 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Q
     if !ctx.input(|i| i.events.iter().any(|event| matches!(event, Event::Key { pressed: true, .. }))) {
         return;
     }
-    let typing = ctx.text_edit_focused();
+    let typing = field::is_typing(ctx);
     let actions = all(scene, fittings);
     let mut keys: Vec<(&KeyboardShortcut, &Action)> = actions
         .iter()

@@ -72,7 +72,7 @@ impl App {
                 let (room, width) = room_of_start(floor, whole);
                 floating(ui, "new mission", room, Align2::LEFT_TOP, |ui| {
                     ui.set_width(width);
-                    start::show(ui, &scene, queue);
+                    start::show(ui, &scene, room.height(), queue);
                 });
             }
             over_map(ui, floor, &scene, queue);

@@ -28,7 +28,7 @@ use crate::link::{BACKLOG, Call, Links, Order};
 use crate::map::MapState;
 use crate::panels::help::Help;
 use crate::panels::palette::CommandPalette;
-use crate::panels::{self, Elevations, Panel, Scene, ViewState, tree};
+use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::shelf::Shelf;
@@ -455,6 +455,7 @@ impl eframe::App for App {
         }
         self.lay_out(ui, now, &mut queue);
         focus::ring(&ctx);
+        field::note_typing(&ctx);
         // what was asked for was meant for the vehicle that was drawn
         let drawn = self.vehicles.shown_name().cloned();
         for command in queue.take() {

@@ -107,6 +107,7 @@ impl App {
         match with {
             Replacement::New => {
                 self.shelf.open(&mut self.document, Document::default());
+                self.view.guide.open();
                 self.view.select(None);
                 self.view.alarm = None;
             }
@@ -264,7 +265,7 @@ impl App {
     }
 
     fn answer(&mut self, answer: Answer) {
-        if let Answer::Place(at) = answer {
+        if let Some(at) = self.view.guide.new_place(&answer) {
             self.map.begin_at(at);
         }
         self.view.guide.take(answer);

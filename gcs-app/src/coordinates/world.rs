@@ -5,8 +5,8 @@ use geometry::LatLon;
 
 /// Shorter beginnings of a name suggest nothing: half the world begins with them.
 const SHORTEST: usize = 3;
-/// So many names are suggested.
-const SUGGESTED: usize = 3;
+/// So many names are suggested in a sentence.
+pub(super) const SUGGESTED: usize = 3;
 
 /// Where the place of that name is: a city by its name, an airport by its code or its name. Capitals and accents don't
 /// matter; of several the most important one is meant.
@@ -22,8 +22,20 @@ pub(super) fn named(name: &str, world: &[Group<'_>]) -> Option<LatLon> {
     city.or_else(|| airports.iter().flat_map(Group::iter).find(is_meant)).map(Place::position)
 }
 
-/// Names in which a word begins like that, the most important ones first.
-pub(super) fn like<'a>(name: &str, world: &[Group<'a>]) -> Vec<&'a str> {
+/// The cities of that name and the airport of that code.
+pub fn exact<'a>(name: &str, world: &'a [Group<'a>]) -> Vec<Place<'a>> {
+    let name = plain(name);
+    let is_it = |(group, place): &(usize, &Place<'_>)| {
+        let full = plain(place.name);
+        full == name || (*group > 0 && full.split_once(' ').is_some_and(|(code, _)| code == name))
+    };
+    let of_groups =
+        world.iter().enumerate().flat_map(|(group, places)| places.iter().map(move |p| (group, p)));
+    of_groups.filter(is_it).map(|(_, place)| *place).collect()
+}
+
+/// At most so many places in whose name a word begins like that, the most important ones first.
+pub fn like<'a>(name: &str, world: &'a [Group<'a>], most: usize) -> Vec<Place<'a>> {
     let name = plain(name);
     if name.chars().count() < SHORTEST {
         return Vec::new();
@@ -32,7 +44,7 @@ pub(super) fn like<'a>(name: &str, world: &[Group<'a>]) -> Vec<&'a str> {
         let full = plain(place.name);
         full.starts_with(&name) || full.contains(&format!(" {name}"))
     };
-    world.iter().flat_map(Group::iter).filter(begins).map(|place| place.name).take(SUGGESTED).collect()
+    world.iter().flat_map(Group::iter).filter(begins).take(most).copied().collect()
 }
 
 /// Small letters without the accents of Latin scripts.

@@ -68,8 +68,9 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
         return queue.view(answered.map_or_else(ViewCommand::Notice, ViewCommand::Guide));
     }
     let Some(aim) = new_leg::aim(plan, scene.view.selection.as_ref(), &Side::Behind) else {
-        return queue
-            .view(ViewCommand::Notice("Make a new mission first: it has a stage to paste into.".into()));
+        return queue.view(ViewCommand::Notice(
+            "Make a new mission first (Ctrl+N): it has a stage to paste into.".into(),
+        ));
     };
     if let (Some(drawing), Aim::Spot(at)) = (drawing, &aim) {
         return put(drawing.and_then(|features| drawings::legs(&features, at.clone(), canvas)), queue);

@@ -29,7 +29,7 @@ pub mod zones;
 
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::layers::Opened;
-use crate::panels::{Scene, start};
+use crate::panels::{Scene, field, start};
 use crate::theme;
 use crate::tiles::{Reader, Relief};
 use egui::{DragPanButtons, Role, Ui};
@@ -109,7 +109,7 @@ impl MapState {
 
     /// Takes the keys that choose a tool, those that the tool in use understands, and those that move the map.
     pub fn keys(&mut self, ctx: &egui::Context) {
-        if !ctx.text_edit_focused() {
+        if !field::is_typing(ctx) {
             self.tools.keys(ctx);
             self.navigation.keys(ctx);
         }

@@ -2,7 +2,7 @@
 
 use crate::theme;
 use crate::units::Unit;
-use egui::{Color32, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Color32, Context, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
 use std::ops::RangeInclusive;
 
 /// What happened to a field.
@@ -163,6 +163,22 @@ pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Optio
     }
     ui.data_mut(|d| d.remove::<String>(id));
     (response.lost_focus() && draft != current).then_some(draft)
+}
+
+/// Something is being typed, or was until this frame: Escape and a click elsewhere have taken the keyboard from the field
+/// before anything is drawn, and mean that only.
+pub fn is_typing(ctx: &Context) -> bool {
+    ctx.text_edit_focused() || ctx.data(|d| d.get_temp(was_typing())).unwrap_or(false)
+}
+
+/// Notes at the end of a frame whether something is being typed.
+pub fn note_typing(ctx: &Context) {
+    let typing = ctx.text_edit_focused();
+    ctx.data_mut(|d| d.insert_temp(was_typing(), typing));
+}
+
+fn was_typing() -> Id {
+    Id::unique("something was being typed")
 }
 
 /// Height of a button to hold, screen points.

@@ -1,18 +1,19 @@
 //! The beginning of a plan: a card over the map of an empty document. A few answers give a plan that can be flown.
 
+mod place;
+
 use super::{Scene, field, primary_button};
-use crate::assets;
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
-use crate::coordinates::{self, Known};
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
 use crate::map::furniture::NARROW;
 use crate::map::text;
 use crate::map::view::View;
 use crate::theme::{self, Palette};
-use crate::units::{self, Unit, Units};
+use crate::units::{Unit, Units};
 use aircraft::Profile;
 use egui::{
-    Align2, ComboBox, DragValue, Painter, Pos2, Rect, RichText, Role, Shape, Stroke, Ui, WidgetInfo, vec2,
+    Align2, ComboBox, DragValue, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape, Stroke, Ui,
+    WidgetInfo, vec2,
 };
 use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
@@ -25,9 +26,9 @@ pub const NARROW_WIDTH: f32 = 252.0;
 /// See [`WIDTH`].
 pub const HEIGHT: f32 = 500.0;
 
-/// The document has nothing in it yet.
+/// The document has nothing in it yet, and the card was not closed.
 pub fn is_wanted(scene: &Scene<'_>) -> bool {
-    scene.document.plan().stages.is_empty() && scene.vehicle.aboard.is_none()
+    !scene.view.guide.closed && scene.document.plan().stages.is_empty() && scene.vehicle.aboard.is_none()
 }
 
 /// There is room for the card on a map.
@@ -35,25 +36,54 @@ pub fn is_on(map: Rect) -> bool {
     map.width() >= NARROW && map.height() >= HEIGHT
 }
 
-/// Draws the card.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let p = theme::of(ui);
-    ui.label(RichText::new("New mission").strong().size(16.0));
+/// Height of its title and of its buttons, which are always in view, screen points.
+const AROUND: f32 = 90.0;
+
+/// Draws the card, in so much height.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, height: f32, queue: &mut Queue) {
     let mut guide = scene.view.guide.clone();
+    let closed = title(ui);
+    let most = (height - AROUND).max(60.0);
+    let questions = ScrollArea::vertical().id_salt("questions").max_height(most).min_scrolled_height(most);
+    questions.show(ui, |ui| ask(ui, scene, &mut guide, queue));
+    ui.add_space(6.0);
+    buttons(ui, &guide, queue);
+    if guide != scene.view.guide {
+        queue.view(ViewCommand::Guide(Answer::Form(Box::new(guide))));
+    }
+    if closed {
+        queue.view(ViewCommand::Guide(Answer::Close));
+    }
+}
+
+/// True: it is to be closed.
+fn title(ui: &mut Ui) -> bool {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("New mission").strong().size(16.0));
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        ui.with_layout(right, |ui| field::small_button(ui, "✖", "Close the card (Esc); New opens it again"))
+            .inner
+    })
+    .inner
+}
+
+fn ask(ui: &mut Ui, scene: &Scene<'_>, guide: &mut Guide, queue: &mut Queue) {
     match guide.threshold {
-        None => ask_place(ui, scene, queue),
+        None => ask_place(ui, scene, guide, queue),
         Some(threshold) => {
             let hint = "Make a plan that can be flown as it is, then change it on the map.";
-            ui.label(RichText::new(hint).color(p.weak));
+            ui.label(RichText::new(hint).color(theme::of(ui).weak));
             ui.add_space(4.0);
-            templates(ui, &mut guide);
+            templates(ui, guide);
             ui.add_space(4.0);
-            answers(ui, threshold, &mut guide, scene.units(), queue);
+            answers(ui, threshold, guide, scene.units(), queue);
         }
     }
-    ui.add_space(6.0);
+}
+
+fn buttons(ui: &mut Ui, guide: &Guide, queue: &mut Queue) {
     ui.horizontal(|ui| {
-        let create = ui.add_enabled(guide.threshold.is_some(), primary_button("Create", p));
+        let create = ui.add_enabled(guide.threshold.is_some(), primary_button("Create", theme::of(ui)));
         let create =
             create.on_disabled_hover_text("Say first where you fly: click the map, or type it above.");
         if let Some(outline) = guide.outline().filter(|_| create.clicked()) {
@@ -63,40 +93,29 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             queue.document(DocumentCommand::Replace(Replacement::AskOpen));
         }
     });
-    if guide != scene.view.guide {
-        queue.view(ViewCommand::Guide(Answer::Form(Box::new(guide))));
-    }
 }
 
 /// The first question: everything else lies around the answer.
-fn ask_place(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn ask_place(ui: &mut Ui, scene: &Scene<'_>, guide: &mut Guide, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.label("Where do you fly?");
     ui.label(
         RichText::new("Zoom in and click the map, or type it: a position, a city, an airport or its code.")
             .color(p.weak),
     );
-    let typed = field::row(ui, "Place", |ui| field::text(ui, "Place", ""));
-    if let Some(typed) = typed {
-        match read(&typed) {
-            Ok(at) => queue.view(ViewCommand::Guide(Answer::Place(at))),
-            Err(reason) => queue.view(ViewCommand::Notice(reason)),
-        }
-    }
+    let mut answer = place::ask(ui, "Place", None, guide, scene.units(), queue);
     if let Some(position) = &scene.vehicle.position
         && ui.button("Where the vehicle is").clicked()
     {
-        queue.view(ViewCommand::Guide(Answer::Place(position.value.position)));
+        answer = Some(position.value.position);
     }
     if ui.button("Among the example's hills").on_hover_text("Elevations of these come with Legwork").clicked()
     {
-        queue.view(ViewCommand::Guide(Answer::Place(crate::map::HOME)));
+        answer = Some(crate::map::HOME);
     }
-}
-
-/// A position, or the name of a city or an airport.
-fn read(typed: &str) -> Result<LatLon, String> {
-    coordinates::read(typed, &Known { world: assets::places().ok(), ..Known::default() })
+    if let Some(at) = answer {
+        (guide.threshold, guide.drawing, guide.search) = (Some(at), None, None);
+    }
 }
 
 fn templates(ui: &mut Ui, guide: &mut Guide) {
@@ -112,8 +131,9 @@ fn templates(ui: &mut Ui, guide: &mut Guide) {
 }
 
 fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, u: Units, queue: &mut Queue) {
-    let hint = "Its landing threshold";
-    place(ui, ("Runway at", hint), threshold, queue, |at| guide.threshold = Some(at));
+    if let Some(at) = place::ask(ui, "Runway at", Some(threshold), guide, u, queue) {
+        guide.threshold = Some(at);
+    }
     draw_button(ui, "Draw the runway", Drawing::Runway, guide);
     number(ui, "Heading", &mut guide.heading_deg, DEGREES, 0.0..=359.9);
     number(ui, "Length", &mut guide.length_m, u.length(), 50.0..=5000.0);
@@ -141,8 +161,7 @@ fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queu
         _ => guide.radius_m,
     };
     let before_m = radius_m;
-    let mut moved = None;
-    place(ui, ("Mission at", "Its middle"), centre, queue, |at| moved = Some(at));
+    let moved = place::ask(ui, "Mission at", Some(centre), guide, u, queue);
     draw_button(ui, &format!("Draw the {}", figure.name()), Drawing::Mission, guide);
     number(ui, "Reaches", &mut radius_m, u.length(), 200.0..=20_000.0);
     if moved.is_some() || (guide.extent.is_some() && radius_m != before_m) {
@@ -175,22 +194,6 @@ fn aircraft(ui: &mut Ui, guide: &mut Guide) {
 }
 
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
-
-/// A position that can be typed anew.
-fn place(
-    ui: &mut Ui,
-    (name, hint): (&str, &str),
-    at: LatLon,
-    queue: &mut Queue,
-    mut set: impl FnMut(LatLon),
-) {
-    let shown = units::position(at);
-    let row = ui.scope(|ui| field::row(ui, name, |ui| field::text(ui, name, &shown)));
-    row.response.on_hover_text(hint);
-    if let Some(typed) = row.inner {
-        read(&typed).map_or_else(|reason| queue.view(ViewCommand::Notice(reason)), &mut set);
-    }
-}
 
 fn number(ui: &mut Ui, name: &str, si: &mut f64, unit: Unit, range_si: RangeInclusive<f64>) {
     field::row(ui, name, |ui| {

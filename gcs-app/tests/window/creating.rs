@@ -1,8 +1,9 @@
 //! From an empty document to a plan that flies, and nothing lost on the way.
 
 use super::Window;
+use egui::accesskit::Role;
 use egui::{Key, vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::template::Template;
 use flight_plan::{LegKind, Pattern};
 
@@ -76,6 +77,79 @@ fn place_is_typed_and_what_is_none_is_refused() {
         window.harness.get_by_role_and_label(egui::accesskit::Role::TextInput, "Place").type_text(typed);
         window.press(Key::Enter);
         assert_eq!(guide(&window).threshold, expected, "{typed}");
+    }
+}
+
+/// Types something into a field of the card, and presses Enter.
+fn type_into(window: &mut Window, field: &str, text: &str) {
+    window.harness.get_by_role_and_label(Role::TextInput, field).focus();
+    window.steps(2);
+    window.press_ctrl(Key::A);
+    window.harness.get_by_role_and_label(Role::TextInput, field).type_text(text);
+    window.press(Key::Enter);
+}
+
+fn text_of(window: &Window, field: &str) -> String {
+    let node = window.harness.get_by_role_and_label(Role::TextInput, field);
+    node.accesskit_node().value().unwrap_or_default()
+}
+
+#[test]
+fn a_name_of_several_places_is_chosen_from_a_list_and_nothing_typed_is_lost() {
+    let mut window = Window::open_with(EMPTY, vec2(960.0, 600.0), None);
+    window.steps(3);
+    type_into(&mut window, "Place", "nowhere at all");
+    assert_eq!(text_of(&window, "Place"), "nowhere at all");
+    type_into(&mut window, "Place", "springfield");
+    assert_eq!(text_of(&window, "Place"), "springfield");
+    let named = guide(&window).search.clone().unwrap().named;
+    assert!(named.len() > 1 && guide(&window).threshold.is_none(), "{named:?}");
+    window.click(&named[1].name);
+    assert_eq!(guide(&window).threshold, Some(named[1].at));
+    assert!(guide(&window).search.is_none());
+}
+
+#[test]
+fn the_map_goes_to_another_place_that_is_typed_in_the_second_step() {
+    let mut window = begun(SIZE);
+    type_into(&mut window, "Runway at", "lowi");
+    let innsbruck = guide(&window).threshold.unwrap();
+    window.click("✏ Draw the runway");
+    draw(&mut window, &[vec2(0.0, 0.0), vec2(40.0, 0.0)]);
+    let drawn = guide(&window).threshold.unwrap();
+    assert!(drawn.distance_m(innsbruck) < 3000.0, "{drawn:?}");
+}
+
+#[test]
+fn the_card_is_closed_and_comes_back_with_a_new_plan() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    window.click("Close the card (Esc); New opens it again");
+    assert!(!window.shows("New mission"));
+    window.press_ctrl(Key::N);
+    assert!(window.shows("New mission"));
+    window.press(Key::Escape);
+    assert!(!window.shows("New mission"), "first step");
+    window.press_ctrl(Key::N);
+    window.click("Among the example's hills");
+    window.harness.get_by_role_and_label(Role::TextInput, "Runway at").focus();
+    window.steps(2);
+    window.press(Key::Escape);
+    assert!(window.shows("New mission"), "the field first");
+    window.press(Key::Escape);
+    assert!(!window.shows("New mission"), "second step");
+    window.press_ctrl(Key::N);
+    assert!(guide(&window).threshold.is_some(), "what was answered stays");
+}
+
+#[test]
+fn the_buttons_of_the_card_stay_in_view_however_low_the_window_is() {
+    for size in [vec2(960.0, 600.0), vec2(960.0, 420.0)] {
+        let mut window = begun(size);
+        window.click("Corridor");
+        window.steps(5);
+        let rect = window.harness.get_by_label("Create").rect();
+        assert!(rect.max.y < size.y, "{rect:?} of {size}");
     }
 }
 

@@ -105,7 +105,8 @@ impl Tool for Guided {
     }
 
     fn wants(&self, key: Key) -> bool {
-        key == Key::Escape || self.pen.wants(key)
+        // nothing is begun as long as a place is asked for: Escape is for the card
+        (key == Key::Escape && self.drawing != Some(Drawing::Place)) || self.pen.wants(key)
     }
 
     fn key(&mut self, key: Key, _canvas: &Canvas<'_>, queue: &mut Queue) {

@@ -1,0 +1,131 @@
+//! A place that is typed into the card: a position, or a name; where several places have it, they are offered.
+
+use crate::assets;
+use crate::assets::places::{Group, Place};
+use crate::command::{Queue, ViewCommand};
+use crate::coordinates::{self, Known, world};
+use crate::guide::{Guide, Named, Search};
+use crate::panels::field;
+use crate::theme;
+use crate::units::{self, Units};
+use egui::{Button, Label, RichText, Ui};
+use geometry::LatLon;
+
+/// So many places are offered.
+const OFFERED: usize = 8;
+
+/// Its field, and below that what a name may mean. The place that was typed or chosen; what is none stays in the field.
+pub fn ask(
+    ui: &mut Ui,
+    name: &'static str,
+    at: Option<LatLon>,
+    guide: &mut Guide,
+    u: Units,
+    queue: &mut Queue,
+) -> Option<LatLon> {
+    let search = guide.search.as_ref().filter(|search| search.field == name);
+    let place = at.map(units::position).unwrap_or_default();
+    let shown = search.map_or(place.as_str(), |search| search.typed.as_str());
+    let mut found = None;
+    if let Some(typed) = field::row(ui, name, |ui| field::text(ui, name, shown)) {
+        guide.search = None;
+        match read(&typed, u) {
+            Ok(at) => found = Some(at),
+            Err((named, why)) => {
+                if named.is_empty() {
+                    queue.view(ViewCommand::Notice(why));
+                }
+                guide.search = Some(Search { field: name, typed, named });
+            }
+        }
+    }
+    let search = guide.search.as_ref().filter(|search| search.field == name);
+    if let Some(chosen) = search.and_then(|search| ui.scope(|ui| choose(ui, &search.named)).inner) {
+        guide.search = None;
+        found = Some(chosen);
+    }
+    if found.is_some() {
+        guide.search = None;
+    }
+    found
+}
+
+fn choose(ui: &mut Ui, named: &[Named]) -> Option<LatLon> {
+    let mut chosen = None;
+    let weak = theme::of(ui).weak;
+    ui.spacing_mut().item_spacing.y = 2.0;
+    for place in named {
+        let response = ui.add(Button::new(&place.name).truncate()).on_hover_text(units::position(place.at));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &place.name));
+        ui.add(Label::new(RichText::new(&place.region).size(11.0).color(weak)).truncate());
+        if response.clicked() {
+            chosen = Some(place.at);
+        }
+    }
+    chosen
+}
+
+/// A position, or the name of a city or an airport; else what the name may mean, and what is wrong with it.
+fn read(typed: &str, u: Units) -> Result<LatLon, (Vec<Named>, String)> {
+    let world = assets::places().ok();
+    let known = |world| coordinates::read(typed, &Known { world, ..Known::default() });
+    let Some(places) = world else { return known(None).map_err(|why| (Vec::new(), why)) };
+    if let Ok(at) = known(None) {
+        return Ok(at);
+    }
+    let exact = world::exact(typed, places);
+    let meant = if exact.is_empty() { world::like(typed, places, OFFERED) } else { exact };
+    match known(Some(places)) {
+        Ok(at) if meant.len() < 2 => Ok(at),
+        Ok(_) => Err((offered(&meant, places, u), String::new())),
+        Err(why) => Err((offered(&meant, places, u), why)),
+    }
+}
+
+fn offered(places: &[Place<'_>], world: &[Group<'_>], u: Units) -> Vec<Named> {
+    let offer = |place: &Place<'_>| Named {
+        name: place.name.to_owned(),
+        region: region(place, world, u),
+        at: place.position(),
+    };
+    places.iter().take(OFFERED).map(offer).collect()
+}
+
+/// How far it is from the nearest large city.
+fn region(place: &Place<'_>, world: &[Group<'_>], u: Units) -> String {
+    let at = place.position();
+    let cities = world.first().into_iter().flat_map(Group::iter);
+    let nearest =
+        cities.map(|city| (at.distance_m(city.position()), city)).min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map_or_else(String::new, |(metres, city)| {
+        if city == place {
+            "city".into()
+        } else {
+            format!("{} from {}", u.distance().show(metres), city.name)
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_of_several_places_offers_them_with_what_is_near() {
+        let (named, _) = read("springfield", Units::Si).unwrap_err();
+        assert!((2..=OFFERED).contains(&named.len()), "{named:?}");
+        assert!(
+            named.iter().all(|place| place.name.contains("Springfield") && place.region.contains(" from "))
+        );
+        let places: std::collections::BTreeSet<_> = named.iter().map(|place| &place.region).collect();
+        assert!(places.len() > 1, "they can be told apart: {named:?}");
+    }
+
+    #[test]
+    fn what_is_clear_is_not_asked_about() {
+        for typed in ["47.1, 8.2", "lowi", "Paris", "090° 5 km from LOWI"] {
+            assert!(read(typed, Units::Si).is_ok(), "{typed}");
+        }
+        assert!(read("nowhere at all", Units::Si).unwrap_err().0.is_empty());
+    }
+}
