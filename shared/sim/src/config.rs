@@ -2,6 +2,7 @@
 
 use crate::core::autopilot::Home;
 use crate::core::faults::FaultRequest;
+use crate::core::personality::Personality;
 use aircraft::{Profile, Wind};
 use geometry::LatLon;
 use std::net::SocketAddr;
@@ -21,6 +22,8 @@ pub enum Link {
 /// Everything that can be chosen.
 #[derive(Debug, Clone)]
 pub struct Config {
+    /// Which autopilot it behaves as.
+    pub personality: Personality,
     /// How it is reached.
     pub link: Link,
     /// Where it stands at the start.
@@ -45,6 +48,7 @@ impl Default for Config {
     /// The trainer on runway R05 of the example mission, no wind, real time, any free TCP port of the loopback.
     fn default() -> Self {
         Self {
+            personality: Personality::default(),
             link: Link::Tcp(SocketAddr::from(([127, 0, 0, 1], 0))),
             home: Home {
                 position: LatLon::new(36.3190, -84.1730),

@@ -3,17 +3,20 @@
 use anyhow::Context;
 use clap::Parser;
 use sim::config::{parse_home, parse_wind};
-use sim::{Config, Control, FaultRequest, Home, Link};
+use sim::{Config, Control, FaultRequest, Home, Link, Personality};
 use std::io::BufRead;
 use std::net::SocketAddr;
 use std::process::ExitCode;
 
-/// A simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does.
+/// A simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does, or PX4.
 ///
 /// While it runs, lines on standard input control it: fault FAULT, clear NAME, wind DIRECTION,SPEED, stop.
 #[derive(Debug, Parser)]
 #[command(name = "legwork-sim", version)]
 struct Options {
+    /// Which autopilot it behaves as: arduplane or px4.
+    #[arg(long, value_name = "AUTOPILOT", default_value_t = Personality::ArduPlane)]
+    personality: Personality,
     /// Where it stands: latitude, longitude, elevation (m AMSL), heading (degrees true).
     #[arg(long, value_name = "LAT,LON,ALT,HDG", value_parser = parse_home, allow_hyphen_values = true)]
     home: Option<Home>,
@@ -56,6 +59,7 @@ impl Options {
             (tcp, ..) => Link::Tcp(tcp.unwrap_or(SocketAddr::from(([127, 0, 0, 1], 5760)))),
         };
         Ok(Config {
+            personality: self.personality,
             link,
             home: self.home.unwrap_or(defaults.home),
             wind: self.wind.unwrap_or(defaults.wind),

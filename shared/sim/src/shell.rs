@@ -167,7 +167,8 @@ pub fn spawn(config: Config) -> anyhow::Result<Handle> {
     config.profile.validate()?;
     let bound = Bound::bind(config.link)?;
     let address = bound.address()?;
-    let mut simulator = Simulator::new(config.profile.clone(), config.home, config.wind, config.seed);
+    let mut simulator =
+        Simulator::of(config.personality, config.profile.clone(), config.home, config.wind, config.seed);
     for fault in &config.faults {
         anyhow::ensure!(simulator.inject(*fault), "too many faults: ask for 64 at most");
     }

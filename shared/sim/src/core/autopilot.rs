@@ -3,11 +3,11 @@
 
 mod mission;
 
-use super::item::{Datum, Item};
+use super::item::{Datum, Item, Mission};
 use super::mode::Mode;
-use super::params::Params;
+use super::params::{Params, Setting};
+use super::personality::Rules;
 use super::run::{Phase, Run};
-use super::transfer::Mission;
 use aircraft::power::{demanded_power_w, glide_sink_mps};
 use aircraft::{Action, Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
 use geometry::LatLon;
@@ -62,6 +62,7 @@ pub struct Autopilot {
     pub guided: Option<Guided>,
     /// Satellite navigation works.
     pub gps_ok: bool,
+    rules: &'static Rules,
     mode: Mode,
     armed: bool,
     guidance: Guidance,
@@ -74,20 +75,21 @@ pub struct Autopilot {
 }
 
 impl Autopilot {
-    /// On the ground at home, disarmed, in MANUAL.
-    pub fn new(profile: Profile, home: Home, wind: Wind) -> Self {
+    /// On the ground at home, disarmed.
+    pub fn new(rules: &'static Rules, profile: Profile, home: Home, wind: Wind) -> Self {
         let aircraft =
             Aircraft::on_runway(profile.clone(), home.position, home.altitude_amsl_m, home.heading_deg);
         Self {
             aircraft,
             wind,
             home,
-            params: Params::new(&profile),
-            mission: Mission::new(Item::home(home.position, home.altitude_amsl_m)),
+            params: (rules.params)(&profile),
+            mission: Mission(vec![Item::home(home.position, home.altitude_amsl_m); rules.first_item.into()]),
             run: Run::default(),
             guided: None,
             gps_ok: true,
-            mode: Mode::Manual,
+            rules,
+            mode: rules.first_mode,
             armed: false,
             guidance: Guidance::new(profile),
             speed_mps: None,
@@ -142,11 +144,13 @@ impl Autopilot {
 
     /// What the pre-arm check has against flying.
     pub fn prearm_problem(&self) -> Option<&'static str> {
-        let checks = self.params.value("ARMING_CHECK") > 0.0;
+        let checks = self.params.find(Setting::ArmingChecks) != Some(0.0);
         match () {
             () if !checks => None,
             () if !self.gps_ok => Some("GPS: no fix"),
-            () if self.battery_pct() <= self.params.value("BATT_CRT_PCT") => Some("Battery is too low"),
+            () if self.battery_pct() <= self.params.setting(Setting::CriticalBattery) => {
+                Some("Battery is too low")
+            }
             () if !self.aircraft.engine().healthy => Some("Engine failed"),
             () => None,
         }
@@ -160,7 +164,7 @@ impl Autopilot {
     /// Arms; false (and says why) if the pre-arm check fails and `force` is off.
     pub fn arm(&mut self, force: bool) -> bool {
         if let Some(problem) = self.prearm_problem().filter(|_| !force && !self.armed) {
-            self.say(Severity::Critical, format!("PreArm: {problem}"));
+            self.say(Severity::Critical, format!("{}: {problem}", self.rules.refusal_text));
             return false;
         }
         if !self.armed {
@@ -169,7 +173,8 @@ impl Autopilot {
             if self.run.phase == Phase::Complete {
                 self.run.reset();
             }
-            self.say(Severity::Info, "Throttle armed");
+            self.move_home();
+            self.say(Severity::Info, self.rules.armed_texts[0]);
             // what was waiting for the engine starts from here
             self.enter(self.mode);
         }
@@ -183,19 +188,35 @@ impl Autopilot {
         }
         if self.armed {
             self.armed = false;
-            self.say(Severity::Info, "Throttle disarmed");
+            self.say(Severity::Info, self.rules.armed_texts[1]);
+            self.move_home();
         }
         true
     }
 
+    /// Home is where it stands, if it is that kind.
+    fn move_home(&mut self) {
+        let s = self.aircraft.state();
+        if self.rules.home_moves && s.on_ground {
+            let heading_deg = s.heading_deg();
+            self.home = Home { position: s.position, altitude_amsl_m: s.altitude_amsl_m, heading_deg };
+        }
+    }
+
+    /// Where guidance steers to, while it flies by itself.
+    pub fn steered_to(&self) -> Option<&Target> {
+        self.guidance.target().filter(|_| self.armed && !self.aircraft.state().on_ground)
+    }
+
     /// Changes the mode; false if it can't be entered now.
     pub fn set_mode(&mut self, mode: Mode) -> bool {
-        if mode == Mode::Auto && self.mission.items().len() < 2 {
+        let no_mission = self.mission.items().len() <= self.rules.first_item.into();
+        if mode == Mode::Auto && self.rules.needs_mission_for_mode && no_mission {
             self.say(Severity::Warning, "Mode change to AUTO failed: no mission");
             return false;
         }
         if mode != self.mode {
-            if self.mode == Mode::Auto && self.run.phase == Phase::Running {
+            if self.run.phase == Phase::Running {
                 self.run.phase = Phase::Stopped;
             }
             self.enter(mode);
@@ -208,8 +229,9 @@ impl Autopilot {
         self.take_off_done = false;
         match mode {
             Mode::Auto => self.start_mission(),
-            Mode::ReturnToLaunch => {
-                let target = self.return_target();
+            Mode::ReturnToLaunch => self.start_return(),
+            Mode::Land => {
+                let target = self.land_here();
                 self.guidance.direct(self.aircraft.state(), target);
             }
             Mode::Loiter | Mode::Guided | Mode::TakeOff => {
@@ -220,14 +242,12 @@ impl Autopilot {
         }
     }
 
-    /// GUIDED: circle a point. `altitude_m` is over `datum`.
-    pub fn reposition(&mut self, position: LatLon, altitude_m: f64, datum: Datum, radius_m: f64) {
-        if self.mode != Mode::Guided {
-            self.set_mode(Mode::Guided);
-        }
+    /// Circles a point in a mode, at an altitude AMSL; radius negative: counter-clockwise, 0: the usual one.
+    pub fn circle(&mut self, mode: Mode, position: LatLon, altitude_amsl_m: f64, radius_m: f64) {
+        self.set_mode(mode);
         let target = Target {
             position,
-            altitude_amsl_m: self.amsl_m(altitude_m, datum),
+            altitude_amsl_m,
             airspeed_mps: self.airspeed_mps(),
             action: self.circle_action(radius_m),
             fly_over: false,
@@ -246,10 +266,12 @@ impl Autopilot {
         }
     }
 
-    /// DO_CHANGE_SPEED: −2 resets, −1 keeps; false if out of range.
+    /// DO_CHANGE_SPEED; false if refused. ArduPlane: −2 resets, −1 keeps. PX4: what is not positive resets.
     pub fn change_speed(&mut self, mps: f64) -> bool {
-        let limits = self.params.value("AIRSPEED_MIN")..=self.params.value("AIRSPEED_MAX");
-        if mps == -2.0 {
+        let limits = self.params.setting(Setting::MinAirspeed)..=self.params.setting(Setting::MaxAirspeed);
+        if !self.rules.refuses_speeds {
+            self.speed_mps = (mps > 0.0).then(|| mps.clamp(*limits.start(), *limits.end()));
+        } else if mps == -2.0 {
             self.speed_mps = None;
         } else if limits.contains(&mps) {
             self.speed_mps = Some(mps);
@@ -261,7 +283,7 @@ impl Autopilot {
 
     /// The airspeed being asked for.
     pub fn airspeed_mps(&self) -> f64 {
-        self.speed_mps.unwrap_or_else(|| self.params.value("AIRSPEED_CRUISE"))
+        self.speed_mps.unwrap_or_else(|| self.params.setting(Setting::Cruise))
     }
 
     /// Flies for `dt_s` seconds.
@@ -288,9 +310,12 @@ impl Autopilot {
 
     fn demand(&mut self) -> Demand {
         let cruise = Demand { airspeed_mps: self.airspeed_mps(), ..Demand::default() };
+        let by_list = self.mode == Mode::ReturnToLaunch && self.run.phase != Phase::Stopped;
         match self.mode {
             Mode::Auto => self.fly_mission(),
+            Mode::ReturnToLaunch if by_list => self.fly_mission(),
             Mode::TakeOff => self.take_off(),
+            Mode::Land => self.follow(None).demand,
             _ if self.aircraft.state().on_ground => Demand::default(),
             Mode::Circle => Demand { bank_rad: 0.35, ..cruise },
             Mode::Manual | Mode::FlyByWireA => cruise,
@@ -311,7 +336,7 @@ impl Autopilot {
         let heading_deg = self.aircraft.state().heading_deg();
         let climbing = matches!(self.guidance.target().map(|t| t.action), Some(Action::TakeOff { .. }));
         if !climbing {
-            let altitude_amsl_m = self.home.altitude_amsl_m + self.params.value("TKOFF_ALT");
+            let altitude_amsl_m = self.home.altitude_amsl_m + self.params.setting(Setting::TakeOffHeight);
             let action = Action::TakeOff { heading_deg };
             let target = Target { altitude_amsl_m, action, ..self.loiter_here() };
             self.guidance.direct(self.aircraft.state(), target);
@@ -322,6 +347,9 @@ impl Autopilot {
             let target = self.loiter_here();
             self.guidance.direct(self.aircraft.state(), target);
             self.say(Severity::Info, "Takeoff complete");
+            if self.rules.holds_after_take_off {
+                self.set_mode(Mode::Loiter);
+            }
         }
         guided.demand
     }
@@ -329,12 +357,12 @@ impl Autopilot {
     /// On the ground, at rest, with nothing to start for: after a while the engine is made safe.
     fn disarm_when_landed(&mut self, dt_s: f64, demand: &Demand) {
         let s = self.aircraft.state();
-        let waiting = self.mode != Mode::Auto && self.mode != Mode::TakeOff;
+        let waiting = !matches!(self.mode, Mode::Auto | Mode::TakeOff | Mode::Land);
         let driven = demand.airspeed_mps > 0.0 && !self.powerless();
         let at_rest = s.on_ground && s.ground_speed_mps() < 0.3 && !driven;
         let done = self.run.phase == Phase::Complete || !waiting || self.powerless();
         self.standing_s = if self.armed && at_rest && done { self.standing_s + dt_s } else { 0.0 };
-        if self.standing_s > self.params.value("LAND_DISARMDELAY") {
+        if self.standing_s > self.params.setting(Setting::DisarmDelay) {
             self.disarm(false);
         }
     }
@@ -343,7 +371,8 @@ impl Autopilot {
         !self.aircraft.engine().healthy || self.aircraft.battery().energy_left_j <= 0.0
     }
 
-    fn amsl_m(&self, altitude_m: f64, datum: Datum) -> f64 {
+    /// An altitude over a datum, metres AMSL.
+    pub fn amsl_m(&self, altitude_m: f64, datum: Datum) -> f64 {
         match datum {
             Datum::Amsl => altitude_m,
             Datum::Home => self.home.altitude_amsl_m + altitude_m,
@@ -351,7 +380,7 @@ impl Autopilot {
     }
 
     fn circle_action(&self, radius_m: f64) -> Action {
-        let own = self.params.value("WP_LOITER_RAD");
+        let own = self.params.setting(Setting::LoiterRadius);
         Action::Loiter { radius_m: if radius_m == 0.0 { own } else { radius_m } }
     }
 
@@ -366,15 +395,44 @@ impl Autopilot {
         }
     }
 
+    /// Home, or the landing of the mission if there is one and it is the autopilot's way.
+    fn start_return(&mut self) {
+        match self.landing_start().filter(|_| self.rules.returns_to_land) {
+            Some(seq) => self.fly_item(seq, true),
+            None => {
+                let target = self.return_target();
+                self.guidance.direct(self.aircraft.state(), target);
+            }
+        }
+    }
+
     fn return_target(&self) -> Target {
-        let height_m = self.params.value("RTL_ALTITUDE");
+        let height_m = self.params.setting(Setting::ReturnHeight);
         let here = self.loiter_here();
-        let altitude_amsl_m =
-            if height_m < 0.0 { here.altitude_amsl_m } else { self.home.altitude_amsl_m + height_m };
+        let back_amsl_m = self.home.altitude_amsl_m + height_m;
+        let altitude_amsl_m = match () {
+            () if height_m < 0.0 => here.altitude_amsl_m,
+            () if self.rules.returns_to_land => back_amsl_m.max(here.altitude_amsl_m),
+            () => back_amsl_m,
+        };
         Target {
             position: self.home.position,
             altitude_amsl_m,
-            action: self.circle_action(self.params.value("RTL_RADIUS")),
+            action: self.circle_action(self.params.setting(Setting::ReturnRadius)),
+            ..here
+        }
+    }
+
+    /// Down on a gentle slope, straight ahead; the only ground known is home's.
+    fn land_here(&self) -> Target {
+        const RUN_PER_HEIGHT: f64 = 12.0;
+        let here = self.loiter_here();
+        let heading_deg = self.aircraft.state().track_deg();
+        let height_m = (here.altitude_amsl_m - self.home.altitude_amsl_m).max(10.0);
+        Target {
+            position: here.position.destination(heading_deg, RUN_PER_HEIGHT * height_m),
+            altitude_amsl_m: self.home.altitude_amsl_m,
+            action: Action::Land { heading_deg },
             ..here
         }
     }

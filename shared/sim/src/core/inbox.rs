@@ -1,8 +1,8 @@
 //! What each incoming message does.
 
 use super::commands::Command;
-use super::transfer::{Party, Reply};
-use super::{Outgoing, Peer, Simulator, item, telemetry};
+use super::personality::Party;
+use super::{Outgoing, Peer, Simulator, telemetry};
 use crate::frame::{self, Body, Frame, Sender};
 use mavlink::Message;
 use mavlink::dialects::ardupilotmega::*;
@@ -10,7 +10,6 @@ use mavlink::dialects::ardupilotmega::*;
 const COMMAND_LONG_ID: u32 = 76;
 const COMMAND_INT_ID: u32 = 75;
 const COMMAND_ACK_ID: u32 = 77;
-const SET_MODE_ID: u16 = 11;
 const MISSION_ITEM_ID: u32 = 39;
 const MISSION_ITEM_INT_ID: u32 = 73;
 
@@ -36,14 +35,13 @@ impl Simulator {
             MavMessage::COMMAND_LONG(c) => self.answer_command(party, c.command, &c.into()),
             MavMessage::COMMAND_INT(c) => self.answer_command(party, c.command, &c.into()),
             MavMessage::SET_MODE(c) => {
-                let result = if self.set_mode_number(c.custom_mode as f32) {
-                    MavResult::MAV_RESULT_ACCEPTED
-                } else {
-                    MavResult::MAV_RESULT_FAILED
-                };
-                self.raw_ack(peer, sender, SET_MODE_ID, result);
+                let (code, result) = self.behaviour.set_mode(&mut self.autopilot, c, self.now_ns);
+                self.raw_ack(peer, sender, code, result);
             }
-            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(c) => self.position_target(c),
+            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(c) => {
+                self.behaviour.position_target(&mut self.autopilot, c);
+            }
+            MavMessage::HEARTBEAT(c) => self.behaviour.heard(c, self.now_ns),
             MavMessage::REQUEST_DATA_STREAM(c) => self.data_stream(peer, c),
             MavMessage::TIMESYNC(c) => self.timesync(peer, c),
             MavMessage::PARAM_REQUEST_LIST(_) => {
@@ -58,45 +56,12 @@ impl Simulator {
     }
 
     fn mission_message(&mut self, party: Party, message: &MavMessage) {
+        let mut out = Vec::new();
         let now_ns = self.now_ns;
-        match message {
-            MavMessage::MISSION_COUNT(c) if is_mission(c.mission_type) => {
-                let reply = self.autopilot.mission.begin(party, c.count, now_ns);
-                self.mission_reply(party, reply);
-            }
-            MavMessage::MISSION_WRITE_PARTIAL_LIST(c) if is_mission(c.mission_type) => {
-                let (first, last) = (c.start_index, c.end_index);
-                let reply = self.autopilot.mission.begin_partial(party, first, last, now_ns);
-                self.mission_reply(party, reply);
-            }
-            MavMessage::MISSION_ITEM_INT(wire) => self.mission_item(party, wire),
-            MavMessage::MISSION_ITEM(c) => self.mission_item(party, &item::from_float(c)),
-            MavMessage::MISSION_ACK(_) => self.autopilot.mission.cancel(party),
-            MavMessage::MISSION_REQUEST_LIST(c) => self.send_count(party, c.mission_type),
-            MavMessage::MISSION_REQUEST_INT(c) => self.send_item(party, c.seq, c.mission_type, true),
-            MavMessage::MISSION_REQUEST(c) => self.send_item(party, c.seq, c.mission_type, false),
-            MavMessage::MISSION_SET_CURRENT(c) => {
-                if !self.set_current(c.seq) {
-                    let text = format!("No mission item {}", c.seq);
-                    self.autopilot.say(super::Severity::Warning, text);
-                }
-            }
-            MavMessage::MISSION_CLEAR_ALL(_) => {
-                let cleared = self.autopilot.clear_mission();
-                let result = if cleared {
-                    MavMissionResult::MAV_MISSION_ACCEPTED
-                } else {
-                    MavMissionResult::MAV_MISSION_ERROR
-                };
-                self.mission_reply(party, Reply::Ack(result));
-            }
-            // fences and rally points are not simulated
-            MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { mission_type, .. })
-            | MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
-                mission_type, ..
-            }) => self.refuse_type(party, *mission_type),
-            _ => self.counters.ignored += 1,
+        if !self.behaviour.mission(&mut self.autopilot, party, message, now_ns, &mut out) {
+            self.counters.ignored += 1;
         }
+        self.post(out);
     }
 
     /// A command or item with a value that the dialect doesn't know is still answered.
@@ -110,8 +75,9 @@ impl Simulator {
                 self.raw_ack(party.peer, party.sender, code, result);
             }
             MISSION_ITEM_ID | MISSION_ITEM_INT_ID if telemetry::is_for_us(Some(byte(32)), Some(byte(33))) => {
-                self.autopilot.mission.cancel(party);
-                self.mission_reply(party, Reply::Ack(MavMissionResult::MAV_MISSION_UNSUPPORTED));
+                let mut out = Vec::new();
+                self.behaviour.strange_item(&mut self.autopilot, party, &mut out);
+                self.post(out);
             }
             _ => self.counters.ignored += 1,
         }
@@ -165,8 +131,10 @@ impl Simulator {
     /// The answer is the value as it now is, whether it was taken or not.
     fn param_set(&mut self, peer: Peer, c: &PARAM_SET_DATA) {
         let name = c.param_id.to_str().unwrap_or_default();
-        self.autopilot.params.set(name, c.param_value);
-        if let Some(index) = self.autopilot.params.index_of(name) {
+        let Some(index) = self.autopilot.params.index_of(name) else { return };
+        let kind = self.autopilot.params.by_index(index).map_or(c.param_type, |param| param.kind);
+        if let Some(value) = self.behaviour.decode_param(c.param_value, c.param_type, kind) {
+            self.autopilot.params.set(name, value);
             self.send_param(peer, index);
         }
     }
@@ -175,95 +143,14 @@ impl Simulator {
         let Some(param) = self.autopilot.params.by_index(index).copied() else {
             return;
         };
+        let (param_value, param_type) = self.behaviour.encode_param(param.value, param.kind);
         let value = PARAM_VALUE_DATA {
-            param_value: param.value,
+            param_value,
             param_count: self.autopilot.params.len() as u16,
             param_index: index as u16,
             param_id: param.name.into(),
-            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+            param_type,
         };
         self.send(peer, &MavMessage::PARAM_VALUE(value));
     }
-
-    fn mission_item(&mut self, party: Party, wire: &MISSION_ITEM_INT_DATA) {
-        let reply = self.autopilot.mission.item(party, wire, self.now_ns);
-        self.mission_reply(party, reply);
-    }
-
-    pub(super) fn mission_reply(&mut self, party: Party, reply: Reply) {
-        let Sender { system, component } = party.sender;
-        let message = match reply {
-            Reply::Request(seq) => MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA {
-                seq,
-                target_system: system,
-                target_component: component,
-                ..MISSION_REQUEST_DATA::DEFAULT
-            }),
-            Reply::Ack(result) => mission_ack(party, result, MavMissionType::DEFAULT),
-            Reply::Received => {
-                self.autopilot.say(super::Severity::Info, "Flight plan received");
-                mission_ack(party, MavMissionResult::MAV_MISSION_ACCEPTED, MavMissionType::DEFAULT)
-            }
-        };
-        self.send(party.peer, &message);
-    }
-
-    fn refuse_type(&mut self, party: Party, mission_type: MavMissionType) {
-        let result = MavMissionResult::MAV_MISSION_UNSUPPORTED;
-        self.send(party.peer, &mission_ack(party, result, mission_type));
-    }
-
-    /// The count of the mission; of fences and rally points there are none.
-    fn send_count(&mut self, party: Party, mission_type: MavMissionType) {
-        if self.autopilot.mission.is_receiving() {
-            self.mission_reply(party, Reply::Ack(MavMissionResult::MAV_MISSION_DENIED));
-            return;
-        }
-        let items = self.autopilot.mission.items().len();
-        let count = if is_mission(mission_type) { items as u16 } else { 0 };
-        let message = MISSION_COUNT_DATA {
-            count,
-            target_system: party.sender.system,
-            target_component: party.sender.component,
-            mission_type,
-            ..MISSION_COUNT_DATA::DEFAULT
-        };
-        self.send(party.peer, &MavMessage::MISSION_COUNT(message));
-    }
-
-    /// Read-back: what was taken, altitudes rounded to centimetres as the real list does.
-    fn send_item(&mut self, party: Party, seq: u16, mission_type: MavMissionType, as_int: bool) {
-        let item = self.autopilot.mission.items().get(usize::from(seq));
-        let Some(item) = item.filter(|_| is_mission(mission_type)) else {
-            let result = MavMissionResult::MAV_MISSION_INVALID_SEQUENCE;
-            self.send(party.peer, &mission_ack(party, result, mission_type));
-            return;
-        };
-        let mut wire = item.wire.clone();
-        wire.seq = seq;
-        wire.current = u8::from(seq == self.autopilot.run.current);
-        wire.z = (wire.z * 100.0).round() / 100.0;
-        wire.target_system = party.sender.system;
-        wire.target_component = party.sender.component;
-        let message = if as_int {
-            MavMessage::MISSION_ITEM_INT(wire)
-        } else {
-            MavMessage::MISSION_ITEM(item::to_float(&wire))
-        };
-        self.send(party.peer, &message);
-    }
-}
-
-fn is_mission(mission_type: MavMissionType) -> bool {
-    mission_type == MavMissionType::MAV_MISSION_TYPE_MISSION
-}
-
-fn mission_ack(party: Party, result: MavMissionResult, mission_type: MavMissionType) -> MavMessage {
-    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
-        target_system: party.sender.system,
-        target_component: party.sender.component,
-        mavtype: result,
-        mission_type,
-        ..MISSION_ACK_DATA::DEFAULT
-    })
 }

@@ -5,6 +5,17 @@ use mavlink::dialects::ardupilotmega::{
     MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult, MavMissionType,
 };
 
+/// The mission list.
+#[derive(Debug, Default)]
+pub struct Mission(pub(super) Vec<Item>);
+
+impl Mission {
+    /// All items, with the one that stands for home if the autopilot has that.
+    pub fn items(&self) -> &[Item] {
+        &self.0
+    }
+}
+
 /// What an item does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -119,7 +130,8 @@ impl Item {
 }
 
 impl Kind {
-    fn has_position(self) -> bool {
+    /// It is about a place.
+    pub fn has_position(self) -> bool {
         matches!(self, Kind::TakeOff | Kind::Waypoint { .. } | Kind::Loiter { .. } | Kind::Land)
     }
 }
@@ -197,7 +209,11 @@ fn crosses(wire: &MISSION_ITEM_INT_DATA) -> bool {
     wire.param3 > 0.0 || (wire.param2 > 0.0 && wire.param2 <= SMALL_ACCEPTANCE_M)
 }
 
-fn kind_of(wire: &MISSION_ITEM_INT_DATA) -> Result<Kind, MavMissionResult> {
+/// What an item does.
+///
+/// # Errors
+/// Not known, or with a parameter that makes no sense.
+pub fn kind_of(wire: &MISSION_ITEM_INT_DATA) -> Result<Kind, MavMissionResult> {
     Ok(match wire.command {
         MavCmd::MAV_CMD_NAV_TAKEOFF => Kind::TakeOff,
         MavCmd::MAV_CMD_NAV_WAYPOINT => Kind::Waypoint { over: crosses(wire) },

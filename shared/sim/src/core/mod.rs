@@ -8,16 +8,18 @@ mod inbox;
 pub mod item;
 pub mod mode;
 pub mod params;
+pub mod personality;
 pub mod run;
 pub mod streams;
 pub mod telemetry;
-pub mod transfer;
 
 use crate::frame::{self, Body, Frame};
 use autopilot::{Autopilot, Home, Severity};
 pub use autopilot_link::Peer;
 use faults::{BadLink, Dice, Effects, FaultRequest, Schedule};
 use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity};
+use params::Setting;
+use personality::{Behaviour, Personality, Post, Rules};
 use std::collections::BTreeMap;
 use streams::Streams;
 
@@ -56,6 +58,8 @@ pub struct Counters {
 pub struct Simulator {
     /// The autopilot and its aircraft.
     pub autopilot: Autopilot,
+    behaviour: Box<dyn Behaviour>,
+    rules: &'static Rules,
     now_ns: u64,
     peers: BTreeMap<Peer, Streams>,
     schedule: Schedule,
@@ -71,10 +75,24 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// At home on the ground, time 0.
+    /// ArduPlane at home on the ground, time 0.
     pub fn new(profile: aircraft::Profile, home: Home, wind: aircraft::Wind, seed: u64) -> Self {
+        Self::of(Personality::ArduPlane, profile, home, wind, seed)
+    }
+
+    /// An autopilot at home on the ground, time 0.
+    pub fn of(
+        personality: Personality,
+        profile: aircraft::Profile,
+        home: Home,
+        wind: aircraft::Wind,
+        seed: u64,
+    ) -> Self {
+        let rules = personality.rules();
         Self {
-            autopilot: Autopilot::new(profile, home, wind),
+            autopilot: Autopilot::new(rules, profile, home, wind),
+            behaviour: personality.behaviour(),
+            rules,
             now_ns: 0,
             peers: BTreeMap::new(),
             schedule: Schedule::default(),
@@ -105,8 +123,8 @@ impl Simulator {
         if self.peers.len() >= MAX_PEERS && !self.peers.contains_key(&peer) {
             return false;
         }
-        let now_ns = self.now_ns;
-        self.peers.entry(peer).or_insert_with(|| Streams::new(now_ns));
+        let (known, now_ns) = (self.rules.streams, self.now_ns);
+        self.peers.entry(peer).or_insert_with(|| Streams::new(known, now_ns));
         true
     }
 
@@ -151,13 +169,12 @@ impl Simulator {
             self.outgoing.push(outgoing);
         }
         self.apply_faults();
-        let before = self.autopilot.run.current;
         self.autopilot.step(STEP_S);
-        if let Some((party, reply)) = self.autopilot.mission.tick(self.now_ns) {
-            self.mission_reply(party, reply);
-        }
+        let mut out = Vec::new();
+        self.behaviour.after_step(&mut self.autopilot, self.now_ns, &mut out);
+        self.post(out);
         self.watch_battery();
-        self.send_events(before);
+        self.send_notices();
         self.send_streams();
     }
 
@@ -204,8 +221,8 @@ impl Simulator {
     /// Says once when the battery becomes low, and once when critical.
     fn watch_battery(&mut self) {
         let pct = self.autopilot.battery_pct();
-        let levels = ["BATT_LOW_PCT", "BATT_CRT_PCT"];
-        let level = levels.iter().filter(|name| pct <= self.autopilot.params.value(name)).count();
+        let levels = [Setting::LowBattery, Setting::CriticalBattery];
+        let level = levels.iter().filter(|level| pct <= self.autopilot.params.setting(**level)).count();
         if level > self.battery_level {
             let word = if level == 1 { "low" } else { "critical" };
             self.autopilot.say(Severity::Warning, format!("Battery 1 is {word} {pct:.0}%"));
@@ -213,13 +230,7 @@ impl Simulator {
         self.battery_level = level;
     }
 
-    fn send_events(&mut self, current_before: u16) {
-        for seq in self.autopilot.take_reached() {
-            self.broadcast(&telemetry::item_reached(seq));
-        }
-        if self.autopilot.run.current != current_before {
-            self.broadcast(&telemetry::mission_current(&self.autopilot));
-        }
+    fn send_notices(&mut self) {
         for notice in self.autopilot.take_notices() {
             let severity = match notice.severity {
                 Severity::Critical => MavSeverity::MAV_SEVERITY_CRITICAL,
@@ -236,7 +247,7 @@ impl Simulator {
             due.extend(streams.due(self.now_ns).into_iter().map(|id| (*peer, id)));
         }
         for (peer, id) in due {
-            if let Some(message) = telemetry::message(&self.autopilot, self.now_ns, id) {
+            if let Some(message) = self.message(id) {
                 self.send(peer, &message);
             }
         }
@@ -246,12 +257,22 @@ impl Simulator {
         self.peers.get_mut(&peer)
     }
 
-    fn set_current(&mut self, seq: u16) -> bool {
-        let known = self.autopilot.set_current(seq);
-        if known {
-            self.broadcast(&telemetry::mission_current(&self.autopilot));
+    /// A message as it is now; `None`: the autopilot doesn't have it.
+    fn message(&self, id: u32) -> Option<MavMessage> {
+        if !self.rules.streams.iter().any(|(known, ..)| *known == id) {
+            return None;
         }
-        known
+        let own = self.behaviour.message(&self.autopilot, self.now_ns, id);
+        own.or_else(|| telemetry::message(&self.autopilot, self.now_ns, id))
+    }
+
+    fn post(&mut self, posts: Vec<Post>) {
+        for (to, message) in posts {
+            match to {
+                Some(peer) => self.send(peer, &message),
+                None => self.broadcast(&message),
+            }
+        }
     }
 
     fn broadcast(&mut self, message: &MavMessage) {

@@ -1,16 +1,74 @@
 //! The parameters it is asked for. Those that act on the flight can be set; the others can only be read.
 
-use aircraft::Profile;
+use mavlink::dialects::ardupilotmega::MavParamType;
+
+/// What the flight depends on, whatever the autopilot calls it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Setting {
+    /// Airspeed unless another is asked for, m/s.
+    Cruise,
+    /// Least airspeed, m/s.
+    MinAirspeed,
+    /// Greatest airspeed, m/s.
+    MaxAirspeed,
+    /// Radius of a circle unless another is asked for, metres; negative: counter-clockwise.
+    LoiterRadius,
+    /// Height over home on the way back, metres; negative: as it is.
+    ReturnHeight,
+    /// Radius of the circle over home; 0: as any.
+    ReturnRadius,
+    /// Height at which the take-off mode ends, metres.
+    TakeOffHeight,
+    /// From standstill to disarmed, seconds.
+    DisarmDelay,
+    /// Whether it checks anything before it arms.
+    ArmingChecks,
+    /// The battery is low, per cent.
+    LowBattery,
+    /// The battery is critical, per cent.
+    CriticalBattery,
+}
 
 /// A parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Param {
-    /// ArduPlane's name.
+    /// The autopilot's name.
     pub name: &'static str,
     /// Its value.
     pub value: f32,
     /// Least and greatest settable value; `None`: read-only.
     pub range: Option<(f32, f32)>,
+    /// A whole number or any.
+    pub kind: MavParamType,
+    /// What it means for the flight, and how many of the setting's units are one of its own.
+    setting: Option<(Setting, f32)>,
+}
+
+impl Param {
+    /// One that can only be read.
+    pub fn fixed(name: &'static str, value: f32) -> Self {
+        Self { name, value, range: None, kind: MavParamType::MAV_PARAM_TYPE_REAL32, setting: None }
+    }
+
+    /// It can be set, from the least to the greatest.
+    pub fn settable(self, range: (f32, f32)) -> Self {
+        Self { range: Some(range), ..self }
+    }
+
+    /// It is a whole number.
+    pub fn whole(self) -> Self {
+        Self { kind: MavParamType::MAV_PARAM_TYPE_INT32, ..self }
+    }
+
+    /// The flight depends on it.
+    pub fn is(self, setting: Setting) -> Self {
+        Self { setting: Some((setting, 1.0)), ..self }
+    }
+
+    /// The flight depends on it, and it is a share where the setting is in per cent.
+    pub fn is_share_of(self, setting: Setting) -> Self {
+        Self { setting: Some((setting, 100.0)), ..self }
+    }
 }
 
 /// All of them, in a fixed order.
@@ -18,33 +76,9 @@ pub struct Param {
 pub struct Params(Vec<Param>);
 
 impl Params {
-    /// The defaults for an aircraft.
-    pub fn new(profile: &Profile) -> Self {
-        let speeds = (profile.min_airspeed_mps as f32, profile.max_airspeed_mps as f32);
-        let turn_m = profile.turn_radius_m(profile.cruise_airspeed_mps) as f32;
-        let set = |name, value, least, most| Param { name, value, range: Some((least, most)) };
-        let fixed = |name, value| Param { name, value, range: None };
-        Self(vec![
-            fixed("SYSID_THISMAV", 1.0),
-            set("AIRSPEED_CRUISE", profile.cruise_airspeed_mps as f32, speeds.0, speeds.1),
-            fixed("AIRSPEED_MIN", speeds.0),
-            fixed("AIRSPEED_MAX", speeds.1),
-            fixed("ROLL_LIMIT_DEG", profile.max_bank_deg as f32),
-            fixed("WP_RADIUS", turn_m.round()),
-            set("WP_LOITER_RAD", turn_m.round(), -32767.0, 32767.0),
-            set("RTL_ALTITUDE", 100.0, -1.0, 5000.0),
-            set("RTL_RADIUS", 0.0, -32767.0, 32767.0),
-            fixed("RTL_AUTOLAND", 0.0),
-            set("TKOFF_ALT", 50.0, 0.0, 200.0),
-            set("LAND_DISARMDELAY", 3.0, 0.0, 127.0),
-            set("ARMING_CHECK", 1.0, 0.0, 1.0),
-            set("BATT_LOW_PCT", 20.0, 0.0, 100.0),
-            set("BATT_CRT_PCT", 10.0, 0.0, 100.0),
-            fixed("MIS_RESTART", 0.0),
-            fixed("MIS_OPTIONS", 0.0),
-            fixed("NAVL1_PERIOD", 9.0),
-            fixed("NAVL1_DAMPING", 0.8),
-        ])
+    /// These.
+    pub fn new(params: Vec<Param>) -> Self {
+        Self(params)
     }
 
     /// How many.
@@ -72,6 +106,23 @@ impl Params {
         self.index_of(name).and_then(|i| self.0.get(i)).map_or(0.0, |p| p.value.into())
     }
 
+    /// What the flight depends on, in its own unit; `None`: the autopilot has no parameter for it.
+    pub fn find(&self, setting: Setting) -> Option<f64> {
+        let unit = |p: &Param| p.setting.filter(|(of, _)| *of == setting).map(|(_, unit)| unit);
+        self.0.iter().find_map(|p| unit(p).map(|unit| f64::from(p.value * unit)))
+    }
+
+    /// What the flight depends on; 0 if the autopilot has no parameter for it.
+    pub fn setting(&self, setting: Setting) -> f64 {
+        self.find(setting).unwrap_or_default()
+    }
+
+    /// Sets what the flight depends on, in the parameter's unit; false if it is none or out of its range.
+    pub fn set_setting(&mut self, setting: Setting, value: f32) -> bool {
+        let name = self.0.iter().find(|p| p.setting.is_some_and(|(of, _)| of == setting)).map(|p| p.name);
+        name.is_some_and(|name| self.set(name, value))
+    }
+
     /// Sets a parameter; false if it is unknown, read-only or out of its range.
     pub fn set(&mut self, name: &str, value: f32) -> bool {
         let param = self.0.iter_mut().find(|p| p.name == name);
@@ -90,10 +141,16 @@ impl Params {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::personality::Personality;
+    use aircraft::Profile;
+
+    fn all() -> [Params; 2] {
+        [Personality::ArduPlane, Personality::Px4].map(|p| (p.rules().params)(&Profile::default()))
+    }
 
     #[test]
     fn only_known_settable_finite_values_in_range_are_taken() {
-        let mut params = Params::new(&Profile::default());
+        let [mut params, _] = all();
         let cases = [
             ("WP_LOITER_RAD", 200.0, true),
             ("WP_LOITER_RAD", f32::NAN, false),
@@ -105,11 +162,20 @@ mod tests {
             assert_eq!(params.set(name, value), taken, "{name} {value}");
         }
         assert_eq!(params.value("WP_LOITER_RAD"), 200.0);
+        assert_eq!(params.setting(Setting::LoiterRadius), 200.0);
     }
 
     #[test]
-    fn names_fit_the_message() {
-        let params = Params::new(&Profile::default());
-        assert!(params.0.iter().all(|p| p.name.len() <= 16));
+    fn names_fit_the_message_and_the_flight_has_what_it_needs() {
+        for params in all() {
+            assert!(params.0.iter().all(|p| p.name.len() <= 16));
+            for setting in [Setting::Cruise, Setting::MinAirspeed, Setting::MaxAirspeed] {
+                assert!(params.setting(setting) > 10.0, "{setting:?}");
+            }
+            let low = params.setting(Setting::LowBattery);
+            assert!((5.0..50.0).contains(&low), "{low} per cent");
+            assert!(params.setting(Setting::DisarmDelay) > 1.0);
+            assert!(params.setting(Setting::LoiterRadius) > 50.0);
+        }
     }
 }

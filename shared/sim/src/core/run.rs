@@ -45,9 +45,10 @@ impl Default for Run {
 
 impl Run {
     /// Walks on from item `from` to the next one that is flown, and makes that the active one.
-    pub fn advance(&mut self, items: &[Item], from: u16) -> Walk {
+    /// `first`: the first item that is flown.
+    pub fn advance(&mut self, items: &[Item], from: u16, first: u16) -> Walk {
         let mut jumps = std::mem::take(&mut self.jumps_done);
-        let walk = walk(items, from, &mut jumps);
+        let walk = walk(items, from, first, &mut jumps);
         self.jumps_done = jumps;
         match &walk.next {
             Some((seq, item)) => {
@@ -64,9 +65,9 @@ impl Run {
     }
 
     /// The item that would be flown after the active one, as the list is now.
-    pub fn upcoming(&self, items: &[Item]) -> Option<Item> {
+    pub fn upcoming(&self, items: &[Item], first: u16) -> Option<Item> {
         let mut jumps = self.jumps_done.clone();
-        walk(items, self.current.saturating_add(1), &mut jumps).next.map(|(_, item)| item)
+        walk(items, self.current.saturating_add(1), first, &mut jumps).next.map(|(_, item)| item)
     }
 
     /// Forgets where it was.
@@ -75,9 +76,9 @@ impl Run {
     }
 }
 
-fn walk(items: &[Item], from: u16, jumps_done: &mut HashMap<u16, i32>) -> Walk {
+fn walk(items: &[Item], from: u16, first: u16, jumps_done: &mut HashMap<u16, i32>) -> Walk {
     let mut walk = Walk::default();
-    let mut seq = from.max(1);
+    let mut seq = from.max(first);
     // a list of nothing but jumps would walk for ever
     for _ in 0..2 * items.len() {
         let Some(item) = items.get(usize::from(seq)) else {
@@ -92,7 +93,7 @@ fn walk(items: &[Item], from: u16, jumps_done: &mut HashMap<u16, i32>) -> Walk {
                 let done = jumps_done.entry(seq).or_default();
                 if repeat < 0 || *done < repeat {
                     *done = done.saturating_add(1);
-                    to.max(1)
+                    to.max(first)
                 } else {
                     seq.saturating_add(1)
                 }
@@ -135,8 +136,8 @@ mod tests {
         let mut flown = Vec::new();
         let mut from = 1;
         while flown.len() < most {
-            let upcoming = run.upcoming(&items).map(|i| i.wire.seq);
-            let walk = run.advance(&items, from);
+            let upcoming = run.upcoming(&items, 1).map(|i| i.wire.seq);
+            let walk = run.advance(&items, from, 1);
             if run.current > 0 && from > 1 {
                 assert_eq!(walk.next.as_ref().map(|(_, i)| i.wire.seq), upcoming);
             }
@@ -166,9 +167,9 @@ mod tests {
     fn the_end_of_the_list_completes_the_mission() {
         let items = mission("h w");
         let mut run = Run::default();
-        run.advance(&items, 1);
+        run.advance(&items, 1, 1);
         assert_eq!((run.phase, run.current), (Phase::Running, 1));
-        run.advance(&items, 2);
+        run.advance(&items, 2, 1);
         assert_eq!((run.phase, run.active), (Phase::Complete, None));
     }
 }

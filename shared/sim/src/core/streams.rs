@@ -2,30 +2,12 @@
 
 use super::STEP_NS;
 
-/// Messages that are sent by rate, their interval by default (ms; 0: only on request) and the stream of the old
-/// `REQUEST_DATA_STREAM` they belong to.
-pub const STREAMED: [(u32, u64, u8); 20] = [
-    (0, 1000, 0),      // HEARTBEAT
-    (1, 500, 2),       // SYS_STATUS
-    (2, 1000, 12),     // SYSTEM_TIME
-    (24, 500, 2),      // GPS_RAW_INT
-    (29, 500, 1),      // SCALED_PRESSURE
-    (30, 250, 10),     // ATTITUDE
-    (33, 250, 6),      // GLOBAL_POSITION_INT
-    (42, 500, 2),      // MISSION_CURRENT
-    (49, 0, 0),        // GPS_GLOBAL_ORIGIN
-    (62, 500, 2),      // NAV_CONTROLLER_OUTPUT
-    (74, 250, 11),     // VFR_HUD
-    (147, 1000, 12),   // BATTERY_STATUS
-    (148, 0, 0),       // AUTOPILOT_VERSION
-    (168, 1000, 12),   // WIND
-    (225, 1000, 12),   // EFI_STATUS
-    (226, 1000, 12),   // RPM
-    (242, 0, 0),       // HOME_POSITION
-    (245, 1000, 2),    // EXTENDED_SYS_STATE
-    (11030, 1000, 12), // ESC_TELEMETRY_1_TO_4
-    (111, 0, 0),       // TIMESYNC, only so that its interval can be asked for
-];
+/// A message that is sent by rate, its interval by default (ms; 0: only on request) and the stream of the old
+/// `REQUEST_DATA_STREAM` it belongs to (0: none).
+pub type Streamed = (u32, u64, u8);
+
+/// In place of a stream: the interval is nobody's to change.
+pub const UNCHANGEABLE: u8 = u8::MAX;
 
 #[derive(Debug, Clone, Copy)]
 struct Stream {
@@ -36,24 +18,23 @@ struct Stream {
 
 /// The rates of one peer.
 #[derive(Debug)]
-pub struct Streams(Vec<Stream>);
+pub struct Streams {
+    known: &'static [Streamed],
+    streams: Vec<Stream>,
+}
 
 impl Streams {
     /// The defaults, the first of each due at once.
-    pub fn new(now_ns: u64) -> Self {
-        Self(
-            STREAMED
-                .iter()
-                .map(|(id, ms, _)| Stream { id: *id, interval_ns: ms * 1_000_000, due_ns: now_ns })
-                .collect(),
-        )
+    pub fn new(known: &'static [Streamed], now_ns: u64) -> Self {
+        let stream = |(id, ms, _): &Streamed| Stream { id: *id, interval_ns: ms * 1_000_000, due_ns: now_ns };
+        Self { known, streams: known.iter().map(stream).collect() }
     }
 
     /// Sets an interval in microseconds: −1 stops it, 0 is the default; false for an unknown message.
     /// Nothing comes more often than the simulator's step.
     pub fn set_interval_us(&mut self, id: u32, interval_us: f64, now_ns: u64) -> bool {
-        let default = STREAMED.iter().find(|(known, ..)| *known == id);
-        let stream = self.0.iter_mut().find(|s| s.id == id);
+        let default = self.known.iter().find(|(known, _, of)| *known == id && *of != UNCHANGEABLE);
+        let stream = self.streams.iter_mut().find(|s| s.id == id);
         let (Some((_, default_ms, _)), Some(stream)) = (default, stream) else {
             return false;
         };
@@ -68,7 +49,7 @@ impl Streams {
 
     /// The interval in microseconds: −1 if it isn't sent, 0 if unknown.
     pub fn interval_us(&self, id: u32) -> i32 {
-        match self.0.iter().find(|s| s.id == id).map(|s| s.interval_ns) {
+        match self.streams.iter().find(|s| s.id == id).map(|s| s.interval_ns) {
             Some(0) => -1,
             Some(ns) => i32::try_from(ns / 1000).unwrap_or(i32::MAX),
             None => 0,
@@ -78,7 +59,7 @@ impl Streams {
     /// The old way: a group of messages (0: all) at a rate in Hz; 0 Hz stops it.
     pub fn set_group(&mut self, group: u8, rate_hz: u16, now_ns: u64) {
         let us = if rate_hz == 0 { -1.0 } else { 1e6 / f64::from(rate_hz) };
-        for (id, default_ms, of) in STREAMED {
+        for &(id, default_ms, of) in self.known {
             // heartbeats aren't anybody's to stop
             if default_ms > 0 && of != 0 && (group == 0 || of == group) {
                 self.set_interval_us(id, us, now_ns);
@@ -89,7 +70,7 @@ impl Streams {
     /// The messages due by now; they are due again an interval later.
     pub fn due(&mut self, now_ns: u64) -> Vec<u32> {
         let mut due = Vec::new();
-        for stream in self.0.iter_mut().filter(|s| s.interval_ns > 0 && s.due_ns <= now_ns) {
+        for stream in self.streams.iter_mut().filter(|s| s.interval_ns > 0 && s.due_ns <= now_ns) {
             due.push(stream.id);
             stream.due_ns = (stream.due_ns + stream.interval_ns).max(now_ns + 1);
         }
@@ -100,6 +81,11 @@ impl Streams {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::personality::Personality;
+
+    fn streams() -> Streams {
+        Streams::new(Personality::ArduPlane.rules().streams, 0)
+    }
 
     fn count(streams: &mut Streams, id: u32, seconds: u64) -> usize {
         (0..seconds * 10).flat_map(|i| streams.due(i * STEP_NS)).filter(|d| *d == id).count()
@@ -110,7 +96,7 @@ mod tests {
         for (interval_us, expected) in
             [(0.0, 40), (100_000.0, 100), (1_000_000.0, 10), (300_000.0, 34), (-1.0, 0), (20_000.0, 100)]
         {
-            let mut streams = Streams::new(0);
+            let mut streams = streams();
             assert!(streams.set_interval_us(30, interval_us, 0));
             assert_eq!(count(&mut streams, 30, 10), expected, "{interval_us}");
         }
@@ -118,7 +104,7 @@ mod tests {
 
     #[test]
     fn groups_and_unknown_messages() {
-        let mut streams = Streams::new(0);
+        let mut streams = streams();
         assert!(!streams.set_interval_us(9999, 1e6, 0));
         streams.set_group(0, 0, 0);
         assert_eq!((streams.interval_us(33), streams.interval_us(0)), (-1, 1_000_000));

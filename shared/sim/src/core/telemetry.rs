@@ -1,10 +1,9 @@
 //! What the autopilot sends: one function a message.
 
 use super::autopilot::Autopilot;
-use super::item::degrees_e7;
-use super::mode::Mode;
-use super::run::Phase;
-use crate::frame::{COMPONENT_ID, SYSTEM_ID};
+use super::item::{self, degrees_e7};
+use super::params::Setting;
+use crate::frame::{COMPONENT_ID, SYSTEM_ID, Sender};
 use aircraft::GRAVITY_MPS2;
 use mavlink::dialects::ardupilotmega::*;
 
@@ -14,20 +13,20 @@ const EPOCH_US: u64 = 1_767_225_600_000_000;
 /// The message with that id as it is now; `None`: not one of ours.
 pub fn message(a: &Autopilot, now_ns: u64, id: u32) -> Option<MavMessage> {
     Some(match id {
-        0 => heartbeat(a),
         1 => sys_status(a),
         2 => system_time(now_ns),
         24 => gps_raw(a, now_ns),
         29 => pressure(a, now_ns),
         30 => attitude(a, now_ns),
         33 => global_position(a, now_ns),
-        42 => mission_current(a),
         49 => global_origin(a, now_ns),
         62 => nav_controller(a),
         74 => vfr_hud(a),
         147 => battery_status(a),
-        148 => autopilot_version(),
         168 => wind(a),
+        87 => return position_target(a, now_ns),
+        141 => altitude(a, now_ns),
+        231 => wind_cov(a, now_ns),
         225 => efi_status(a),
         226 => rpm(a),
         242 => home_position(a, now_ns),
@@ -45,30 +44,15 @@ fn boot_us(now_ns: u64) -> u64 {
     now_ns / 1000
 }
 
-fn heartbeat(a: &Autopilot) -> MavMessage {
-    let mut base_mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
-    base_mode |= match a.mode() {
-        Mode::Manual => MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
-        Mode::Circle | Mode::FlyByWireA => MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED,
-        _ => MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED,
-    };
-    if a.is_armed() {
-        base_mode |= MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
-    }
-    let failing = !a.gps_ok || !a.aircraft.engine().healthy;
-    let system_status = match (failing, a.aircraft.state().on_ground) {
-        (true, _) => MavState::MAV_STATE_CRITICAL,
-        (false, true) => MavState::MAV_STATE_STANDBY,
-        (false, false) => MavState::MAV_STATE_ACTIVE,
-    };
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: a.mode().number(),
-        mavtype: MavType::MAV_TYPE_FIXED_WING,
-        autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-        base_mode,
-        system_status,
-        mavlink_version: 3,
-    })
+/// A heartbeat of a fixed wing, for an autopilot to fill in.
+pub fn fixed_wing() -> HEARTBEAT_DATA {
+    HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_FIXED_WING, mavlink_version: 3, ..HEARTBEAT_DATA::DEFAULT }
+}
+
+/// The flags that mean the same to all.
+pub fn armed_flag(a: &Autopilot) -> MavModeFlag {
+    let custom = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
+    if a.is_armed() { custom | MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED } else { custom }
 }
 
 fn sys_status(a: &Autopilot) -> MavMessage {
@@ -178,25 +162,6 @@ fn global_position(a: &Autopilot, now_ns: u64) -> MavMessage {
     })
 }
 
-/// `MISSION_CURRENT`, also sent when the current item changes.
-pub fn mission_current(a: &Autopilot) -> MavMessage {
-    let count = a.mission.items().len();
-    let mission_state = match a.run.phase {
-        _ if count < 2 => MissionState::MISSION_STATE_NO_MISSION,
-        Phase::Running => MissionState::MISSION_STATE_ACTIVE,
-        Phase::Complete => MissionState::MISSION_STATE_COMPLETE,
-        Phase::Stopped if a.run.current == 0 => MissionState::MISSION_STATE_NOT_STARTED,
-        Phase::Stopped => MissionState::MISSION_STATE_PAUSED,
-    };
-    MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
-        seq: a.run.current,
-        total: (count - 1) as u16,
-        mission_state,
-        mission_mode: if a.mode() == Mode::Auto { 1 } else { 2 },
-        ..MISSION_CURRENT_DATA::DEFAULT
-    })
-}
-
 fn nav_controller(a: &Autopilot) -> MavMessage {
     let s = a.aircraft.state();
     let Some(guided) = a.guided else {
@@ -232,10 +197,12 @@ fn battery_status(a: &Autopilot) -> MavMessage {
     let mut voltages = [u16::MAX; 10];
     voltages[0] = (battery.voltage_v * 1000.0) as u16;
     let charge_state = match a.battery_pct() {
-        pct if pct <= a.params.value("BATT_CRT_PCT") => {
+        pct if pct <= a.params.setting(Setting::CriticalBattery) => {
             MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL
         }
-        pct if pct <= a.params.value("BATT_LOW_PCT") => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW,
+        pct if pct <= a.params.setting(Setting::LowBattery) => {
+            MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW
+        }
         _ => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK,
     };
     MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
@@ -252,17 +219,12 @@ fn battery_status(a: &Autopilot) -> MavMessage {
     })
 }
 
-fn autopilot_version() -> MavMessage {
-    use MavProtocolCapability as C;
+/// What it can do and which version it is.
+pub fn autopilot_version(capabilities: MavProtocolCapability, flight_sw_version: u32) -> MavMessage {
     MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
-        capabilities: C::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-            | C::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
-            | C::MAV_PROTOCOL_CAPABILITY_MISSION_INT
-            | C::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-            | C::MAV_PROTOCOL_CAPABILITY_MAVLINK2,
+        capabilities,
         uid: 0x004C_4547_574F_524B,
-        // 4.7.0-dev, as what it imitates says
-        flight_sw_version: 0x0407_0000,
+        flight_sw_version,
         ..AUTOPILOT_VERSION_DATA::DEFAULT
     })
 }
@@ -272,6 +234,46 @@ fn wind(a: &Autopilot) -> MavMessage {
         direction: a.wind.direction_from_deg() as f32,
         speed: a.wind.speed_mps() as f32,
         speed_z: 0.0,
+    })
+}
+
+/// Where it steers to, while it flies.
+fn position_target(a: &Autopilot, now_ns: u64) -> Option<MavMessage> {
+    let target = a.steered_to()?;
+    Some(MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
+        time_boot_ms: boot_ms(now_ns),
+        lat_int: degrees_e7(target.position.lat_deg),
+        lon_int: degrees_e7(target.position.lon_deg),
+        alt: target.altitude_amsl_m as f32,
+        type_mask: PositionTargetTypemask::empty(),
+        coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_INT,
+        ..POSITION_TARGET_GLOBAL_INT_DATA::DEFAULT
+    }))
+}
+
+fn altitude(a: &Autopilot, now_ns: u64) -> MavMessage {
+    let amsl_m = a.aircraft.state().altitude_amsl_m;
+    let over_home_m = (amsl_m - a.home.altitude_amsl_m) as f32;
+    MavMessage::ALTITUDE(ALTITUDE_DATA {
+        time_usec: boot_us(now_ns),
+        altitude_monotonic: amsl_m as f32,
+        altitude_amsl: amsl_m as f32,
+        altitude_local: over_home_m,
+        altitude_relative: over_home_m,
+        altitude_terrain: f32::NAN,
+        bottom_clearance: f32::NAN,
+    })
+}
+
+fn wind_cov(a: &Autopilot, now_ns: u64) -> MavMessage {
+    // where it goes to
+    let to = (a.wind.direction_from_deg() + 180.0).to_radians();
+    MavMessage::WIND_COV(WIND_COV_DATA {
+        time_usec: boot_us(now_ns),
+        wind_x: (a.wind.speed_mps() * to.cos()) as f32,
+        wind_y: (a.wind.speed_mps() * to.sin()) as f32,
+        wind_alt: a.aircraft.state().altitude_amsl_m as f32,
+        ..WIND_COV_DATA::DEFAULT
     })
 }
 
@@ -362,4 +364,38 @@ pub fn item_reached(seq: u16) -> MavMessage {
 pub fn is_for_us(system: Option<u8>, component: Option<u8>) -> bool {
     system.is_none_or(|id| id == 0 || id == SYSTEM_ID)
         && component.is_none_or(|id| id == 0 || id == COMPONENT_ID)
+}
+
+/// A list of waypoints, not a fence nor rally points.
+pub fn is_mission(mission_type: MavMissionType) -> bool {
+    mission_type == MavMissionType::MAV_MISSION_TYPE_MISSION
+}
+
+/// `MISSION_ACK`.
+pub fn mission_ack(to: Sender, result: MavMissionResult, mission_type: MavMissionType) -> MavMessage {
+    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: to.system,
+        target_component: to.component,
+        mavtype: result,
+        mission_type,
+        ..MISSION_ACK_DATA::DEFAULT
+    })
+}
+
+/// `MISSION_COUNT`.
+pub fn mission_count(to: Sender, count: u16, mission_type: MavMissionType) -> MavMessage {
+    MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+        count,
+        target_system: to.system,
+        target_component: to.component,
+        mission_type,
+        ..MISSION_COUNT_DATA::DEFAULT
+    })
+}
+
+/// An item for the one who asked for it, in the form that was asked for.
+pub fn mission_item(to: Sender, wire: MISSION_ITEM_INT_DATA, seq: u16, as_int: bool) -> MavMessage {
+    let (target_system, target_component) = (to.system, to.component);
+    let wire = MISSION_ITEM_INT_DATA { seq, target_system, target_component, ..wire };
+    if as_int { MavMessage::MISSION_ITEM_INT(wire) } else { MavMessage::MISSION_ITEM(item::to_float(&wire)) }
 }

@@ -3,6 +3,7 @@
 use super::{Autopilot, Severity};
 use crate::core::item::{Item, Kind};
 use crate::core::mode::Mode;
+use crate::core::personality::ListEnd;
 use crate::core::run::Phase;
 use aircraft::{Action, Demand, Target};
 use geometry::LatLon;
@@ -13,9 +14,11 @@ const MAX_REACHED_A_STEP: usize = 16;
 impl Autopilot {
     /// Goes on where the mission was stopped; from the start if it never ran or is complete.
     pub(super) fn start_mission(&mut self) {
+        let is_over = self.rules.list_end == ListEnd::Hold && !self.aircraft.state().on_ground;
         let from = match self.run.phase {
-            Phase::Complete => 1,
-            Phase::Stopped | Phase::Running => self.run.current.max(1),
+            Phase::Complete if is_over => return self.end_of_list(),
+            Phase::Complete => self.rules.first_item,
+            Phase::Stopped | Phase::Running => self.run.current,
         };
         self.fly_item(from, true);
     }
@@ -34,13 +37,19 @@ impl Autopilot {
         true
     }
 
-    /// Clears the mission; refused while it is being flown.
-    pub fn clear_mission(&mut self) -> bool {
-        if (self.armed && self.mode == Mode::Auto) || !self.mission.clear() {
-            return false;
-        }
+    /// Another list takes the place of the one there was. In AUTO its item `current` is flown to at once, or the one with
+    /// the number of the item flown so far, or its last.
+    pub fn replace_mission(&mut self, items: Vec<Item>, current: Option<u16>) {
+        let last = items.len().saturating_sub(1) as u16;
+        let seq = current.unwrap_or(self.run.current).min(last);
+        self.mission.0 = items;
         self.run.reset();
-        true
+        self.run.current = seq;
+        match self.mode {
+            Mode::Auto => self.fly_item(seq, true),
+            Mode::ReturnToLaunch => self.start_return(),
+            _ => {}
+        }
     }
 
     /// One step of the mission. What is reached is left behind at once, so that the demand is always one of the
@@ -50,7 +59,7 @@ impl Autopilot {
         self.guidance.set_airspeed(self.airspeed_mps());
         let mut demand = Demand::default();
         for _ in 0..MAX_REACHED_A_STEP {
-            let next = self.run.upcoming(self.mission.items());
+            let next = self.run.upcoming(self.mission.items(), self.rules.first_item);
             let next = next.map(|item| self.target(&item));
             let guided = self.follow(next);
             demand = guided.demand;
@@ -75,22 +84,24 @@ impl Autopilot {
     }
 
     /// Flies the first item to be flown from `from` on: from where it is, or along the line from the last.
-    fn fly_item(&mut self, from: u16, direct: bool) {
-        let walk = self.run.advance(self.mission.items(), from);
+    pub(super) fn fly_item(&mut self, from: u16, direct: bool) {
+        let walk = self.run.advance(self.mission.items(), from, self.rules.first_item);
         for (seq, item) in walk.passed {
             if let Kind::Speed { mps } = item.kind {
                 // out of range: ignored without a word, as on the real thing
                 self.change_speed(mps);
             }
-            // the real thing reports one item a time, and what is done in passing comes last
+            // the real ones report one item a time, and what is done in passing comes last
             self.reached.pop();
             self.reached.push(seq);
         }
         let Some((seq, item)) = walk.next else {
-            self.say(Severity::Info, "Mission complete, changing mode to RTL");
-            self.set_mode(Mode::ReturnToLaunch);
-            return;
+            return self.end_of_list();
         };
+        let airborne = !self.aircraft.state().on_ground;
+        if self.rules.skips_take_off_in_air && airborne && item.kind == Kind::TakeOff {
+            return self.fly_item(seq.saturating_add(1), direct);
+        }
         if item.kind == Kind::ReturnToLaunch {
             self.set_mode(Mode::ReturnToLaunch);
             return;
@@ -101,7 +112,44 @@ impl Autopilot {
         } else {
             self.guidance.proceed(self.aircraft.state(), target);
         }
-        self.say(Severity::Info, format!("Mission: {seq} {}", name_of(item.kind)));
+        if self.rules.tells_items {
+            self.say(Severity::Info, format!("Mission: {seq} {}", name_of(item.kind)));
+        }
+    }
+
+    /// Where the landing of the mission begins: at its land start, or at the waypoint that leads to it.
+    pub(super) fn landing_start(&self) -> Option<u16> {
+        let items = self.mission.items();
+        let land = items.iter().position(|i| i.kind == Kind::Land)?;
+        let marked = items.iter().take(land).position(|i| i.kind == Kind::LandStart);
+        u16::try_from(marked.unwrap_or(land.saturating_sub(1))).ok()
+    }
+
+    /// The list has run out.
+    fn end_of_list(&mut self) {
+        match self.rules.list_end {
+            ListEnd::Return => {
+                self.say(Severity::Info, "Mission complete, changing mode to RTL");
+                self.set_mode(Mode::ReturnToLaunch);
+            }
+            ListEnd::Hold if self.aircraft.state().on_ground => {}
+            ListEnd::Hold => {
+                self.say(Severity::Info, "End of mission: holding");
+                self.hold();
+            }
+        }
+    }
+
+    /// Circles what it flew to, if that is a place in the air, else where it is.
+    fn hold(&mut self) {
+        let steered_to = self.guidance.target().copied();
+        self.set_mode(Mode::Loiter);
+        if let Some(Target {
+            position, altitude_amsl_m, action: Action::Fly | Action::Loiter { .. }, ..
+        }) = steered_to
+        {
+            self.circle(Mode::Loiter, position, altitude_amsl_m, 0.0);
+        }
     }
 
     /// What guidance is to do for an item.

@@ -1,124 +1,19 @@
-//! The core as a ground station sees it: transcripts, flights and faults, without a socket.
+//! ArduPlane.
 
-use super::item::{Item, degrees_e7};
-use super::mode::Mode;
 use super::*;
-use crate::config::Config;
-use crate::frame::{Decoder, Sender};
-use aircraft::{Profile, Wind};
-use geometry::LatLon;
-use mavlink::dialects::ardupilotmega::*;
+use crate::core::item::Item;
+use crate::core::mode::Mode;
+use crate::core::personality::arduplane;
 use proptest::prelude::*;
-
-const GROUND: Sender = Sender { system: 255, component: 190 };
-const PEER: Peer = Peer(1);
-
-/// A ground station and the simulator it talks to.
-struct Ground {
-    sim: Simulator,
-    decoder: Decoder,
-    received: Vec<MavMessage>,
-}
 
 impl Ground {
     fn new(wind: Wind) -> Self {
-        let mut sim = Simulator::new(Profile::default(), Config::default().home, wind, 1);
-        assert!(sim.connect(PEER));
-        Self { sim, decoder: Decoder::default(), received: Vec::new() }
-    }
-
-    fn home(&self) -> LatLon {
-        self.sim.autopilot.home.position
-    }
-
-    fn listen(&mut self) {
-        for outgoing in self.sim.take_outgoing() {
-            self.decoder.push(&outgoing.bytes);
-            for frame in frame::take_frames(&mut self.decoder) {
-                if let Body::Known(message) = frame.body {
-                    self.received.push(*message);
-                }
-            }
-        }
-    }
-
-    /// Says something and returns what is answered at once.
-    fn say(&mut self, message: MavMessage) -> Vec<MavMessage> {
-        self.listen();
-        let before = self.received.len();
-        self.sim.receive(PEER, Frame::new(GROUND, message));
-        self.listen();
-        self.received[before..].to_vec()
-    }
-
-    /// Steps until `done`, at most `limit_s`; false if it never was.
-    fn fly_until(&mut self, limit_s: f64, mut done: impl FnMut(&Simulator) -> bool) -> bool {
-        for _ in 0..(limit_s * 10.0) as usize {
-            self.sim.step();
-            self.listen();
-            if done(&self.sim) {
-                return true;
-            }
-        }
-        false
-    }
-
-    fn command(&mut self, command: MavCmd, params: [f32; 7]) -> MavResult {
-        let [param1, param2, param3, param4, param5, param6, param7] = params;
-        let long = COMMAND_LONG_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            param5,
-            param6,
-            param7,
-            command,
-            target_system: 1,
-            target_component: 1,
-            confirmation: 0,
-        };
-        self.say(MavMessage::COMMAND_LONG(long))
-            .iter()
-            .find_map(|m| match m {
-                MavMessage::COMMAND_ACK(ack) if ack.command == command => Some(ack.result),
-                _ => None,
-            })
-            .unwrap()
-    }
-
-    fn arm(&mut self) -> MavResult {
-        self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1., 0., 0., 0., 0., 0., 0.])
+        Self::of(Personality::ArduPlane, wind)
     }
 
     fn mode(&mut self, mode: Mode) -> MavResult {
-        let number = mode.number() as f32;
+        let number = arduplane::number_of(mode) as f32;
         self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1., number, 0., 0., 0., 0., 0.])
-    }
-
-    /// The ACK of an exchange, if one was sent.
-    fn ack(messages: &[MavMessage]) -> Option<MavMissionResult> {
-        messages.iter().find_map(|m| match m {
-            MavMessage::MISSION_ACK(ack) => Some(ack.mavtype),
-            _ => None,
-        })
-    }
-
-    fn item(&mut self, wire: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
-        Self::ack(&self.say(MavMessage::MISSION_ITEM_INT(wire.clone())))
-    }
-
-    fn count(&mut self, count: u16) -> Option<MavMissionResult> {
-        let count = MISSION_COUNT_DATA { count, target_system: 1, ..MISSION_COUNT_DATA::DEFAULT };
-        Self::ack(&self.say(MavMessage::MISSION_COUNT(count)))
-    }
-
-    fn partial(&mut self, start_index: i16, end_index: i16) -> Option<MavMissionResult> {
-        Self::ack(&self.say(MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA {
-            start_index,
-            end_index,
-            ..MISSION_WRITE_PARTIAL_LIST_DATA::DEFAULT
-        })))
     }
 
     /// Uploads a whole mission after home, streamed.
@@ -131,77 +26,6 @@ impl Ground {
         }
         assert_eq!(last, Some(MavMissionResult::MAV_MISSION_ACCEPTED));
     }
-
-    fn texts(&self) -> Vec<String> {
-        let text = |m: &MavMessage| match m {
-            MavMessage::STATUSTEXT(t) => Some(t.text.to_str().unwrap().to_owned()),
-            _ => None,
-        };
-        self.received.iter().filter_map(text).collect()
-    }
-
-    fn reached(&self) -> Vec<u16> {
-        let seq = |m: &MavMessage| match m {
-            MavMessage::MISSION_ITEM_REACHED(r) => Some(r.seq),
-            _ => None,
-        };
-        self.received.iter().filter_map(seq).collect()
-    }
-
-    fn position(&self) -> LatLon {
-        self.sim.autopilot.aircraft.state().position
-    }
-}
-
-fn wire(command: MavCmd, position: LatLon, height_m: f32) -> MISSION_ITEM_INT_DATA {
-    MISSION_ITEM_INT_DATA {
-        x: degrees_e7(position.lat_deg),
-        y: degrees_e7(position.lon_deg),
-        z: height_m,
-        command,
-        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
-        target_system: 1,
-        target_component: 1,
-        autocontinue: 1,
-        ..MISSION_ITEM_INT_DATA::DEFAULT
-    }
-}
-
-fn waypoint(position: LatLon) -> MISSION_ITEM_INT_DATA {
-    wire(MavCmd::MAV_CMD_NAV_WAYPOINT, position, 120.0)
-}
-
-fn take_off() -> MISSION_ITEM_INT_DATA {
-    wire(MavCmd::MAV_CMD_NAV_TAKEOFF, LatLon::new(0.0, 0.0), 60.0)
-}
-
-fn jump(to: u16, repeat: f32) -> MISSION_ITEM_INT_DATA {
-    let base = wire(MavCmd::MAV_CMD_DO_JUMP, LatLon::new(0.0, 0.0), 0.0);
-    MISSION_ITEM_INT_DATA { param1: to.into(), param2: repeat, ..base }
-}
-
-fn speed(mps: f32) -> MISSION_ITEM_INT_DATA {
-    let base = wire(MavCmd::MAV_CMD_DO_CHANGE_SPEED, LatLon::new(0.0, 0.0), 0.0);
-    MISSION_ITEM_INT_DATA { param2: mps, ..base }
-}
-
-/// A circuit that ends with a landing at home, in runway direction.
-fn circuit(home: LatLon) -> Vec<MISSION_ITEM_INT_DATA> {
-    let upwind = home.destination(52.0, 1500.0);
-    let crosswind = upwind.destination(322.0, 700.0);
-    let downwind = crosswind.destination(232.0, 4000.0);
-    let last = home.destination(232.0, 1300.0);
-    let mut final_fix = waypoint(last);
-    final_fix.z = 90.0;
-    vec![
-        take_off(),
-        waypoint(upwind),
-        waypoint(crosswind),
-        waypoint(downwind),
-        waypoint(downwind.destination(142.0, 700.0)),
-        final_fix,
-        wire(MavCmd::MAV_CMD_NAV_LAND, home, 0.0),
-    ]
 }
 
 fn airborne_in_auto(items: &[MISSION_ITEM_INT_DATA], wind: Wind) -> Ground {
@@ -664,7 +488,7 @@ proptest! {
             ground.sim.step();
             ground.listen();
         }
-        prop_assert!(ground.sim.autopilot.mission.items().len() <= transfer::MAX_ITEMS);
+        prop_assert!(ground.sim.autopilot.mission.items().len() <= arduplane::transfer::MAX_ITEMS);
         prop_assert!(ground.position().is_valid());
     }
 }

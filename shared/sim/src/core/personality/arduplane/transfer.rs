@@ -1,24 +1,14 @@
-//! The mission list and its protocol, with ArduPlane's rules: one upload at a time, pinned to who
-//! began it; items in order only; the list is cut at once; an idle upload is cancelled after 8 s.
+//! How ArduPlane takes a mission list: one upload at a time, pinned to who began it; items in order only; the list is
+//! cut at once; an idle upload is cancelled after 8 s.
 
-use super::item::Item;
-use crate::core::Peer;
-use crate::frame::Sender;
+use crate::core::item::Item;
+use crate::core::personality::Party;
 use mavlink::dialects::ardupilotmega::{MISSION_ITEM_INT_DATA, MavMissionResult};
 
 /// Most items, home included.
 pub const MAX_ITEMS: usize = 655;
 const UPLOAD_TIMEOUT_NS: u64 = 8_000_000_000;
 const ASK_AGAIN_NS: u64 = 1_000_000_000;
-
-/// Who is at the other end of a transfer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Party {
-    /// By which link.
-    pub peer: Peer,
-    /// Who.
-    pub sender: Sender,
-}
 
 #[derive(Debug)]
 struct Upload {
@@ -40,51 +30,44 @@ pub enum Reply {
     Received,
 }
 
-/// The list and the upload in progress.
-#[derive(Debug)]
-pub struct Mission {
-    items: Vec<Item>,
-    upload: Option<Upload>,
-}
+/// The upload in progress.
+#[derive(Debug, Default)]
+pub struct Transfer(Option<Upload>);
 
-impl Mission {
-    /// Nothing but home.
-    pub fn new(home: Item) -> Self {
-        Self { items: vec![home], upload: None }
-    }
-
-    /// All items; the first is home.
-    pub fn items(&self) -> &[Item] {
-        &self.items
-    }
-
+impl Transfer {
     /// An upload is going on.
     pub fn is_receiving(&self) -> bool {
-        self.upload.is_some()
+        self.0.is_some()
     }
 
     /// `MISSION_COUNT`: the list is cut at once; what is left of it stays until it is overwritten.
-    pub fn begin(&mut self, party: Party, count: u16, now_ns: u64) -> Reply {
+    pub fn begin(&mut self, items: &mut Vec<Item>, party: Party, count: u16, now_ns: u64) -> Reply {
         if self.is_taken(party) {
             return Reply::Ack(MavMissionResult::MAV_MISSION_DENIED);
         }
         if usize::from(count) > MAX_ITEMS {
             return Reply::Ack(MavMissionResult::MAV_MISSION_NO_SPACE);
         }
-        self.items.truncate(usize::from(count).max(1));
+        items.truncate(usize::from(count).max(1));
         if count == 0 {
-            self.upload = None;
+            self.0 = None;
             return Reply::Received;
         }
         self.start(party, 0, count - 1, now_ns)
     }
 
     /// `MISSION_WRITE_PARTIAL_LIST`: `last` may be one past the end at most, so it appends one item at most.
-    pub fn begin_partial(&mut self, party: Party, first: i16, last: i16, now_ns: u64) -> Reply {
+    pub fn begin_partial(
+        &mut self,
+        items: &[Item],
+        party: Party,
+        (first, last): (i16, i16),
+        now_ns: u64,
+    ) -> Reply {
         if self.is_taken(party) {
             return Reply::Ack(MavMissionResult::MAV_MISSION_DENIED);
         }
-        let count = self.items.len();
+        let count = items.len();
         match (u16::try_from(first), u16::try_from(last)) {
             (Ok(first), Ok(last))
                 if first <= last && usize::from(last) <= count && usize::from(last) < MAX_ITEMS =>
@@ -96,13 +79,19 @@ impl Mission {
     }
 
     fn start(&mut self, party: Party, first: u16, last: u16, now_ns: u64) -> Reply {
-        self.upload = Some(Upload { party, next: first, last, heard_ns: now_ns, asked_ns: now_ns });
+        self.0 = Some(Upload { party, next: first, last, heard_ns: now_ns, asked_ns: now_ns });
         Reply::Request(first)
     }
 
     /// An item, asked for or not: the one expected next is taken, any other refused.
-    pub fn item(&mut self, party: Party, wire: &MISSION_ITEM_INT_DATA, now_ns: u64) -> Reply {
-        let Some(upload) = &mut self.upload else {
+    pub fn item(
+        &mut self,
+        items: &mut Vec<Item>,
+        party: Party,
+        wire: &MISSION_ITEM_INT_DATA,
+        now_ns: u64,
+    ) -> Reply {
+        let Some(upload) = &mut self.0 else {
             return Reply::Ack(MavMissionResult::MAV_MISSION_ERROR);
         };
         if wire.seq != upload.next {
@@ -112,9 +101,9 @@ impl Mission {
             return Reply::Ack(MavMissionResult::MAV_MISSION_DENIED);
         }
         match Item::from_wire(wire) {
-            Ok(item) => put(&mut self.items, wire.seq, item),
+            Ok(item) => put(items, wire.seq, item),
             Err(refusal) => {
-                self.upload = None;
+                self.0 = None;
                 return Reply::Ack(refusal);
             }
         }
@@ -124,7 +113,7 @@ impl Mission {
         upload.heard_ns = now_ns;
         upload.asked_ns = now_ns;
         if upload.next > upload.last {
-            self.upload = None;
+            self.0 = None;
             return Reply::Received;
         }
         Reply::Request(upload.next)
@@ -133,16 +122,16 @@ impl Mission {
     /// The sender gives up.
     pub fn cancel(&mut self, party: Party) {
         if !self.is_taken(party) {
-            self.upload = None;
+            self.0 = None;
         }
     }
 
     /// Asks again after a second, cancels after eight.
     pub fn tick(&mut self, now_ns: u64) -> Option<(Party, Reply)> {
-        let upload = self.upload.as_mut()?;
+        let upload = self.0.as_mut()?;
         let party = upload.party;
         if now_ns.saturating_sub(upload.heard_ns) >= UPLOAD_TIMEOUT_NS {
-            self.upload = None;
+            self.0 = None;
             let ack = MavMissionResult::MAV_MISSION_OPERATION_CANCELLED;
             return Some((party, Reply::Ack(ack)));
         }
@@ -153,17 +142,8 @@ impl Mission {
         Some((party, Reply::Request(upload.next)))
     }
 
-    /// Everything but home goes; refused while an upload is going on.
-    pub fn clear(&mut self) -> bool {
-        if self.is_receiving() {
-            return false;
-        }
-        self.items.truncate(1);
-        true
-    }
-
     fn is_taken(&self, party: Party) -> bool {
-        self.upload.as_ref().is_some_and(|upload| upload.party.sender != party.sender)
+        self.0.as_ref().is_some_and(|upload| upload.party.sender != party.sender)
     }
 }
 
@@ -179,6 +159,8 @@ fn put(items: &mut Vec<Item>, seq: u16, item: Item) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::Peer;
+    use crate::frame::Sender;
     use MavMissionResult as R;
     use geometry::LatLon;
     use mavlink::dialects::ardupilotmega::MavCmd;
@@ -193,16 +175,41 @@ mod tests {
         MISSION_ITEM_INT_DATA { seq, ..Item::home(LatLon::new(36.0, -84.0), 500.0).wire }
     }
 
+    /// A list and its transfer.
+    struct Mission {
+        items: Vec<Item>,
+        transfer: Transfer,
+    }
+
+    impl Mission {
+        fn begin(&mut self, party: Party, count: u16, now_ns: u64) -> Reply {
+            self.transfer.begin(&mut self.items, party, count, now_ns)
+        }
+
+        fn begin_partial(&mut self, party: Party, first: i16, last: i16, now_ns: u64) -> Reply {
+            self.transfer.begin_partial(&self.items, party, (first, last), now_ns)
+        }
+
+        fn item(&mut self, party: Party, wire: &MISSION_ITEM_INT_DATA, now_ns: u64) -> Reply {
+            self.transfer.item(&mut self.items, party, wire, now_ns)
+        }
+
+        fn tick(&mut self, now_ns: u64) -> Option<(Party, Reply)> {
+            self.transfer.tick(now_ns)
+        }
+    }
+
     /// A mission of `count` items, home included.
     fn mission(count: u16) -> Mission {
-        let mut mission = Mission::new(Item::home(LatLon::new(36.0, -84.0), 300.0));
+        let home = Item::home(LatLon::new(36.0, -84.0), 300.0);
+        let mut mission = Mission { items: vec![home], transfer: Transfer::default() };
         if count > 1 {
             mission.begin(party(1), count, 0);
             for seq in 0..count {
                 mission.item(party(1), &wire(seq), 0);
             }
         }
-        assert_eq!(mission.items().len(), usize::from(count));
+        assert_eq!(mission.items.len(), usize::from(count));
         mission
     }
 
@@ -249,7 +256,7 @@ mod tests {
     fn the_count_truncates_at_once_and_an_aborted_upload_leaves_half_new_half_old() {
         let mut mission = mission(8);
         mission.begin(party(1), 5, 0);
-        assert_eq!(mission.items().len(), 5);
+        assert_eq!(mission.items.len(), 5);
         let mut new = wire(1);
         new.z = 777.0;
         mission.item(party(1), &wire(0), 0);
@@ -258,7 +265,7 @@ mod tests {
         let cancelled = Reply::Ack(R::MAV_MISSION_OPERATION_CANCELLED);
         assert_eq!(mission.tick(9 * S), Some((party(1), cancelled)));
         assert_eq!(mission.tick(20 * S), None);
-        let altitudes: Vec<f32> = mission.items().iter().map(|i| i.wire.z).collect();
+        let altitudes: Vec<f32> = mission.items.iter().map(|i| i.wire.z).collect();
         assert_eq!(altitudes, [300.0, 777.0, 500.0, 500.0, 500.0]);
     }
 
@@ -286,6 +293,6 @@ mod tests {
         let mut bad = wire(1);
         bad.command = MavCmd::MAV_CMD_NAV_SPLINE_WAYPOINT;
         assert_eq!(mission.item(party(1), &bad, 0), Reply::Ack(R::MAV_MISSION_UNSUPPORTED));
-        assert!(!mission.is_receiving());
+        assert!(!mission.transfer.is_receiving());
     }
 }

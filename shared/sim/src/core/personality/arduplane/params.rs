@@ -1,0 +1,34 @@
+//! ArduPlane's parameters: those it is asked for.
+
+use crate::core::params::{Param, Params, Setting as S};
+use aircraft::Profile;
+
+pub fn params(profile: &Profile) -> Params {
+    let speeds = (profile.min_airspeed_mps as f32, profile.max_airspeed_mps as f32);
+    let cruise = profile.cruise_airspeed_mps as f32;
+    let turn_m = profile.turn_radius_m(profile.cruise_airspeed_mps).round() as f32;
+    let any_radius = (-32767.0, 32767.0);
+    let fixed = Param::fixed;
+    let free = |name, value, range| Param::fixed(name, value).settable(range);
+    Params::new(vec![
+        fixed("SYSID_THISMAV", 1.0),
+        free("AIRSPEED_CRUISE", cruise, speeds).is(S::Cruise),
+        fixed("AIRSPEED_MIN", speeds.0).is(S::MinAirspeed),
+        fixed("AIRSPEED_MAX", speeds.1).is(S::MaxAirspeed),
+        fixed("ROLL_LIMIT_DEG", profile.max_bank_deg as f32),
+        fixed("WP_RADIUS", turn_m),
+        free("WP_LOITER_RAD", turn_m, any_radius).is(S::LoiterRadius),
+        free("RTL_ALTITUDE", 100.0, (-1.0, 5000.0)).is(S::ReturnHeight),
+        free("RTL_RADIUS", 0.0, any_radius).is(S::ReturnRadius),
+        fixed("RTL_AUTOLAND", 0.0),
+        free("TKOFF_ALT", 50.0, (0.0, 200.0)).is(S::TakeOffHeight),
+        free("LAND_DISARMDELAY", 3.0, (0.0, 127.0)).is(S::DisarmDelay),
+        free("ARMING_CHECK", 1.0, (0.0, 1.0)).is(S::ArmingChecks),
+        free("BATT_LOW_PCT", 20.0, (0.0, 100.0)).is(S::LowBattery),
+        free("BATT_CRT_PCT", 10.0, (0.0, 100.0)).is(S::CriticalBattery),
+        fixed("MIS_RESTART", 0.0),
+        fixed("MIS_OPTIONS", 0.0),
+        fixed("NAVL1_PERIOD", 9.0),
+        fixed("NAVL1_DAMPING", 0.8),
+    ])
+}
