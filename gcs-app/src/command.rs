@@ -1,6 +1,7 @@
 //! What the window may ask for. Panels and map borrow the state and push commands; the app carries
 //! them out between two frames.
 
+use crate::files::Choices;
 use crate::guide::Answer;
 use crate::layers::LayerCommand;
 use crate::map::furniture::Edge;
@@ -12,7 +13,7 @@ use flight_exec::rehearse::WhatIf;
 use flight_plan::template::Outline;
 use flight_plan::{Cause, Edit, Id, Place};
 use geometry::LatLon;
-use interchange::{Areas, Format};
+use interchange::Format;
 use std::path::PathBuf;
 use usal::contract::GatewayRequest;
 
@@ -42,8 +43,10 @@ pub enum DocumentCommand {
     Dropped(PathBuf),
     /// Put the plan of another program that was read in the document's place.
     TakeImport,
-    /// Reads the other program's file again, with its drawn areas as this.
-    ImportAreasAs(Areas),
+    /// Add what the other program's file draws to the document.
+    AddImport,
+    /// Reads the other program's file again, as this.
+    ImportAs(Box<Choices>),
     /// Put the plan into another program's format.
     Export(Format),
     /// Ask where to write what was exported.

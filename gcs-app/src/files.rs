@@ -6,7 +6,7 @@ mod saving;
 mod watch;
 
 pub use listing::Entry;
-pub use reading::{Content, Imported};
+pub use reading::{Choices, Content, Imported};
 pub use saving::{Over, Stamp, Writing};
 pub(crate) use saving::{write_together, write_whole};
 pub use watch::Watched;
@@ -17,7 +17,7 @@ use crate::export::{self, Exported};
 use crate::formats::FileFormat;
 use crate::jobs::{Job, Jobs, Progress};
 use flight_plan::FlightPlan;
-use interchange::{Areas, Format};
+use interchange::Format;
 use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -195,7 +195,7 @@ impl Files {
     /// Reads the document's own file again.
     pub fn reread(&mut self, path: PathBuf) {
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, Areas::default(), progress) {
+            match reading::read(&path, &Choices::default(), progress) {
                 Ok(Content::Plan(theirs)) => FileEvent::Reread { path, theirs },
                 Ok(Content::Foreign(_)) => {
                     FileEvent::Failed(format!("{} is no flight plan any more.", path.display()))
@@ -265,13 +265,13 @@ impl Files {
 
     /// Reads a file.
     pub fn open(&mut self, path: PathBuf) {
-        self.open_with(path, Areas::default());
+        self.open_with(path, Choices::default());
     }
 
-    /// Reads a file; another program's with its areas as something else.
-    pub fn open_with(&mut self, path: PathBuf, areas: Areas) {
+    /// Reads a file; another program's as what was chosen.
+    pub fn open_with(&mut self, path: PathBuf, choices: Choices) {
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, areas, progress) {
+            match reading::read(&path, &choices, progress) {
                 Ok(content) => FileEvent::Opened(content),
                 Err(why) => FileEvent::Failed(why),
             }

@@ -1,15 +1,17 @@
 //! The document and its files: opening, saving, asking where, and what was never saved.
 
 use super::App;
-use crate::command::Replacement;
+use crate::command::{Replacement, Selection};
 use crate::document::Document;
 use crate::export::Exported;
-use crate::files::{Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
+use crate::files::{Choices, Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
 use crate::layers::{LayerCommand, Source};
+use crate::map::drawings;
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::Level;
-use interchange::{Areas, Format, Note};
+use flight_plan::clipboard::Pasted;
+use interchange::{Format, Note};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -141,9 +143,28 @@ impl App {
         }
     }
 
-    pub(super) fn import_areas_as(&mut self, areas: Areas) {
+    /// Adds what another program has drawn to the document, as one step.
+    pub(super) fn add_import(&mut self, now_s: f64) {
+        let Some(imported) = self.view.imported.take() else { return };
+        let plan = self.document.plan();
+        let areas = imported.choices.areas;
+        let added = drawings::add(&imported.features, areas, plan, self.view.selection.as_ref());
+        let done = added.and_then(|Pasted { legs, edit }| self.document.edit(&edit).map(|()| legs));
+        match done {
+            Ok(legs) => {
+                let mut legs = legs.into_iter();
+                self.view.select(legs.next().map(Selection::Leg));
+                self.view.also.extend(legs);
+                let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
+                self.toasts.add(now_s, Level::Info, format!("Added what {name} draws"));
+            }
+            Err(why) => self.tell(Err(why)),
+        }
+    }
+
+    pub(super) fn import_as(&mut self, choices: Choices) {
         if let Some(imported) = &self.view.imported {
-            self.files.open_with(imported.path.clone(), areas);
+            self.files.open_with(imported.path.clone(), choices);
         }
     }
 

@@ -53,7 +53,8 @@ impl App {
             }
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
             DocumentCommand::TakeImport => self.take_import(now_s),
-            DocumentCommand::ImportAreasAs(areas) => self.import_areas_as(areas),
+            DocumentCommand::AddImport => self.add_import(now_s),
+            DocumentCommand::ImportAs(choices) => self.import_as(*choices),
             DocumentCommand::Export(format) => self.export(format),
             DocumentCommand::AskExport => self.ask_export(),
             DocumentCommand::ExportTo { path, over } => self.export_to(path, over),

@@ -5,7 +5,8 @@ use crate::document::Document;
 use crate::formats::{self, FileFormat};
 use crate::jobs::Progress;
 use crate::layers;
-use interchange::{Areas, Assumptions, Format, Import};
+use flight_plan::Runway;
+use interchange::{Areas, Assumptions, Feature, Format, Import};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -30,6 +31,15 @@ pub enum Content {
     Foreign(Box<Imported>),
 }
 
+/// What only the user can say about another program's file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Choices {
+    /// What its areas are.
+    pub areas: Areas,
+    /// The runway to take off from and to land on; `None`: what the file says.
+    pub runway: Option<Runway>,
+}
+
 /// A plan of another program, before it becomes a document.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
@@ -37,14 +47,16 @@ pub struct Imported {
     pub path: PathBuf,
     /// The file's format.
     pub format: Format,
-    /// What its areas were taken for.
-    pub areas: Areas,
+    /// As what it was read.
+    pub choices: Choices,
     /// What it means.
     pub import: Import,
+    /// What it draws, to be added to another plan.
+    pub features: Vec<Feature>,
 }
 
-/// Reads it, with drawn areas as what is asked for; the sentence says why that can't be, and what to do.
-pub(super) fn read(path: &Path, areas: Areas, progress: &Progress) -> Result<Content, String> {
+/// Reads it as what was chosen; the sentence says why that can't be, and what to do.
+pub(super) fn read(path: &Path, choices: &Choices, progress: &Progress) -> Result<Content, String> {
     let stamp = Stamp::of(path);
     let bytes = bytes(path, progress).map_err(|why| format!("{} can't be opened: {why}", path.display()))?;
     match FileFormat::of(path, &bytes) {
@@ -58,13 +70,16 @@ pub(super) fn read(path: &Path, areas: Areas, progress: &Progress) -> Result<Con
             Ok(Content::Plan(Box::new(document)))
         }
         FileFormat::Other(format) => {
-            let assumptions = Assumptions { areas, ..formats::assumptions(path) };
+            let Choices { areas, runway } = choices.clone();
+            let assumptions = Assumptions { areas, runway, ..formats::assumptions(path) };
             let import = formats::import(format, path, &bytes, &assumptions);
             let import = import.map_err(|error| format!("{error:#}"))?;
             if import.is_empty() {
                 return Err(format!("nothing in {} could become part of a plan.", path.display()));
             }
-            Ok(Content::Foreign(Box::new(Imported { path: path.to_owned(), format, areas, import })))
+            let features = interchange::features(format, &bytes).unwrap_or_default();
+            let (path, choices) = (path.to_owned(), choices.clone());
+            Ok(Content::Foreign(Box::new(Imported { path, format, choices, import, features })))
         }
     }
 }
@@ -131,7 +146,7 @@ mod tests {
     use super::*;
 
     fn why(path: &Path) -> String {
-        read(path, Areas::default(), &Progress::default()).unwrap_err()
+        read(path, &Choices::default(), &Progress::default()).unwrap_err()
     }
 
     #[test]
@@ -181,13 +196,13 @@ mod tests {
         let path = folder.path().join("mission.xml");
         let wpl = b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.3 -84.1 100 1\n2 0 3 211 0 0 0 0 0 0 0 1\n";
         std::fs::write(&path, wpl).unwrap();
-        let Ok(Content::Foreign(imported)) = read(&path, Areas::default(), &Progress::default()) else {
+        let Ok(Content::Foreign(imported)) = read(&path, &Choices::default(), &Progress::default()) else {
             panic!()
         };
         assert_eq!((imported.format, imported.import.plan.name.as_str()), (Format::Waypoints, "mission"));
         assert!(imported.import.notes.iter().any(|note| note.code == "command-not-carried"));
         std::fs::write(&path, "<flightPlan/>").unwrap();
-        assert!(matches!(read(&path, Areas::default(), &Progress::default()), Ok(Content::Plan(_))));
+        assert!(matches!(read(&path, &Choices::default(), &Progress::default()), Ok(Content::Plan(_))));
     }
 
     #[test]

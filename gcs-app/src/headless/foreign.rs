@@ -96,7 +96,16 @@ impl Foreign {
 
 /// Notes for people, on standard error: the result may go to standard output.
 pub fn print_notes(path: &Path, notes: &[Note]) {
-    notes.iter().for_each(|note| complain!("{}: {note}", path.display()));
+    notes.iter().for_each(|note| complain!("{}: {note}{}", path.display(), remedy(note.code)));
+}
+
+/// What on the command line changes what a note says.
+fn remedy(code: &str) -> &'static str {
+    match code {
+        "aircraft-assumed" => ": --plan-for",
+        "area-as-scan" | "area-as-zone" => ": --areas",
+        _ => "",
+    }
 }
 
 #[cfg(test)]

@@ -73,7 +73,11 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
         ));
     };
     if let (Some(drawing), Aim::Spot(at)) = (drawing, &aim) {
-        return put(drawing.and_then(|features| drawings::legs(&features, at.clone(), canvas)), queue);
+        let approach = new_leg::approach(canvas, &aim);
+        return put(
+            drawing.and_then(|features| drawings::legs(&features, at.clone(), approach, plan)),
+            queue,
+        );
     }
     let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
     let known = Known { plan: Some(plan), aircraft, near: under, world: None };

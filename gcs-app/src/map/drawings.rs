@@ -1,14 +1,17 @@
-//! Drawings of other programs on the clipboard: a line becomes a corridor, an area is scanned, a point is a waypoint.
+//! Drawings of other programs, on the clipboard or in a file that is added to the plan: a line becomes a corridor, an area is scanned, a point is a waypoint.
 
-use super::tools::{Canvas, new_leg};
+use super::tools::new_leg::{self, Aim, Side};
+use crate::command::Selection;
 use crate::formats::{FileFormat, label};
 use crate::guide::{Answer, Guide, MissionFigure};
 use flight_plan::clipboard::{MAX_BYTES, Pasted};
-use flight_plan::create::{self, Drawn, LegChoice};
+use flight_plan::create::{self, Approach, Drawn, LegChoice};
 use flight_plan::template::Extent;
-use flight_plan::{Area, Edit, FlightPlan, Leg, LegKind, Place, Scan, Spot, Value};
+use flight_plan::{
+    Area, Edit, Fix, FlightPlan, Leg, LegKind, Place, Scan, Spot, Thing, Value, Zone, ZoneKind, ZoneShape,
+};
 use geometry::LatLon;
-use interchange::{Feature, Format, Shape};
+use interchange::{Areas, Feature, Format, Shape};
 use std::path::Path;
 
 /// Most figures that are pasted at once.
@@ -35,14 +38,89 @@ fn features(format: Format, text: &str) -> Result<Vec<Feature>, String> {
     }
 }
 
+/// What a file draws as parts of a plan: points are fixes, lines and areas to be scanned are legs behind what is selected,
+/// other areas are zones. The sentence says why that can't be.
+pub fn add(
+    features: &[Feature],
+    areas: Areas,
+    plan: &FlightPlan,
+    selected: Option<&Selection>,
+) -> Result<Pasted, String> {
+    may_add(features)?;
+    let mut with = plan.clone();
+    let (mut flown, mut edits) = (Vec::new(), Vec::new());
+    for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
+        match thing(feature, areas, &with) {
+            Some(thing) => {
+                let edit = Edit::Add(Box::new(thing));
+                with = edit.apply(&with).map_err(|error| error.to_string())?;
+                edits.push(edit);
+            }
+            None => flown.push(feature.clone()),
+        }
+    }
+    if flown.is_empty() {
+        return Ok(Pasted { legs: Vec::new(), edit: Edit::All(edits) });
+    }
+    let Some(Aim::Spot(at)) = new_leg::aim(&with, selected, &Side::Behind) else {
+        return Err("This plan has no stage to add legs to: add one in the plan's list (＋).".into());
+    };
+    let Pasted { legs, edit } = legs(&flown, at, None, &with)?;
+    edits.push(edit);
+    Ok(Pasted { legs, edit: Edit::All(edits) })
+}
+
+/// So many figures can be added to a plan.
+pub fn may_add(features: &[Feature]) -> Result<(), String> {
+    match features.len() {
+        0..=MOST => Ok(()),
+        has => Err(format!("It has {has} figures, and {MOST} can be added to a plan at once.")),
+    }
+}
+
+/// Of our own exports: the path as flown and its runways are no drawing.
+fn is_of_a_flight(feature: &Feature) -> bool {
+    matches!(feature.mark("legwork"), Some("runway" | "path"))
+}
+
+/// `None`: it is flown.
+fn thing(feature: &Feature, areas: Areas, plan: &FlightPlan) -> Option<Thing> {
+    let name = feature.name.trim().to_owned();
+    let marked = match feature.mark("legwork") {
+        Some("keep-in") => Some(ZoneKind::KeepIn),
+        Some("keep-out") => Some(ZoneKind::KeepOut),
+        _ => None,
+    };
+    let chosen = match areas {
+        Areas::Scan => None,
+        Areas::KeepIn => Some(ZoneKind::KeepIn),
+        Areas::KeepOut => Some(ZoneKind::KeepOut),
+    };
+    match &feature.shape {
+        Shape::Point(vertex) => {
+            let description = feature.description.clone();
+            Some(Thing::Fix(Fix { name, description, ..create::fix(plan, vertex.position) }))
+        }
+        Shape::Area { outer, .. } => {
+            let shape = ZoneShape::Polygon(outer.clone());
+            Some(Thing::Zone(Zone { name, ..create::zone(plan, marked.or(chosen)?, shape) }))
+        }
+        Shape::Line(_) => None,
+    }
+}
+
 /// Figures as legs, one behind the other. The sentence says why that can't be.
-pub fn legs(features: &[Feature], mut at: Spot, canvas: &Canvas<'_>) -> Result<Pasted, String> {
-    let mut plan = FlightPlan::clone(canvas.scene.document.plan());
-    let mut approach = new_leg::approach(canvas, &new_leg::Aim::Spot(at.clone()));
+pub fn legs(
+    features: &[Feature],
+    mut at: Spot,
+    mut approach: Option<Approach>,
+    plan: &FlightPlan,
+) -> Result<Pasted, String> {
+    let mut plan = plan.clone();
     let (mut legs, mut edits) = (Vec::new(), Vec::new());
     for feature in features {
         let (choice, drawn) = drawn(&feature.shape);
-        let leg = new_leg::leg(choice, &drawn, &new_leg::Aim::Spot(at.clone()), approach.take(), &plan);
+        let leg = new_leg::leg(choice, &drawn, &Aim::Spot(at.clone()), approach.take(), &plan);
         let mut leg =
             leg.ok_or_else(|| format!("Nothing can be made of {}: draw it larger.", feature.place))?;
         feature.name.trim().clone_into(&mut leg.name);

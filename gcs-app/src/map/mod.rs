@@ -6,7 +6,7 @@ pub mod basemap;
 mod chips;
 mod clipboard;
 pub mod coverage;
-mod drawings;
+pub mod drawings;
 mod footprints;
 pub mod foreseen;
 pub mod furniture;

@@ -1,10 +1,13 @@
 //! What another program's file becomes, and what becomes of the plan in another program's format: a list of what was assumed,
 //! changed or left out, before anything is replaced or written.
 
+mod runway;
+
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::export::Exported;
-use crate::files::Imported;
+use crate::files::{Choices, Imported};
+use crate::map::drawings;
 use crate::{formats, theme};
 use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
 use flight_plan::FlightPlan;
@@ -45,21 +48,51 @@ fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue
     ui.strong(format!("Import “{name}” ({})", formats::label(imported.format)));
     ui.label(format!("It becomes a plan with {}.", contents(&imported.import.plan)));
     let document = scene.document;
+    let adds = may_be_added(imported, scene);
     if !document.is_nobodys() {
-        ui.label(format!("It takes the place of “{}”. Undo brings that back.", document.plan().name));
+        let added = if adds { ", or is added to that as one step" } else { "" };
+        let text = format!("It takes the place of “{}”{added}. Undo brings that back.", document.plan().name);
+        ui.label(text);
     }
     if imported.import.has_areas() {
         areas(ui, imported, queue);
     }
+    runway::choose(ui, imported, scene, queue);
     notes(ui, "Assumed, changed or left out", &imported.import.notes);
     ui.horizontal(|ui| {
-        if ui.add(primary_button("Import the plan", theme::of(ui))).clicked() {
+        let text = if adds { "As a new plan" } else { "Import the plan" };
+        if main_button(ui, text) {
             queue.document(DocumentCommand::TakeImport);
+        }
+        if adds {
+            into_plan(ui, imported, queue);
         }
         if ui.button("Cancel").clicked() {
             queue.view(ViewCommand::PutImportAside);
         }
     });
+}
+
+/// It is a drawing, and there is a plan to draw it into.
+fn may_be_added(imported: &Imported, scene: &Scene<'_>) -> bool {
+    !imported.features.is_empty() && !scene.document.plan().stages.is_empty()
+}
+
+fn into_plan(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
+    let possible = drawings::may_add(&imported.features);
+    let response = ui.add_enabled(possible.is_ok(), egui::Button::new("Into this plan"));
+    let what = "Points become fixes, lines corridors behind what is selected, areas what is chosen above";
+    if response.on_hover_text(what).on_disabled_hover_text(possible.err().unwrap_or_default()).clicked() {
+        queue.document(DocumentCommand::AddImport);
+    }
+}
+
+/// The main thing to do here, which Enter does too.
+fn main_button(ui: &mut Ui, text: &str) -> bool {
+    let button = ui.add(primary_button(text, theme::of(ui)));
+    // Enter on another button is for that
+    let nothing_else = ui.memory(|m| m.focused().is_none());
+    button.clicked() || (nothing_else && ui.input(|i| i.key_pressed(Key::Enter)))
 }
 
 /// What the drawn areas are: nobody but the user can say.
@@ -71,9 +104,10 @@ fn areas(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
             ("zones to stay inside of", Areas::KeepIn),
             ("zones to keep out of", Areas::KeepOut),
         ] {
-            let chosen = imported.areas == areas;
+            let chosen = imported.choices.areas == areas;
             if ui.radio(chosen, label).clicked() && !chosen {
-                queue.document(DocumentCommand::ImportAreasAs(areas));
+                let choices = Choices { areas, ..imported.choices.clone() };
+                queue.document(DocumentCommand::ImportAs(Box::new(choices)));
             }
         }
     });
@@ -87,7 +121,7 @@ fn export(ui: &mut Ui, exported: &Exported, queue: &mut Queue) {
     ));
     notes(ui, "Not in the file, or not as in the plan", &exported.notes);
     ui.horizontal(|ui| {
-        if ui.add(primary_button("Save as…", theme::of(ui))).clicked() {
+        if main_button(ui, "Save as…") {
             queue.document(DocumentCommand::AskExport);
         }
         if ui.button("Cancel").clicked() {
@@ -117,7 +151,9 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
 }
 
 fn row(ui: &mut Ui, note: &Note) {
-    let text = format!("{}: {}", note.place, note.message);
+    let remedy =
+        if note.code == "aircraft-assumed" { "; the inspector of the plan has the others" } else { "" };
+    let text = format!("{}: {}{remedy}", note.place, note.message);
     ui.add(Label::new(text).truncate()).on_hover_text(note.to_string());
 }
 

@@ -72,7 +72,10 @@ fn areas_of_a_drawing_are_what_the_user_says() {
     assert_eq!(zones(&window), Some(0));
     window.click("zones to keep out of");
     window.until("the import as a zone", |app| {
-        app.view().imported.as_ref().is_some_and(|imported| imported.areas == interchange::Areas::KeepOut)
+        app.view()
+            .imported
+            .as_ref()
+            .is_some_and(|imported| imported.choices.areas == interchange::Areas::KeepOut)
     });
     assert_eq!(zones(&window), Some(1));
     window.click("Import the plan");
@@ -112,10 +115,11 @@ fn plan_is_exported_after_its_losses_were_shown() {
     window.click("Export");
     window.click("Export as GPX…");
     window.until("the export", |app| app.view().exported.is_some());
+    window.steps(3);
     assert!(window.shows("as GPX") && window.shows("waypoints, as they are flown"));
     let note = window.app().view().exported.as_ref().unwrap().notes[0].clone();
     assert!(window.shows(&note.message), "{note}");
-    window.click("Save as…");
+    window.press(Key::Enter);
     until_listed(&mut window);
     name(&mut window, &folder.join("flown"));
     window.click("Go there");
@@ -136,4 +140,49 @@ fn plan_that_cannot_be_flown_is_not_exported() {
     window.click("Export as KML…");
     window.until("notice", |app| app.view().notice.is_some());
     assert!(window.shows("Nothing was exported: the plan has errors"));
+}
+
+#[test]
+fn drawing_is_added_to_the_plan_that_is_open_by_one_step() {
+    let mut window = window(SQUARE);
+    let before = window.plan();
+    for (areas, zones, scans) in [("scanned", 0, 1), ("zones to keep out of", 1, 0)] {
+        drop_file(&mut window, &fixture("places.kml"));
+        until_imported(&mut window);
+        assert!(!window.shows("--"), "no option of the command line is spoken of");
+        if areas != "scanned" {
+            window.click(areas);
+            window.until("the areas", |app| {
+                let imported = app.view().imported.as_ref();
+                imported.is_some_and(|i| i.choices.areas == interchange::Areas::KeepOut)
+            });
+        }
+        window.click("Into this plan");
+        let plan = window.plan();
+        assert_eq!(plan.zones.len() - before.zones.len(), zones, "{areas}");
+        let is_scan = |leg: &flight_plan::Leg| matches!(leg.kind, flight_plan::LegKind::Scan(_));
+        assert_eq!(plan.all_legs().iter().filter(|c| is_scan(c.leg)).count(), scans, "{areas}");
+        assert!(plan.fixes.len() > before.fixes.len(), "points are fixes");
+        assert_eq!((&plan.name, plan.stages.len()), (&before.name, before.stages.len()));
+        window.press_ctrl(Key::Z);
+        assert_eq!(window.plan(), before, "one step");
+    }
+}
+
+#[test]
+fn drawing_without_a_runway_gets_take_off_and_landing_when_asked_for() {
+    let mut window = window("");
+    drop_file(&mut window, &fixture("tour.gpx"));
+    until_imported(&mut window);
+    window.click("on a new runway before its first point");
+    window.until("the runway", |app| {
+        app.view().imported.as_ref().is_some_and(|imported| imported.choices.runway.is_some())
+    });
+    window.click("Import the plan");
+    let plan = window.plan();
+    let kinds: Vec<_> = plan.stages.iter().map(|stage| stage.kind).collect();
+    assert_eq!(kinds.first(), Some(&flight_plan::StageKind::TakeOff));
+    assert_eq!(kinds.last(), Some(&flight_plan::StageKind::Land));
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
 }

@@ -148,7 +148,7 @@ fn suiting(vehicle: Vehicle, notes: &mut Notes) -> &'static str {
         Vehicle { .. } => "the file doesn't say how fast it flies".to_owned(),
     };
     let message = format!(
-        "the plan is for the aircraft `{name}`: {why}; choose another with --plan-for, or in the plan's `aircraft` (there are {})",
+        "the plan is for the aircraft `{name}`: {why}; choose another if that is wrong (there are {})",
         Profile::names().join(", ")
     );
     notes.push("aircraft-assumed", "file", message);

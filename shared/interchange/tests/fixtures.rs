@@ -305,7 +305,7 @@ fn aircraft_suits_what_the_file_says_of_its_vehicle() {
         let told = import.notes.iter().find(|n| n.code == "aircraft-assumed").unwrap();
         assert!(
             told.message.contains(expected)
-                && told.message.contains("--plan-for")
+                && !told.message.contains("--")
                 && told.message.contains("long-range-wing"),
             "{told}"
         );
