@@ -71,8 +71,7 @@ pub fn flown(
     if !forbidden.is_empty() {
         return Err(Unflown::Forbidden(forbidden));
     }
-    let program = Arc::new(program);
-    let preview = fly(&program, &profile).map_err(Unflown::Endless)?;
+    let preview = fly(&program, profile).map_err(Unflown::Endless)?;
     match preview.refusals.first() {
         Some((seconds, refusal)) => Err(Unflown::Refused { seconds: *seconds, reason: refusal.to_string() }),
         None => Ok((program, preview)),

@@ -43,15 +43,15 @@ pub fn prepare(args: &Args) -> anyhow::Result<Prepared> {
         let list: Vec<String> = problems.iter().map(ToString::to_string).collect();
         anyhow::anyhow!("the plan can't be flown:\n{}", list.join("\n"))
     })?;
-    let program = Arc::new(program);
     let home =
         program.plan.home().context("the plan has no take-off stage with a runway: give it one")?.clone();
     let destination =
         destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
     let steps = mission::steps_for(&program.plan);
-    let (preview, last_plan) = preview(&loaded, &program, &profile, args.wind, &steps)?;
+    let (preview, last_plan) = preview(&loaded, &program, profile, args.wind, &steps)?;
     let (last_plan, _) = flight_plan::instantiate(&last_plan);
     let planned = forecast::track(&preview, &[program.flown(), &last_plan]);
+    let profile = profile.clone();
     Ok(Prepared { program, profile, terrain: loaded.terrain, home, destination, steps, planned })
 }
 

@@ -1,11 +1,10 @@
 //! `legwork check`: everything that is wrong with a plan.
 
 use super::source::Loaded;
-use super::{Source, foreign};
+use super::{Source, foreign, progress};
 use crate::say;
 use flight_exec::Conditions;
 use flight_plan::{Edit, FlightPlan, Problem};
-use indicatif::{ProgressBar, ProgressStyle};
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,7 +12,8 @@ use std::process::ExitCode;
 /// Most edits that are described: for each the plan is edited and compared with the old one.
 const MAX_FIXES: usize = 100;
 /// How the progress is shown.
-const PROGRESS: &str = "check {bar:30} flight {pos} of {len} with other values of variables";
+const PROGRESS: &str =
+    "{spinner} check {bar:30} flight {pos} of {len} with other values of variables, {elapsed}";
 
 /// The conditions of the review.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -32,9 +32,12 @@ pub struct Circumstances {
 /// # Errors
 /// A file can't be read, or standard output not written.
 pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow::Result<ExitCode> {
-    let loaded = source.load()?;
-    circumstances.air.suits(&loaded.reading.plan)?;
-    let mut problems = loaded.problems();
+    let (loaded, mut problems) = progress::busy("reading and checking the plan", || {
+        let loaded = source.load()?;
+        circumstances.air.suits(&loaded.reading.plan)?;
+        let problems = loaded.problems();
+        anyhow::Ok((loaded, problems))
+    })?;
     if !circumstances.quick {
         problems.extend(reviewed(&loaded, circumstances.air.conditions()));
     }
@@ -49,15 +52,13 @@ pub fn run(source: &Source, circumstances: &Circumstances, json: bool) -> anyhow
 
 /// What a review of the path finds, with a bar that counts the values of variables that are tried.
 fn reviewed(loaded: &Loaded, conditions: Conditions) -> Vec<Problem> {
-    let bar = ProgressBar::new(0);
-    // without its style the bar is plain
-    bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let found = loaded.review_changes(conditions, &mut |done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
-    bar.finish_and_clear();
-    found
+    let bar = progress::bar(PROGRESS);
+    progress::shown(&bar, || {
+        loaded.review_changes(conditions, &mut |done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        })
+    })
 }
 
 /// Prints problems for people, and how many there are.

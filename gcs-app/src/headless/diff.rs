@@ -11,7 +11,6 @@ use flight_exec::rehearse::{Act, Scenario, Trigger, When};
 use flight_plan::{Change, FlightPlan, Id, Problem};
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 /// Where the aircraft is when the new plan comes.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -113,10 +112,10 @@ fn takeover(
     }
     let place = reached(&flown, &leg, pass)?;
     let at = When::Entering { leg, iteration: pass };
-    let then = vec![Act::Propose { program: Arc::new(update) }, Act::End];
+    let then = vec![Act::Propose { program: update }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
     // the flight ends where it reaches the place; any other end comes before that
-    let mut preview = forecast::fly(&Arc::new(program), &profile, &before.terrain, air, &scenario)
+    let mut preview = forecast::fly(&program, profile, &before.terrain, air, &scenario)
         .map_err(|why| anyhow!("the old plan never reaches {place}: {why}"))?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");

@@ -1,5 +1,6 @@
 //! A plan flown ahead of time, with a line of progress.
 
+use super::progress;
 use super::source::Loaded;
 use super::wind::Air;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble};
@@ -7,10 +8,8 @@ use aircraft::{Profile, Wind};
 use flight_exec::Event;
 use flight_exec::rehearse::{Advance, Options, Preview, PreviewError, Scenario, Start, preview_with};
 use flight_plan::{FlightPlan, Id, Program};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Duration;
 use terrain::Terrain;
 
 /// Seconds between points of the track: a turn of the smallest aircraft is still round.
@@ -39,18 +38,16 @@ pub fn fly(
         .zip(1..)
         .map(|(context, number)| (context.leg.id.clone(), number))
         .collect();
-    let bar = ProgressBar::new(legs.len() as u64);
-    // without its style the bar is plain
-    bar.set_style(ProgressStyle::with_template(PROGRESS).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.enable_steady_tick(Duration::from_millis(120));
-    let result = fly_reporting(program, profile, terrain, air, scenario, &mut |advance| {
-        let leg = advance.place.as_ref().map(|p| &p.leg);
-        bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
-        bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
-        true
-    });
-    bar.finish_and_clear();
-    result
+    let bar = progress::bar(PROGRESS);
+    bar.set_length(legs.len() as u64);
+    progress::shown(&bar, || {
+        fly_reporting(program, profile, terrain, air, scenario, &mut |advance| {
+            let leg = advance.place.as_ref().map(|p| &p.leg);
+            bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
+            bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
+            true
+        })
+    })
 }
 
 /// Flies a program; `report` is told how far it is, and gives false when the flight is no longer wanted.
@@ -162,8 +159,7 @@ mod tests {
         let loaded = source.load().unwrap();
         let (program, profile) = loaded.compile().unwrap();
         let calm = Air::default();
-        let error =
-            fly(&Arc::new(program), &profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
+        let error = fly(&program, profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
         assert!(why(&error).contains("--decide"), "{}", why(&error));
         assert!(!error.to_string().contains("scenario"), "{error}");
     }

@@ -14,6 +14,7 @@ mod log;
 mod log_export;
 mod output;
 mod preview;
+mod progress;
 mod select;
 mod source;
 pub mod wind;

@@ -11,7 +11,6 @@ use flight_exec::rehearse::Preview;
 use flight_plan::Id;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 /// Where the report goes.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -57,8 +56,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     // a diagram shows the geometry even if it breaks a rule
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
-    let program = Arc::new(program);
-    let preview = match forecast::fly(&program, &profile, &loaded.terrain, air, &scenario) {
+    let preview = match forecast::fly(&program, profile, &loaded.terrain, air, &scenario) {
         Ok(preview) => preview,
         Err(error) => {
             complain!("{}: {}", source.file.display(), forecast::why(&error));

@@ -46,7 +46,7 @@ impl Selection {
     /// No such variable, or a value it can't have.
     pub fn prepare(&self, loaded: &mut Loaded) -> anyhow::Result<()> {
         for (name, text) in &self.set {
-            let plan = &mut loaded.reading.plan;
+            let plan = loaded.plan_mut();
             let names = || plan.variables.iter().map(|v| v.name.to_string()).collect::<Vec<_>>().join(", ");
             let known = names();
             let variable = plan.variables.iter_mut().find(|v| v.name.as_str() == name);

@@ -11,7 +11,7 @@ use interchange::Note;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use terrain::{Terrain, Tile, Tiles};
 
 /// Greatest elevation tile there is, bytes (1″), and a little more, so that a longer file is seen as such.
@@ -48,6 +48,8 @@ pub struct Loaded {
     pub profile: Result<Profile, String>,
     /// The ground.
     pub terrain: Arc<dyn Terrain>,
+    /// What the check of the plan gave, once it was asked for.
+    checked: OnceLock<Result<Arc<Program>, Vec<Problem>>>,
 }
 
 impl Source {
@@ -90,6 +92,7 @@ impl Source {
             is_empty: false,
             profile,
             terrain: self.load_terrain()?,
+            checked: OnceLock::new(),
         })
     }
 
@@ -112,23 +115,30 @@ impl Loaded {
     pub fn of(plan: &FlightPlan, terrain: Arc<dyn Terrain>) -> Self {
         let reading = flight_plan::read(flight_plan::write(plan));
         let profile = Profile::by_name(&reading.plan.aircraft).map_err(|error| error.to_string());
-        Self { reading, notes: Vec::new(), converted: true, is_empty: false, profile, terrain }
+        let checked = OnceLock::new();
+        Self { reading, notes: Vec::new(), converted: true, is_empty: false, profile, terrain, checked }
+    }
+
+    /// The plan, to change it.
+    pub fn plan_mut(&mut self) -> &mut FlightPlan {
+        self.checked = OnceLock::new();
+        &mut self.reading.plan
     }
 
     /// Everything that is wrong: document, plan, aircraft.
     pub fn problems(&self) -> Vec<Problem> {
         let mut problems = self.reading.problems.clone();
-        match &self.profile {
+        match (self.checked(), &self.profile) {
             // the document's own problems already report that it names none
-            Err(_) if self.reading.plan.aircraft.is_empty() && self.reading.has_errors() => {}
-            Err(reason) => {
+            (None, Err(_)) if self.reading.plan.aircraft.is_empty() && self.reading.has_errors() => {}
+            (None, Err(reason)) => {
                 let message = format!("{reason}: correct the plan's `aircraft`, or give the profile itself");
                 problems.push(Problem::error("unknown-aircraft", message));
             }
-            // a broken document gives a plan full of holes: its problems come first
-            Ok(_) if self.reading.has_errors() => {}
-            Ok(profile) => {
-                let mut found = flight_plan::check(&self.reading.plan, profile, self.terrain.as_ref());
+            (None, Ok(_)) => {}
+            (Some(checked), _) => {
+                let found = checked.as_ref().map_or_else(Vec::as_slice, |program| &program.warnings);
+                let mut found = found.to_vec();
                 self.reading.places.locate(&mut found);
                 problems.extend(found);
             }
@@ -137,6 +147,17 @@ impl Loaded {
             problems.iter_mut().for_each(|p| p.location = None);
         }
         problems
+    }
+
+    /// The program, or what forbids it. `None`: a broken document gives a plan full of holes, and without an aircraft nothing is
+    /// checked.
+    fn checked(&self) -> Option<&Result<Arc<Program>, Vec<Problem>>> {
+        let profile = self.profile.as_ref().ok().filter(|_| !self.reading.has_errors())?;
+        let check = || {
+            let plan = self.reading.plan.clone();
+            flight_plan::compile(plan, profile, self.terrain.as_ref()).map(Arc::new)
+        };
+        Some(self.checked.get_or_init(check))
     }
 
     /// What is wrong with the path that would be flown; nothing if the plan has errors already.
@@ -166,7 +187,7 @@ impl Loaded {
 
     fn with_program(&self, find: impl FnOnce(&Arc<Program>, &Profile) -> Vec<Problem>) -> Vec<Problem> {
         let Ok((program, profile)) = self.compile() else { return Vec::new() };
-        let mut found = find(&Arc::new(program), &profile);
+        let mut found = find(&program, profile);
         if !self.converted {
             self.reading.places.locate(&mut found);
         }
@@ -184,15 +205,10 @@ impl Loaded {
     ///
     /// # Errors
     /// All problems, if one of them forbids flying.
-    pub fn compile(&self) -> Result<(Program, Profile), Vec<Problem>> {
-        let problems = self.problems();
-        match &self.profile {
-            Ok(profile) if !problems.iter().any(Problem::is_error) => {
-                let plan = self.reading.plan.clone();
-                let program = flight_plan::compile(plan, profile, self.terrain.as_ref())?;
-                Ok((program, profile.clone()))
-            }
-            _ => Err(problems),
+    pub fn compile(&self) -> Result<(Arc<Program>, &Profile), Vec<Problem>> {
+        match (self.checked(), &self.profile) {
+            (Some(Ok(program)), Ok(profile)) => Ok((program.clone(), profile)),
+            _ => Err(self.problems()),
         }
     }
 }

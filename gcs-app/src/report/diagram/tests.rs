@@ -10,7 +10,6 @@ fn fragment(name: &str) -> (Arc<Program>, Preview) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/docs/fragments").join(name);
     let loaded = Source { file, ..Source::default() }.load().unwrap();
     let (program, profile) = loaded.compile().unwrap();
-    let program = Arc::new(program);
     let calm = Air::default();
     let preview = forecast::fly(&program, &profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
     (program, preview)
