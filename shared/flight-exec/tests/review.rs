@@ -218,6 +218,29 @@ fn every_edit_that_is_offered_removes_its_problem() {
     assert!(fixed.len() >= 3, "{fixed:?}");
 }
 
+/// An orbit (nothing but the review sees the ground below it) is raised in the reference of its altitude.
+#[test]
+fn an_edit_counts_from_what_the_altitude_counted_from() {
+    for (reference, low_m, raised_m) in [("amsl", 320.0, 340.0), ("agl", 20.0, 40.0)] {
+        let legs = format!(
+            r#"<orbit id="low" radius="300" turns="1" turn="left" altitude="{low_m}" altitudeReference="{reference}"><centre fix="A"/></orbit>"#
+        );
+        let plan = flight_plan::read(rectangle("", &legs)).plan;
+        let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+        let program = Arc::new(compile(plan, &Profile::default(), flat.as_ref()).unwrap());
+        let found = review(&program, &Profile::default(), &flat, Conditions::default());
+        let low = found.iter().find(|p| p.code == "low-clearance" && p.subject == Some("low".into()));
+        let Some(Edit::SetAltitude { altitude: Some(altitude), .. }) =
+            low.and_then(|problem| problem.fix.as_deref())
+        else {
+            panic!("{:?}", shown(&found))
+        };
+        assert_eq!(altitude.reference.name(), reference);
+        let Value::Constant(metres) = altitude.metres else { panic!("a formula") };
+        assert!((raised_m..raised_m + 3.0).contains(&metres), "{metres}");
+    }
+}
+
 /// A rectangle of legs over flat ground at 300 m, with a runway inside; the zones are given.
 fn rectangle(zones: &str, legs: &str) -> Vec<u8> {
     format!(

@@ -8,8 +8,9 @@ pub(crate) mod shape;
 mod things;
 
 use crate::{
-    Altitude, Area, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegAction, LegKind,
-    PlanWaypoint, Procedure, Runway, Stage, Value, Variable, VariableError, VariableValue, Zone,
+    Altitude, AltitudeReference, Area, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg,
+    LegAction, LegKind, PlanWaypoint, Procedure, Runway, Stage, Value, Variable, VariableError,
+    VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::sync::Arc;
@@ -323,6 +324,14 @@ pub enum EditError {
 }
 
 impl Edit {
+    /// Another altitude for a leg or stage that is at `metres` now: `by_m` higher or a little more, to whole metres of the same
+    /// reference.
+    pub fn relevel(of: &Id, metres: f64, reference: AltitudeReference, by_m: f64) -> Self {
+        let wanted_m = metres + by_m;
+        let metres = Value::Constant(if by_m > 0.0 { wanted_m.ceil() } else { wanted_m.floor() });
+        Self::SetAltitude { of: of.clone(), altitude: Some(Altitude { metres, reference }) }
+    }
+
     /// The plan with this edit made. The old one is untouched.
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 //! Walking a plan: every leg with what is around it.
 
 use crate::{
-    Area, Branch, DecideBefore, EmergencyPlan, FlightPlan, Id, IterativeForm, Leg, LegKind, Pattern, Place,
-    ScanStyle, Stage, TurnDirection, Value,
+    Altitude, Area, Branch, DecideBefore, EmergencyPlan, FlightPlan, Id, IterativeForm, Leg, LegKind,
+    Pattern, Place, ScanStyle, Stage, StageKind, TurnDirection, Value,
 };
 use std::sync::Arc;
 
@@ -40,6 +40,14 @@ impl<'a> LegContext<'a> {
             None => self.siblings.get(self.index + 1),
         }
         .map(Arc::as_ref)
+    }
+
+    /// The altitude that is written for the leg: its own, else that of the loops around it, else the stage's; `None`: it has
+    /// that of the leg before. (A take-off's is where the climb-out ends.)
+    pub fn altitude(&self) -> Option<&'a Altitude> {
+        let around = self.loops.iter().rev().find_map(|leg| leg.altitude.as_ref());
+        let stage = self.stage.altitude.as_ref().filter(|_| self.stage.kind != StageKind::TakeOff);
+        self.leg.altitude.as_ref().or(around).or(stage)
     }
 }
 

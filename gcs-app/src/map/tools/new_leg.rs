@@ -200,9 +200,7 @@ pub fn level<'a>(plan: &'a FlightPlan, aim: &Aim) -> Option<&'a Altitude> {
     if let Some(stage) = plan.stage(id) {
         return stage.altitude.as_ref();
     }
-    let context = plan.leg(id)?;
-    let around = context.loops.iter().rev().find_map(|l| l.altitude.as_ref());
-    context.leg.altitude.as_ref().or(around).or(context.stage.altitude.as_ref())
+    plan.leg(id)?.altitude()
 }
 
 /// Where the path is before a new leg, and which way it goes there.

@@ -41,7 +41,7 @@ fn problem(view: &View, flown: &Flown, last: &LaidOut, at: &Point) -> Option<Pro
         missing_m.abs(),
         last.wanted_amsl_m
     );
-    let reached_m = if missing_m > 0.0 { at.altitude_amsl_m.floor() } else { at.altitude_amsl_m.ceil() };
-    let fix = view.relevelled(&last.waypoint.leg, reached_m).filter(|_| flown.emergency.is_none());
+    let fix = view.relevelled(&last.waypoint.leg, last.wanted_amsl_m, -missing_m);
+    let fix = fix.filter(|_| flown.emergency.is_none());
     Some(Problem::warning("altitude-missed", message).of(&last.waypoint.leg).perhaps_fixed_by(fix))
 }

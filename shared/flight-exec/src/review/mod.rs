@@ -52,8 +52,7 @@ use alternates::Origin;
 use emergency_coverage::EmergencyCoverage;
 pub use extremes::{MAX_TRIALS, review_extremes};
 use flight_plan::{
-    Altitude, AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value,
-    Variables,
+    AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value, Variables,
 };
 use flights::Flights;
 pub use foresight::foresee;
@@ -191,11 +190,14 @@ impl View<'_> {
         self.program.leg(leg).is_some_and(|leg| matches!(leg.kind, LegKind::Iterative { .. }))
     }
 
-    /// Another altitude for a leg that the plan has as it is written (not only by a call).
-    fn relevelled(&self, leg: &Id, amsl_m: f64) -> Option<Edit> {
-        self.program.plan.leg(leg)?;
-        let altitude = Altitude { metres: Value::Constant(amsl_m), reference: AltitudeReference::Amsl };
-        Some(Edit::SetAltitude { of: leg.clone(), altitude: Some(altitude) })
+    /// Another altitude for a leg that the plan has as it is written (not only by a call): `by_m` above the one that leads to
+    /// `wanted_amsl_m` now, counted from what that one counts from.
+    fn relevelled(&self, leg: &Id, wanted_amsl_m: f64, by_m: f64) -> Option<Edit> {
+        let (metres, reference) = match self.program.plan.leg(leg)?.altitude() {
+            Some(written) => (self.number(&written.metres)?, written.reference),
+            None => (wanted_amsl_m, AltitudeReference::Amsl),
+        };
+        Some(Edit::relevel(leg, metres, reference, by_m))
     }
 
     /// Points of the flights of the main plan, so many seconds apart.

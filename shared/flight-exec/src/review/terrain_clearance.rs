@@ -61,7 +61,7 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
     let margin_m = view.conditions.margins.terrain_m;
     let (lat, lon) = (point.position.lat_deg, point.position.lon_deg);
     let raise_m = margin_m - clearance_m;
-    let fix = view.relevelled(leg, (wanted_amsl_m + raise_m).ceil());
+    let fix = view.relevelled(leg, wanted_amsl_m, raise_m);
     if clearance_m < 0.0 {
         let message = if known {
             format!("raise this leg by {raise_m:.0} m: it goes into the ground at {lat:.5}, {lon:.5}")

@@ -1,7 +1,7 @@
 //! `above-ceiling`: higher than the aircraft flies; `no-altitude`: nothing says how high a leg is flown.
 
 use super::Inspection;
-use super::remedy::level;
+use super::remedy::relevelled;
 use super::step::Step;
 use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
 
@@ -11,7 +11,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         let at =
             stage.runway.as_ref().and_then(|id| view.runways.get(id).copied()).or(home).map(|r| r.threshold);
         let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at));
-        ceiling(view, amsl_m, &stage.id, problems);
+        ceiling(view, amsl_m, (&stage.id, stage.altitude.as_ref()), problems);
     }
     // legs in document order: the first one is the main plan's first, if that has any
     view.steps().first().into_iter().for_each(|step| unknown(view, step, problems));
@@ -19,7 +19,8 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 
 /// That of a leg itself.
 pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
-    ceiling(view, own_altitude_m(view, step), &step.leg.id, problems);
+    let leg = &step.leg;
+    ceiling(view, own_altitude_m(view, step), (&leg.id, leg.altitude.as_ref()), problems);
 }
 
 /// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
@@ -32,14 +33,19 @@ fn own_altitude_m(view: &Inspection, step: &Step) -> Option<f64> {
     }
 }
 
-fn ceiling(view: &Inspection, amsl_m: Option<f64>, of: &Id, problems: &mut Vec<Problem>) {
+fn ceiling(
+    view: &Inspection,
+    amsl_m: Option<f64>,
+    (of, written): (&Id, Option<&Altitude>),
+    problems: &mut Vec<Problem>,
+) {
     let ceiling_m = view.profile.ceiling_amsl_m;
     if let Some(amsl_m) = amsl_m.filter(|m| *m > ceiling_m) {
         let message = format!(
             "lower the altitude to {ceiling_m:.0} m AMSL or less: {amsl_m:.0} m is above the aircraft's ceiling"
         );
-        let fix = level(of, ceiling_m);
-        problems.push(Problem::error("above-ceiling", message).of(of).fixed_by(fix));
+        let fix = relevelled(view, of, written, amsl_m, ceiling_m - amsl_m);
+        problems.push(Problem::error("above-ceiling", message).of(of).perhaps_fixed_by(fix));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Inspection;
 use super::path::SHORTEST_M;
-use super::remedy::level;
+use super::remedy::relevelled;
 use super::step::Step;
 use crate::{Edit, IterativeForm, LegKind, Problem};
 
@@ -20,17 +20,16 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             rate_mps.abs()
         );
         let problem = Problem::error("too-steep", message).of(&step.leg.id);
-        problems.push(problem.perhaps_fixed_by(gentler(step, limit)));
+        problems.push(problem.perhaps_fixed_by(gentler(view, step, limit)));
     }
 }
 
-/// The altitude, to whole metres, that is reached at the end of the leg.
-fn gentler(step: &Step, limit_mps: f64) -> Option<Edit> {
+/// The altitude that is reached at the end of the leg.
+fn gentler(view: &Inspection, step: &Step, limit_mps: f64) -> Option<Edit> {
     let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
     let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
     let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
-    let whole_m = if to_m > from_m { reached_m.floor() } else { reached_m.ceil() };
-    Some(level(&step.leg.id, whole_m))
+    relevelled(view, &step.leg.id, step.altitude(), to_m, reached_m - to_m)
 }
 
 fn vertical_speed_mps(step: &Step) -> Option<f64> {

@@ -40,10 +40,20 @@ pub(super) fn speed_for_radius_mps(view: &Inspection, radius_m: f64) -> f64 {
     (radius_m / per_speed).max(0.0).sqrt()
 }
 
-/// An altitude above mean sea level for a leg or stage.
-pub(super) fn level(of: &Id, amsl_m: f64) -> Edit {
-    let altitude = Altitude { metres: Value::Constant(amsl_m), reference: AltitudeReference::Amsl };
-    Edit::SetAltitude { of: of.clone(), altitude: Some(altitude) }
+/// Another altitude for a leg or stage: the one that is written, `by_m` higher, in whole metres of what it counts from; where
+/// none is written, above mean sea level. `is_amsl_m`: where that leads.
+pub(super) fn relevelled(
+    view: &Inspection,
+    of: &Id,
+    written: Option<&Altitude>,
+    is_amsl_m: f64,
+    by_m: f64,
+) -> Option<Edit> {
+    let (metres, reference) = match written {
+        Some(written) => (view.number(&written.metres)?, written.reference),
+        None => (is_amsl_m, AltitudeReference::Amsl),
+    };
+    Some(Edit::relevel(of, metres, reference, by_m))
 }
 
 /// A direction as degrees true in 0..360; `None` if it is no number.

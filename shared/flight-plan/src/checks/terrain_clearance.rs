@@ -1,7 +1,7 @@
 //! `below-terrain`: a leg goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
 
 use super::Inspection;
-use super::remedy::level;
+use super::remedy::relevelled;
 use super::step::{Point, Step};
 use crate::{Edit, LegKind, Problem, StageKind};
 
@@ -48,7 +48,7 @@ fn is_high(view: &Inspection, step: &Step) -> Option<bool> {
 /// The leg raised at both ends by what it lacks, to whole metres.
 fn raised(view: &Inspection, step: &Step, clearance_m: f64) -> Option<Edit> {
     let lacks_m = MARGIN_M - clearance_m;
-    let lift = |of: &Step| Some(level(&of.leg.id, (of.end?.altitude_amsl_m? + lacks_m).ceil()));
+    let lift = |of: &Step| relevelled(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, lacks_m);
     let end = lift(step)?;
     let Some(before) = view.before(step) else { return Some(end) };
     let start = lift(before)?;
@@ -112,6 +112,25 @@ mod tests {
             );
             let code = if altitude_m < 300 { "below-terrain" } else { "low-clearance" };
             fixed(&plan_with(&low), code);
+        }
+    }
+
+    /// The ground and the runway are at 300 m.
+    #[test]
+    fn a_remedy_counts_from_what_the_altitude_counted_from() {
+        for (reference, low_m, raised_m) in
+            [("amsl", "320.5", 350.0), ("agl", "20.5", 50.0), ("home", "20", 50.0)]
+        {
+            let leg = |id: &str, fix: &str, kind: &str| {
+                format!(
+                    r#"<{kind} id="{id}" fix="{fix}" altitude="{low_m}" altitudeReference="{reference}"/>"#
+                )
+            };
+            let plan = plan_with(&format!("{}{}", leg("a", "A", "IF"), leg("b", "B", "TF")));
+            let repaired = fixed(&plan, "low-clearance");
+            let altitude = repaired.leg(&"a".into()).unwrap().leg.altitude.clone().unwrap();
+            let said = (altitude.reference.name(), altitude.metres);
+            assert_eq!(said, (reference, crate::Value::Constant(raised_m)));
         }
     }
 }

@@ -72,14 +72,15 @@ pub fn fixed_legs(cases: &[(&str, &str)]) {
     }
 }
 
-/// A document has a problem with this code, and the edit that it offers removes it.
-pub fn fixed(document: &str, code: &str) {
+/// A document has a problem with this code, and the edit that it offers removes it; gives what it makes of it.
+pub fn fixed(document: &str, code: &str) -> FlightPlan {
     let plan = read(document).plan;
     let problem = with_code(&plan, code).unwrap_or_else(|| panic!("no {code}: {document}"));
     let fix = problem.fix.clone().unwrap_or_else(|| panic!("no edit offered: {problem}"));
     let repaired = fix.apply(&plan).unwrap_or_else(|error| panic!("{error}: {fix:?}"));
     let again = with_code(&repaired, code).filter(|again| again.subject == problem.subject);
     assert_eq!(again, None, "{fix:?} of {document}");
+    repaired
 }
 
 fn with_code(plan: &FlightPlan, code: &str) -> Option<Problem> {
