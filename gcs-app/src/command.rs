@@ -131,6 +131,8 @@ pub enum Replacement {
 pub enum ViewCommand {
     /// Select something, or nothing.
     Select(Option<Selection>),
+    /// Point out something (a leg, a stage) without selecting it, or nothing any more.
+    PointOut(Option<Id>),
     /// Add a leg to those that are selected, or take it out.
     Toggle(Id),
     /// Select every leg from the selected one to this one.

@@ -168,6 +168,7 @@ impl App {
     fn change_view(&mut self, command: ViewCommand, now_s: f64) {
         match command {
             ViewCommand::Select(selection) => self.view.select(selection),
+            ViewCommand::PointOut(what) => self.view.pointed = what,
             ViewCommand::Toggle(leg) => self.view.toggle(leg),
             ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
             ViewCommand::JumpTo(selection) => self.jump_to(selection),

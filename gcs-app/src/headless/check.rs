@@ -4,7 +4,7 @@ use super::source::Loaded;
 use super::{Source, foreign, progress};
 use crate::say;
 use flight_exec::Conditions;
-use flight_plan::{Edit, FlightPlan, Problem};
+use flight_plan::{Edit, FlightPlan, Problem, Verdict};
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
@@ -61,22 +61,10 @@ fn reviewed(loaded: &Loaded, conditions: Conditions) -> Vec<Problem> {
     })
 }
 
-/// Prints problems for people, and how many there are.
+/// Prints problems for people, and what they come to.
 fn print(file: &Path, problems: &[Problem]) -> std::io::Result<()> {
     problems.iter().try_for_each(|problem| say!("{}", line(file, problem)))?;
-    let errors = problems.iter().filter(|p| p.is_error()).count();
-    match (errors, problems.len() - errors) {
-        (0, 0) => say!("{}: good, no problems", file.display()),
-        (0, warnings) => say!("{}: may be flown; {}", file.display(), counted(warnings, "warning")),
-        (errors, warnings) => {
-            let (errors, warnings) = (counted(errors, "error"), counted(warnings, "warning"));
-            say!("{}: must not be flown; {errors}, {warnings}", file.display())
-        }
-    }
-}
-
-fn counted(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+    say!("{}: {}", file.display(), Verdict::of(problems))
 }
 
 /// A problem as one line.
@@ -118,6 +106,7 @@ fn document(file: &Path, plan: &FlightPlan, problems: &[Problem], notes: &[Note]
                 "code": p.code,
                 "severity": p.severity,
                 "subject": p.subject,
+                "zone": p.zone,
                 "line": p.location.map(|l| l.line),
                 "column": p.location.map(|l| l.column),
                 "message": p.message,

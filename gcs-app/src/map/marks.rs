@@ -9,8 +9,9 @@ use crate::theme::Palette;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
-use flight_plan::{Cause, FlightPlan, Problem};
+use flight_plan::{Cause, FlightPlan, Id, Problem};
 use geometry::LatLon;
+use std::collections::HashSet;
 
 /// Longest text beside a mark, characters.
 const LONGEST: usize = 70;
@@ -21,14 +22,27 @@ pub fn first_error<'a>(scene: &Scene<'a>) -> Option<&'a Problem> {
     scene.problems().find(|problem| problem.is_error())
 }
 
-/// A cross where the path ends too early, and one where the plan is wrong. `error_at`: where that is.
+/// Most crosses at places of legs in error.
+const MOST: usize = 50;
+
+/// The errors of what the path, as it is drawn, does not come to: where it does, it is red itself.
+pub fn off_path<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Problem> {
+    let (forecast, mut seen) = (scene.forecast(), HashSet::new());
+    let is_flown =
+        |id: &Id| forecast.passages.iter().any(|passage| passage.leg == *id || passage.stage == *id);
+    let errors = scene.problems().filter(|problem| problem.is_error());
+    errors.filter(move |p| p.subject.as_ref().is_some_and(|id| seen.insert(id) && !is_flown(id))).take(MOST)
+}
+
+/// A cross where the path ends too early, and one where the plan is wrong. `error_at`: where that is; `others`: where else.
 pub fn draw_failures(
     painter: &Painter,
     view: &View,
     scene: &Scene<'_>,
-    error_at: Option<LatLon>,
+    (error_at, others): (Option<LatLon>, &[LatLon]),
     p: &Palette,
 ) {
+    others.iter().for_each(|at| cross(painter, view.place(*at), p.warning, p));
     let end = scene.forecast().points.last().zip(scene.forecast().cut_short.as_ref());
     if let Some((end, why)) = end.filter(|_| scene.analysis.no_forecast.is_none()) {
         failure(painter, view.place(end.position), why, p);
@@ -39,10 +53,9 @@ pub fn draw_failures(
     }
 }
 
-/// Where the first error is, as something that can be found on the map.
-pub fn selection_of_error(scene: &Scene<'_>) -> Option<crate::command::Selection> {
-    let subject = first_error(scene)?.subject.as_ref()?;
-    problems::find(scene.document.plan(), subject)
+/// Where a problem is, as something that can be found on the map.
+pub fn selection_of(problem: &Problem, scene: &Scene<'_>) -> Option<crate::command::Selection> {
+    problems::find(scene.document.plan(), problem.subject.as_ref()?)
 }
 
 fn failure(painter: &Painter, at: Pos2, why: &str, p: &Palette) {

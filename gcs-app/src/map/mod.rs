@@ -267,9 +267,10 @@ impl MapState {
         path::draw_decision(&painter, view, scene, p);
         plan::draw_runways(&painter, view, scene.document.plan(), p);
         marks::draw_diversion(&painter, view, scene, p);
-        let error_at =
-            marks::selection_of_error(scene).and_then(|s| self.place_of(&s, scene.document.plan()));
-        marks::draw_failures(&painter, view, scene, error_at, p);
+        let place = |problem| self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan());
+        let error_at = marks::first_error(scene).and_then(place);
+        let others: Vec<LatLon> = marks::off_path(scene).filter_map(place).collect();
+        marks::draw_failures(&painter, view, scene, (error_at, &others), p);
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };

@@ -45,7 +45,9 @@ impl Layer {
             }
             _ => polyline::draw(painter, parts, Stroke::new(2.0, colour(scene, p)), style, p.halo),
         }
-        highlight_selection(painter, view, scene, p);
+        let faulty = scene.faulty();
+        highlight(painter, view, scene, (p.warning, p), |leg, _| faulty.contains(leg));
+        highlight(painter, view, scene, (p.text, p), |leg, stage| is_looked_at(scene, leg, stage));
         if view.points_per_metre() > WAYPOINTS_FROM {
             waypoints(painter, view, scene, p);
         }
@@ -63,18 +65,31 @@ fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &P
     polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
 }
 
-fn highlight_selection(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-    let selected = |leg: &Id, stage: &Id| match &scene.view.selection {
+/// Selected, or pointed out.
+fn is_looked_at(scene: &Scene<'_>, leg: &Id, stage: &Id) -> bool {
+    let pointed = scene.view.pointed.as_ref();
+    let selected = match &scene.view.selection {
         Some(Selection::Leg(id)) => id == leg || scene.view.also.contains(leg),
         Some(Selection::Stage(id)) => id == stage,
         _ => false,
     };
+    selected || pointed == Some(leg) || pointed == Some(stage)
+}
+
+/// A stronger line along passages of some legs (and their stages).
+fn highlight(
+    painter: &Painter,
+    view: &View,
+    scene: &Scene<'_>,
+    (colour, p): (Color32, &Palette),
+    wanted: impl Fn(&Id, &Id) -> bool,
+) {
     let forecast = scene.forecast();
-    for passage in forecast.passages.iter().filter(|passage| selected(&passage.leg, &passage.stage)) {
+    for passage in forecast.passages.iter().filter(|passage| wanted(&passage.leg, &passage.stage)) {
         let line: Vec<Mercator> =
             forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
         let parts = polyline::visible_parts(&line, view);
-        polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Solid, p.halo);
+        polyline::draw(painter, &parts, Stroke::new(3.2, colour), Style::Solid, p.halo);
     }
 }
 

@@ -16,13 +16,23 @@ use std::convert::Infallible;
 
 /// Every zone of the plan.
 pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    let faulty = scene.faulty();
     for zone in &scene.document.plan().zones {
         let selected = matches!(&scene.view.selection, Some(Selection::Zone(id)) if *id == zone.id);
-        draw_zone(painter, view, zone, selected, scene.units(), p);
+        let colour = if faulty.contains(&zone.id) { p.warning } else { p.contingency };
+        draw_zone(painter, view, zone, (selected, colour), scene.units(), p);
     }
 }
 
-fn draw_zone(painter: &Painter, view: &View, zone: &Zone, selected: bool, units: Units, p: &Palette) {
+/// `colour`: red, where the path breaks it.
+fn draw_zone(
+    painter: &Painter,
+    view: &View,
+    zone: &Zone,
+    (selected, colour): (bool, Color32),
+    units: Units,
+    p: &Palette,
+) {
     let ring: Vec<Point> = chart::outline(zone).iter().map(|at| view.place(*at).into()).collect();
     let bounds = Rect::from_points(&ring.iter().map(|at| Pos2::from(*at)).collect::<Vec<_>>());
     if ring.len() < 3 || !bounds.intersects(view.rect) {
@@ -31,28 +41,28 @@ fn draw_zone(painter: &Painter, view: &View, zone: &Zone, selected: bool, units:
     chart::paint(
         &mut Screen { painter, view },
         &ring,
-        &style(zone.kind, selected, p),
+        &style(zone.kind, selected, colour, p),
         bounds.intersect(view.rect).into(),
     );
     let at = pos2(bounds.center().x, bounds.top() + 4.0);
     if view.is_near(at) && bounds.width() > 40.0 {
-        text::haloed(painter, at, Align2::CENTER_TOP, &label(zone, units), 11.5, p.contingency, p);
+        text::haloed(painter, at, Align2::CENTER_TOP, &label(zone, units), 11.5, colour, p);
     }
 }
 
 /// A line on the map and the colour of its halo.
 type Pen = (Stroke, Color32);
 
-fn style(kind: ZoneKind, selected: bool, p: &Palette) -> ZoneStyle<Pen, Infallible> {
+fn style(kind: ZoneKind, selected: bool, colour: Color32, p: &Palette) -> ZoneStyle<Pen, Infallible> {
     let width = if selected { 2.4 } else { 1.6 };
     let (hatching, outlines) = match kind {
         ZoneKind::KeepOut => {
-            let hatching = (Stroke::new(0.8, p.contingency), p.halo);
-            (Some(hatching), vec![(Stroke::new(width, p.contingency), p.halo)])
+            let hatching = (Stroke::new(0.8, colour), p.halo);
+            (Some(hatching), vec![(Stroke::new(width, colour), p.halo)])
         }
         ZoneKind::KeepIn => {
-            let outer = (Stroke::new(width + 3.0, p.contingency), p.halo);
-            (None, vec![outer, (Stroke::new(width + 0.6, p.halo), p.contingency)])
+            let outer = (Stroke::new(width + 3.0, colour), p.halo);
+            (None, vec![outer, (Stroke::new(width + 0.6, p.halo), colour)])
         }
     };
     ZoneStyle { fill: None, hatching, outlines }

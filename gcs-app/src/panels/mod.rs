@@ -57,7 +57,7 @@ use browse::Browsing;
 use egui::{RichText, Ui};
 use flight_exec::rehearse::WhatIf;
 use flight_plan::{Cause, FlightPlan, Id, Problem};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -165,6 +165,8 @@ pub struct ViewState {
     pub selection: Option<Selection>,
     /// Legs that are selected besides a leg.
     pub also: BTreeSet<Id>,
+    /// Whose problem the pointer is on.
+    pub pointed: Option<Id>,
     /// The dialog of the maps is open.
     pub maps: bool,
     /// What lies on the map's edge and over it.
@@ -322,6 +324,11 @@ impl<'a> Scene<'a> {
     /// What is wrong with the plan: first what reading it found, then what checking it found.
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {
         self.document.reading_problems().iter().chain(&self.analysis.problems)
+    }
+    /// What an error forbids to fly: legs and stages, and the zones that they come into conflict with.
+    pub fn faulty(&self) -> HashSet<&'a Id> {
+        let errors = self.problems().filter(|problem| problem.is_error());
+        errors.flat_map(|problem| problem.subject.iter().chain(&problem.zone)).collect()
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {

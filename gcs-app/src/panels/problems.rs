@@ -3,9 +3,8 @@
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
-use egui::text::LayoutJob;
-use egui::{FontId, RichText, ScrollArea, Sense, Ui};
-use flight_plan::{FlightPlan, Id, Problem};
+use egui::{FontId, RichText, ScrollArea, Sense, Shape, Ui, UiBuilder, vec2};
+use flight_plan::{FlightPlan, Id, Problem, Verdict};
 
 /// The panel.
 #[derive(Debug)]
@@ -25,7 +24,7 @@ impl Panel for Problems {
         format!("Problems ({})", scene.problems().count())
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
-        if scene.analysis.version != scene.document.version() || !scene.analysis.reviewed {
+        if !is_reviewed(scene) {
             ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The path is being reviewed");
         }
     }
@@ -34,67 +33,94 @@ impl Panel for Problems {
     }
 }
 
+/// Most problems that are listed: who has more mends the first ones first.
+const MOST: usize = 300;
+
 fn list(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let problems: Vec<&Problem> = scene.problems().collect();
-    let p = theme::of(ui);
-    // warnings are for people to weigh
-    if !problems.iter().any(|problem| problem.is_error()) {
-        ui.label(RichText::new("✔ This plan can be flown").color(p.good));
-    }
-    if problems.is_empty() {
-        return;
-    }
-    // two lines each, and more where there is room
-    let height = (ui.available_height() / problems.len() as f32).clamp(44.0, 110.0).floor();
-    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show_rows(
-        ui,
-        height,
-        problems.len(),
-        |ui, rows| {
-            for problem in problems.get(rows).unwrap_or_default() {
-                row(ui, scene, problem, height, queue);
+    let mut problems: Vec<&Problem> = scene.problems().collect();
+    problems.sort_by_key(|problem| problem.rank());
+    verdict(ui, scene, &problems);
+    let mut pointed = None;
+    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
+        for (number, problem) in problems.iter().take(MOST).enumerate() {
+            if row(ui, scene, number, problem, queue) {
+                pointed.clone_from(&problem.subject);
             }
-        },
-    );
+        }
+        if let Some(more) = problems.len().checked_sub(MOST).filter(|more| *more > 0) {
+            ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
+        }
+    });
+    if scene.view.pointed != pointed {
+        queue.view(ViewCommand::PointOut(pointed));
+    }
 }
 
-fn row(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem, height: f32, queue: &mut Queue) {
+/// Whether the plan can be flown: green only if nothing at all is to be considered first.
+fn verdict(ui: &mut Ui, scene: &Scene<'_>, problems: &[&Problem]) {
+    let p = theme::of(ui);
+    let found = Verdict::of(problems.iter().copied());
+    let (text, colour) = match found {
+        Verdict { errors: 0, warnings: 0 } if !is_reviewed(scene) => {
+            ("Is being reviewed…".to_owned(), p.weak)
+        }
+        Verdict { errors: 0, warnings: 0 } => ("✔ This plan can be flown".to_owned(), p.good),
+        Verdict { errors: 0, .. } => (format!("⚠ This plan {found}"), p.caution),
+        _ => (format!("✖ This plan {found}"), p.warning),
+    };
+    ui.label(RichText::new(text).color(colour));
+}
+
+fn is_reviewed(scene: &Scene<'_>) -> bool {
+    scene.analysis.version == scene.document.version() && scene.analysis.reviewed
+}
+
+/// Whether the pointer is on it.
+fn row(ui: &mut Ui, scene: &Scene<'_>, number: usize, problem: &Problem, queue: &mut Queue) -> bool {
+    let p = theme::of(ui);
+    let message = told(scene.document.plan(), problem);
+    let selection = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id));
+    let is_selected = selection.as_ref().is_some_and(|selection| scene.is_selected(selection));
+    let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
+    let shown = ui.scope_builder(whole, |ui| {
+        let background = ui.painter().add(Shape::Noop);
+        inside(ui, problem, &message, queue);
+        let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
+        if is_selected || ui.response().hovered() {
+            let colour = p.line.gamma_multiply(if is_selected { 1.0 } else { 0.6 });
+            ui.painter().set(background, Shape::rect_filled(rect, 4.0, colour));
+        }
+    });
+    let name = format!("Problem: {message}");
+    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let response = shown.response.on_hover_text(problem.code);
+    if response.clicked()
+        && let Some(selection) = selection
+    {
+        queue.view(ViewCommand::JumpTo(selection));
+    }
+    response.hovered()
+}
+
+/// Its symbol, its remedy, and all of its text.
+fn inside(ui: &mut Ui, problem: &Problem, message: &str, queue: &mut Queue) {
     let p = theme::of(ui);
     let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
-    let size = egui::vec2(ui.available_width(), height);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let message = told(scene.document.plan(), problem);
-    let name = format!("Problem: {message}");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    if response.hovered() {
-        ui.painter().rect_filled(rect, 4.0, p.line.gamma_multiply(0.6));
-    }
-    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink2(egui::vec2(4.0, 2.0))));
-    inside.horizontal_top(|ui| {
+    ui.horizontal_top(|ui| {
+        ui.add_space(4.0);
         ui.label(RichText::new(symbol).color(colour));
-        let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
         if let Some(fix) = &problem.fix
             && ui.small_button("Fix").on_hover_text("Make the edit that removes this problem").clicked()
         {
             queue.edit((**fix).clone());
         }
-        // what has no room stands in the tooltip
-        let mut job = LayoutJob::simple(
-            format!("{message}{place}"),
-            FontId::proportional(12.0),
-            p.text,
-            ui.available_width(),
-        );
-        job.wrap.max_rows = (height / 15.0) as usize;
-        let text = ui.painter().layout_job(job);
-        ui.painter().galley(ui.cursor().min, text, p.text);
+        let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
+        let width = (ui.available_width() - 4.0).max(60.0);
+        let text = format!("{message}{place}");
+        let text = ui.painter().layout(text, FontId::proportional(12.0), p.text, width);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, text.size().y), Sense::hover());
+        ui.painter().galley(rect.min, text, p.text);
     });
-    let response = response.on_hover_text(format!("{}\n{message}", problem.code));
-    if response.clicked()
-        && let Some(selection) = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id))
-    {
-        queue.view(ViewCommand::JumpTo(selection));
-    }
 }
 
 /// Whose problem it is, and what; by names, where the plan has names.

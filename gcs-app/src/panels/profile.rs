@@ -258,9 +258,11 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
             painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), Stroke::new(2.6, colour)));
         }
     };
+    scene.faulty().into_iter().for_each(|leg| highlighted(leg, p.warning));
     if let Some(crate::command::Selection::Leg(leg)) = &scene.view.selection {
         highlighted(leg, p.text);
     }
+    scene.view.pointed.iter().for_each(|leg| highlighted(leg, p.text));
     if let (Some(leg), true) = (scene.vehicle.current_leg(), scene.vehicle.is_airborne()) {
         highlighted(leg, p.active);
     }

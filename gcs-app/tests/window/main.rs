@@ -28,6 +28,7 @@ mod pasting;
 mod placing;
 mod planning;
 mod pointing;
+mod problems;
 mod reach;
 mod reading;
 mod recovering;

@@ -225,9 +225,27 @@ fn what_cannot_be_flown_is_said_while_it_is_drawn() {
     window.harness.hover_at(at + vec2(90.0, 40.0));
     window.steps(2);
     assert!(window.shows("Next leg: ") && !window.shows("can't be flown"));
-    window.harness.hover_at(at + vec2(1.0, 0.0));
+    // an arc so small that the aircraft can't turn
+    super::drawing::choose(&mut window, "Kind: ", "RF arc to a fix");
+    window.harness.hover_at(at + vec2(14.0, 14.0));
     window.steps(2);
     assert!(window.shows("can't be flown"));
+}
+
+#[test]
+fn a_pointer_at_rest_is_no_leg_and_no_circle() {
+    let mut window = window();
+    window.click("TF side4");
+    window.press(Key::T);
+    let at = window.centre("Map") + vec2(60.0, 60.0);
+    window.click_at(at);
+    window.until_analysed();
+    window.steps(2);
+    assert!(window.shows("click where to fly next") && !window.shows("can't be flown"));
+    window.press(Key::Escape);
+    window.press(Key::O);
+    window.click_at(at + vec2(-90.0, 40.0));
+    assert!(window.shows("click the rim") && !window.shows("can't be flown"));
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub use expression::{Env, EvalError, Expression, FlightState};
 pub use history::History;
 pub use legible::legible;
 pub use model::*;
-pub use problem::{Location, Problem, Severity};
+pub use problem::{Location, Problem, Severity, Verdict};
 pub use procedure::instantiate;
 pub use program::{LegPath, Program, compile, compile_again, compile_document, compile_reading};
 pub use uses::{Part, Use};

@@ -13,6 +13,54 @@ pub enum Severity {
     Error,
 }
 
+/// Warnings that stand before others, the gravest first: how the flight ends, what becomes of it after a failure, and what
+/// was not looked at.
+const GRAVE: [&str; 6] = [
+    "no-landing",
+    "glide-out-of-reach",
+    "glide-into-terrain",
+    "no-emergency-plan",
+    "low-clearance",
+    "not-reviewed",
+];
+
+/// What the problems of a plan come to, in the same words everywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Verdict {
+    /// Problems that forbid flying.
+    pub errors: usize,
+    /// Problems that a person should consider.
+    pub warnings: usize,
+}
+
+impl Verdict {
+    /// Of these problems.
+    pub fn of<'a>(problems: impl IntoIterator<Item = &'a Problem>) -> Self {
+        let (mut errors, mut all) = (0, 0);
+        for problem in problems {
+            errors += usize::from(problem.is_error());
+            all += 1;
+        }
+        Self { errors, warnings: all - errors }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    /// `can be flown, 2 warnings`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let counted =
+            |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+        match (self.errors, self.warnings) {
+            (0, 0) => f.write_str("can be flown, no problems"),
+            (0, warnings) => write!(f, "can be flown, {}", counted(warnings, "warning")),
+            (errors, 0) => write!(f, "can't be flown, {}", counted(errors, "error")),
+            (errors, warnings) => {
+                write!(f, "can't be flown, {}, {}", counted(errors, "error"), counted(warnings, "warning"))
+            }
+        }
+    }
+}
+
 /// A place in a document, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Location {
@@ -37,6 +85,8 @@ pub struct Problem {
     pub severity: Severity,
     /// Whose problem: a leg, stage, fix, runway, variable or emergency plan.
     pub subject: Option<Id>,
+    /// A zone that the subject comes into conflict with.
+    pub zone: Option<Id>,
     /// Where in the document, if the plan was read from one.
     pub location: Option<Location>,
     /// For people; says what to do.
@@ -52,6 +102,7 @@ impl Problem {
             code,
             severity: Severity::Error,
             subject: None,
+            zone: None,
             location: None,
             message: legible(&message.into()).into_owned(),
             fix: None,
@@ -66,6 +117,11 @@ impl Problem {
     /// The same problem, of this subject.
     pub fn of(self, subject: &Id) -> Self {
         Self { subject: Some(subject.clone()), ..self }
+    }
+
+    /// The same problem, with this zone.
+    pub fn with_zone(self, zone: &Id) -> Self {
+        Self { zone: Some(zone.clone()), ..self }
     }
 
     /// The same problem, at this place of the document.
@@ -86,6 +142,12 @@ impl Problem {
         }
     }
 
+    /// Its place in a list for people: what forbids flying, then the gravest warnings.
+    pub fn rank(&self) -> (bool, usize) {
+        let grave = GRAVE.iter().position(|code| *code == self.code);
+        (!self.is_error(), grave.unwrap_or(GRAVE.len()))
+    }
+
     /// Forbids flying.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
@@ -104,5 +166,35 @@ impl std::fmt::Display for Problem {
             write!(f, "{}: ", legible(subject.as_str()))?;
         }
         f.write_str(&self.message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_verdict_says_what_there_is() {
+        let (error, warning) = (Problem::error("a", "a"), Problem::warning("b", "b"));
+        for (problems, said) in [
+            (vec![], "can be flown, no problems"),
+            (vec![&warning], "can be flown, 1 warning"),
+            (vec![&warning, &error, &error], "can't be flown, 2 errors, 1 warning"),
+            (vec![&error], "can't be flown, 1 error"),
+        ] {
+            assert_eq!(Verdict::of(problems).to_string(), said);
+        }
+    }
+
+    #[test]
+    fn errors_stand_before_warnings_and_the_end_of_the_flight_before_the_rest() {
+        let mut problems = [
+            Problem::warning("too-slow", ""),
+            Problem::warning("not-reviewed", ""),
+            Problem::warning("no-landing", ""),
+            Problem::error("keep-out", ""),
+        ];
+        problems.sort_by_key(Problem::rank);
+        assert_eq!(problems.map(|p| p.code), ["keep-out", "no-landing", "not-reviewed", "too-slow"]);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Canvas;
 use super::snap::{self, snap};
+use super::trial::is_at_rest;
 use crate::map::polyline::{self, Style};
 use crate::map::text;
 use crate::map::view::Mercator;
@@ -55,6 +56,8 @@ pub struct Pen {
     figure: Figure,
     marks: Vec<Mark>,
     pointer: Option<Mark>,
+    /// The pointer has not left the last place.
+    rests: bool,
     /// What is wrong with it as it is.
     fault: Option<&'static str>,
 }
@@ -62,7 +65,7 @@ pub struct Pen {
 impl Pen {
     /// With nothing drawn yet.
     pub fn new(figure: Figure) -> Self {
-        Self { figure, marks: Vec::new(), pointer: None, fault: None }
+        Self { figure, marks: Vec::new(), pointer: None, rests: false, fault: None }
     }
 
     /// What it draws.
@@ -85,6 +88,8 @@ impl Pen {
     /// Follows the pointer.
     pub fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
         self.pointer = at.map(|at| snap(at, canvas)).filter(|mark| mark.at.is_valid());
+        let step = self.marks.last().zip(self.pointer.as_ref());
+        self.rests = step.is_some_and(|(last, pointer)| is_at_rest(last.at, pointer.at, canvas));
         let ring: Vec<Pos2> = self.places().map(|at| canvas.view.place(at)).collect();
         self.fault = (self.figure == Figure::Ring && crosses_itself(&ring)).then_some(CROSSES);
     }
@@ -160,7 +165,8 @@ impl Pen {
 
     /// The figure as it would be if the pointer clicked now and it ended; `None`: it is not whole, or can't be.
     pub fn so_far(&self) -> Option<Vec<Mark>> {
-        let marks = self.begun();
+        let pointer = self.pointer.iter().filter(|_| !self.rests);
+        let marks: Vec<Mark> = self.marks.iter().chain(pointer).cloned().collect();
         (!self.marks.is_empty() && marks.len() >= self.least() && self.fault.is_none()).then_some(marks)
     }
 

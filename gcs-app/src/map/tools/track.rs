@@ -4,7 +4,7 @@ use super::bands::{self, Band};
 use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
 use super::pen::{Mark, way};
 use super::snap::{self, snap};
-use super::trial::{Trial, Trials};
+use super::trial::{self, Trial, Trials};
 use super::{Canvas, Card, Tool, Touch};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::map::polyline::{self, Style};
@@ -88,7 +88,9 @@ impl Tool for Track {
             }
             (false, _) => match (&self.pointer, self.approach) {
                 (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
-                _ => "Draw legs: Backspace takes the last back, Enter ends it.".into(),
+                _ => {
+                    "Draw legs: click where to fly next. Backspace takes the last back, Enter ends it.".into()
+                }
             },
         })
     }
@@ -109,6 +111,12 @@ impl Tool for Track {
         }
         let aim = self.aim(canvas.scene);
         self.approach = aim.as_ref().and_then(|aim| new_leg::approach(canvas, aim));
+        if let Some((to, at)) = self.pointer.as_ref().zip(self.approach)
+            && leads_there(self.choice)
+            && trial::is_at_rest(at.from, to.at, canvas)
+        {
+            self.pointer = None;
+        }
         self.bands = aim.as_ref().map_or(Vec::new(), |aim| bands::behind(canvas, aim));
         let Some((aim, to)) = aim.zip(self.pointer.as_ref()) else { return self.trials.clear() };
         let drawn = Drawn::Place(to.place.clone());
@@ -189,6 +197,11 @@ impl Tool for Track {
             p,
         );
     }
+}
+
+/// A leg of this kind leads from place to place; others stay at one.
+fn leads_there(choice: LegChoice) -> bool {
+    matches!(choice, LegChoice::If | LegChoice::Tf | LegChoice::Df | LegChoice::Rf | LegChoice::Cf)
 }
 
 /// The line of a leg of a kind to a place; `None`: it can't lead there.

@@ -22,6 +22,14 @@ const MOST_WAYPOINTS: usize = 2000;
 /// Above the ground where the plan says nothing, metres.
 const HEIGHT_M: f64 = 150.0;
 
+/// Where the pointer is so near to where something begins, it has not left it yet, screen points.
+const AT_REST: f32 = 4.0;
+
+/// The pointer has not left a place: what would be drawn from there has no length, and nothing is to be said of it.
+pub fn is_at_rest(from: LatLon, to: LatLon, canvas: &Canvas<'_>) -> bool {
+    canvas.view.place(from).distance(canvas.view.place(to)) < AT_REST
+}
+
 /// A leg as it would be flown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trial {

@@ -108,12 +108,16 @@ impl Found<'_> {
         let zone = &self.zone.id;
         let place = format!("at {lat:.5}, {lon:.5}");
         let (code, what) = match self.zone.kind {
-            ZoneKind::KeepOut => (
-                "keep-out",
-                format!(
-                    "move this leg by {horizontal_m} m or change its altitude: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
-                ),
-            ),
+            ZoneKind::KeepOut => {
+                // above or below a zone that has no limits there is no way
+                let remedy = if self.breach.vertical_m.is_finite() { " or change its altitude" } else { "" };
+                (
+                    "keep-out",
+                    format!(
+                        "move this leg by {horizontal_m} m{remedy}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
+                    ),
+                )
+            }
             ZoneKind::KeepIn if self.breach.horizontal_m > 0.0 => {
                 ("keep-in", format!("move this leg by {horizontal_m} m: it leaves the zone `{zone}` {place}"))
             }
@@ -131,8 +135,8 @@ impl Found<'_> {
         };
         if self.perhaps {
             let message = format!("{what} if the flight comes there when the zone is active");
-            return Problem::warning(code, message).of(self.leg);
+            return Problem::warning(code, message).of(self.leg).with_zone(zone);
         }
-        Problem::error(code, format!("{what}{timeless}")).of(self.leg)
+        Problem::error(code, format!("{what}{timeless}")).of(self.leg).with_zone(zone)
     }
 }

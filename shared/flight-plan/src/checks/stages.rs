@@ -1,5 +1,5 @@
 //! `take-off-incomplete`, `land-incomplete`: a runway or altitude is missing, or the climb-out ends no higher than it
-//! begins; `stage-order`: take-off is not first or
+//! begins; `no-landing`: the flight ends in the air; `stage-order`: take-off is not first or
 //! landing not last; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
 
 use super::Inspection;
@@ -10,6 +10,7 @@ const CLIMB_OUT_M: f64 = 100.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
+    problems.extend(no_landing(&plan.stages));
     let main = std::iter::once((&plan.stages, None));
     let lists = main.chain(plan.emergency_plans.iter().map(|e| (&e.stages, Some(&e.runway))));
     for (stages, landing) in lists {
@@ -26,6 +27,14 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
             }
         }
     }
+}
+
+/// Of a plan that has something to fly.
+fn no_landing(stages: &[Stage]) -> Option<Problem> {
+    let last = stages.last().filter(|last| last.kind != StageKind::Land)?;
+    let flies = stages.iter().any(|stage| !stage.legs.is_empty() || stage.kind == StageKind::TakeOff);
+    let message = "add a land stage at the end: without one the flight does not end on the ground, the aircraft circles at its last place until somebody acts";
+    flies.then(|| Problem::warning("no-landing", message).of(&last.id))
 }
 
 /// `landing`: the runway of the emergency plan that the stage is in.
@@ -110,6 +119,13 @@ mod tests {
                 codes(&document(stages)).into_iter().filter(|c| *c != "no-altitude").collect();
             assert_eq!(found, expected, "{stages}");
         }
+    }
+
+    #[test]
+    fn a_flight_that_ends_in_the_air_is_told() {
+        let landing = r#"<stage id="land" type="land" runway="R"/>"#;
+        let plan = crate::checks::testing::plan_with(r#"<IF id="a" fix="A"/>"#);
+        assert_eq!(codes(&plan.replacen(landing, "", 1)), ["no-landing"]);
     }
 
     /// The runway is at 300 m.

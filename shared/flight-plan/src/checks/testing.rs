@@ -24,8 +24,12 @@ pub fn document(stages: &str) -> String {
     )
 }
 
-/// A plan with these variables, main plan stages and emergency plans.
+/// A plan with these variables, main plan stages and emergency plans; if there is no landing among the stages, with one behind them.
 pub fn document_with(variables: &str, stages: &str, emergency_plans: &str) -> String {
+    let landing = match stages.contains(r#"type="land""#) {
+        true => "",
+        false => r#"<stage id="landing" type="land" runway="R"/>"#,
+    };
     format!(
         r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
              <fixes>
@@ -34,7 +38,7 @@ pub fn document_with(variables: &str, stages: &str, emergency_plans: &str) -> St
              </fixes>
              <runways><runway id="R" lat="36.3" lon="-84.21" elevation="300" heading="90" length="500" priority="1"/></runways>
              <variables>{variables}</variables>
-             <mainPlan emergency="home">{stages}</mainPlan>
+             <mainPlan emergency="home">{stages}{landing}</mainPlan>
              <emergencyPlans>{emergency_plans}</emergencyPlans>
            </flightPlan>"#
     )
