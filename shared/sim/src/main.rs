@@ -14,7 +14,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "legwork-sim", version)]
 struct Options {
-    /// Which autopilot it behaves as: arduplane or px4.
+    /// Which autopilot it behaves as: arduplane, px4 or px4-vtol.
     #[arg(long, value_name = "AUTOPILOT", default_value_t = Personality::ArduPlane)]
     personality: Personality,
     /// Where it stands: latitude, longitude, elevation (m AMSL), heading (degrees true).

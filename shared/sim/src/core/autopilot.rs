@@ -1,6 +1,7 @@
-//! The autopilot around the aircraft: modes, arming, and (in `mission`) the mission being flown. Knows no
-//! message.
+//! The autopilot around the aircraft: modes, arming, (in `mission`) the mission being flown, and (in `manoeuvre`) what it
+//! flies in other modes. Knows no message.
 
+mod manoeuvre;
 mod mission;
 
 use super::item::{Datum, Item, Mission};
@@ -9,7 +10,7 @@ use super::params::{Params, Setting};
 use super::personality::Rules;
 use super::run::{Phase, Run};
 use aircraft::power::{demanded_power_w, glide_sink_mps};
-use aircraft::{Action, Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
+use aircraft::{Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
 use geometry::LatLon;
 
 /// Home: where it was switched on.
@@ -68,6 +69,8 @@ pub struct Autopilot {
     guidance: Guidance,
     speed_mps: Option<f64>,
     take_off_done: bool,
+    /// It is over its waypoint and circles there until the altitude is right.
+    circles_for_altitude: bool,
     standing_s: f64,
     demanded: Demand,
     notices: Vec<Notice>,
@@ -94,6 +97,7 @@ impl Autopilot {
             guidance: Guidance::new(profile),
             speed_mps: None,
             take_off_done: false,
+            circles_for_altitude: false,
             standing_s: 0.0,
             demanded: Demand::default(),
             notices: Vec::new(),
@@ -242,19 +246,6 @@ impl Autopilot {
         }
     }
 
-    /// Circles a point in a mode, at an altitude AMSL; radius negative: counter-clockwise, 0: the usual one.
-    pub fn circle(&mut self, mode: Mode, position: LatLon, altitude_amsl_m: f64, radius_m: f64) {
-        self.set_mode(mode);
-        let target = Target {
-            position,
-            altitude_amsl_m,
-            airspeed_mps: self.airspeed_mps(),
-            action: self.circle_action(radius_m),
-            fly_over: false,
-        };
-        self.guidance.direct(self.aircraft.state(), target);
-    }
-
     /// GUIDED: another altitude, m AMSL. False in any other mode.
     pub fn change_altitude(&mut self, altitude_amsl_m: f64) -> bool {
         match self.guidance.target().copied() {
@@ -329,31 +320,6 @@ impl Autopilot {
         guided
     }
 
-    fn take_off(&mut self) -> Demand {
-        if self.take_off_done {
-            return self.follow(None).demand;
-        }
-        let heading_deg = self.aircraft.state().heading_deg();
-        let climbing = matches!(self.guidance.target().map(|t| t.action), Some(Action::TakeOff { .. }));
-        if !climbing {
-            let altitude_amsl_m = self.home.altitude_amsl_m + self.params.setting(Setting::TakeOffHeight);
-            let action = Action::TakeOff { heading_deg };
-            let target = Target { altitude_amsl_m, action, ..self.loiter_here() };
-            self.guidance.direct(self.aircraft.state(), target);
-        }
-        let guided = self.follow(None);
-        if guided.reached {
-            self.take_off_done = true;
-            let target = self.loiter_here();
-            self.guidance.direct(self.aircraft.state(), target);
-            self.say(Severity::Info, "Takeoff complete");
-            if self.rules.holds_after_take_off {
-                self.set_mode(Mode::Loiter);
-            }
-        }
-        guided.demand
-    }
-
     /// On the ground, at rest, with nothing to start for: after a while the engine is made safe.
     fn disarm_when_landed(&mut self, dt_s: f64, demand: &Demand) {
         let s = self.aircraft.state();
@@ -376,64 +342,6 @@ impl Autopilot {
         match datum {
             Datum::Amsl => altitude_m,
             Datum::Home => self.home.altitude_amsl_m + altitude_m,
-        }
-    }
-
-    fn circle_action(&self, radius_m: f64) -> Action {
-        let own = self.params.setting(Setting::LoiterRadius);
-        Action::Loiter { radius_m: if radius_m == 0.0 { own } else { radius_m } }
-    }
-
-    fn loiter_here(&self) -> Target {
-        let s = self.aircraft.state();
-        Target {
-            position: s.position,
-            altitude_amsl_m: s.altitude_amsl_m,
-            airspeed_mps: self.airspeed_mps(),
-            action: self.circle_action(0.0),
-            fly_over: false,
-        }
-    }
-
-    /// Home, or the landing of the mission if there is one and it is the autopilot's way.
-    fn start_return(&mut self) {
-        match self.landing_start().filter(|_| self.rules.returns_to_land) {
-            Some(seq) => self.fly_item(seq, true),
-            None => {
-                let target = self.return_target();
-                self.guidance.direct(self.aircraft.state(), target);
-            }
-        }
-    }
-
-    fn return_target(&self) -> Target {
-        let height_m = self.params.setting(Setting::ReturnHeight);
-        let here = self.loiter_here();
-        let back_amsl_m = self.home.altitude_amsl_m + height_m;
-        let altitude_amsl_m = match () {
-            () if height_m < 0.0 => here.altitude_amsl_m,
-            () if self.rules.returns_to_land => back_amsl_m.max(here.altitude_amsl_m),
-            () => back_amsl_m,
-        };
-        Target {
-            position: self.home.position,
-            altitude_amsl_m,
-            action: self.circle_action(self.params.setting(Setting::ReturnRadius)),
-            ..here
-        }
-    }
-
-    /// Down on a gentle slope, straight ahead; the only ground known is home's.
-    fn land_here(&self) -> Target {
-        const RUN_PER_HEIGHT: f64 = 12.0;
-        let here = self.loiter_here();
-        let heading_deg = self.aircraft.state().track_deg();
-        let height_m = (here.altitude_amsl_m - self.home.altitude_amsl_m).max(10.0);
-        Target {
-            position: here.position.destination(heading_deg, RUN_PER_HEIGHT * height_m),
-            altitude_amsl_m: self.home.altitude_amsl_m,
-            action: Action::Land { heading_deg },
-            ..here
         }
     }
 }

@@ -123,8 +123,18 @@ impl Simulator {
     fn param_read(&mut self, peer: Peer, c: &PARAM_REQUEST_READ_DATA) {
         let by_name = || self.autopilot.params.index_of(c.param_id.to_str().unwrap_or_default());
         let index = usize::try_from(c.param_index).ok().or_else(by_name);
-        if let Some(index) = index {
-            self.send_param(peer, index);
+        match index {
+            Some(index) => self.send_param(peer, index),
+            None if self.rules.tells_unknown_params => {
+                let error = PARAM_ERROR_DATA {
+                    param_index: -1,
+                    param_id: c.param_id,
+                    error: MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
+                    ..PARAM_ERROR_DATA::DEFAULT
+                };
+                self.send(peer, &MavMessage::PARAM_ERROR(error));
+            }
+            None => {}
         }
     }
 

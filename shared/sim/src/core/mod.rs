@@ -9,6 +9,7 @@ pub mod item;
 pub mod mode;
 pub mod params;
 pub mod personality;
+mod replies;
 pub mod run;
 pub mod streams;
 pub mod telemetry;

@@ -1,9 +1,9 @@
 //! What the autopilot sends: one function a message.
 
 use super::autopilot::Autopilot;
-use super::item::{self, degrees_e7};
+use super::item::degrees_e7;
 use super::params::Setting;
-use crate::frame::{COMPONENT_ID, SYSTEM_ID, Sender};
+use crate::frame::{COMPONENT_ID, SYSTEM_ID};
 use aircraft::GRAVITY_MPS2;
 use mavlink::dialects::ardupilotmega::*;
 
@@ -26,6 +26,7 @@ pub fn message(a: &Autopilot, now_ns: u64, id: u32) -> Option<MavMessage> {
         168 => wind(a),
         87 => return position_target(a, now_ns),
         141 => altitude(a, now_ns),
+        291 => esc_status(a, now_ns),
         231 => wind_cov(a, now_ns),
         225 => efi_status(a),
         226 => rpm(a),
@@ -305,6 +306,17 @@ fn esc_telemetry(a: &Autopilot) -> MavMessage {
     })
 }
 
+fn esc_status(a: &Autopilot, now_ns: u64) -> MavMessage {
+    let (engine, battery) = (a.aircraft.engine(), a.aircraft.battery());
+    MavMessage::ESC_STATUS(ESC_STATUS_DATA {
+        time_usec: boot_us(now_ns),
+        rpm: [engine.rpm as i32, 0, 0, 0],
+        voltage: [battery.voltage_v as f32, 0.0, 0.0, 0.0],
+        current: [battery.current_a as f32, 0.0, 0.0, 0.0],
+        index: 0,
+    })
+}
+
 fn home_position(a: &Autopilot, now_ns: u64) -> MavMessage {
     MavMessage::HOME_POSITION(HOME_POSITION_DATA {
         latitude: degrees_e7(a.home.position.lat_deg),
@@ -364,38 +376,4 @@ pub fn item_reached(seq: u16) -> MavMessage {
 pub fn is_for_us(system: Option<u8>, component: Option<u8>) -> bool {
     system.is_none_or(|id| id == 0 || id == SYSTEM_ID)
         && component.is_none_or(|id| id == 0 || id == COMPONENT_ID)
-}
-
-/// A list of waypoints, not a fence nor rally points.
-pub fn is_mission(mission_type: MavMissionType) -> bool {
-    mission_type == MavMissionType::MAV_MISSION_TYPE_MISSION
-}
-
-/// `MISSION_ACK`.
-pub fn mission_ack(to: Sender, result: MavMissionResult, mission_type: MavMissionType) -> MavMessage {
-    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
-        target_system: to.system,
-        target_component: to.component,
-        mavtype: result,
-        mission_type,
-        ..MISSION_ACK_DATA::DEFAULT
-    })
-}
-
-/// `MISSION_COUNT`.
-pub fn mission_count(to: Sender, count: u16, mission_type: MavMissionType) -> MavMessage {
-    MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
-        count,
-        target_system: to.system,
-        target_component: to.component,
-        mission_type,
-        ..MISSION_COUNT_DATA::DEFAULT
-    })
-}
-
-/// An item for the one who asked for it, in the form that was asked for.
-pub fn mission_item(to: Sender, wire: MISSION_ITEM_INT_DATA, seq: u16, as_int: bool) -> MavMessage {
-    let (target_system, target_component) = (to.system, to.component);
-    let wire = MISSION_ITEM_INT_DATA { seq, target_system, target_component, ..wire };
-    if as_int { MavMessage::MISSION_ITEM_INT(wire) } else { MavMessage::MISSION_ITEM(item::to_float(&wire)) }
 }

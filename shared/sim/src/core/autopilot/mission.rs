@@ -3,9 +3,10 @@
 use super::{Autopilot, Severity};
 use crate::core::item::{Item, Kind};
 use crate::core::mode::Mode;
+use crate::core::params::Setting;
 use crate::core::personality::ListEnd;
 use crate::core::run::Phase;
-use aircraft::{Action, Demand, Target};
+use aircraft::{Action, Demand, Guided, Target};
 use geometry::LatLon;
 
 /// Items reached in one step at most: a list of points on one spot must not hold time up.
@@ -63,12 +64,33 @@ impl Autopilot {
             let next = next.map(|item| self.target(&item));
             let guided = self.follow(next);
             demand = guided.demand;
-            if !guided.reached || self.run.phase != Phase::Running {
+            if !self.is_reached(&guided) || self.run.phase != Phase::Running {
                 break;
             }
             self.item_reached();
         }
         demand
+    }
+
+    /// At the place of its item, and where that matters at its altitude: until then it circles there.
+    fn is_reached(&mut self, guided: &Guided) -> bool {
+        let wanted = self.params.find(Setting::AltitudeAcceptance).filter(|_| self.minds_altitude());
+        let is_high_enough = wanted.is_none_or(|m| guided.altitude_error_m.abs() <= m);
+        let is_there = guided.reached || self.circles_for_altitude;
+        if let (true, false, Some(Target { position, altitude_amsl_m, .. })) =
+            (guided.reached, is_high_enough, self.guidance.target().copied())
+        {
+            self.circles_for_altitude = true;
+            self.circle(self.mode, position, altitude_amsl_m, 0.0);
+        }
+        is_there && is_high_enough
+    }
+
+    /// Waypoints have an altitude to be reached, but not within a landing.
+    fn minds_altitude(&self) -> bool {
+        let marker = self.mission.items().iter().position(|i| i.kind == Kind::LandStart);
+        let lands = marker.is_some_and(|at| usize::from(self.run.current) > at + 1);
+        !lands && matches!(self.run.active, Some(Item { kind: Kind::Waypoint { .. }, .. }))
     }
 
     fn item_reached(&mut self) {
@@ -77,6 +99,8 @@ impl Autopilot {
         self.reached.push(seq);
         if landed {
             self.run.phase = Phase::Complete;
+            // a return that ended in the mission's landing was the mission in the end
+            self.mode = Mode::Auto;
             self.say(Severity::Info, format!("Landed at item {seq}"));
             return;
         }
@@ -107,6 +131,7 @@ impl Autopilot {
             return;
         }
         let target = self.target(&item);
+        self.circles_for_altitude = false;
         if direct {
             self.guidance.direct(self.aircraft.state(), target);
         } else {
@@ -117,8 +142,17 @@ impl Autopilot {
         }
     }
 
+    /// The speed that the mission has asked for before its current item.
+    pub fn mission_speed_mps(&self) -> Option<f64> {
+        let done = self.mission.items().iter().take(self.run.current.into());
+        done.rev().find_map(|item| match item.kind {
+            Kind::Speed { mps } => Some(mps),
+            _ => None,
+        })
+    }
+
     /// Where the landing of the mission begins: at its land start, or at the waypoint that leads to it.
-    pub(super) fn landing_start(&self) -> Option<u16> {
+    pub fn landing_start(&self) -> Option<u16> {
         let items = self.mission.items();
         let land = items.iter().position(|i| i.kind == Kind::Land)?;
         let marked = items.iter().take(land).position(|i| i.kind == Kind::LandStart);

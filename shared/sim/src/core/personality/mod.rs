@@ -27,15 +27,19 @@ pub enum Personality {
     ArduPlane,
     /// PX4, fixed wing.
     Px4,
+    /// PX4, a VTOL that is flown as a wing; it takes off and lands as one, too.
+    Px4Vtol,
 }
 
-const NAMES: [(Personality, &str); 2] = [(Personality::ArduPlane, "arduplane"), (Personality::Px4, "px4")];
+const NAMES: [(Personality, &str); 3] =
+    [(Personality::ArduPlane, "arduplane"), (Personality::Px4, "px4"), (Personality::Px4Vtol, "px4-vtol")];
 
 impl Personality {
     pub(super) fn behaviour(self) -> Box<dyn Behaviour> {
         match self {
             Personality::ArduPlane => Box::<arduplane::ArduPlane>::default(),
             Personality::Px4 => Box::<px4::Px4>::default(),
+            Personality::Px4Vtol => Box::new(px4::Px4::vtol()),
         }
     }
 
@@ -43,6 +47,7 @@ impl Personality {
         match self {
             Personality::ArduPlane => &arduplane::RULES,
             Personality::Px4 => &px4::RULES,
+            Personality::Px4Vtol => &px4::VTOL_RULES,
         }
     }
 }
@@ -58,7 +63,9 @@ impl FromStr for Personality {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = NAMES.iter().find(|(_, name)| *name == text).map(|(which, _)| *which);
-        known.ok_or_else(|| format!("{text:?} is no autopilot that is imitated; write arduplane or px4"))
+        known.ok_or_else(|| {
+            format!("{text:?} is no autopilot that is imitated; write arduplane, px4 or px4-vtol")
+        })
     }
 }
 
@@ -102,6 +109,8 @@ pub struct Rules {
     pub streams: &'static [Streamed],
     /// Old commands that ask for a certain message are known.
     pub knows_old_requests: bool,
+    /// It says so when it is asked for a parameter that it doesn't have.
+    pub tells_unknown_params: bool,
     /// Home is where it was armed, and after a flight where it stands.
     pub home_moves: bool,
     /// How a request for a message that it doesn't have is answered.

@@ -4,7 +4,6 @@ use super::*;
 use crate::core::item::Item;
 use crate::core::mode::Mode;
 use crate::core::personality::arduplane;
-use proptest::prelude::*;
 
 impl Ground {
     fn new(wind: Wind) -> Self {
@@ -470,24 +469,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     /// Hostile items and commands: nothing panics, the list stays within its size, the aircraft on Earth.
     #[test]
-    fn whatever_is_sent_it_stays_sane(
-        bytes in prop::collection::vec((any::<u16>(), prop::collection::vec(any::<u8>(), 0..60)), 1..60),
-    ) {
+    fn whatever_is_sent_it_stays_sane(bytes in hostile()) {
         let mut ground = Ground::new(Wind::CALM);
         ground.upload(&circuit(Config::default().home.position));
         ground.arm();
         ground.mode(Mode::Auto);
-        let ids = [11, 20, 21, 23, 37, 38, 39, 40, 41, 43, 44, 45, 47, 51, 66, 73, 75, 76, 86, 111];
-        for (pick, mut payload) in bytes {
-            let id = ids[usize::from(pick) % ids.len()];
-            payload.resize(60, 1);
-            let version = mavlink::MavlinkVersion::V2;
-            let parsed = <MavMessage as mavlink::Message>::parse(version, id, &payload);
-            let body = parsed.map_or(Body::Strange { id, payload }, |m| Body::Known(Box::new(m)));
-            ground.sim.receive(PEER, Frame { sender: GROUND, body });
-            ground.sim.step();
-            ground.listen();
-        }
+        ground.endure(bytes);
         prop_assert!(ground.sim.autopilot.mission.items().len() <= arduplane::transfer::MAX_ITEMS);
         prop_assert!(ground.position().is_valid());
     }

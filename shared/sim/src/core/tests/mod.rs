@@ -10,6 +10,7 @@ use crate::frame::{Decoder, Sender};
 use aircraft::{Profile, Wind};
 use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::*;
+use proptest::prelude::*;
 
 const GROUND: Sender = Sender { system: 255, component: 190 };
 const PEER: Peer = Peer(1);
@@ -133,6 +134,21 @@ impl Ground {
         self.received.iter().filter_map(seq).collect()
     }
 
+    /// Payloads of messages that it takes, whatever is in them.
+    fn endure(&mut self, payloads: Vec<(u16, Vec<u8>)>) {
+        let ids = [11, 20, 21, 23, 37, 38, 39, 40, 41, 43, 44, 45, 47, 51, 66, 73, 75, 76, 86, 111];
+        for (pick, mut payload) in payloads {
+            let id = ids[usize::from(pick) % ids.len()];
+            payload.resize(60, 1);
+            let version = mavlink::MavlinkVersion::V2;
+            let parsed = <MavMessage as mavlink::Message>::parse(version, id, &payload);
+            let body = parsed.map_or(Body::Strange { id, payload }, |m| Body::Known(Box::new(m)));
+            self.sim.receive(PEER, Frame { sender: GROUND, body });
+            self.sim.step();
+            self.listen();
+        }
+    }
+
     fn position(&self) -> LatLon {
         self.sim.autopilot.aircraft.state().position
     }
@@ -187,4 +203,8 @@ fn circuit(home: LatLon) -> Vec<MISSION_ITEM_INT_DATA> {
         final_fix,
         wire(MavCmd::MAV_CMD_NAV_LAND, home, 0.0),
     ]
+}
+
+fn hostile() -> impl Strategy<Value = Vec<(u16, Vec<u8>)>> {
+    prop::collection::vec((any::<u16>(), prop::collection::vec(any::<u8>(), 0..60)), 1..60)
 }

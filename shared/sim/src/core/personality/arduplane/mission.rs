@@ -6,7 +6,7 @@ use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::item;
 use crate::core::mode::Mode;
 use crate::core::personality::{Party, Post};
-use crate::core::telemetry::{is_mission, mission_ack, mission_count, mission_item};
+use crate::core::replies::{is_mission, mission_ack, mission_count, mission_item};
 use mavlink::dialects::ardupilotmega::*;
 
 impl ArduPlane {

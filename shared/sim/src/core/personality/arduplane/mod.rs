@@ -33,6 +33,7 @@ pub(super) static RULES: Rules = Rules {
     params: params::params,
     streams: &STREAMS,
     knows_old_requests: true,
+    tells_unknown_params: false,
     home_moves: false,
     no_such_message: MavResult::MAV_RESULT_FAILED,
 };

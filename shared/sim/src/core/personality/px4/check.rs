@@ -3,13 +3,21 @@
 use super::params::{LANDING_ANGLE_DEG, REQUIRED_ITEMS};
 use crate::core::autopilot::Autopilot;
 use crate::core::item::{Item, Kind};
+use mavlink::dialects::ardupilotmega::MavCmd;
 
 /// What is wrong with the mission, in words; `None`: it can be flown.
-pub fn problem(a: &Autopilot, items: &[Item]) -> Option<&'static str> {
+pub fn problem(a: &Autopilot, items: &[Item], is_vtol: bool) -> Option<&'static str> {
     if items.is_empty() {
         return Some("there is no mission");
     }
+    if !is_vtol && items.iter().any(is_for_vtol) {
+        return Some("it has items for a VTOL");
+    }
     required(a, items).or_else(|| take_off(a, items)).or_else(|| landing(a, items))
+}
+
+fn is_for_vtol(item: &Item) -> bool {
+    matches!(item.wire.command, MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF | MavCmd::MAV_CMD_NAV_VTOL_LAND)
 }
 
 fn required(a: &Autopilot, items: &[Item]) -> Option<&'static str> {

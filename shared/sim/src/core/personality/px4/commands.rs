@@ -4,6 +4,7 @@ use super::data_link::DataLink;
 use super::{Px4, STARTS_UP_NS, items, mode_of, needs_sticks};
 use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::commands::Command;
+use crate::core::item::{Datum, datum_of};
 use crate::core::mode::Mode;
 use crate::core::params::Setting;
 use mavlink::dialects::ardupilotmega::*;
@@ -25,13 +26,15 @@ impl Px4 {
             MavCmd::MAV_CMD_MISSION_START => self.start_mission(a, c, now_ns),
             MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.enter(a, Some(Mode::ReturnToLaunch), now_ns),
             MavCmd::MAV_CMD_NAV_LAND => self.enter(a, Some(Mode::Land), now_ns),
-            MavCmd::MAV_CMD_NAV_TAKEOFF => self.take_off(a, c, now_ns),
+            MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF if !self.is_vtol => UNSUPPORTED,
+            MavCmd::MAV_CMD_NAV_TAKEOFF | MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF => self.take_off(a, c, now_ns),
             MavCmd::MAV_CMD_DO_REPOSITION => self.reposition(a, c, now_ns),
             MavCmd::MAV_CMD_DO_ORBIT => self.orbit(a, c, now_ns),
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => {
                 a.change_speed(c.params[1].into());
                 ACCEPTED
             }
+            MavCmd::MAV_CMD_DO_LAND_START => self.land_by_mission(a, now_ns),
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => set_current(a, c),
             _ => UNSUPPORTED,
         }
@@ -49,10 +52,11 @@ impl Px4 {
             return REJECTED;
         }
         self.link.overruled();
-        if mode == Mode::Auto && a.mode() != mode {
-            a.change_speed(-2.0);
+        if a.mode() != mode {
+            a.set_mode(mode);
+            // a speed lasts until the next change, but the mission's own comes back with it
+            a.change_speed(if mode == Mode::Auto { a.mission_speed_mps().unwrap_or_default() } else { 0.0 });
         }
-        a.set_mode(mode);
         ACCEPTED
     }
 
@@ -74,7 +78,7 @@ impl Px4 {
     fn arm_or_disarm(&mut self, a: &mut Autopilot, c: &Command, now_ns: u64) -> MavResult {
         let done = match c.params[0] {
             1.0 => self.arm(a, now_ns),
-            0.0 => a.disarm(c.is_forced()),
+            0.0 => disarm(a, c.is_forced()),
             _ => return UNSUPPORTED,
         };
         if done { ACCEPTED } else { REJECTED }
@@ -121,13 +125,28 @@ impl Px4 {
         self.enter(a, Some(Mode::TakeOff), now_ns)
     }
 
-    /// param2 bit 0: change to holding. It holds on the usual circle: radius and direction are not taken from the command. z is
-    /// AMSL whatever the frame says.
+    /// param1: speed; param2 bit 0: change to holding. It holds on the usual circle: radius and direction are not taken from
+    /// the command.
     fn reposition(&mut self, a: &mut Autopilot, c: &Command, now_ns: u64) -> MavResult {
         if !c.may_change_mode() && a.mode() != Mode::Loiter {
             return DENIED;
         }
-        self.circle(a, c, 0.0, now_ns)
+        let result = self.circle(a, c, 0.0, now_ns);
+        if result == ACCEPTED && c.params[0] > 0.0 {
+            a.change_speed(c.params[0].into());
+        }
+        result
+    }
+
+    /// The mission from where its landing begins.
+    fn land_by_mission(&mut self, a: &mut Autopilot, now_ns: u64) -> MavResult {
+        match a.landing_start() {
+            Some(seq) if self.has_mission(a, now_ns) => {
+                a.set_current(seq);
+                self.enter(a, Some(Mode::Auto), now_ns)
+            }
+            _ => REJECTED,
+        }
     }
 
     /// param1: radius, negative counter-clockwise.
@@ -138,11 +157,17 @@ impl Px4 {
 
     /// Holds at a place; what of it is not a number is as it is.
     fn circle(&mut self, a: &mut Autopilot, c: &Command, radius_m: f64, now_ns: u64) -> MavResult {
+        let is_anywhere = !c.position.is_valid() && !c.z.is_finite();
+        if is_anywhere && a.mode() == Mode::Loiter {
+            // it holds already
+            return ACCEPTED;
+        }
         let result = self.enter(a, Some(Mode::Loiter), now_ns);
         if result == ACCEPTED && a.is_armed() {
             let s = *a.aircraft.state();
             let position = if c.position.is_valid() { c.position } else { s.position };
-            let altitude_m = if c.z.is_finite() { c.z.into() } else { s.altitude_amsl_m };
+            let datum = c.frame.and_then(|frame| datum_of(frame).ok()).unwrap_or(Datum::Amsl);
+            let altitude_m = if c.z.is_finite() { a.amsl_m(c.z.into(), datum) } else { s.altitude_amsl_m };
             a.circle(Mode::Loiter, position, altitude_m, radius_m);
         }
         result
@@ -155,5 +180,21 @@ fn set_current(a: &mut Autopilot, c: &Command) -> MavResult {
         return DENIED;
     }
     let seq = if seq < 0.0 { a.run.current } else { seq as u16 };
-    if a.set_current(seq) { ACCEPTED } else { FAILED }
+    if jump(a, seq) { ACCEPTED } else { FAILED }
+}
+
+/// Makes an item the current one; on the ground that is taken and has no effect. False: no such item.
+pub(super) fn jump(a: &mut Autopilot, seq: u16) -> bool {
+    if a.aircraft.state().on_ground {
+        return usize::from(seq) < a.mission.items().len();
+    }
+    a.set_current(seq)
+}
+
+fn disarm(a: &mut Autopilot, force: bool) -> bool {
+    let done = a.disarm(force);
+    if !done {
+        a.say(Severity::Critical, "Disarming refused: it flies");
+    }
+    done
 }

@@ -1,4 +1,5 @@
-//! The failsafe for the loss of all ground stations: it holds, and some seconds later does what it was set to.
+//! The failsafe for the loss of all ground stations: it holds, and some seconds later does what it was set to. It does so
+//! without a word: the heartbeat alone tells.
 
 use super::params::{ACTION_AFTER_S, LINK_LOSS_ACTION, LINK_LOSS_AFTER_S};
 use crate::core::autopilot::{Autopilot, Severity};
@@ -55,7 +56,6 @@ impl DataLink {
             _ if !a.is_armed() || a.aircraft.state().on_ground => self.state = State::Fine,
             State::Fine if lost && a.mode() != Mode::ReturnToLaunch => {
                 self.state = State::Holding(now_ns, a.mode());
-                a.say(Severity::Critical, "No ground station is heard: holding");
                 a.set_mode(Mode::Loiter);
             }
             State::Holding(_, mode) if !lost => {
@@ -75,13 +75,11 @@ impl DataLink {
 }
 
 fn act(a: &mut Autopilot) {
-    let (mode, text) = match a.params.value(LINK_LOSS_ACTION) as u8 {
-        2 => (Mode::ReturnToLaunch, "No ground station is heard: returning"),
-        3 => (Mode::Land, "No ground station is heard: landing"),
-        _ => return,
+    match a.params.value(LINK_LOSS_ACTION) as u8 {
+        2 => a.set_mode(Mode::ReturnToLaunch),
+        3 => a.set_mode(Mode::Land),
+        _ => false,
     };
-    a.say(Severity::Critical, text);
-    a.set_mode(mode);
 }
 
 fn ns(seconds: f64) -> u64 {

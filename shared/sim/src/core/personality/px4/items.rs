@@ -6,12 +6,14 @@ use mavlink::dialects::ardupilotmega::*;
 
 /// The parameters that PX4 uses, a bit each from the lowest: of an item, and of a command. Another one has to be 0 or not a
 /// number.
-const USED: [(MavCmd, u8, u8); 10] = [
+const USED: [(MavCmd, u8, u8); 12] = [
     (MavCmd::MAV_CMD_NAV_WAYPOINT, 0x7B, 0x7B),
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, 0x7C, 0x7C),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, 0x00, 0x00),
     (MavCmd::MAV_CMD_NAV_LAND, 0x7B, 0x7B),
     (MavCmd::MAV_CMD_NAV_TAKEOFF, 0x79, 0x79),
+    (MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF, 0x78, 0x7C),
+    (MavCmd::MAV_CMD_NAV_VTOL_LAND, 0x7C, 0x7F),
     (MavCmd::MAV_CMD_DO_SET_MODE, 0x07, 0x07),
     (MavCmd::MAV_CMD_DO_JUMP, 0x03, 0x03),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED, 0x07, 0x07),
@@ -61,10 +63,13 @@ pub fn read(wire: &MISSION_ITEM_INT_DATA) -> Result<Item, MavMissionResult> {
         param3: given(wire.param3),
         ..wire.clone()
     };
-    let kind = match kind_of(&known)? {
+    let kind = match kind_of(&known) {
+        // a VTOL is flown as a wing all the way
+        _ if wire.command == MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF => Kind::TakeOff,
+        _ if wire.command == MavCmd::MAV_CMD_NAV_VTOL_LAND => Kind::Land,
         // a fixed wing always turns early, whatever acceptance radius it is given
-        Kind::Waypoint { .. } => Kind::Waypoint { over: false },
-        kind => kind,
+        Ok(Kind::Waypoint { .. }) => Kind::Waypoint { over: false },
+        kind => kind?,
     };
     let datum = if kind.has_position() { place_datum(wire)? } else { no_place(wire)? };
     Ok(Item {

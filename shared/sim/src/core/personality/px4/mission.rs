@@ -1,12 +1,12 @@
 //! PX4's side of the mission protocol.
 
 use super::transfer::Reply;
-use super::{Px4, check, items};
+use super::{Px4, check, commands, items};
 use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::item::{self, Item};
 use crate::core::mode::Mode;
 use crate::core::personality::{Party, Post};
-use crate::core::telemetry::{is_mission, mission_ack, mission_count, mission_item};
+use crate::core::replies::{is_mission, mission_ack, mission_count, mission_item};
 use crate::frame::Sender;
 use mavlink::dialects::ardupilotmega::*;
 
@@ -57,7 +57,7 @@ impl Px4 {
         if !self.transfer.is_idle() {
             return Reply::Say("Mission transfer is busy");
         }
-        if !a.set_current(seq) {
+        if !commands::jump(a, seq) {
             return Reply::Say("The mission has no such item");
         }
         Reply::Nothing
@@ -111,7 +111,7 @@ impl Px4 {
         }
         self.list_id = id;
         self.is_current_unknown = !items.is_empty() && current.is_none();
-        self.problem = check::problem(a, &items);
+        self.problem = check::problem(a, &items, self.is_vtol);
         self.taken_ns = now_ns;
         let current = if items.is_empty() { Some(0) } else { current };
         // on the ground only MISSION_CURRENT tells that a list is unfit

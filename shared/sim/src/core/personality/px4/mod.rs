@@ -29,7 +29,12 @@ const SECOND_NS: u64 = 1_000_000_000;
 /// `MISSION_CURRENT` when it doesn't know.
 const NO_SEQ: u16 = u16::MAX;
 
-pub(super) static RULES: Rules = Rules {
+/// A VTOL differs in what it says it is.
+pub(super) static VTOL_RULES: Rules = Rules { params: params::vtol, ..FIXED_WING };
+
+pub(super) static RULES: Rules = FIXED_WING;
+
+const FIXED_WING: Rules = Rules {
     first_item: 0,
     first_mode: Mode::Loiter,
     needs_mission_for_mode: false,
@@ -41,14 +46,15 @@ pub(super) static RULES: Rules = Rules {
     tells_items: false,
     armed_texts: ["Armed", "Disarmed"],
     refusal_text: "Preflight check",
-    params: params::params,
+    params: params::fixed_wing,
     streams: &STREAMS,
     knows_old_requests: false,
+    tells_unknown_params: true,
     home_moves: true,
     no_such_message: MavResult::MAV_RESULT_DENIED,
 };
 
-const STREAMS: [Streamed; 18] = [
+const STREAMS: [Streamed; 19] = [
     (0, 1000, UNCHANGEABLE),  // HEARTBEAT
     (1, 1000, 0),             // SYS_STATUS
     (2, 1000, 0),             // SYSTEM_TIME
@@ -66,6 +72,7 @@ const STREAMS: [Streamed; 18] = [
     (231, 2000, 0),           // WIND_COV
     (242, 2000, 0),           // HOME_POSITION
     (245, 1000, 0),           // EXTENDED_SYS_STATE
+    (291, 1000, 0),           // ESC_STATUS
     (111, 0, 0),              // TIMESYNC, only so that its interval can be asked for
 ];
 
@@ -113,6 +120,7 @@ pub(super) struct Px4 {
     is_current_unknown: bool,
     /// Stands for the list, and is the same for the same list.
     list_id: u32,
+    is_vtol: bool,
     told: Told,
 }
 
@@ -127,6 +135,11 @@ struct Told {
 }
 
 impl Px4 {
+    /// A VTOL.
+    pub fn vtol() -> Self {
+        Self { is_vtol: true, ..Self::default() }
+    }
+
     /// The mission can be flown, as far as it knows by now.
     fn has_mission(&self, a: &Autopilot, now_ns: u64) -> bool {
         !a.mission.items().is_empty() && self.problem.is_none() && self.is_settled(now_ns)
@@ -178,6 +191,11 @@ impl Px4 {
             autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
             base_mode: flags | telemetry::armed_flag(a),
             system_status,
+            mavtype: if self.is_vtol {
+                MavType::MAV_TYPE_VTOL_FIXEDROTOR
+            } else {
+                MavType::MAV_TYPE_FIXED_WING
+            },
             ..telemetry::fixed_wing()
         })
     }

@@ -14,7 +14,15 @@ pub const REQUIRED_ITEMS: &str = "MIS_TKO_LAND_REQ";
 /// Steepest approach of a mission, degrees.
 pub const LANDING_ANGLE_DEG: &str = "FW_LND_ANG";
 
-pub fn params(profile: &Profile) -> Params {
+pub fn fixed_wing(profile: &Profile) -> Params {
+    params(profile, 1.0)
+}
+
+pub fn vtol(profile: &Profile) -> Params {
+    params(profile, 22.0)
+}
+
+fn params(profile: &Profile, mav_type: f32) -> Params {
     let speeds = (profile.min_airspeed_mps as f32, profile.max_airspeed_mps as f32);
     let cruise = profile.cruise_airspeed_mps as f32;
     let turn_m = profile.turn_radius_m(profile.cruise_airspeed_mps).round() as f32;
@@ -23,14 +31,14 @@ pub fn params(profile: &Profile) -> Params {
     let whole = |name, value, range| Param::fixed(name, value).settable(range).whole();
     Params::new(vec![
         fixed("MAV_SYS_ID", 1.0).whole(),
-        fixed("MAV_TYPE", 1.0).whole(),
+        fixed("MAV_TYPE", mav_type).whole(),
         free("FW_AIRSPD_TRIM", cruise, speeds).is(S::Cruise),
         fixed("FW_AIRSPD_MIN", speeds.0).is(S::MinAirspeed),
         fixed("FW_AIRSPD_MAX", speeds.1).is(S::MaxAirspeed),
         fixed("FW_R_LIM", profile.max_bank_deg as f32),
         free(LANDING_ANGLE_DEG, 5.0, (1.0, 15.0)),
         free("NAV_ACC_RAD", 10.0, (0.05, 200.0)),
-        free("NAV_FW_ALT_RAD", 10.0, (0.05, 200.0)),
+        free("NAV_FW_ALT_RAD", 10.0, (0.05, 200.0)).is(S::AltitudeAcceptance),
         free("NAV_LOITER_RAD", turn_m, (-1000.0, 1000.0)).is(S::LoiterRadius),
         whole(LINK_LOSS_ACTION, 0.0, (0.0, 6.0)),
         whole("NAV_RCL_ACT", 2.0, (1.0, 6.0)),

@@ -1,72 +1,6 @@
-//! PX4, each of its ways by name.
+//! A mission in flight: what becomes of it when the list changes, ends or is unfit.
 
 use super::*;
-use crate::core::mode::Mode;
-use crate::core::run::Phase;
-
-const MISSION: [f32; 2] = [4.0, 4.0];
-const HOLD: [f32; 2] = [4.0, 3.0];
-
-impl Ground {
-    fn px4() -> Self {
-        Self::of(Personality::Px4, Wind::CALM)
-    }
-
-    fn enter(&mut self, [main, sub]: [f32; 2]) -> MavResult {
-        self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1., main, sub, 0., 0., 0., 0.])
-    }
-
-    /// Uploads a whole mission, streamed.
-    fn px4_upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) {
-        self.count(items.len() as u16);
-        let mut last = None;
-        for (i, wire) in items.iter().enumerate() {
-            last = self.item(&MISSION_ITEM_INT_DATA { seq: i as u16, ..wire.clone() });
-        }
-        assert_eq!(last, Some(MavMissionResult::MAV_MISSION_ACCEPTED), "{:?}", self.texts());
-    }
-
-    /// On its way to item 1 of a mission.
-    fn px4_airborne(items: &[MISSION_ITEM_INT_DATA]) -> Self {
-        let mut ground = Self::px4();
-        ground.px4_upload(items);
-        ground.settle();
-        assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_ACCEPTED);
-        assert_eq!(ground.arm(), MavResult::MAV_RESULT_ACCEPTED, "{:?}", ground.all_texts());
-        assert!(ground.fly_until(120.0, |sim| sim.autopilot.run.current == 1));
-        ground
-    }
-
-    /// Until it has started up and found out what it was given.
-    fn settle(&mut self) {
-        self.fly_until(4.5, |_| false);
-    }
-
-    fn all_texts(&mut self) -> Vec<String> {
-        self.fly_until(0.1, |_| false);
-        self.texts()
-    }
-
-    fn mission_state(&self) -> MissionState {
-        let state = |m: &MavMessage| match m {
-            MavMessage::MISSION_CURRENT(c) => Some(c.mission_state),
-            _ => None,
-        };
-        self.received.iter().rev().find_map(state).unwrap()
-    }
-
-    fn current(&self) -> u16 {
-        self.sim.autopilot.run.current
-    }
-
-    fn mode_now(&self) -> Mode {
-        self.sim.autopilot.mode()
-    }
-}
-
-fn marked(wire: MISSION_ITEM_INT_DATA) -> MISSION_ITEM_INT_DATA {
-    MISSION_ITEM_INT_DATA { current: 1, ..wire }
-}
 
 #[test]
 fn a_whole_flight_from_take_off_to_disarmed() {
@@ -85,67 +19,6 @@ fn a_whole_flight_from_take_off_to_disarmed() {
         reached.dedup();
         assert_eq!(reached, [0, 1, 2, 3, 4, 5, 6]);
     }
-}
-
-#[test]
-fn it_says_that_it_is_px4() {
-    let mut ground = Ground::px4();
-    ground.fly_until(1.0, |_| false);
-    let heartbeat = ground.received.iter().find_map(|m| match m {
-        MavMessage::HEARTBEAT(h) => Some(h.clone()),
-        _ => None,
-    });
-    let heartbeat = heartbeat.unwrap();
-    assert_eq!(heartbeat.autopilot, MavAutopilot::MAV_AUTOPILOT_PX4);
-    assert_eq!(heartbeat.mavtype, MavType::MAV_TYPE_FIXED_WING);
-    assert_eq!(heartbeat.custom_mode, 4 << 16 | 3 << 24);
-    assert!(heartbeat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_AUTO_ENABLED));
-}
-
-#[test]
-fn a_partial_write_gets_no_answer_at_all() {
-    let mut ground = Ground::px4();
-    ground.px4_upload(&circuit(ground.home()));
-    let before = ground.received.len();
-    assert_eq!(ground.partial(1, 1), None);
-    assert_eq!(ground.received.len(), before);
-}
-
-#[test]
-fn it_asks_for_items_in_integers_and_again_after_a_quarter_of_a_second() {
-    let mut ground = Ground::px4();
-    ground.count(3);
-    ground.fly_until(1.0, |_| false);
-    let asked = |m: &&MavMessage| matches!(m, MavMessage::MISSION_REQUEST_INT(r) if r.seq == 0);
-    assert!((3..=5).contains(&ground.received.iter().filter(asked).count()));
-    assert!(!ground.received.iter().any(|m| matches!(m, MavMessage::MISSION_REQUEST(_))));
-}
-
-#[test]
-fn an_aborted_upload_ends_in_words_without_an_answer_and_the_old_list_stays() {
-    let mut ground = Ground::px4();
-    let items = circuit(ground.home());
-    ground.px4_upload(&items);
-    ground.received.clear();
-    ground.count(3);
-    ground.item(&MISSION_ITEM_INT_DATA { seq: 0, ..waypoint(ground.home()) });
-    ground.fly_until(6.0, |_| false);
-    assert_eq!(Ground::ack(&ground.received), None);
-    assert!(ground.texts().iter().any(|t| t.contains("timed out")), "{:?}", ground.texts());
-    let list: Vec<_> = ground.sim.autopilot.mission.items().iter().map(|i| i.wire.x).collect();
-    assert_eq!(list, items.iter().map(|i| i.x).collect::<Vec<_>>());
-}
-
-#[test]
-fn an_item_out_of_order_is_passed_over_in_silence_and_the_last_one_again_is_accepted_again() {
-    let mut ground = Ground::px4();
-    let item = |seq| MISSION_ITEM_INT_DATA { seq, ..waypoint(Config::default().home.position) };
-    ground.count(2);
-    assert_eq!(ground.say(MavMessage::MISSION_ITEM_INT(item(1))), []);
-    assert_eq!(ground.item(&item(0)), None);
-    assert_eq!(ground.item(&item(1)), Some(MavMissionResult::MAV_MISSION_ACCEPTED));
-    assert_eq!(ground.item(&item(1)), Some(MavMissionResult::MAV_MISSION_ACCEPTED));
-    assert_eq!(ground.item(&item(0)), Some(MavMissionResult::MAV_MISSION_ERROR));
 }
 
 #[test]
@@ -192,25 +65,6 @@ fn the_same_list_again_changes_nothing_even_with_another_item_marked() {
     items[3] = marked(items[3].clone());
     ground.px4_upload(&items);
     assert_eq!(ground.current(), 1);
-}
-
-#[test]
-fn which_item_is_current_is_unknown_for_a_moment_after_an_upload_and_total_without_a_mission() {
-    let mut ground = Ground::px4();
-    ground.fly_until(1.5, |_| false);
-    let told = |ground: &Ground| -> Vec<(u16, u16)> {
-        let told = |m: &MavMessage| match m {
-            MavMessage::MISSION_CURRENT(c) => Some((c.seq, c.total)),
-            _ => None,
-        };
-        ground.received.iter().filter_map(told).collect()
-    };
-    assert_eq!(told(&ground).first(), Some(&(0, u16::MAX)));
-    ground.received.clear();
-    ground.px4_upload(&circuit(ground.home()));
-    ground.fly_until(0.3, |_| false);
-    let told = told(&ground);
-    assert_eq!((told.first(), told.last()), (Some(&(u16::MAX, 7)), Some(&(0, 7))));
 }
 
 #[test]
@@ -297,4 +151,60 @@ fn at_the_end_of_the_list_it_holds_around_the_last_item() {
     // entered again, the mission is still over
     assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_ACCEPTED);
     assert_eq!(ground.mode_now(), Mode::Loiter);
+}
+
+#[test]
+fn a_waypoint_is_circled_until_its_altitude_is_reached() {
+    let home = Config::default().home.position;
+    let mut items = circuit(home);
+    items[1].z = 400.0;
+    let mut ground = Ground::px4_airborne(&items);
+    assert!(ground.fly_until(400.0, |sim| sim.autopilot.run.current == 2));
+    let s = *ground.sim.autopilot.aircraft.state();
+    assert!((s.altitude_amsl_m - 749.0).abs() < 10.5, "{}", s.altitude_amsl_m);
+    assert!(s.position.distance_m(home.destination(52.0, 1500.0)) < 300.0);
+}
+
+#[test]
+fn a_list_that_is_unfit_in_flight_is_accepted_and_ends_in_holding_until_there_is_another() {
+    let home = Config::default().home.position;
+    let items = circuit(home);
+    let mut ground = Ground::px4_airborne(&items);
+    ground.px4_upload(&items[..4]);
+    assert_eq!(ground.mode_now(), Mode::Loiter);
+    ground.settle();
+    assert_eq!(ground.mission_state(), MissionState::MISSION_STATE_NO_MISSION);
+    assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+    ground.px4_upload(&items);
+    ground.settle();
+    assert_eq!(ground.mode_now(), Mode::Loiter, "it takes a command to go on");
+    assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_ACCEPTED);
+}
+
+#[test]
+fn an_endless_circle_at_the_end_stays_the_mission() {
+    let home = Config::default().home.position;
+    let mut ground = Ground::px4();
+    ground.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0);
+    let place = home.destination(52.0, 2500.0);
+    let circle =
+        MISSION_ITEM_INT_DATA { param3: -200.0, ..wire(MavCmd::MAV_CMD_NAV_LOITER_UNLIM, place, 120.0) };
+    ground.px4_upload(&[take_off(), circle]);
+    ground.settle();
+    ground.enter(MISSION);
+    ground.arm();
+    let (off, bank) = circling(&mut ground, place, 200.0);
+    assert!(off.abs() < 12.0 && bank < 0.0, "{off} m off, bank {bank}");
+    assert_eq!((ground.mode_now(), ground.mission_state()), (Mode::Auto, MissionState::MISSION_STATE_ACTIVE));
+}
+
+#[test]
+fn items_for_a_vtol_make_the_list_of_a_plane_unfit() {
+    let mut ground = Ground::px4();
+    let mut items = circuit(ground.home());
+    items[0].command = MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF;
+    ground.px4_upload(&items);
+    ground.settle();
+    ground.enter(MISSION);
+    assert_eq!(ground.arm(), MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
 }

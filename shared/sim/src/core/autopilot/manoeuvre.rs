@@ -1,0 +1,105 @@
+//! What is flown without a mission: circles, take-off, the way home, a landing anywhere.
+
+use super::{Autopilot, Severity};
+use crate::core::mode::Mode;
+use crate::core::params::Setting;
+use aircraft::{Action, Demand, Target};
+use geometry::LatLon;
+
+impl Autopilot {
+    /// Circles a point in a mode, at an altitude AMSL; radius negative: counter-clockwise, 0: the usual one.
+    pub fn circle(&mut self, mode: Mode, position: LatLon, altitude_amsl_m: f64, radius_m: f64) {
+        self.set_mode(mode);
+        let target = Target {
+            position,
+            altitude_amsl_m,
+            airspeed_mps: self.airspeed_mps(),
+            action: self.circle_action(radius_m),
+            fly_over: false,
+        };
+        self.guidance.direct(self.aircraft.state(), target);
+    }
+
+    pub(super) fn take_off(&mut self) -> Demand {
+        if self.take_off_done {
+            return self.follow(None).demand;
+        }
+        let heading_deg = self.aircraft.state().heading_deg();
+        let climbing = matches!(self.guidance.target().map(|t| t.action), Some(Action::TakeOff { .. }));
+        if !climbing {
+            let altitude_amsl_m = self.home.altitude_amsl_m + self.params.setting(Setting::TakeOffHeight);
+            let action = Action::TakeOff { heading_deg };
+            let target = Target { altitude_amsl_m, action, ..self.loiter_here() };
+            self.guidance.direct(self.aircraft.state(), target);
+        }
+        let guided = self.follow(None);
+        if guided.reached {
+            self.take_off_done = true;
+            let target = self.loiter_here();
+            self.guidance.direct(self.aircraft.state(), target);
+            self.say(Severity::Info, "Takeoff complete");
+            if self.rules.holds_after_take_off {
+                self.set_mode(Mode::Loiter);
+            }
+        }
+        guided.demand
+    }
+
+    pub(super) fn circle_action(&self, radius_m: f64) -> Action {
+        let own = self.params.setting(Setting::LoiterRadius);
+        Action::Loiter { radius_m: if radius_m == 0.0 { own } else { radius_m } }
+    }
+
+    pub(super) fn loiter_here(&self) -> Target {
+        let s = self.aircraft.state();
+        Target {
+            position: s.position,
+            altitude_amsl_m: s.altitude_amsl_m,
+            airspeed_mps: self.airspeed_mps(),
+            action: self.circle_action(0.0),
+            fly_over: false,
+        }
+    }
+
+    /// Home, or the landing of the mission if there is one and it is the autopilot's way.
+    pub(super) fn start_return(&mut self) {
+        match self.landing_start().filter(|_| self.rules.returns_to_land) {
+            Some(seq) => self.fly_item(seq, true),
+            None => {
+                let target = self.return_target();
+                self.guidance.direct(self.aircraft.state(), target);
+            }
+        }
+    }
+
+    fn return_target(&self) -> Target {
+        let height_m = self.params.setting(Setting::ReturnHeight);
+        let here = self.loiter_here();
+        let back_amsl_m = self.home.altitude_amsl_m + height_m;
+        let altitude_amsl_m = match () {
+            () if height_m < 0.0 => here.altitude_amsl_m,
+            () if self.rules.returns_to_land => back_amsl_m.max(here.altitude_amsl_m),
+            () => back_amsl_m,
+        };
+        Target {
+            position: self.home.position,
+            altitude_amsl_m,
+            action: self.circle_action(self.params.setting(Setting::ReturnRadius)),
+            ..here
+        }
+    }
+
+    /// Down on a gentle slope, straight ahead; the only ground known is home's.
+    pub(super) fn land_here(&self) -> Target {
+        const RUN_PER_HEIGHT: f64 = 12.0;
+        let here = self.loiter_here();
+        let heading_deg = self.aircraft.state().track_deg();
+        let height_m = (here.altitude_amsl_m - self.home.altitude_amsl_m).max(10.0);
+        Target {
+            position: here.position.destination(heading_deg, RUN_PER_HEIGHT * height_m),
+            altitude_amsl_m: self.home.altitude_amsl_m,
+            action: Action::Land { heading_deg },
+            ..here
+        }
+    }
+}
