@@ -390,7 +390,7 @@ mod tests {
             let line = format!("onboard-agent gateway --driver {}", known.name);
             assert_eq!(chosen(&line).unwrap(), known.name);
         }
-        assert_eq!(chosen("onboard-agent gateway").unwrap(), "ardupilot");
+        assert_eq!(chosen("onboard-agent gateway").unwrap(), "mavlink");
         let error = format!("{:#}", chosen("onboard-agent gateway --driver kite").unwrap_err());
         assert!(error.contains("`kite`") && error.contains(&driver::names()), "{error}");
         let mut command = Cli::command();

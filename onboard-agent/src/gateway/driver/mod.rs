@@ -2,13 +2,15 @@
 //!
 //! It owns the codec, the modes, the strategy for the autopilot's list and what is known of its abilities; the
 //! core knows waypoints and intentions ([`super::order`]), and the link carries bytes. [`DRIVERS`] lists them.
-//! `mavlink` is what drivers of MAVLink autopilots share; `arduplane` is the one driver so far.
+//! `mavlink` is the driver of MAVLink autopilots; `arduplane` and `px4` are the dialects that it knows ([`DIALECTS`]).
 
 mod arduplane;
 mod mavlink;
+mod px4;
 
 use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
+use mavlink::dialect::Dialect;
 
 /// What a link brings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,10 +72,13 @@ pub struct Registration {
 }
 
 /// The drivers: a new one is a line here.
-pub const DRIVERS: &[Registration] = &[arduplane::REGISTRATION];
+pub const DRIVERS: &[Registration] = &[mavlink::driver::REGISTRATION];
 
 /// The driver that is used unless the configuration names another.
-pub const DEFAULT: Registration = arduplane::REGISTRATION;
+pub const DEFAULT: Registration = mavlink::driver::REGISTRATION;
+
+/// The kinds of MAVLink autopilots: a new one is a line here.
+const DIALECTS: &[&Dialect] = &[&arduplane::DIALECT, &px4::FIXED_WING, &px4::VTOL];
 
 /// The driver with this name.
 pub fn by_name(name: &str) -> Option<Registration> {

@@ -1,16 +1,17 @@
 //! ArduPlane's numbers and names of modes.
 
+use super::super::mavlink::commands::{Command, ModeNumber};
 use crate::gateway::order::{Aim, Mode};
 use std::borrow::Cow;
 
 /// It flies its list.
-pub const AUTO: u32 = 10;
+const AUTO: u32 = 10;
 /// It returns by itself.
 const RTL: u32 = 11;
 /// It circles where it is.
 const LOITER: u32 = 12;
 /// It goes to a place.
-pub const GUIDED: u32 = 15;
+const GUIDED: u32 = 15;
 
 const NAMES: [(u32, &str); 19] = [
     (0, "MANUAL"),
@@ -45,13 +46,17 @@ pub fn meaning(number: u32) -> Mode {
     }
 }
 
-/// The mode in which something is done.
-pub fn number(aim: &Aim) -> u32 {
-    match aim {
-        Aim::Waypoints => AUTO,
-        Aim::Hold => LOITER,
-        Aim::Direct { .. } => GUIDED,
-        Aim::Return => RTL,
+/// The commands that make it do something: it is sent to a place when it is in the mode for that.
+pub fn steer(mode: Option<u32>, aim: &Aim) -> Vec<Command> {
+    let enter = |number: u32| Command::Mode(ModeNumber { shown: number, main: number as u8, sub: 0 });
+    match *aim {
+        Aim::Waypoints => vec![enter(AUTO)],
+        Aim::Hold => vec![enter(LOITER)],
+        Aim::Return => vec![enter(RTL)],
+        Aim::Direct { position, altitude_amsl_m } => {
+            let go = Command::GoTo { place: Some((position, altitude_amsl_m)), shows: None };
+            if mode == Some(GUIDED) { vec![go] } else { vec![enter(GUIDED), go] }
+        }
     }
 }
 
@@ -72,8 +77,10 @@ mod tests {
     fn what_is_ordered_is_what_is_reported_when_it_is_done() {
         let direct = Aim::Direct { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0 };
         for aim in [Aim::Waypoints, Aim::Hold, direct, Aim::Return] {
-            assert_eq!(meaning(number(&aim)), aim.mode());
+            let Command::Mode(mode) = steer(None, &aim)[0] else { panic!("{aim:?}") };
+            assert_eq!(meaning(mode.shown), aim.mode());
         }
+        assert_eq!(steer(Some(GUIDED), &direct).len(), 1);
         let names = [AUTO, 5, 99].map(name);
         assert_eq!(names, ["AUTO", "FBWA", "mode 99"]);
     }

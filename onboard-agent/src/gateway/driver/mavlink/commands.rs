@@ -26,6 +26,8 @@ pub enum Client {
     Order(OrderId),
     /// The driver itself, for the list.
     List,
+    /// Nobody: the driver said again what the autopilot had forgotten.
+    Nobody,
 }
 
 /// A command to be given.
@@ -33,18 +35,35 @@ pub enum Client {
 pub enum Command {
     /// Steer to an entry of the list.
     Current(u16),
-    /// Change mode, by the autopilot's own number.
-    Mode(u32),
+    /// Change mode.
+    Mode(ModeNumber),
     /// Arm.
     Arm,
     /// Airspeed, m/s.
     Speed(f64),
-    /// Go to a place, metres AMSL.
-    GoTo(LatLon, f64),
+    /// Go to a place, metres AMSL, and circle there; `None`: where it is. `shows`: the mode in which it does so, if it
+    /// has to be entered.
+    GoTo {
+        /// Where.
+        place: Option<(LatLon, f64)>,
+        /// What it shows then.
+        shows: Option<u32>,
+    },
     /// End the flight by the autopilot's own means.
     Terminate,
     /// Stop the engine, whatever the state.
     ForceDisarm,
+}
+
+/// A mode, as it is ordered and as it is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModeNumber {
+    /// In a heartbeat.
+    pub shown: u32,
+    /// In a command: the mode.
+    pub main: u8,
+    /// In a command: what kind of it; 0: there are no kinds.
+    pub sub: u8,
 }
 
 /// What the autopilot shows that may be the effect of a command.
@@ -178,7 +197,8 @@ impl Commands {
         let (given, at) = self.flight.as_ref().and_then(|g| Some((g, g.acked?)))?;
         let obeyed = match (given.command, shown) {
             (Command::Current(wanted), Shown::Current(seq)) => wanted == seq,
-            (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted == mode,
+            (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
+            (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
             (Command::Arm, Shown::Mode(_, armed)) => armed,
             _ => return None,
         };
@@ -192,7 +212,10 @@ impl Commands {
 
 /// The command has an effect that the autopilot shows.
 fn is_seen(command: Command) -> bool {
-    matches!(command, Command::Current(_) | Command::Mode(_) | Command::Arm)
+    matches!(
+        command,
+        Command::Current(_) | Command::Mode(_) | Command::Arm | Command::GoTo { shows: Some(_), .. }
+    )
 }
 
 fn number(command: Command) -> MavCmd {
@@ -201,7 +224,7 @@ fn number(command: Command) -> MavCmd {
         Command::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
         Command::Arm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
         Command::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
-        Command::GoTo(..) => MavCmd::MAV_CMD_DO_REPOSITION,
+        Command::GoTo { .. } => MavCmd::MAV_CMD_DO_REPOSITION,
         Command::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
     }
 }
@@ -210,12 +233,12 @@ fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessage {
     let (param1, param2, param3) = match command {
         Command::Current(seq) => (f32::from(seq), 0.0, 0.0),
         // 1: the number is the autopilot's own
-        Command::Mode(mode) => (1.0, mode as f32, 0.0),
+        Command::Mode(mode) => (1.0, f32::from(mode.main), f32::from(mode.sub)),
         Command::Arm | Command::Terminate => (1.0, 0.0, 0.0),
         Command::ForceDisarm => (0.0, FORCE, 0.0),
         // 0: airspeed; throttle −1: as it is
         Command::Speed(mps) => (0.0, mps as f32, -1.0),
-        Command::GoTo(place, altitude_amsl_m) => return reposition(place, altitude_amsl_m, peer),
+        Command::GoTo { place, .. } => return reposition(place, peer),
     };
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
         param1,
@@ -232,15 +255,23 @@ fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessage {
     })
 }
 
-fn reposition(place: LatLon, altitude_amsl_m: f64, peer: Peer) -> MavMessage {
+/// What is not given is "not used": NaN, or the greatest whole number.
+fn reposition(place: Option<(LatLon, f64)>, peer: Peer) -> MavMessage {
+    let degrees = |deg: f64| (deg * 1e7).round() as i32;
+    let (x, y, z, param4) = match place {
+        Some((at, altitude_amsl_m)) => {
+            (degrees(at.lat_deg), degrees(at.lon_deg), altitude_amsl_m as f32, 0.0)
+        }
+        None => (i32::MAX, i32::MAX, f32::NAN, f32::NAN),
+    };
     MavMessage::COMMAND_INT(COMMAND_INT_DATA {
         param1: -1.0,
         param2: 1.0,
         param3: 0.0,
-        param4: 0.0,
-        x: (place.lat_deg * 1e7).round() as i32,
-        y: (place.lon_deg * 1e7).round() as i32,
-        z: altitude_amsl_m as f32,
+        param4,
+        x,
+        y,
+        z,
         command: MavCmd::MAV_CMD_DO_REPOSITION,
         target_system: peer.system,
         target_component: peer.component,

@@ -13,6 +13,18 @@ pub type Entry = MISSION_ITEM_INT_DATA;
 /// The second, which was read back, is the first, as far as this autopilot keeps it.
 pub type Same = fn(&Entry, &Entry) -> bool;
 
+/// How a kind of autopilot deals with its list.
+#[derive(Debug)]
+pub struct Rules {
+    /// Compares what was read back with what was written.
+    pub same: Same,
+    /// What the autopilot calls a list that it has: written on an accepting ack and on MISSION_CURRENT, it proves that
+    /// the list is in use. An autopilot that has no such number says 0.
+    pub id: Option<fn(&[Entry]) -> u32>,
+    /// Entries may be asked for only after the list was, and in order; otherwise it breaks off.
+    pub reads_in_order: bool,
+}
+
 /// How it ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
@@ -43,12 +55,12 @@ impl Mission {
         &mut self,
         now: Time,
         entries: Vec<Entry>,
-        same: Same,
+        rules: &'static Rules,
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) {
         let link = std::mem::take(&mut self.link);
-        self.job = Some(Job::Transfer(Transfer::upload(now, entries, same, link, peer, out)));
+        self.job = Some(Job::Transfer(Transfer::upload(now, entries, rules, link, peer, out)));
     }
 
     /// Overwrites entries, which follow each other, and verifies them.
@@ -65,9 +77,17 @@ impl Mission {
     }
 
     /// Reads the whole list.
-    pub fn read(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+    pub fn read(&mut self, now: Time, rules: &'static Rules, peer: Peer, out: &mut Vec<MavMessage>) {
         let link = std::mem::take(&mut self.link);
-        self.job = Some(Job::Transfer(Transfer::read_list(now, link, peer, out)));
+        self.job = Some(Job::Transfer(Transfer::read_list(now, rules, link, peer, out)));
+    }
+
+    /// The autopilot says what the list is called that is in use.
+    pub fn in_use(&mut self, list: u32) -> Option<Outcome> {
+        match self.job.as_ref()? {
+            Job::Transfer(transfer) if transfer.is_called(list) => self.finish(Some(Outcome::Verified)),
+            _ => None,
+        }
     }
 
     /// When `tick` is due.
@@ -131,7 +151,9 @@ fn on_transfer_message(
             Some(None)
         }
         MavMessage::MISSION_ACK(a) if a.mission_type == plan => {
-            Some(transfer.acked(now, a.mavtype, peer, out))
+            let proven =
+                a.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED && transfer.is_called(a.opaque_id);
+            Some(if proven { Some(Outcome::Verified) } else { transfer.acked(now, a.mavtype, peer, out) })
         }
         MavMessage::MISSION_COUNT(c) if c.mission_type == plan => {
             Some(transfer.counted(now, c.count, peer, out))
@@ -153,4 +175,24 @@ fn on_write_message(write: &mut PartialWrite, now: Time, message: &MavMessage) -
         }
         _ => None,
     }
+}
+
+/// Asks how long the list is.
+pub(super) fn request_list(peer: Peer) -> MavMessage {
+    MavMessage::MISSION_REQUEST_LIST(MISSION_REQUEST_LIST_DATA {
+        target_system: peer.system,
+        target_component: peer.component,
+        mission_type: mission_type(),
+    })
+}
+
+/// Everything that was asked for has come.
+pub(super) fn thanks(peer: Peer) -> MavMessage {
+    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+        target_system: peer.system,
+        target_component: peer.component,
+        mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
+        mission_type: mission_type(),
+        opaque_id: 0,
+    })
 }

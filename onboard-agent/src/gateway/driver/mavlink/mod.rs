@@ -1,7 +1,13 @@
-//! What drivers of MAVLink autopilots share: the conversation (`session`), what is done to a list (`mission`, by
-//! `transfer` and `partial_write`), commands, streams, telemetry and timeouts. It knows no autopilot's habits.
+//! The driver of MAVLink autopilots and what their dialects share: the conversation (`session`), the waypoints (`chain`)
+//! and the list that they go to (`list`, `item`), what is done to it (`mission`, by `transfer` and `partial_write`),
+//! commands, streams, telemetry and timeouts. It knows no autopilot's habits: those are a `dialect`.
 
+pub mod chain;
 pub mod commands;
+pub mod dialect;
+pub mod driver;
+pub mod item;
+pub mod list;
 pub mod mission;
 mod partial_write;
 mod rto;

@@ -27,15 +27,8 @@ const LOG_EVERY: Duration = Duration::from_secs(10);
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionEvent {
-    /// The autopilot was received for the first time.
-    Bound(HEARTBEAT_DATA),
-    /// Its heartbeat.
-    Heartbeat {
-        /// The mode, by its own number.
-        mode: u32,
-        /// Engine may run.
-        armed: bool,
-    },
+    /// Its heartbeat; the first one that comes binds the session to it.
+    Heartbeat(HEARTBEAT_DATA),
     /// It steers to this entry of its list.
     Current(u16),
     /// A command ended.
@@ -177,7 +170,7 @@ impl Session {
         events: &mut Vec<SessionEvent>,
     ) {
         if let MavMessage::HEARTBEAT(beat) = message {
-            self.bind(sender, beat, events);
+            self.bind(sender, beat);
         }
         // a simulator's clock goes on before it has said who it is
         if let (None, MavMessage::TIMESYNC(sync)) = (self.peer, message) {
@@ -198,7 +191,10 @@ impl Session {
                 let ended = self.commands.acked(now, ack);
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
             }
-            MavMessage::MISSION_CURRENT(current) => self.current(now, current.seq, events),
+            MavMessage::MISSION_CURRENT(current) => {
+                events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
+                self.current(now, current.seq, events);
+            }
             _ => match self.mission.on_message(now, message, peer, &mut self.out) {
                 Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
                 None => self.readings.take(now, message, events, &mut self.ignored),
@@ -208,18 +204,15 @@ impl Session {
     }
 
     /// The first autopilot that is received is ours; the rest are strangers.
-    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
-        if self.peer.is_some() || sender.system == 0 || !is_autopilot(beat) {
-            return;
+    fn bind(&mut self, sender: Sender, beat: &HEARTBEAT_DATA) {
+        if self.peer.is_none() && sender.system != 0 && is_autopilot(beat) {
+            self.peer = Some(sender);
         }
-        self.peer = Some(sender);
-        events.push(SessionEvent::Bound(beat.clone()));
     }
 
     fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
-        let armed = beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
-        events.push(SessionEvent::Heartbeat { mode: beat.custom_mode, armed });
-        self.shown(now, Shown::Mode(beat.custom_mode, armed), events);
+        events.push(SessionEvent::Heartbeat(beat.clone()));
+        self.shown(now, Shown::Mode(beat.custom_mode, is_armed(beat)), events);
     }
 
     fn current(&mut self, now: Time, seq: u16, events: &mut Vec<SessionEvent>) {
@@ -266,6 +259,11 @@ pub fn recognises(datagram: &[u8]) -> bool {
         }
     }
     false
+}
+
+/// Its engine may run.
+pub fn is_armed(beat: &HEARTBEAT_DATA) -> bool {
+    beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)
 }
 
 fn is_autopilot(beat: &HEARTBEAT_DATA) -> bool {

@@ -3,9 +3,9 @@
 //! Items are sent unasked in a window; the autopilot's requests are its acknowledgements; what it
 //! does not get it asks for again, and we go back to there. A final ack may be lost, late or left
 //! over from an earlier transfer, so it proves nothing: every write is read back, and only what was
-//! read back is claimed.
+//! read back is claimed, or what the autopilot names as the list in use.
 
-use super::mission::{Entry, Outcome, Same};
+use super::mission::{Entry, Outcome, Rules, request_list, thanks};
 use super::rto::Rto;
 use super::{Peer, mission_type};
 use crate::gateway::order::Time;
@@ -15,6 +15,8 @@ use mavlink::dialects::ardupilotmega::*;
 const WINDOW: usize = 24;
 /// Timeouts without any progress before a transfer is given up.
 const PATIENCE: u32 = 30;
+/// Timeouts without any progress after which an autopilot may have stopped to answer.
+const BROKEN_OFF: u32 = 8;
 /// Times that a list that reads back differently is written again.
 const REWRITES: u32 = 5;
 /// More entries than this is no list.
@@ -33,9 +35,11 @@ enum Phase {
 /// One transfer.
 #[derive(Debug, Clone)]
 pub struct Transfer {
-    /// How what is read back is compared; `None`: the list is only read.
-    same: Option<Same>,
+    rules: &'static Rules,
+    /// What is written; empty: the list is only read.
     items: Vec<Entry>,
+    /// What the autopilot will call it.
+    id: Option<u32>,
     phase: Phase,
     rto: Rto,
     silent: u32,
@@ -52,26 +56,33 @@ impl Transfer {
     pub fn upload(
         now: Time,
         items: Vec<Entry>,
-        same: Same,
+        rules: &'static Rules,
         rto: Rto,
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Self {
-        let mut transfer = Self::new(now, items, Some(same), rto);
+        let mut transfer = Self::new(now, items, rules, rto);
         transfer.send_from_start(peer, out);
         transfer
     }
 
     /// Begins to read the list.
-    pub fn read_list(now: Time, rto: Rto, peer: Peer, out: &mut Vec<MavMessage>) -> Self {
+    pub fn read_list(
+        now: Time,
+        rules: &'static Rules,
+        rto: Rto,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) -> Self {
         out.push(request_list(peer));
-        Self::new(now, vec![], None, rto)
+        Self::new(now, vec![], rules, rto)
     }
 
-    fn new(now: Time, items: Vec<Entry>, same: Option<Same>, mut rto: Rto) -> Self {
+    fn new(now: Time, items: Vec<Entry>, rules: &'static Rules, mut rto: Rto) -> Self {
         rto.start(now);
         Self {
-            same,
+            rules,
+            id: rules.id.map(|id| id(&items)).filter(|id| *id != 0),
             items,
             phase: Phase::Counting,
             rto,
@@ -81,6 +92,15 @@ impl Transfer {
             went_back: None,
             probe: Some(now),
         }
+    }
+
+    /// It is known by this name once it is in use.
+    pub fn is_called(&self, id: u32) -> bool {
+        self.id == Some(id)
+    }
+
+    fn writes(&self) -> bool {
+        !self.items.is_empty()
     }
 
     /// What was learnt of the link.
@@ -210,13 +230,26 @@ impl Transfer {
             (Phase::Sending { .. }, refused) => {
                 Some(Outcome::Failed(format!("the autopilot refused the list: {refused:?}")))
             }
+            (Phase::Reading { .. }, MAV_MISSION_ERROR) if self.rules.reads_in_order => {
+                self.read_back(now, peer, out);
+                None
+            }
             (Phase::Reading { .. } | Phase::Counting, _) => None,
         }
     }
 
     fn verify(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
         self.progressed(now);
-        self.read(now, self.items.len(), peer, out);
+        self.read_back(now, peer, out);
+    }
+
+    fn read_back(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+        if self.rules.reads_in_order {
+            self.phase = Phase::Counting;
+            out.push(request_list(peer));
+        } else {
+            self.read(now, self.items.len(), peer, out);
+        }
     }
 
     fn read(&mut self, now: Time, count: usize, peer: Peer, out: &mut Vec<MavMessage>) {
@@ -229,7 +262,8 @@ impl Transfer {
     fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
         let Phase::Reading { got, next } = &mut self.phase else { return };
         let have = got.iter().flatten().count();
-        let end = (have + WINDOW).min(got.len());
+        let window = if self.rules.reads_in_order { 1 } else { WINDOW };
+        let end = (have + window).min(got.len());
         for (i, _) in got.iter().enumerate().take(end).skip(*next).filter(|(_, g)| g.is_none()) {
             out.push(MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
                 seq: i as u16,
@@ -284,9 +318,10 @@ impl Transfer {
         let Phase::Reading { got, .. } = &self.phase else { return None };
         let list: Vec<Entry> = got.iter().cloned().collect::<Option<_>>()?;
         out.push(thanks(peer));
-        let Some(same) = self.same else { return Some(Outcome::List(list)) };
-        let differs = self.items.iter().zip(&list).position(|(a, b)| !same(a, b));
-        let Some(entry) = differs else { return Some(Outcome::Verified) };
+        if !self.writes() {
+            return Some(Outcome::List(list));
+        }
+        let Some(entry) = self.difference(&list) else { return Some(Outcome::Verified) };
         self.rewrites += 1;
         if self.rewrites > REWRITES {
             return Some(Outcome::Failed(format!("entry {entry} reads back differently each time")));
@@ -296,6 +331,22 @@ impl Transfer {
         self.probe = None;
         self.rto.start(now);
         None
+    }
+
+    fn is_kept_from_reading(&self) -> bool {
+        let nothing = match &self.phase {
+            Phase::Reading { got, .. } => got.iter().all(Option::is_none),
+            phase => *phase == Phase::Counting,
+        };
+        self.writes() && nothing && self.silent >= 3
+    }
+
+    /// The first entry that is not what was written.
+    fn difference(&self, list: &[Entry]) -> Option<usize> {
+        let same = |(a, b)| (self.rules.same)(a, b);
+        let differs = self.items.iter().zip(list).position(|pair| !same(pair));
+        let end = self.items.len().min(list.len());
+        differs.or((self.items.len() != list.len()).then_some(end))
     }
 
     /// Time passed.
@@ -308,6 +359,11 @@ impl Transfer {
         if self.silent > PATIENCE {
             return Some(Outcome::Failed("the autopilot does not answer".into()));
         }
+        // it may still be waiting for entries: then it does not let us read
+        if self.is_kept_from_reading() {
+            self.send_from_start(peer, out);
+            return None;
+        }
         match &mut self.phase {
             Phase::Counting => out.push(request_list(peer)),
             Phase::Sending { acked, asked, .. } if *acked == 0 && *asked == 0 => {
@@ -315,7 +371,7 @@ impl Transfer {
             }
             // the end may have come through although nothing says so: ask
             Phase::Sending { acked, .. } if *acked + 1 == self.items.len() && self.silent >= 2 => {
-                self.read(now, self.items.len(), peer, out);
+                self.read_back(now, peer, out);
                 self.probe = None;
             }
             Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_from_start(peer, out),
@@ -323,11 +379,9 @@ impl Transfer {
                 *sent = *acked;
                 self.send_window(out);
             }
-            // it may still be waiting for items: then it does not let us read
-            Phase::Reading { got, .. }
-                if self.same.is_some() && self.silent >= 3 && got.iter().all(Option::is_none) =>
-            {
-                self.send_from_start(peer, out);
+            // the list has to be asked for again
+            Phase::Reading { .. } if self.rules.reads_in_order && self.silent.is_multiple_of(BROKEN_OFF) => {
+                self.read_back(now, peer, out);
             }
             Phase::Reading { next, .. } => {
                 *next = 0;
@@ -336,22 +390,4 @@ impl Transfer {
         }
         None
     }
-}
-
-fn request_list(peer: Peer) -> MavMessage {
-    MavMessage::MISSION_REQUEST_LIST(MISSION_REQUEST_LIST_DATA {
-        target_system: peer.system,
-        target_component: peer.component,
-        mission_type: mission_type(),
-    })
-}
-
-fn thanks(peer: Peer) -> MavMessage {
-    MavMessage::MISSION_ACK(MISSION_ACK_DATA {
-        target_system: peer.system,
-        target_component: peer.component,
-        mavtype: MavMissionResult::MAV_MISSION_ACCEPTED,
-        mission_type: mission_type(),
-        opaque_id: 0,
-    })
 }

@@ -18,15 +18,15 @@
 //! link that dies at any instant leaves a chain that ends in a loiter. A write of unknown outcome
 //! just makes its slots unknown, and the same three rules heal them.
 
-mod chain;
 mod ring;
 #[cfg(test)]
 mod tests;
 
-use super::items::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::chain::Chain;
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::list::{Change, Feeding};
 use crate::gateway::order::{Fed, Serial, Target};
-use chain::Chain;
-use ring::{LAST_SLOT, RING, Slots, end_loiter_after, initial_list, slot};
+use ring::{LAST_SLOT, RING, Slots, initial_list, slot};
 
 /// Waypoints ahead of the aircraft that are kept on board; the rest of the ring is already passed.
 const AHEAD: u64 = 28;
@@ -35,25 +35,6 @@ const REFILL: u64 = 16;
 
 /// Most entries of one write: an emergency does not wait for a long one.
 const AT_ONCE: u64 = 8;
-
-/// Something that is to be done to the list.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Change {
-    /// Replace the whole list, and verify it.
-    Upload {
-        /// The list, entry 0 (home) first.
-        items: Vec<Item>,
-    },
-    /// Overwrite entries from `start` on, and verify them.
-    Overwrite {
-        /// First entry.
-        start: u16,
-        /// What comes there.
-        items: Vec<Item>,
-    },
-    /// Steer to this entry.
-    SetCurrent(u16),
-}
 
 /// A change in flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,34 +62,30 @@ pub struct Window {
     reached_in_doubt: Option<u64>,
 }
 
-impl Window {
-    /// Cancels what is behind `after`, and appends, as one transaction.
-    pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
+impl Feeding for Window {
+    fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
         let flying = self.entered;
         self.chain.feed(after, waypoints, flying);
         self.end = self.end.min(self.chain.end());
         self.leave_foreign();
     }
 
-    /// Everything on board is in order and the aircraft may be let loose on it.
-    pub fn ready(&self) -> bool {
+    fn ready(&self) -> bool {
         let settled = self.pending.is_none() && !self.must_reload() && self.chain.jump().is_none();
         self.installed && self.entered && settled && self.deviation().is_none()
     }
 
-    /// Our ring is on board.
-    pub fn installed(&self) -> bool {
+    fn installed(&self) -> bool {
         self.installed
     }
 
-    /// What the autopilot steers to, of what was fed.
-    pub fn target(&self) -> Target {
+    fn target(&self) -> Target {
         if !self.entered {
             return Target::None;
         }
         let Some(active) = self.chain.active() else { return Target::End };
         let next = self.chain.next();
-        let item = ring::item(&active.waypoint);
+        let item = Item::of(&active.waypoint);
         match (self.loaded.is_some_and(|l| matches(&l, &item)), active.serial) {
             (false, _) => Target::Unknown { next },
             (true, Serial(0)) => {
@@ -119,8 +96,7 @@ impl Window {
         }
     }
 
-    /// The autopilot says it steers to entry `seq`.
-    pub fn reported(&mut self, seq: u16) {
+    fn reported(&mut self, seq: u16) {
         let first = self.chain.first();
         let position = self.position_of(seq).filter(|p| self.entered && *p > first);
         let Some(position) = position else { return };
@@ -131,6 +107,95 @@ impl Window {
         self.chain.advance_to(position);
         self.loaded = self.board.get(position);
         self.leave_foreign();
+    }
+
+    fn is_astray(&self, seq: u16) -> bool {
+        self.entered && self.pending.is_none() && self.position_of(seq).is_none()
+    }
+
+    fn leave(&mut self, serial: Serial) {
+        if self.chain.active().is_some_and(|f| f.serial == serial) {
+            self.chain.leave_active();
+        }
+    }
+
+    fn bring_back(&mut self) {
+        self.loaded = None;
+    }
+
+    fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change> {
+        if self.pending.is_some() {
+            return None;
+        }
+        if !self.installed {
+            return if may_install && !self.chain.is_empty() { self.install(home?) } else { None };
+        }
+        // what the aircraft waits for comes before topping up
+        if self.is_short_chain_complete()
+            && let Some(change) = self.set_current()
+        {
+            return Some(change);
+        }
+        self.stretch();
+        match self.deviation() {
+            Some(position) => Some(self.write_towards(position)),
+            None => self.set_current(),
+        }
+    }
+
+    fn done(&mut self) {
+        match self.pending.take() {
+            Some(Pending::Upload { items }) => {
+                self.installed = true;
+                self.board.fill(items);
+            }
+            Some(Pending::Write { position, items }) => {
+                self.board.put(position, items);
+                self.resolve_doubt();
+            }
+            Some(Pending::SetCurrent { position }) => self.arrived_at(position),
+            None => {}
+        }
+    }
+
+    fn failed(&mut self) {
+        self.pending = None;
+        self.resolve_doubt();
+    }
+
+    fn invalidate(&mut self) {
+        self.installed = false;
+        self.entered = false;
+        self.pending = None;
+        self.board = Slots::with_home(self.board.home);
+    }
+
+    fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
+        if !ring::is_ours(list) || !(2..=LAST_SLOT).contains(&current) {
+            return None;
+        }
+        self.clear();
+        self.board = Slots::from_list(list);
+        self.installed = true;
+        self.entered = true;
+        self.loaded = list.get(usize::from(current)).copied();
+        let first = u64::from(current - 2);
+        let known = ring::known_on_board(list, first, waypoints);
+        let count = known.len();
+        self.end = first + count as u64;
+        self.chain = Chain::resumed(first, known);
+        Some(count)
+    }
+}
+
+impl Window {
+    /// A window with waypoints that were fed before the autopilot was known.
+    pub fn new(chain: Chain) -> Self {
+        Self { chain, ..Self::default() }
     }
 
     /// The write is over, during which an entry of it was reached.
@@ -169,23 +234,6 @@ impl Window {
         }
     }
 
-    /// The autopilot steers to something that is not in the chain.
-    pub fn is_astray(&self, seq: u16) -> bool {
-        self.entered && self.pending.is_none() && self.position_of(seq).is_none()
-    }
-
-    /// Leave a waypoint that is being circled for the one after it, if there is one.
-    pub fn leave(&mut self, serial: Serial) {
-        if self.chain.active().is_some_and(|f| f.serial == serial) {
-            self.chain.leave_active();
-        }
-    }
-
-    /// Make the autopilot steer to the chain again.
-    pub fn bring_back(&mut self) {
-        self.loaded = None;
-    }
-
     /// A position of the chain (or its end loiter) by slot.
     fn position_of(&self, seq: u16) -> Option<u64> {
         let first = self.chain.first();
@@ -201,15 +249,15 @@ impl Window {
     /// What is wanted at a position.
     fn wanted(&self, position: u64) -> Item {
         match self.chain.at(position) {
-            Some(waypoint) if position < self.end => ring::item(waypoint),
+            Some(waypoint) if position < self.end => Item::of(waypoint),
             _ => self.end_loiter(position),
         }
     }
 
     fn end_loiter(&self, position: u64) -> Item {
         match self.chain.before(position) {
-            Some(item) => end_loiter_after(&item),
-            None => end_loiter_after(&self.board.get(position).unwrap_or(self.board.home)),
+            Some(item) => item.end_loiter(),
+            None => self.board.get(position).unwrap_or(self.board.home).end_loiter(),
         }
     }
 
@@ -233,28 +281,6 @@ impl Window {
         })
     }
 
-    /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
-    /// flying the list, so that it may be replaced whole. `home`: what entry 0 becomes.
-    pub fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change> {
-        if self.pending.is_some() {
-            return None;
-        }
-        if !self.installed {
-            return if may_install && !self.chain.is_empty() { self.install(home?) } else { None };
-        }
-        // what the aircraft waits for comes before topping up
-        if self.is_short_chain_complete()
-            && let Some(change) = self.set_current()
-        {
-            return Some(change);
-        }
-        self.stretch();
-        match self.deviation() {
-            Some(position) => Some(self.write_towards(position)),
-            None => self.set_current(),
-        }
-    }
-
     fn is_short_chain_complete(&self) -> bool {
         let target = self.chain.jump().unwrap_or(self.chain.first());
         self.end > target && self.deviation().is_none()
@@ -269,7 +295,7 @@ impl Window {
         self.entered = false;
         let list = initial_list(home, &items);
         self.pending = Some(Pending::Upload { items });
-        Some(Change::Upload { items: list })
+        Some(Change::Upload { items: list, current: None })
     }
 
     fn write_towards(&mut self, position: u64) -> Change {
@@ -317,67 +343,11 @@ impl Window {
         Some(Change::SetCurrent(slot(position)))
     }
 
-    /// The change in flight was carried out and confirmed.
-    pub fn done(&mut self) {
-        match self.pending.take() {
-            Some(Pending::Upload { items }) => {
-                self.installed = true;
-                self.board.fill(items);
-            }
-            Some(Pending::Write { position, items }) => {
-                self.board.put(position, items);
-                self.resolve_doubt();
-            }
-            Some(Pending::SetCurrent { position }) => self.arrived_at(position),
-            None => {}
-        }
-    }
-
     fn arrived_at(&mut self, position: u64) {
         self.entered = true;
         if position >= self.chain.first() {
             self.loaded = self.board.get(position);
             self.chain.advance_to(position);
         }
-    }
-
-    /// The change in flight failed or its outcome is unknown: what it touched is unknown, and will
-    /// be written again.
-    pub fn failed(&mut self) {
-        self.pending = None;
-        self.resolve_doubt();
-    }
-
-    /// The list on board is no longer known (reboot, another station's upload).
-    pub fn invalidate(&mut self) {
-        self.installed = false;
-        self.entered = false;
-        self.pending = None;
-        self.board = Slots::with_home(self.board.home);
-    }
-
-    /// Forget everything: the flight is over.
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
-
-    /// Take over a list that was read from an autopilot which is flying it. `waypoints`: what was
-    /// known of it before a restart, the one steered to first; so many of them are on board. `None`: it is not
-    /// one of ours.
-    pub fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
-        if !ring::is_ours(list) || !(2..=LAST_SLOT).contains(&current) {
-            return None;
-        }
-        self.clear();
-        self.board = Slots::from_list(list);
-        self.installed = true;
-        self.entered = true;
-        self.loaded = list.get(usize::from(current)).copied();
-        let first = u64::from(current - 2);
-        let known = ring::known_on_board(list, first, waypoints);
-        let count = known.len();
-        self.end = first + count as u64;
-        self.chain = Chain::resumed(first, known);
-        Some(count)
     }
 }

@@ -1,9 +1,8 @@
 //! The ring of slots on board: how positions, slots and list entries go together.
 
-use super::super::items::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::order::Fed;
 use geometry::LatLon;
-use usal::contract::{Action, Waypoint};
 
 /// Slots of the ring.
 pub const RING: u64 = 40;
@@ -24,26 +23,10 @@ pub fn last_before_wrap(position: u64) -> u64 {
     position - position % RING + RING - 1
 }
 
-/// The list entry of a waypoint.
-pub fn item(waypoint: &Waypoint) -> Item {
-    let kind = match waypoint.action {
-        Action::TakeOff { .. } => ItemKind::TakeOff,
-        Action::Fly => ItemKind::Fly { over: waypoint.fly_over },
-        Action::Loiter { radius_m } => ItemKind::Loiter { radius_m },
-        Action::Land { .. } => ItemKind::Land,
-    };
-    Item { position: waypoint.position, altitude_amsl_m: waypoint.altitude_amsl_m, kind }
-}
-
-/// The loiter that follows an item.
-pub fn end_loiter_after(item: &Item) -> Item {
-    Item { kind: ItemKind::Loiter { radius_m: 0.0 }, ..*item }
-}
-
 /// The whole list for a fresh ring: `items` from slot 2 on, the last of them (the end loiter) in every
 /// slot that is left.
 pub fn initial_list(home: Item, items: &[Item]) -> Vec<Item> {
-    let over_home = Item { altitude_amsl_m: home.altitude_amsl_m + HOME_LOITER_M, ..end_loiter_after(&home) };
+    let over_home = Item { altitude_amsl_m: home.altitude_amsl_m + HOME_LOITER_M, ..home.end_loiter() };
     let filler = items.last().copied().unwrap_or(over_home);
     let mut list = vec![Item { kind: ItemKind::Home, ..home }, over_home];
     list.extend(items.iter().copied());
@@ -64,7 +47,7 @@ pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> Vec<Fed
     waypoints
         .into_iter()
         .zip(first..)
-        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &item(&w.waypoint))))
+        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &Item::of(&w.waypoint))))
         .map(|(w, _)| w)
         .collect()
 }

@@ -61,7 +61,7 @@ impl Autopilot {
     /// Does the first `most` of a change's entries; all: true.
     fn obey(&mut self, change: &Change, most: usize) -> bool {
         match change {
-            Change::Upload { items } => {
+            Change::Upload { items, .. } => {
                 self.list = items.clone();
                 true
             }
@@ -117,7 +117,7 @@ impl Rig {
     /// What is claimed to be steered to is what is steered to.
     fn check_claim(&self) {
         if let (Target::Waypoint(claimed), Some(target)) = (self.window.target(), self.autopilot.target) {
-            assert!(matches(&ring::item(&waypoint(claimed.0)), &target), "claims {claimed:?}, is {target:?}");
+            assert!(matches(&Item::of(&waypoint(claimed.0)), &target), "claims {claimed:?}, is {target:?}");
         }
     }
 
@@ -205,7 +205,7 @@ fn starving_it_circles_the_last_waypoint_and_goes_on_when_fed() {
     (0..5).for_each(|_| rig.reach());
     assert_eq!(rig.window.target(), Target::End);
     let target = rig.autopilot.target.unwrap();
-    assert_eq!(target, end_loiter_after(&ring::item(&waypoint(3))));
+    assert_eq!(target, Item::of(&waypoint(3)).end_loiter());
     rig.window.feed(ALL, waypoints(4, 2));
     rig.settle();
     assert_eq!(rig.window.target(), Target::Waypoint(Serial(4)));

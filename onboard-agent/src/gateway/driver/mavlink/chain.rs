@@ -1,7 +1,6 @@
 //! The waypoints that are still to be flown, by position.
 
-use super::super::items::Item;
-use super::ring;
+use super::item::Item;
 use crate::gateway::order::{Fed, Serial};
 use std::collections::VecDeque;
 use usal::contract::{Action, Token, Waypoint};
@@ -58,7 +57,7 @@ impl Chain {
     /// What comes before a position.
     pub fn before(&self, position: u64) -> Option<Item> {
         match position.checked_sub(1).and_then(|p| self.at(p)) {
-            Some(waypoint) => Some(ring::item(waypoint)),
+            Some(waypoint) => Some(Item::of(waypoint)),
             None => self.passed,
         }
     }
@@ -115,7 +114,7 @@ impl Chain {
     pub fn advance_to(&mut self, position: u64) {
         while self.first < position {
             if let Some(fed) = self.entries.pop_front() {
-                self.passed = Some(ring::item(&fed.waypoint));
+                self.passed = Some(Item::of(&fed.waypoint));
             }
             self.first += 1;
             self.left_behind = false;

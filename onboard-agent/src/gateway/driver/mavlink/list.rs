@@ -1,8 +1,8 @@
 //! What is wanted on the autopilot's list, and what is being done to get it there.
 
-use super::items::{Item, ItemKind};
-use super::window::{Change, Window};
-use crate::gateway::order::{Course, Fed, OrderId, Report, Serial, Time};
+use super::chain::Chain;
+use super::item::{Item, ItemKind};
+use crate::gateway::order::{Course, Fed, OrderId, Report, Serial, Target, Time};
 use geometry::LatLon;
 use std::time::Duration;
 
@@ -10,6 +10,63 @@ use std::time::Duration;
 const RETRY: Duration = Duration::from_secs(1);
 /// The list may be flown elsewhere for so long before the aircraft is brought back.
 const ASTRAY_FOR: Duration = Duration::from_secs(2);
+
+/// Something that is to be done to the list.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// Replace the whole list, and verify it.
+    Upload {
+        /// The list.
+        items: Vec<Item>,
+        /// The entry to go on at; `None`: the autopilot stays where it is.
+        current: Option<u16>,
+    },
+    /// Overwrite entries from `start` on, and verify them.
+    Overwrite {
+        /// First entry.
+        start: u16,
+        /// What comes there.
+        items: Vec<Item>,
+    },
+    /// Steer to this entry.
+    SetCurrent(u16),
+}
+
+/// How unlimited waypoints are kept on an autopilot's small list: its strategy, one kind of autopilot each.
+pub trait Feeding: std::fmt::Debug + Send + Sync {
+    /// Cancels what is behind `after`, and appends, as one transaction.
+    fn feed(&mut self, after: Serial, waypoints: Vec<Fed>);
+    /// Leave a waypoint that is being circled for the one after it, if there is one.
+    fn leave(&mut self, serial: Serial);
+    /// Forget everything: the flight is over.
+    fn clear(&mut self);
+    /// The list on board is no longer known (reboot, another station's upload).
+    fn invalidate(&mut self);
+    /// Take over a list that was read from an autopilot which is flying it. `waypoints`: what was
+    /// known of it before a restart, the one steered to first; so many of them are on board. `None`: it is not
+    /// one of ours.
+    fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize>;
+    /// The autopilot says it steers to entry `seq`.
+    fn reported(&mut self, seq: u16);
+    /// The autopilot steers to something that is not in the chain.
+    fn is_astray(&self, seq: u16) -> bool;
+    /// Make the autopilot steer to the chain again.
+    fn bring_back(&mut self);
+    /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
+    /// flying the list, so that it may be replaced whole. `home`: the take-off place.
+    fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change>;
+    /// The change in flight was carried out and confirmed.
+    fn done(&mut self);
+    /// The change in flight failed or its outcome is unknown: what it touched is unknown, and will
+    /// be written again.
+    fn failed(&mut self);
+    /// Our list is on board.
+    fn installed(&self) -> bool;
+    /// Everything on board is in order and the aircraft may be let loose on it.
+    fn ready(&self) -> bool;
+    /// What the autopilot steers to, of what was fed.
+    fn target(&self) -> Target;
+}
 
 /// What is being done to the list.
 #[derive(Debug, Clone)]
@@ -30,9 +87,12 @@ pub enum Step {
 }
 
 /// The list. See the module's text.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct List {
-    window: Window,
+    /// Once it is known which kind of autopilot it is.
+    window: Option<Box<dyn Feeding>>,
+    /// What was fed before.
+    early: Chain,
     task: Option<Task>,
     retry_at: Option<Time>,
     /// A flight that was met in the air is to be examined.
@@ -54,17 +114,30 @@ pub struct List {
 impl List {
     /// Cancel and append, as one transaction.
     pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
-        self.window.feed(after, waypoints);
+        match &mut self.window {
+            Some(window) => window.feed(after, waypoints),
+            None => self.early.feed(after, waypoints, false),
+        }
+    }
+
+    /// It is known how this autopilot's list is kept.
+    pub fn keep(&mut self, window: fn(Chain) -> Box<dyn Feeding>) {
+        self.window = Some(window(std::mem::take(&mut self.early)));
     }
 
     /// Leave a loiter for the waypoint after it.
     pub fn leave(&mut self, serial: Serial) {
-        self.window.leave(serial);
+        if let Some(window) = &mut self.window {
+            window.leave(serial);
+        }
     }
 
     /// The flight is over.
     pub fn forget(&mut self) {
-        self.window.clear();
+        self.early = Chain::default();
+        if let Some(window) = &mut self.window {
+            window.clear();
+        }
         self.adopt = None;
     }
 
@@ -75,7 +148,9 @@ impl List {
 
     /// The autopilot started anew.
     pub fn rebooted(&mut self) {
-        self.window.invalidate();
+        if let Some(window) = &mut self.window {
+            window.invalidate();
+        }
     }
 
     /// The take-off place, metres AMSL.
@@ -91,15 +166,16 @@ impl List {
     /// The autopilot says it steers to this entry.
     pub fn steers_to(&mut self, now: Time, seq: u16) {
         self.current = Some(seq);
-        self.window.reported(seq);
-        if !self.window.is_astray(seq) || !self.flown {
+        let Some(window) = &mut self.window else { return };
+        window.reported(seq);
+        if !window.is_astray(seq) || !self.flown {
             self.astray_since = None;
             return;
         }
         let since = *self.astray_since.get_or_insert(now);
         if now.saturating_sub(since) > ASTRAY_FOR {
             self.astray_since = None;
-            self.window.bring_back();
+            window.bring_back();
         }
     }
 
@@ -121,15 +197,15 @@ impl List {
         if !self.supported || self.hands_off {
             return None;
         }
-        let change = self.window.next_change(!self.flown, self.home.or(self.ground))?;
+        let change = self.window.as_mut()?.next_change(!self.flown, self.home.or(self.ground))?;
         self.task = Some(Task::Change);
         Some(Step::Change(change))
     }
 
     /// It was done, and the autopilot confirmed it.
     pub fn done(&mut self) {
-        if let Some(Task::Change) = self.task.take() {
-            self.window.done();
+        if let (Some(Task::Change), Some(window)) = (self.task.take(), &mut self.window) {
+            window.done();
         }
     }
 
@@ -139,7 +215,7 @@ impl List {
         match self.task.take()? {
             Task::Change => {
                 tracing::warn!(why, "the autopilot's list was not changed");
-                self.window.failed();
+                self.window.as_mut()?.failed();
                 None
             }
             Task::Adopt(id, _) => Some(Report::Failed(id, why)),
@@ -149,13 +225,13 @@ impl List {
     /// The list was read.
     pub fn read(&mut self, list: &[Item]) -> Option<Report> {
         let Some(Task::Adopt(id, known)) = self.task.take() else { return None };
-        let aboard = self.window.adopt(list, self.current.unwrap_or(0), known);
+        let aboard = self.window.as_mut()?.adopt(list, self.current.unwrap_or(0), known);
         Some(Report::Adopted(id, aboard))
     }
 
     /// How far the autopilot is with the waypoints, if that has changed.
     pub fn new_course(&mut self) -> Option<Course> {
-        let w = &self.window;
+        let w = self.window.as_ref()?;
         let course = Course { aboard: w.installed(), ready: w.ready(), target: w.target() };
         (std::mem::replace(&mut self.reported, course) != course).then_some(course)
     }

@@ -1,0 +1,38 @@
+//! What one kind of MAVLink autopilot does in its own way, for the driver they share.
+
+use super::Peer;
+use super::chain::Chain;
+use super::commands::Command;
+use super::item::Item;
+use super::list::Feeding;
+use super::mission::{Entry, Rules};
+use crate::gateway::order::{Aim, Mode};
+use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
+use std::borrow::Cow;
+
+/// A kind of autopilot.
+#[derive(Debug)]
+pub struct Dialect {
+    /// What people call it.
+    pub name: &'static str,
+    /// This is one.
+    pub is: fn(&HEARTBEAT_DATA) -> bool,
+    /// How its list is kept.
+    pub feeding: fn(Chain) -> Box<dyn Feeding>,
+    /// How it deals with its list.
+    pub rules: &'static Rules,
+    /// The messages for entries from a number on.
+    pub entries: fn(u16, &[Item], Peer) -> Vec<Entry>,
+    /// What an entry says.
+    pub decode: fn(&Entry) -> Item,
+    /// Who steers in a mode, by its number. `sent`: it was sent to a place, and has not been sent elsewhere since.
+    pub meaning: fn(number: u32, sent: bool) -> Mode,
+    /// What it calls a mode.
+    pub mode_name: fn(u32) -> Cow<'static, str>,
+    /// The commands that make it do something, one after the other; it is in this mode.
+    pub steer: fn(mode: Option<u32>, &Aim) -> Vec<Command>,
+    /// The commands that arm it.
+    pub arm: &'static [Command],
+    /// A change of mode makes it forget the airspeed that was commanded.
+    pub forgets_speed: bool,
+}

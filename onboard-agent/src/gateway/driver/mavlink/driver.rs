@@ -1,0 +1,399 @@
+//! Pure: the driver of MAVLink autopilots.
+//!
+//! What an autopilot does in its own way is its [`Dialect`], which the first heartbeat chooses: nobody has to say which
+//! autopilot it is. One without a dialect is refused in plain words, and so is one that turns into another.
+
+use super::super::{DIALECTS, Driver, FromLink, Registration};
+use super::Peer;
+use super::commands::{Client, Command};
+use super::dialect::Dialect;
+use super::list::{Change, List, Step};
+use super::mission::Outcome;
+use super::session::{self, Session, SessionEvent};
+use crate::gateway::order::{Aim, Mode, Order, OrderId, Report, Time};
+use autopilot_link::Outbox;
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+use std::collections::VecDeque;
+
+/// This driver in the list of drivers.
+pub const REGISTRATION: Registration = Registration {
+    name: "mavlink",
+    recognises: session::recognises,
+    make: |lockstep| Box::new(MavlinkDriver::new(lockstep)),
+};
+
+/// An autopilot that was heard.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    kind: (MavAutopilot, MavType),
+    /// `None`: we can't fly it.
+    dialect: Option<&'static Dialect>,
+}
+
+/// What it was seen to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Seen {
+    mode: u32,
+    armed: bool,
+}
+
+/// An order that takes more than one command: those that are still to be given.
+#[derive(Debug)]
+struct Steps {
+    order: OrderId,
+    rest: VecDeque<Command>,
+}
+
+/// The driver. See the module's text.
+#[derive(Debug, Default)]
+pub struct MavlinkDriver {
+    session: Session,
+    list: List,
+    known: Option<Known>,
+    seen: Option<Seen>,
+    /// Orders in flight that take several commands.
+    steps: Vec<Steps>,
+    /// What it is being made to do.
+    steering: Option<(OrderId, Aim)>,
+    /// It was sent to a place, and has not been sent elsewhere since.
+    sent: bool,
+    /// The airspeed that was commanded last, m/s.
+    speed_mps: Option<f64>,
+    /// Something happened that may concern the list.
+    stirred: bool,
+    reports: VecDeque<Report>,
+    /// Always empty between calls; kept for its memory.
+    events: Vec<SessionEvent>,
+}
+
+impl MavlinkDriver {
+    /// A driver that has received nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
+    pub fn new(lockstep: bool) -> Self {
+        Self { session: Session::new(lockstep), ..Self::default() }
+    }
+
+    fn dialect(&self) -> Option<&'static Dialect> {
+        self.known.and_then(|known| known.dialect)
+    }
+
+    fn steer(&mut self, now: Time, id: OrderId, aim: Aim, events: &mut Vec<SessionEvent>) {
+        let Some(dialect) = self.dialect() else { return self.refuse(id) };
+        let mode = self.seen.map(|seen| seen.mode);
+        self.steps.clear();
+        self.steering = Some((id, aim));
+        match aim {
+            Aim::Direct { .. } => self.sent = true,
+            // as long as it is on its way to a place, that is what it does
+            Aim::Hold if mode.is_some_and(|mode| (dialect.meaning)(mode, true) == Mode::Direct) => {}
+            _ => self.sent = false,
+        }
+        self.give(now, id, (dialect.steer)(mode, &aim), events);
+    }
+
+    /// Gives commands one after the other; the order is done with the last.
+    fn give(&mut self, now: Time, id: OrderId, commands: Vec<Command>, events: &mut Vec<SessionEvent>) {
+        let mut rest = VecDeque::from(commands);
+        let Some(first) = rest.pop_front() else { return self.reports.push_back(Report::Done(id)) };
+        if !rest.is_empty() {
+            self.steps.push(Steps { order: id, rest });
+        }
+        self.session.command(now, Client::Order(id), first, events);
+    }
+
+    fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
+        match self.dialect() {
+            Some(dialect) => self.give(now, id, dialect.arm.to_vec(), events),
+            None => self.refuse(id),
+        }
+    }
+
+    fn refuse(&mut self, id: OrderId) {
+        self.reports.push_back(Report::Failed(id, "the autopilot is not known yet, or not supported".into()));
+    }
+
+    /// Does what follows from the events, until nothing more follows.
+    fn settle(&mut self, now: Time, mut events: Vec<SessionEvent>) {
+        loop {
+            let mut more = vec![];
+            for item in events.drain(..) {
+                self.on_event(now, item, &mut more);
+            }
+            if std::mem::take(&mut self.stirred) {
+                self.work(now, &mut more);
+            }
+            events.append(&mut more);
+            if events.is_empty() {
+                break;
+            }
+        }
+        self.events = events;
+    }
+
+    fn on_event(&mut self, now: Time, event: SessionEvent, more: &mut Vec<SessionEvent>) {
+        if let SessionEvent::Telemetry(report) = event {
+            self.observe(&report);
+            return self.reports.push_back(report);
+        }
+        self.stirred = true;
+        match event {
+            SessionEvent::Heartbeat(beat) => self.on_heartbeat(now, &beat, more),
+            SessionEvent::Current(seq) => {
+                self.reports.push_back(Report::Alive);
+                self.list.steers_to(now, seq);
+            }
+            SessionEvent::Mission(outcome) => self.list_ended(now, outcome),
+            SessionEvent::Command(Client::List, Ok(())) => self.list.done(),
+            SessionEvent::Command(Client::List, Err(why)) => self.list_ended(now, Outcome::Failed(why)),
+            SessionEvent::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
+            SessionEvent::Command(Client::Nobody, _) | SessionEvent::Telemetry(_) => {}
+        }
+    }
+
+    fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
+        self.recognise(beat);
+        let Some(dialect) = self.dialect() else {
+            // without a dialect nothing is known of its modes
+            let (mode, name) = (Mode::Other(beat.custom_mode), "unknown".into());
+            return self.reports.push_back(Report::Heartbeat { mode, name, armed: session::is_armed(beat) });
+        };
+        let before = self.seen.replace(Seen { mode: beat.custom_mode, armed: session::is_armed(beat) });
+        let going = matches!(self.steering, Some((_, Aim::Direct { .. })));
+        if !going && (dialect.meaning)(beat.custom_mode, true) != Mode::Direct {
+            self.sent = false;
+        }
+        self.report_mode(dialect);
+        let changed = before.is_some_and(|before| before.mode != beat.custom_mode);
+        if changed && dialect.forgets_speed {
+            self.say_speed_again(now, dialect, events);
+        }
+    }
+
+    /// The first heartbeat says what it is; it stays that.
+    fn recognise(&mut self, beat: &HEARTBEAT_DATA) {
+        let kind = (beat.autopilot, beat.mavtype);
+        match self.known {
+            None => {
+                let dialect = DIALECTS.iter().copied().find(|dialect| (dialect.is)(beat));
+                if let Some(dialect) = dialect {
+                    self.list.keep(dialect.feeding);
+                }
+                self.list.supported = dialect.is_some();
+                self.known = Some(Known { kind, dialect });
+                let capability = dialect.map(|dialect| dialect.name).ok_or_else(|| unsupported(kind));
+                self.reports.push_back(Report::Capability(capability));
+            }
+            Some(known) if known.kind != kind && known.dialect.is_some() => {
+                self.list.supported = false;
+                self.known = Some(Known { kind, dialect: None });
+                let why = format!(
+                    "It was {} and says now that it is {}: start the agent anew.",
+                    people(known.kind),
+                    people(kind)
+                );
+                self.reports.push_back(Report::Capability(Err(why)));
+            }
+            Some(_) => {}
+        }
+    }
+
+    fn report_mode(&mut self, dialect: &Dialect) {
+        let Some(Seen { mode: number, armed }) = self.seen else { return };
+        let mode = (dialect.meaning)(number, self.sent);
+        self.list.flown = armed && mode == Mode::Waypoints;
+        self.reports.push_back(Report::Heartbeat { mode, name: (dialect.mode_name)(number), armed });
+    }
+
+    /// An airspeed that was commanded is commanded again, in the modes that we ask for.
+    fn say_speed_again(&mut self, now: Time, dialect: &Dialect, events: &mut Vec<SessionEvent>) {
+        let Some(Seen { mode, armed: true }) = self.seen else { return };
+        let ours = matches!((dialect.meaning)(mode, self.sent), Mode::Waypoints | Mode::Direct);
+        if let Some(mps) = self.speed_mps.filter(|_| ours) {
+            self.session.command(now, Client::Nobody, Command::Speed(mps), events);
+        }
+    }
+
+    /// What telemetry means for the list.
+    fn observe(&mut self, report: &Report) {
+        match report {
+            Report::Home { position, altitude_amsl_m } => {
+                self.list.set_home(*position, *altitude_amsl_m);
+                self.stirred = true;
+            }
+            Report::Fix(fix) => {
+                self.list.set_ground(fix.position, fix.altitude_amsl_m - fix.altitude_home_m);
+            }
+            Report::Rebooted => {
+                self.list.rebooted();
+                self.stirred = true;
+            }
+            _ => {}
+        }
+    }
+
+    fn list_ended(&mut self, now: Time, outcome: Outcome) {
+        let report = match outcome {
+            Outcome::Verified => {
+                self.list.done();
+                None
+            }
+            Outcome::List(entries) => self
+                .dialect()
+                .and_then(|dialect| self.list.read(&entries.iter().map(dialect.decode).collect::<Vec<_>>())),
+            Outcome::Failed(why) => self.list.failed(now, why),
+        };
+        self.reports.extend(report);
+    }
+
+    fn command_ended(
+        &mut self,
+        now: Time,
+        id: OrderId,
+        result: Result<(), String>,
+        more: &mut Vec<SessionEvent>,
+    ) {
+        if result.is_ok()
+            && let Some(next) = self.next_step(id)
+        {
+            return self.session.command(now, Client::Order(id), next, more);
+        }
+        self.steps.retain(|steps| steps.order != id);
+        if let Some((_, aim)) = self.steering.take_if(|(of, _)| *of == id) {
+            self.steered(aim, result.is_ok());
+        }
+        self.reports.push_back(match result {
+            Ok(()) => Report::Done(id),
+            Err(why) => Report::Failed(id, why),
+        });
+    }
+
+    fn next_step(&mut self, id: OrderId) -> Option<Command> {
+        self.steps.iter_mut().find(|steps| steps.order == id)?.rest.pop_front()
+    }
+
+    /// What it was to do, it does now, or won't.
+    fn steered(&mut self, aim: Aim, done: bool) {
+        if done && aim == Aim::Hold && std::mem::take(&mut self.sent) {
+            // it circles in the mode in which it was on its way
+            self.dialect().into_iter().for_each(|dialect| self.report_mode(dialect));
+        }
+    }
+
+    /// Goes on with the list, and reports how far it is.
+    fn work(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
+        if let (Some(peer), Some(dialect)) = (self.session.peer(), self.dialect())
+            && let Some(step) = self.list.next(now)
+        {
+            self.begin(now, step, dialect, peer, events);
+        }
+        self.reports.extend(self.list.new_course().map(Report::Course));
+    }
+
+    fn begin(
+        &mut self,
+        now: Time,
+        step: Step,
+        dialect: &'static Dialect,
+        peer: Peer,
+        events: &mut Vec<SessionEvent>,
+    ) {
+        let (mission, out) = self.session.mission();
+        match step {
+            Step::Read => mission.read(now, dialect.rules, peer, out),
+            Step::Change(Change::Upload { items, current }) => {
+                let mut entries = (dialect.entries)(0, &items, peer);
+                let there = entries.iter_mut().find(|entry| Some(entry.seq) == current);
+                there.into_iter().for_each(|entry| entry.current = 1);
+                mission.upload(now, entries, dialect.rules, peer, out);
+            }
+            Step::Change(Change::Overwrite { start, items }) => {
+                let entries = (dialect.entries)(start, &items, peer);
+                mission.overwrite(now, entries, dialect.rules.same, peer, out);
+            }
+            Step::Change(Change::SetCurrent(seq)) => {
+                self.session.command(now, Client::List, Command::Current(seq), events);
+            }
+        }
+    }
+}
+
+impl Driver for MavlinkDriver {
+    fn receive(&mut self, from: FromLink<'_>) {
+        self.session.receive(from);
+    }
+
+    fn process(&mut self, now: Time) -> bool {
+        let mut events = std::mem::take(&mut self.events);
+        let more = self.session.process(now, &mut events);
+        self.settle(now, events);
+        more
+    }
+
+    fn order(&mut self, now: Time, id: OrderId, order: Order) {
+        let mut events = std::mem::take(&mut self.events);
+        match order {
+            Order::Feed { after, waypoints } => self.list.feed(after, waypoints),
+            Order::Leave(serial) => self.list.leave(serial),
+            Order::Forget => {
+                self.list.forget();
+                self.speed_mps = None;
+            }
+            Order::HandsOff(off) => self.list.hands_off = off,
+            Order::Adopt(known) => self.list.adopt(id, known),
+            Order::Steer(aim) => self.steer(now, id, aim, &mut events),
+            Order::Arm => self.arm(now, id, &mut events),
+            Order::Speed(mps) => {
+                self.speed_mps = Some(mps);
+                self.session.command(now, Client::Order(id), Command::Speed(mps), &mut events);
+            }
+            Order::Terminate => {
+                self.session.command(now, Client::Order(id), Command::Terminate, &mut events);
+            }
+        }
+        self.stirred = true;
+        self.settle(now, events);
+    }
+
+    fn tick(&mut self, now: Time) {
+        let mut events = std::mem::take(&mut self.events);
+        self.session.tick(now, &mut events);
+        self.stirred = true;
+        self.settle(now, events);
+    }
+
+    fn deadline(&self) -> Time {
+        let session = self.session.deadline();
+        self.list.deadline().map_or(session, |list| list.min(session))
+    }
+
+    fn next_report(&mut self) -> Option<Report> {
+        self.reports.pop_front()
+    }
+
+    fn send(&mut self, outbox: &mut Outbox) {
+        self.session.send(outbox);
+    }
+
+    fn take_step(&mut self) -> Option<i64> {
+        self.session.take_step()
+    }
+
+    fn answer_step(&mut self, step_ns: i64) {
+        self.session.answer_step(step_ns);
+    }
+
+    fn hello(&mut self) {
+        self.session.hello();
+    }
+}
+
+fn people((autopilot, kind): (MavAutopilot, MavType)) -> String {
+    let plain = |name: String| {
+        name.replace("MAV_AUTOPILOT_", "").replace("MAV_TYPE_", "").replace('_', " ").to_lowercase()
+    };
+    format!("{} on {}", plain(format!("{autopilot:?}")), plain(format!("{kind:?}")))
+}
+
+fn unsupported(kind: (MavAutopilot, MavType)) -> String {
+    let known = DIALECTS.iter().map(|dialect| dialect.name).collect::<Vec<_>>().join(", ");
+    format!("{} is not supported. Connect one of: {known}.", people(kind))
+}

@@ -1,0 +1,59 @@
+//! Pure: PX4's dialect of MAVLink, for a fixed wing and for a VTOL that is flown as a wing.
+//!
+//! PX4 takes whole lists only, and takes them in flight without a seam: they are buffered twice. So its list is
+//! replaced whole (`window`), and named by its checksum (`items`). Its modes are in `modes`.
+
+mod items;
+mod modes;
+#[cfg(test)]
+mod tests;
+mod window;
+
+use super::mavlink::Peer;
+use super::mavlink::dialect::Dialect;
+use super::mavlink::item::{self, Item};
+use super::mavlink::mission::{Entry, Rules};
+use items::TakeOff;
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+
+/// PX4 on a fixed wing.
+pub const FIXED_WING: Dialect = Dialect {
+    name: "PX4 fixed wing",
+    is: |beat| is_px4(beat) && beat.mavtype == MavType::MAV_TYPE_FIXED_WING,
+    feeding: |chain| Box::new(window::Window::new(chain)),
+    rules: &RULES,
+    entries: |start, list, peer| entries(start, list, peer, TakeOff::Rolling),
+    decode: item::decode,
+    meaning: modes::meaning,
+    mode_name: modes::name,
+    steer: |_, aim| modes::steer(aim),
+    arm: &modes::ARM,
+    forgets_speed: true,
+};
+
+/// PX4 on a VTOL: it rises, and then flies as a wing.
+pub const VTOL: Dialect = Dialect {
+    name: "PX4 VTOL, flown as a wing",
+    is: |beat| is_px4(beat) && VTOLS.contains(&beat.mavtype),
+    entries: |start, list, peer| entries(start, list, peer, TakeOff::Vertical),
+    ..FIXED_WING
+};
+
+/// Types that PX4 itself takes for a VTOL.
+const VTOLS: [MavType; 5] = [
+    MavType::MAV_TYPE_VTOL_TAILSITTER_DUOROTOR,
+    MavType::MAV_TYPE_VTOL_TAILSITTER_QUADROTOR,
+    MavType::MAV_TYPE_VTOL_TILTROTOR,
+    MavType::MAV_TYPE_VTOL_FIXEDROTOR,
+    MavType::MAV_TYPE_VTOL_TAILSITTER,
+];
+
+const RULES: Rules = Rules { same: items::same, id: Some(items::checksum), reads_in_order: true };
+
+fn is_px4(beat: &HEARTBEAT_DATA) -> bool {
+    beat.autopilot == MavAutopilot::MAV_AUTOPILOT_PX4
+}
+
+fn entries(start: u16, list: &[Item], peer: Peer, take_off: TakeOff) -> Vec<Entry> {
+    (start..).zip(list).map(|(seq, item)| items::encode(seq, item, peer, take_off)).collect()
+}
