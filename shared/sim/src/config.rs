@@ -24,6 +24,8 @@ pub enum Link {
 pub struct Config {
     /// Which autopilot it behaves as.
     pub personality: Personality,
+    /// Parameters that are set when it is switched on, by the autopilot's names.
+    pub params: Vec<(String, f32)>,
     /// How it is reached.
     pub link: Link,
     /// Where it stands at the start.
@@ -49,6 +51,7 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             personality: Personality::default(),
+            params: Vec::new(),
             link: Link::Tcp(SocketAddr::from(([127, 0, 0, 1], 0))),
             home: Home {
                 position: LatLon::new(36.3190, -84.1730),
@@ -126,6 +129,19 @@ pub fn parse_wind(text: &str) -> Result<Wind, String> {
     }
 }
 
+/// `NAME=VALUE`: a parameter.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_param(text: &str) -> Result<(String, f32), String> {
+    let param =
+        text.split_once('=').and_then(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)));
+    match param {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value)),
+        _ => Err(format!("{text:?} is no parameter; write NAME=VALUE, as MIS_TKO_LAND_REQ=0")),
+    }
+}
+
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let parsed: Vec<f64> = text
         .split(',')
@@ -146,6 +162,14 @@ mod tests {
         assert!(matches!(" fault engine-out@3 ".parse(), Ok(Control::Inject(_))));
         for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "dance"] {
             assert!(bad.parse::<Control>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn params() {
+        assert_eq!(parse_param("NAV_ACC_RAD=12.5"), Ok(("NAV_ACC_RAD".to_owned(), 12.5)));
+        for bad in ["", "=1", "NAV_ACC_RAD", "NAV_ACC_RAD=far"] {
+            assert!(parse_param(bad).is_err(), "{bad}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::Parser;
-use sim::config::{parse_home, parse_wind};
+use sim::config::{parse_home, parse_param, parse_wind};
 use sim::{Config, Control, FaultRequest, Home, Link, Personality};
 use std::io::BufRead;
 use std::net::SocketAddr;
@@ -17,6 +17,9 @@ struct Options {
     /// Which autopilot it behaves as: arduplane, px4 or px4-vtol.
     #[arg(long, value_name = "AUTOPILOT", default_value_t = Personality::ArduPlane)]
     personality: Personality,
+    /// A parameter of the autopilot that is set when it is switched on; may be given often.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_param)]
+    param: Vec<(String, f32)>,
     /// Where it stands: latitude, longitude, elevation (m AMSL), heading (degrees true).
     #[arg(long, value_name = "LAT,LON,ALT,HDG", value_parser = parse_home, allow_hyphen_values = true)]
     home: Option<Home>,
@@ -60,6 +63,7 @@ impl Options {
         };
         Ok(Config {
             personality: self.personality,
+            params: self.param,
             link,
             home: self.home.unwrap_or(defaults.home),
             wind: self.wind.unwrap_or(defaults.wind),

@@ -169,6 +169,14 @@ pub fn spawn(config: Config) -> anyhow::Result<Handle> {
     let address = bound.address()?;
     let mut simulator =
         Simulator::of(config.personality, config.profile.clone(), config.home, config.wind, config.seed);
+    for (name, value) in &config.params {
+        let params = &mut simulator.autopilot.params;
+        anyhow::ensure!(
+            params.set(name, *value),
+            "{name} can't be set to {value}: {} has no such parameter to be set, or not to that value",
+            config.personality
+        );
+    }
     for fault in &config.faults {
         anyhow::ensure!(simulator.inject(*fault), "too many faults: ask for 64 at most");
     }

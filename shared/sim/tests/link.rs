@@ -3,7 +3,7 @@
 
 use mavlink::dialects::ardupilotmega::*;
 use sim::frame::{Body, Decoder, Sender, encode_from, take_frames};
-use sim::{Config, Control, Handle, Link, Mode};
+use sim::{Config, Control, Handle, Link, Mode, Personality};
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -238,6 +238,19 @@ fn an_address_in_use_is_an_error_that_says_what_to_do() {
 }
 
 #[test]
+fn a_parameter_that_the_autopilot_does_not_have_is_an_error_that_names_both() {
+    let with = |params: &[(&str, f32)]| {
+        let params = params.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        sim::spawn(Config { personality: Personality::Px4, params, ..Config::default() })
+    };
+    assert!(with(&[("MIS_TKO_LAND_REQ", 0.0)]).is_ok());
+    for wrong in [("RTL_ALTITUDE", 50.0), ("MIS_TKO_LAND_REQ", 99.0)] {
+        let error = with(&[wrong]).unwrap_err().to_string();
+        assert!(error.contains(wrong.0) && error.contains("px4"), "{error}");
+    }
+}
+
+#[test]
 fn faults_and_the_track_log_through_the_handle() {
     let handle = lockstep(0.0);
     let mut client = Client::connect(handle.address());
@@ -271,6 +284,7 @@ fn standard_output_on_a_full_disk_is_exit_status_2() {
 fn the_binary_prints_its_address_and_obeys_lines() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_legwork-sim"))
         .args(["--tcp", "127.0.0.1:0", "--wind", "270,5", "--seed", "9", "--fault", "gps-loss"])
+        .args(["--personality", "arduplane", "--param", "WP_LOITER_RAD=150"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         // a file, so that its log is not in the way of what the tests print
