@@ -142,6 +142,8 @@ pub enum Report {
     Engine(Engine),
     /// Energy.
     Power(Power),
+    /// Throttle, 0..1.
+    Throttle(f64),
     /// The take-off place.
     Home {
         /// Where.

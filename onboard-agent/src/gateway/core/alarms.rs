@@ -1,9 +1,12 @@
 //! Alarms: raised when something has been wrong for a while, cleared when it is right again.
 
+mod watches;
+
 use super::telemetry::Telemetry;
 use crate::gateway::order::Time;
 use std::time::Duration;
-use usal::contract::{Alarm, Cause, GatewayEvent, Severity};
+use usal::contract::{Alarm, GatewayEvent};
+use watches::{WATCHES, Watch};
 
 /// Nothing was received from the autopilot for so long.
 const SILENT: Duration = Duration::from_secs(3);
@@ -17,136 +20,12 @@ const ENERGY_LOW: (f64, f64) = (0.20, 0.23);
 const STOPPED_RPM: f64 = 300.0;
 /// Throttle above which an engine has to turn, 0..1.
 const THROTTLE: f64 = 0.1;
+/// Throttle at which an aircraft that sinks does all it can, 0..1.
+const FULL_THROTTLE: f64 = 0.9;
+/// An aircraft that climbs faster than this has an engine, m/s.
+const CLIMBING_MPS: f64 = 0.5;
 /// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
-
-/// What the gateway watches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Watch {
-    GpsLost,
-    EngineOut,
-    EnergyLow,
-    AutopilotSilent,
-    PositionStale,
-    Disobeys,
-    NoSafeRunway,
-    NoRunwayStored,
-    OtherFpManager,
-    Exposed,
-    NotStored,
-}
-
-const WATCHES: [Watch; 11] = [
-    Watch::GpsLost,
-    Watch::EngineOut,
-    Watch::EnergyLow,
-    Watch::AutopilotSilent,
-    Watch::PositionStale,
-    Watch::Disobeys,
-    Watch::NoSafeRunway,
-    Watch::NoRunwayStored,
-    Watch::OtherFpManager,
-    Watch::Exposed,
-    Watch::NotStored,
-];
-
-impl Watch {
-    fn alarm(self) -> Alarm {
-        let (id, severity, source, advice, cause) = match self {
-            Watch::GpsLost => (
-                "gps-lost",
-                Severity::Warning,
-                "gps",
-                "Position is not known. Be ready to take over by hand; fly the emergency plan.",
-                Some(Cause::Gps),
-            ),
-            Watch::EngineOut => (
-                "engine-out",
-                Severity::Warning,
-                "engine",
-                "The engine does not turn. Land at the nearest runway within gliding reach.",
-                Some(Cause::Engine),
-            ),
-            Watch::EnergyLow => (
-                "energy-low",
-                Severity::Warning,
-                "power",
-                "Little energy is left. Return and land.",
-                Some(Cause::Energy),
-            ),
-            Watch::AutopilotSilent => (
-                "autopilot-silent",
-                Severity::Warning,
-                "link",
-                "Nothing is heard from the autopilot; it flies on by itself. Check the link.",
-                None,
-            ),
-            Watch::PositionStale => (
-                "position-stale",
-                Severity::Caution,
-                "gps",
-                "The position no longer changes. Do not trust the map.",
-                None,
-            ),
-            Watch::Disobeys => (
-                "autopilot-disobeys",
-                Severity::Warning,
-                "autopilot",
-                "The autopilot has not confirmed what it was told; it is told again. Be ready to take over by hand.",
-                None,
-            ),
-            Watch::NoSafeRunway => (
-                "no-safe-runway",
-                Severity::Warning,
-                "safe",
-                "Safe mode knows no runway within reach; the autopilot returns by its own means. Store runways before flight.",
-                None,
-            ),
-            Watch::NoRunwayStored => (
-                "no-runway-stored",
-                Severity::Caution,
-                "safe",
-                "Safe mode has no runway to return to. Commit or start a plan that has one, or store runways by hand.",
-                None,
-            ),
-            Watch::OtherFpManager => (
-                "other-fp-manager",
-                Severity::Caution,
-                "fp-manager",
-                "Another program than the FP Manager that joined sends its heartbeats; they do not count. Find it and stop it.",
-                None,
-            ),
-            Watch::Exposed => (
-                "exposed",
-                Severity::Caution,
-                "gateway",
-                "The agent listens where strangers can connect, and nothing protects it: whoever does can read everything, commit plans and give every command.",
-                None,
-            ),
-            Watch::NotStored => (
-                "not-stored",
-                Severity::Caution,
-                "gateway",
-                "Runways and the state of the flight can't be stored: a gateway that starts anew forgets them. Check the disk of the state directory.",
-                None,
-            ),
-        };
-        Alarm { id: id.into(), severity, source: source.into(), advice: advice.into(), cause }
-    }
-
-    /// How long it has to be wrong before the alarm is raised.
-    fn patience(self) -> Duration {
-        match self {
-            Watch::GpsLost | Watch::EngineOut => Duration::from_secs(1),
-            Watch::EnergyLow => Duration::from_secs(2),
-            // those of a plan come a moment after it
-            Watch::NoRunwayStored => Duration::from_secs(3),
-            // a new process has heartbeats before it joins
-            Watch::OtherFpManager => Duration::from_secs(3),
-            _ => Duration::ZERO,
-        }
-    }
-}
 
 /// What the alarms need beside telemetry.
 #[derive(Debug, Clone, Copy, Default)]
@@ -155,6 +34,12 @@ pub struct AlarmInputs {
     pub disobeys_since: Option<Time>,
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
     pub sinks_below_target: bool,
+    /// It sinks below the altitude that it was told to fly at.
+    pub sinks: bool,
+    /// It ought to fly, and does not move.
+    pub stands_still: bool,
+    /// Somebody else steers the flying aircraft.
+    pub not_in_command: bool,
     /// Safe mode needed a runway and found none.
     pub no_safe_runway: bool,
     /// It listens where strangers can connect.
@@ -223,6 +108,10 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
             let needed = raised || inputs.sinks_below_target;
             t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
         }
+        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(t, inputs.sinks, raised),
+        Watch::Sinks => inputs.sinks,
+        Watch::StandsStill => inputs.stands_still,
+        Watch::NotInCommand => inputs.not_in_command,
         Watch::EnergyLow => {
             let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
             t.power.is_some_and(|(_, p)| p.battery < limit)
@@ -235,6 +124,14 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::OtherFpManager => inputs.other_fp_manager,
         Watch::Exposed => inputs.exposed,
         Watch::NotStored => inputs.not_stored,
+    }
+}
+
+/// It sinks at full throttle; once that was seen, until it climbs again: on the way down nothing else shows it.
+fn strains(t: &Telemetry, sinks: bool, raised: bool) -> bool {
+    match raised {
+        true => t.fix.is_none_or(|(_, fix)| fix.down_mps > -CLIMBING_MPS),
+        false => sinks && t.throttle.is_some_and(|(_, throttle)| throttle > FULL_THROTTLE),
     }
 }
 
@@ -327,6 +224,58 @@ mod tests {
             assert!((at_tenth - 1..=at_tenth + 1).contains(&events[0].0), "{id}: {events:?}");
             assert_eq!(events[1..], [(100, format!("-{id}"))], "{id}");
         }
+    }
+
+    /// Events while these inputs and reports go on for so many tenths of a second each.
+    fn story(parts: &[(i64, AlarmInputs, Report)]) -> Vec<(i64, String)> {
+        let (mut alarms, mut telemetry, mut events, mut tenth) =
+            (Alarms::default(), Telemetry::default(), vec![], 0);
+        for (tenths, inputs, report) in parts {
+            for _ in 0..*tenths {
+                let now = Duration::from_millis(100 * tenth as u64);
+                let alive = good(tenth).into_iter().filter(|r| !matches!(r, Report::Engine(_)));
+                alive.chain([report.clone()]).for_each(|r| telemetry.take(now, &r));
+                let mut out = vec![];
+                alarms.update(now, &telemetry, *inputs, &mut out);
+                events.extend(out.into_iter().map(|e| (tenth, name(e))));
+                tenth += 1;
+            }
+        }
+        events
+    }
+
+    fn moving(down_mps: f64) -> Report {
+        let position = LatLon::new(37.0, -84.0);
+        let (altitude_amsl_m, altitude_home_m) = (500.0, 200.0);
+        Report::Fix(Fix {
+            position,
+            altitude_amsl_m,
+            altitude_home_m,
+            north_mps: 25.0,
+            east_mps: 0.0,
+            down_mps,
+        })
+    }
+
+    #[test]
+    fn an_engine_that_says_nothing_is_suspected_at_full_throttle_until_it_climbs() {
+        let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
+        let well = AlarmInputs::default();
+        let throttle = Report::Throttle;
+        let events =
+            story(&[(20, sinks, throttle(0.5)), (100, sinks, throttle(1.0)), (50, well, moving(3.0))]);
+        assert_eq!(events, [(50, "+sinks".into()), (70, "+engine-suspected".into()), (120, "-sinks".into())]);
+        let climbing = story(&[(100, sinks, throttle(1.0)), (5, well, moving(-1.0))]);
+        assert!(climbing.contains(&(100, "-engine-suspected".into())), "{climbing:?}");
+    }
+
+    #[test]
+    fn what_stands_still_or_is_steered_by_another_is_told() {
+        let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
+        let other = AlarmInputs { not_in_command: true, ..AlarmInputs::default() };
+        let events = story(&[(150, still, moving(0.0)), (2, other, moving(0.0))]);
+        let told = [(100, "+stands-still"), (150, "-stands-still"), (150, "+not-in-command")];
+        assert_eq!(events, told.map(|(tenth, name)| (tenth, name.to_owned())));
     }
 
     #[test]

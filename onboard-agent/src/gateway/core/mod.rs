@@ -8,6 +8,7 @@ mod alarms;
 mod batch;
 mod buffer;
 mod control;
+mod deviation;
 mod feeding;
 mod io;
 mod requests;
@@ -34,10 +35,6 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
-/// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
-const MISSING_M: f64 = 3.0;
-const SINKING_MPS: f64 = 0.5;
-
 /// The gateway. See the module's text.
 pub struct Gateway {
     settings: Settings,
@@ -196,6 +193,9 @@ impl Gateway {
         let inputs = AlarmInputs {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
+            sinks: self.sinks(),
+            stands_still: self.stands_still(),
+            not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
             exposed: self.settings.exposed,
             other_fp_manager: self.fp_manager.has_heard_another(now),
@@ -205,14 +205,6 @@ impl Gateway {
         let mut events = vec![];
         self.alarms.update(now, &self.telemetry, inputs, &mut events);
         out.extend(events.into_iter().map(Output::Event));
-    }
-
-    fn sinks_below_target(&self) -> bool {
-        let Some((_, fix)) = self.telemetry.fix.filter(|_| self.flies_waypoints()) else { return false };
-        let target = self.buffer.current().filter(|w| matches!(w.action, Action::Fly));
-        target.is_some_and(|w| {
-            fix.altitude_amsl_m < w.altitude_amsl_m - MISSING_M && fix.down_mps > SINKING_MPS
-        })
     }
 
     fn flies_waypoints(&self) -> bool {

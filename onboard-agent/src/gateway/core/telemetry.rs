@@ -34,6 +34,8 @@ pub struct Telemetry {
     pub gps: Timed<Gps>,
     /// Engine.
     pub engine: Timed<Engine>,
+    /// Throttle, 0..1.
+    pub throttle: Timed<f64>,
     /// Energy.
     pub power: Timed<Power>,
     /// Take-off place and its altitude AMSL.
@@ -69,6 +71,7 @@ impl Default for Telemetry {
             air: None,
             gps: None,
             engine: None,
+            throttle: None,
             power: None,
             home: None,
             on_ground: None,
@@ -98,6 +101,7 @@ impl Telemetry {
             Report::Air(v) => self.air = Some((now, *v)),
             Report::Gps(v) => self.gps = Some((now, *v)),
             Report::Engine(v) => self.engine = Some((now, *v)),
+            Report::Throttle(v) => self.throttle = Some((now, *v)),
             Report::Power(v) => self.power = Some((now, *v)),
             Report::Home { position, altitude_amsl_m } => {
                 self.home = Some((*position, *altitude_amsl_m));

@@ -24,6 +24,8 @@ pub enum Fault {
     LowBattery,
     /// The radio is silent both ways.
     Silence,
+    /// Nothing says how fast the engine turns.
+    NoRpm,
 }
 
 impl Fault {
@@ -36,6 +38,7 @@ impl Fault {
             Fault::EngineOut => "engine-out",
             Fault::LowBattery => "low-battery",
             Fault::Silence => "silence",
+            Fault::NoRpm => "no-rpm",
         }
     }
 }
@@ -72,7 +75,7 @@ impl fmt::Display for FaultRequest {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), gps-loss, \
-     engine-out, low-battery, silence, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+     engine-out, low-battery, silence, no-rpm, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
@@ -104,6 +107,7 @@ impl FromStr for FaultRequest {
             ("engine-out", _, None) => Fault::EngineOut,
             ("low-battery", _, None) => Fault::LowBattery,
             ("silence", _, None) => Fault::Silence,
+            ("no-rpm", _, None) => Fault::NoRpm,
             _ => return Err(bad()),
         };
         Ok(Self { fault, at_s, for_s })
@@ -127,6 +131,8 @@ pub struct Effects {
     pub silent: bool,
     /// The battery dropped.
     pub low_battery: bool,
+    /// No message says how fast the engine turns.
+    pub no_rpm: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -171,6 +177,7 @@ impl Schedule {
                 Fault::EngineOut => effects.engine_out = true,
                 Fault::LowBattery => effects.low_battery = true,
                 Fault::Silence => effects.silent = true,
+                Fault::NoRpm => effects.no_rpm = true,
             }
         }
         effects

@@ -260,7 +260,8 @@ impl Simulator {
 
     /// A message as it is now; `None`: the autopilot doesn't have it.
     fn message(&self, id: u32) -> Option<MavMessage> {
-        if !self.rules.streams.iter().any(|(known, ..)| *known == id) {
+        let known = self.rules.streams.iter().any(|(known, ..)| *known == id);
+        if !known || (self.effects.no_rpm && telemetry::RPM_MESSAGES.contains(&id)) {
             return None;
         }
         let own = self.behaviour.message(&self.autopilot, self.now_ns, id);

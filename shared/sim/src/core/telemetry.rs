@@ -10,6 +10,9 @@ use mavlink::dialects::ardupilotmega::*;
 /// 2026-01-01, where simulated clocks start.
 const EPOCH_US: u64 = 1_767_225_600_000_000;
 
+/// Messages that say how fast the engine turns: EFI_STATUS, RPM, ESC_TELEMETRY_1_TO_4.
+pub const RPM_MESSAGES: [u32; 3] = [225, 226, 11030];
+
 /// The message with that id as it is now; `None`: not one of ours.
 pub fn message(a: &Autopilot, now_ns: u64, id: u32) -> Option<MavMessage> {
     Some(match id {

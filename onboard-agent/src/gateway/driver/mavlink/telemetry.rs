@@ -46,7 +46,10 @@ impl Readings {
             MavMessage::ATTITUDE(m) => {
                 attitude(m).map(|a| out.push(SessionEvent::Telemetry(Report::Attitude(a))))
             }
-            MavMessage::VFR_HUD(m) => self.hud(m).map(|a| out.push(SessionEvent::Telemetry(Report::Air(a)))),
+            MavMessage::VFR_HUD(m) => self.hud(m).map(|air| {
+                let said = [Report::Air(air), Report::Throttle(self.throttle)];
+                out.extend(said.map(SessionEvent::Telemetry));
+            }),
             MavMessage::WIND(m) => self.wind(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
             MavMessage::GPS_RAW_INT(m) => {

@@ -407,6 +407,33 @@ fn state_that_cannot_be_stored_is_an_alarm_until_it_can() {
 }
 
 #[test]
+fn an_engine_that_fails_and_has_no_rpm_reading_is_suspected_before_the_ground() {
+    let mut flight = Flight::on_zigzag(10, &["no-rpm", "engine-out@90"], 40, 300.0);
+    let raised = |f: &Flight, id: &str| {
+        f.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
+    };
+    flight.run_until(150.0, "engine-suspected", |f| raised(f, "engine-suspected"));
+    assert!(raised(&flight, "sinks") && !raised(&flight, "engine-out"));
+    assert!(flight.sim.autopilot.aircraft.state().altitude_amsl_m > 400.0);
+}
+
+#[test]
+fn somebody_else_in_command_is_an_alarm_until_the_plan_is_flown_again() {
+    let mut flight = Flight::on_zigzag(7, &[], 30, 300.0);
+    flight.run(10.0);
+    assert!(flight.sim.autopilot.set_mode(sim::Mode::ReturnToLaunch));
+    flight.run_until(3.0, "Manual", |f| f.state() == GatewayState::Manual);
+    flight.run(0.2);
+    let told = |e: &GatewayEvent| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == "not-in-command");
+    assert!(flight.events.iter().any(|(_, e)| told(e)));
+    assert!(flight.sim.autopilot.set_mode(sim::Mode::Auto));
+    flight.run_until(3.0, "Nav", |f| f.state() == GatewayState::Nav);
+    flight.run(0.2);
+    let over = |e: &GatewayEvent| matches!(e, GatewayEvent::AlarmCleared { id } if id == "not-in-command");
+    assert!(flight.events.iter().any(|(_, e)| over(e)));
+}
+
+#[test]
 fn alarms_of_the_simulators_faults_reach_the_events() {
     for (fault, id, within_s) in [
         ("gps-loss@90", "gps-lost", 2.0),

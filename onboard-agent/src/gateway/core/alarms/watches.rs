@@ -1,0 +1,246 @@
+//! What the gateway watches, and what it says of each.
+
+use std::time::Duration;
+use usal::contract::{Alarm, Cause, Severity};
+
+/// Something that may be wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Watch {
+    /// No position fix.
+    GpsLost,
+    /// The engine does not turn.
+    EngineOut,
+    /// It sinks at full throttle, and says nothing of its engine.
+    EngineSuspected,
+    /// Little energy is left.
+    EnergyLow,
+    /// Nothing is heard.
+    AutopilotSilent,
+    /// The position does not change.
+    PositionStale,
+    /// An order is not followed.
+    Disobeys,
+    /// It sinks below what was commanded.
+    Sinks,
+    /// It ought to fly and does not move.
+    StandsStill,
+    /// Somebody else steers.
+    NotInCommand,
+    /// Safe mode found no runway.
+    NoSafeRunway,
+    /// Safe mode would have no runway.
+    NoRunwayStored,
+    /// Two FP Managers.
+    OtherFpManager,
+    /// Strangers can connect.
+    Exposed,
+    /// The state directory can not be written.
+    NotStored,
+}
+
+/// What is said of a watch, and how long it has to be wrong before that is said.
+struct Words {
+    watch: Watch,
+    id: &'static str,
+    severity: Severity,
+    source: &'static str,
+    advice: &'static str,
+    /// The emergency that it is.
+    cause: Option<Cause>,
+    patience: Duration,
+}
+
+/// All of them, in the order in which they are looked at.
+pub const WATCHES: [Watch; 15] = [
+    Watch::GpsLost,
+    Watch::EngineOut,
+    Watch::EngineSuspected,
+    Watch::EnergyLow,
+    Watch::AutopilotSilent,
+    Watch::PositionStale,
+    Watch::Disobeys,
+    Watch::Sinks,
+    Watch::StandsStill,
+    Watch::NotInCommand,
+    Watch::NoSafeRunway,
+    Watch::NoRunwayStored,
+    Watch::OtherFpManager,
+    Watch::Exposed,
+    Watch::NotStored,
+];
+
+const WORDS: [Words; WATCHES.len()] = [
+    Words {
+        watch: Watch::GpsLost,
+        id: "gps-lost",
+        severity: Severity::Warning,
+        source: "gps",
+        advice: "Position is not known. Be ready to take over by hand; fly the emergency plan.",
+        cause: Some(Cause::Gps),
+        patience: Duration::from_secs(1),
+    },
+    Words {
+        watch: Watch::EngineOut,
+        id: "engine-out",
+        severity: Severity::Warning,
+        source: "engine",
+        advice: "The engine does not turn. Land at the nearest runway within gliding reach.",
+        cause: Some(Cause::Engine),
+        patience: Duration::from_secs(1),
+    },
+    Words {
+        watch: Watch::EngineSuspected,
+        id: "engine-suspected",
+        severity: Severity::Warning,
+        source: "engine",
+        advice: "The aircraft sinks although it is given full throttle: the engine may have failed. Land at the nearest runway within gliding reach.",
+        cause: Some(Cause::Engine),
+        patience: Duration::from_secs(5),
+    },
+    Words {
+        watch: Watch::EnergyLow,
+        id: "energy-low",
+        severity: Severity::Warning,
+        source: "power",
+        advice: "Little energy is left. Return and land.",
+        cause: Some(Cause::Energy),
+        patience: Duration::from_secs(2),
+    },
+    Words {
+        watch: Watch::AutopilotSilent,
+        id: "autopilot-silent",
+        severity: Severity::Warning,
+        source: "link",
+        advice: "Nothing is heard from the autopilot; it flies on by itself. Check the link.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::PositionStale,
+        id: "position-stale",
+        severity: Severity::Caution,
+        source: "gps",
+        advice: "The position no longer changes. Do not trust the map.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::Disobeys,
+        id: "autopilot-disobeys",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The autopilot has not confirmed what it was told; it is told again. Be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::Sinks,
+        id: "sinks",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft sinks below the altitude that it was told to fly at. Look at airspeed, engine and ice; be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(5),
+    },
+    Words {
+        watch: Watch::StandsStill,
+        id: "stands-still",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "It is armed and ought to fly, but does not move: it may be down. Disarm it before anybody goes near.",
+        cause: None,
+        patience: Duration::from_secs(10),
+    },
+    Words {
+        watch: Watch::NotInCommand,
+        id: "not-in-command",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "A pilot or a failsafe of the autopilot switched to another mode: nobody flies the plan. When it is safe to, resume takes the aircraft back.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::NoSafeRunway,
+        id: "no-safe-runway",
+        severity: Severity::Warning,
+        source: "safe",
+        advice: "Safe mode knows no runway within reach; the autopilot returns by its own means. Store runways before flight.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::NoRunwayStored,
+        id: "no-runway-stored",
+        severity: Severity::Caution,
+        source: "safe",
+        advice: "Safe mode has no runway to return to. Commit or start a plan that has one, or store runways by hand.",
+        cause: None,
+        // those of a plan come a moment after it
+        patience: Duration::from_secs(3),
+    },
+    Words {
+        watch: Watch::OtherFpManager,
+        id: "other-fp-manager",
+        severity: Severity::Caution,
+        source: "fp-manager",
+        advice: "Another program than the FP Manager that joined sends its heartbeats; they do not count. Find it and stop it.",
+        cause: None,
+        // a new process has heartbeats before it joins
+        patience: Duration::from_secs(3),
+    },
+    Words {
+        watch: Watch::Exposed,
+        id: "exposed",
+        severity: Severity::Caution,
+        source: "gateway",
+        advice: "The agent listens where strangers can connect, and nothing protects it: whoever does can read everything, commit plans and give every command.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::NotStored,
+        id: "not-stored",
+        severity: Severity::Caution,
+        source: "gateway",
+        advice: "Runways and the state of the flight can't be stored: a gateway that starts anew forgets them. Check the disk of the state directory.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+];
+
+impl Watch {
+    fn words(self) -> &'static Words {
+        WORDS.iter().find(|words| words.watch == self).unwrap_or(&WORDS[0])
+    }
+
+    /// Its alarm.
+    pub fn alarm(self) -> Alarm {
+        let Words { id, severity, source, advice, cause, .. } = self.words();
+        Alarm {
+            id: (*id).into(),
+            severity: *severity,
+            source: (*source).into(),
+            advice: (*advice).into(),
+            cause: *cause,
+        }
+    }
+
+    /// How long it has to be wrong before the alarm is raised.
+    pub fn patience(self) -> Duration {
+        self.words().patience
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_watch_has_words_of_its_own() {
+        for watch in WATCHES {
+            assert_eq!(WORDS.iter().filter(|words| words.watch == watch).count(), 1, "{watch:?}");
+            assert_eq!(WORDS.iter().filter(|words| words.id == watch.words().id).count(), 1, "{watch:?}");
+        }
+    }
+}

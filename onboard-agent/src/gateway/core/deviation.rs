@@ -1,0 +1,62 @@
+//! Does the aircraft do what was commanded? What it is seen to do is held against what it was told.
+
+use super::Gateway;
+use super::io::Intent;
+use crate::gateway::order::Fix;
+use usal::contract::{Action, GatewayState};
+
+/// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
+const MISSING_M: f64 = 3.0;
+const SINKING_MPS: f64 = 0.5;
+/// Below what was commanded by this, and sinking faster than this, it is in trouble: a climb that lags behind rises.
+const TROUBLE_M: f64 = 30.0;
+const TROUBLE_MPS: f64 = 1.0;
+/// A circle is level: it does not sink faster than this, m/s.
+const LEVEL_MPS: f64 = 2.0;
+/// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
+const STANDING_MPS: f64 = 1.5;
+
+impl Gateway {
+    /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
+    pub(super) fn sinks_below_target(&self) -> bool {
+        self.flies_waypoints() && self.is_below(MISSING_M, SINKING_MPS)
+    }
+
+    /// It sinks although it was told to fly higher, or to circle.
+    pub(super) fn sinks(&self) -> bool {
+        use GatewayState::{Approach, Directed, Hold, Nav, SafeHold, SafeReturn};
+        if !matches!(self.state, Nav | Hold | Directed | Approach | SafeHold | SafeReturn) {
+            return false;
+        }
+        match self.control.intent {
+            Intent::Hold => self.fix().is_some_and(|fix| fix.down_mps > LEVEL_MPS),
+            Intent::Fly | Intent::Direct => self.is_below(TROUBLE_M, TROUBLE_MPS),
+            Intent::Nothing | Intent::Return => false,
+        }
+    }
+
+    /// It is armed in a state that flies, and does not move. On a runway it may: that is a take-off or a landing.
+    pub(super) fn stands_still(&self) -> bool {
+        use GatewayState::{Land, Off, SafeLand, Stop, TakeOff, Terminate};
+        let on_runway = matches!(self.state, Off | Stop | TakeOff | Land | SafeLand | Terminate);
+        let slow = |mps: f64| mps < STANDING_MPS;
+        let air = self.telemetry.air.map_or(0.0, |(_, air)| air.airspeed_mps);
+        let moves = |fix: Fix| !slow(fix.north_mps.hypot(fix.east_mps)) || !slow(fix.down_mps.abs());
+        !on_runway && self.telemetry.armed && slow(air) && self.fix().is_some_and(|fix| !moves(fix))
+    }
+
+    /// So far below what it was told to fly at, and sinking so fast.
+    fn is_below(&self, metres: f64, mps: f64) -> bool {
+        let commanded = match self.control.intent {
+            Intent::Direct => self.control.direct.map(|(_, altitude_amsl_m)| altitude_amsl_m),
+            _ => self.buffer.current().filter(|w| matches!(w.action, Action::Fly)).map(|w| w.altitude_amsl_m),
+        };
+        let below =
+            |fix: Fix| commanded.is_some_and(|m| fix.altitude_amsl_m < m - metres && fix.down_mps > mps);
+        self.fix().is_some_and(below)
+    }
+
+    fn fix(&self) -> Option<Fix> {
+        self.telemetry.fix.map(|(_, fix)| fix)
+    }
+}
