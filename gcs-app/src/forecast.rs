@@ -87,6 +87,8 @@ pub struct Forecast {
     pub waypoints: Vec<Waypoint>,
     /// Share of the energy left at the end, 0..1.
     pub battery_left: Option<f64>,
+    /// How often it stands between two flights of the plan.
+    pub stops: usize,
     /// Why it ends early, if it does.
     pub cut_short: Option<String>,
 }

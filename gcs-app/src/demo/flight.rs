@@ -32,6 +32,8 @@ const TICK_WITHIN: Duration = Duration::from_secs(15);
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// A flight longer than the preview by this factor and these seconds has failed.
 const TOO_LONG: (f64, f64) = (1.3, 240.0);
+/// Between two flights of a plan it stands at least so long, simulated seconds.
+const STANDS_S: f64 = 5.0;
 /// Nobody in the demo orders a hold: one that lasts for so many simulated seconds is a failure.
 const HOLD_WITHIN_S: f64 = 60.0;
 /// Simulated seconds after the plan's end in which the aircraft must have come to rest.
@@ -158,6 +160,11 @@ impl<'a> Flight<'a> {
             let now = self.subscribed.status().map_or(Phase::Idle, |s| s.phase);
             if now != phase {
                 (phase, since_s) = (now, self.now_s);
+            }
+            if phase == Phase::Grounded && self.now_s - since_s > STANDS_S && is_at_rest(components) {
+                self.command(Command::Start).await.context("the next flight was not started")?;
+                self.tell("The aircraft takes off for its next flight");
+                since_s = self.now_s;
             }
             if self.is_over(phase, self.now_s - since_s, components)? {
                 break;

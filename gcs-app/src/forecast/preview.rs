@@ -93,6 +93,7 @@ impl Forecaster {
             passages,
             waypoints: preview.waypoints.iter().filter(|w| !w.replaced).map(|w| w.waypoint.clone()).collect(),
             battery_left: Some(preview.battery_left),
+            stops: preview.stops.len(),
             cut_short: cut_short(preview, outcome),
         });
         Ok(self.last.clone())
@@ -153,21 +154,35 @@ fn points(preview: &Preview, former: &[Point], kept: Kept, terrain: &dyn Terrain
 
 fn passages(preview: &Preview, points: &[Point], energy_j: f64) -> Vec<Passage> {
     let at = |time_s: f64| preview.track.partition_point(|p| p.time_s < time_s);
-    let mut left_j = preview.legs.iter().map(|leg| leg.energy_j).sum::<f64>();
-    let passages = preview.legs.iter().enumerate().map(|(i, leg)| {
+    let left = energy_left(preview, energy_j);
+    let passages = preview.legs.iter().zip(left).enumerate().map(|(i, (leg, energy_left))| {
         let (first, end) = (if i == 0 { 0 } else { at(leg.start_s) }, at(leg.end_s));
-        left_j -= leg.energy_j;
         Passage {
             leg: leg.place.leg.clone(),
             stage: leg.place.stage.clone(),
             passes: leg.place.iterations.iter().map(|place| place.iteration).collect(),
             first,
             end,
-            energy_left: preview.battery_left + left_j / energy_j,
+            energy_left,
             clearance_m: clearance_m(points.get(first..end).unwrap_or_default()),
         }
     });
     passages.collect()
+}
+
+/// Share of the energy that is left behind each passage: counted back from each landing.
+fn energy_left(preview: &Preview, energy_j: f64) -> Vec<f64> {
+    let mut left = preview.battery_left;
+    let mut behind: Vec<f64> = Vec::with_capacity(preview.legs.len());
+    for (index, leg) in preview.legs.iter().enumerate().rev() {
+        if let Some(stop) = preview.stops.iter().find(|stop| stop.legs == index + 1) {
+            left = stop.battery_left;
+        }
+        behind.push(left);
+        left += leg.energy_j / energy_j;
+    }
+    behind.reverse();
+    behind
 }
 
 fn clearance_m(points: &[Point]) -> Option<f64> {

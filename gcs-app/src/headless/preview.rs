@@ -7,7 +7,7 @@ use super::{Source, check, forecast, foreign};
 use crate::jobs::Progress;
 use crate::report;
 use crate::say;
-use flight_exec::rehearse::Preview;
+use flight_exec::rehearse::{Preview, Stop};
 use flight_plan::Id;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -90,14 +90,24 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
 
 fn line(file: &Path, preview: &Preview, out: &Path) -> String {
     format!(
-        "{}: {:.0} min, {:.1} km, {} waypoints, {:.0} % of the energy left; pictures in {}",
+        "{}: {:.0} min, {:.1} km, {} waypoints, {}{:.0} % of the energy left; pictures in {}",
         file.display(),
         preview.time_s / 60.0,
         preview.distance_m / 1000.0,
         preview.waypoints.len(),
+        stops(preview),
         preview.battery_left * 100.0,
         out.display()
     )
+}
+
+/// Where it lands before the end, and with how much energy.
+fn stops(preview: &Preview) -> String {
+    let stop = |stop: &Stop| {
+        let (share, minutes) = (stop.battery_left * 100.0, stop.from_s / 60.0);
+        format!("lands on {} after {minutes:.0} min with {share:.0} %, ", stop.stage)
+    };
+    preview.stops.iter().map(stop).collect()
 }
 
 fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
@@ -110,6 +120,7 @@ fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
         "battery_left": preview.battery_left,
         "landed": preview.landed,
         "legs": preview.legs,
+        "stops": preview.stops,
     })
 }
 

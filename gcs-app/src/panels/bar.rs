@@ -186,6 +186,7 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
         return match status.phase {
             Phase::Idle => ("aboard", Standing::Aboard),
             Phase::Finished => ("flown", Standing::Aboard),
+            Phase::Grounded => ("between flights", Standing::Active),
             _ => ("active", Standing::Active),
         };
     }

@@ -151,7 +151,8 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.disable();
     }
     let phase = scene.vehicle.phase();
-    if can_launch(scene) && field::hold_button(ui, "Start and take off", p.accent, 150.0) {
+    let start = if phase == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
+    if can_launch(scene) && field::hold_button(ui, start, p.accent, 150.0) {
         queue.fly(FlyCommand::Launch);
     }
     let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision);
@@ -183,6 +184,7 @@ fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
     }
     match scene.vehicle.phase() {
         Phase::Finished => Some("The plan was flown"),
+        Phase::Grounded if !can_launch(scene) => Some("Landed: the next flight waits for its start"),
         Phase::Idle if !can_launch(scene) => Some("The plan aboard was not started"),
         _ => None,
     }
@@ -194,7 +196,7 @@ pub fn can_launch(scene: &Scene<'_>) -> bool {
     let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
     // nothing may have come of an earlier start: the arming was refused, or somebody held it
     let may_start = match scene.vehicle.phase() {
-        Phase::Idle => true,
+        Phase::Idle | Phase::Grounded => true,
         Phase::Flying | Phase::AwaitingDecision | Phase::Holding => state == Some(GatewayState::Stop),
         Phase::Finished => false,
     };

@@ -22,8 +22,12 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         queue.view(ViewCommand::Scrub(None));
     }
     let p = theme::of(ui);
+    let flights = match forecast.stops {
+        0 => String::new(),
+        stops => format!("{} flights · ", stops + 1),
+    };
     let sum = format!(
-        "{} · {} · {} waypoints{}",
+        "{flights}{} · {} · {} waypoints{}",
         scene.units().distance().show(forecast.length_m()),
         units::duration(forecast.duration_s()),
         forecast.waypoints.len(),

@@ -240,6 +240,7 @@ fn phase_name(phase: Phase) -> &'static str {
         Phase::Holding => "holding",
         Phase::AwaitingDecision => "waiting for a decision",
         Phase::Finished => "plan finished",
+        Phase::Grounded => "standing between two flights",
     }
 }
 

@@ -101,7 +101,7 @@ const BY_DEFAULT: &str = "default";
 /// What nobody must miss, also who looked elsewhere when it happened.
 pub fn is_announced(event: &Event) -> bool {
     matches!(event, Event::DecisionTaken { by, .. } if by == BY_DEFAULT)
-        || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision })
+        || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision | Phase::Grounded })
 }
 
 /// A plan event as a sentence.
@@ -144,6 +144,9 @@ pub fn plan_event(event: &Event) -> (Level, String) {
         }
         Event::PhaseChanged { phase: Phase::AwaitingDecision } => {
             (Level::Caution, "Nobody decided in time: the aircraft circles until somebody does".to_owned())
+        }
+        Event::PhaseChanged { phase: Phase::Grounded } => {
+            (Level::Caution, "Landed: the plan goes on with its next flight when it is started".to_owned())
         }
         Event::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
         Event::WaypointsRejected { leg, reason } => {

@@ -3,6 +3,7 @@
 use super::vehicle::{decision, place, status};
 use super::{SQUARE, Window};
 use egui::Key;
+use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply};
 use gcs_app::state::Outcome;
@@ -333,4 +334,15 @@ fn a_flood_of_news_never_stops_the_drawing() {
     }
     window.steps(2);
     assert!(window.far.messages.capacity() > 4000, "all of it was taken in at once");
+}
+
+#[test]
+fn between_two_flights_the_next_one_is_started() {
+    let (mut window, value) = flying();
+    assert!(window.harness.query_by_label_contains("Start the next flight").is_none());
+    window.receive_status(flight_exec::Status { phase: Phase::Grounded, ..value });
+    window.receive_position(true);
+    window.steps(2);
+    assert!(window.harness.query_by_label_contains("Start the next flight").is_some());
+    assert!(window.harness.query_by_label_contains("Skip leg").is_none());
 }

@@ -235,3 +235,17 @@ fn several_legs_are_looped_raised_and_deleted_together() {
     window.click("TF side2");
     assert!(!window.shows("2 legs"), "a click alone selects one");
 }
+
+/// What is expected on the ground shows behind the landing, in the timeline, and as fields of the stage.
+#[test]
+fn a_landing_before_another_flight_shows_what_is_expected_on_the_ground() {
+    let flights = include_str!("../../../assets/docs/fragments/flights.xml");
+    let mut window = Window::open_with(flights, egui::vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    assert!(window.harness.query_by_label_contains("2 flights").is_some());
+    window.harness.get_by_label("LND Change the battery").click();
+    window.steps(4);
+    for field in ["Energy after", "Time on the ground"] {
+        assert!(window.harness.query_all_by_label_contains(field).next().is_some(), "{field}");
+    }
+}

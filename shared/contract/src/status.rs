@@ -49,6 +49,8 @@ pub enum Phase {
     AwaitingDecision,
     /// The last waypoint was flown.
     Finished,
+    /// Standing at the end of a flight behind which the plan has another one: a start begins that.
+    Grounded,
 }
 
 /// Where the flight is in the plan: survives update, restart and hold.

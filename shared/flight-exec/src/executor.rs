@@ -179,6 +179,10 @@ impl Executor {
         if self.is_flying() {
             return Ok(self.setup.program.clone());
         }
+        if self.life.mode.is_grounded() {
+            let reason = "the aircraft stands between two flights of the plan: start the next one first";
+            return Err(refusal("not-flying", reason));
+        }
         Err(refusal("not-flying", "no plan is being flown: commit a plan and start it first"))
     }
 

@@ -230,3 +230,34 @@ fn it_can_be_cancelled() {
     assert_eq!(flown, Err(PreviewError::Cancelled));
     assert_eq!(told, 11);
 }
+
+/// The shipped mission lands, and flies to the ridges once more with another battery.
+fn two_flights(turnaround: &str) -> Arc<Program> {
+    let land = r#"<stage id="land" name="Landing" type="land" runway="R05"/>"#;
+    let again = format!(
+        r#"<stage id="land" name="Landing" type="land" runway="R05" {turnaround}/>
+        <stage id="again" type="take-off" runway="R05" altitude="120" altitudeReference="home"/>
+        <stage id="short" type="mission" altitude="200" altitudeReference="home"><TF id="up" fix="CLIMB"/><TF id="down" fix="FINAL05"/></stage>
+        <stage id="land-again" type="land" runway="R05"/>"#
+    );
+    mission(|text| text.replacen(land, &again, 1))
+}
+
+#[test]
+fn another_flight_begins_with_the_energy_and_after_the_time_that_its_landing_states() {
+    let flown =
+        fly(&two_flights(r#"turnaroundEnergy="0.9" turnaroundTime="600""#), &Scenario::default()).unwrap();
+    let once = fly(&mission(|t| t), &Scenario::default()).unwrap();
+    let [stop] = flown.stops.as_slice() else { panic!("{:?}", flown.stops) };
+    assert_eq!((stop.stage.as_str(), stop.battery_after, stop.legs), ("land", 0.9, once.legs.len()));
+    assert!((stop.battery_left - once.battery_left).abs() < 1e-9 && (stop.from_s - once.time_s).abs() < 1.0);
+    assert!((stop.until_s - stop.from_s - 600.0).abs() < 1e-6);
+    let (first, last) = (flown.legs[stop.legs].clone(), flown.legs.last().unwrap());
+    assert_eq!((first.place.leg.as_str(), last.place.leg.as_str()), ("again", "land-again"));
+    assert!(first.start_s >= stop.until_s && flown.legs[stop.legs - 1].end_s <= stop.from_s + 1e-6);
+    let full_j = Profile::default().energy_j;
+    let second_j: f64 = flown.legs.iter().skip(stop.legs).map(|leg| leg.energy_j).sum();
+    assert!((flown.battery_left - (0.9 - second_j / full_j)).abs() < 1e-3, "{}", flown.battery_left);
+    assert!((flown.energy_j - once.energy_j - second_j).abs() < 1e-3 * flown.energy_j);
+    assert!(flown.landed && flown.track.windows(2).all(|t| t[1].time_s >= t[0].time_s));
+}

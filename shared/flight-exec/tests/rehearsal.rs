@@ -45,6 +45,11 @@ fn edit() -> impl Strategy<Value = Edit> {
     ]
 }
 
+/// The end of a flight and the beginning of another one, between legs.
+const BETWEEN: &str = r#"</stage><stage id="land1" type="land" runway="R" turnaroundEnergy="0.8" turnaroundTime="300"/>
+    <stage id="to2" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+    <stage id="m2" type="mission" altitude="250" altitudeReference="agl"><TF id="first2" fix="S"/>"#;
+
 /// A plan, and where its fixes are.
 #[derive(Debug, Clone)]
 struct Plan {
@@ -52,11 +57,13 @@ struct Plan {
     at: Vec<(usize, LatLon)>,
     next_id: usize,
     conditions: bool,
+    /// In two flights: it lands half-way.
+    twice: bool,
 }
 
 impl Plan {
     fn new(legs: Vec<Leg>, conditions: bool) -> Self {
-        let mut plan = Self { legs: Vec::new(), at: Vec::new(), next_id: 0, conditions };
+        let mut plan = Self { legs: Vec::new(), at: Vec::new(), next_id: 0, conditions, twice: false };
         let (mut at, mut course_deg) = (LatLon::new(36.52, -84.18), 0.0);
         for leg in legs {
             course_deg += leg.turn_deg;
@@ -104,7 +111,11 @@ impl Plan {
         let at = self.at.iter();
         let fixes: String =
             at.map(|(id, p)| fix('F', id, *p) + &fix('G', id, p.destination(20.0, 500.0))).collect();
-        let legs: String = self.legs.iter().map(|leg| leg.xml(self.conditions)).collect();
+        let mut legs: Vec<String> = self.legs.iter().map(|leg| leg.xml(self.conditions)).collect();
+        if self.twice {
+            legs.insert(legs.len() / 2, BETWEEN.into());
+        }
+        let legs: String = legs.concat();
         let text = format!(
             r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="edited" aircraft="trainer"><fixes><fix id="S" lat="36.52" lon="-84.18"/>{fixes}</fixes>
             <runways><runway id="R" lat="36.5" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
@@ -204,6 +215,7 @@ fn same(kept: &Preview, fresh: &Preview) -> Result<(), TestCaseError> {
     };
     prop_assert_eq!(told(kept), told(fresh));
     prop_assert_eq!(&kept.refusals, &fresh.refusals);
+    prop_assert_eq!(&kept.stops, &fresh.stops);
     Ok(())
 }
 
@@ -291,6 +303,24 @@ fn an_edit_is_flown_and_little_else() {
         let (kept, all) = (rehearsal.kept(), rehearsal.preview().unwrap().track.len());
         same(rehearsal.preview().unwrap(), &fresh(&program, &options).unwrap()).unwrap();
         assert!(kept.head + kept.tail > all * 3 / 4, "{edit:?}: {kept:?} of {all}");
+    }
+}
+
+/// What is used in one flight is nothing to the next one.
+#[test]
+fn an_edit_of_one_of_two_flights_leaves_the_other_right() {
+    let (options, mut plan) = (options(), Plan { twice: true, ..zigzag(24) });
+    let mut rehearsal = rehearsal(&options);
+    rehearsal.fly(&plan.program().unwrap(), Start::Runway, &mut |_| true).unwrap();
+    for edit in
+        [Edit::Move(3, 80.0), Edit::Remove(2), Edit::Move(18, 60.0), Edit::Insert(20, plan.legs[3].clone())]
+    {
+        plan.apply(&edit);
+        let program = plan.program().unwrap();
+        rehearsal.fly(&program, Start::Runway, &mut |_| true).unwrap();
+        let flown = rehearsal.preview().unwrap();
+        same(flown, &fresh(&program, &options).unwrap()).unwrap();
+        assert_eq!(flown.stops.len(), 1);
     }
 }
 

@@ -782,3 +782,33 @@ fn a_contour_with_small_loops_can_be_flown() {
         assert!(!found.contains(&("gateway-refuses", "p".to_owned())), "{turn}: {found:?}");
     }
 }
+
+/// The rectangle, and behind its landing a second flight past D.
+fn two_flights(zones: &str, turnaround: &str) -> Vec<u8> {
+    let land = r#"<stage id="l" type="land" runway="R"/>"#;
+    let again = format!(
+        r#"<stage id="l" type="land" runway="R" {turnaround}/>
+        <stage id="t2" type="take-off" runway="R" altitude="400" altitudeReference="amsl"/>
+        <stage id="m2" type="mission" altitude="500" altitudeReference="amsl"><TF id="east" lat="36.31" lon="-84.13"/><TF id="west" lat="36.305" lon="-84.22"/></stage>
+        <stage id="l2" type="land" runway="R"/>"#
+    );
+    String::from_utf8(rectangle(zones, "")).unwrap().replacen(land, &again, 1).into_bytes()
+}
+
+#[test]
+fn a_later_flight_is_held_against_zones_and_its_own_energy() {
+    let east = r#"<keepOut id="z" lat="36.31" lon="-84.135" radius="150"/>"#;
+    let found = over_flat_ground(&two_flights(east, ""), Conditions::default());
+    assert!(found.contains(&("keep-out", "east".to_owned())), "{found:?}");
+    let energy = |turnaround: &str, conditions: Conditions| -> Vec<_> {
+        let found = over_flat_ground(&two_flights("", turnaround), conditions);
+        found.into_iter().filter(|(code, _)| matches!(*code, "energy" | "low-reserve")).collect()
+    };
+    assert_eq!(energy("", Conditions::default()), []);
+    assert_eq!(energy(r#"turnaroundEnergy="0.01""#, Conditions::default())[0].0, "energy");
+    let mut wary = Conditions::default();
+    wary.margins.energy_share = 0.999;
+    assert_eq!(energy("", wary), on("low-reserve", "l"));
+    wary.margins.energy_share = 0.5;
+    assert_eq!(energy(r#"turnaroundEnergy="0.4""#, wary), on("low-reserve", ""));
+}

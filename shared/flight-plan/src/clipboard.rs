@@ -5,7 +5,7 @@ use crate::edit::lists;
 use crate::transform::{Motion, places};
 use crate::{
     Branch, Edit, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Problem, Spot, Stage, StageKind, Thing,
-    read, write,
+    Turnaround, read, write,
 };
 use geometry::{LatLon, LocalFrame};
 use std::collections::HashSet;
@@ -43,6 +43,7 @@ pub fn copy(plan: &FlightPlan, legs: &[Id]) -> Option<String> {
         runway: None,
         altitude: None,
         speed_mps: None,
+        turnaround: Turnaround::default(),
         legs,
     };
     let mut copy = FlightPlan {

@@ -229,8 +229,19 @@ pub struct Stage {
     pub altitude: Option<Altitude>,
     /// Default airspeed of its legs, m/s.
     pub speed_mps: Option<Value<f64>>,
+    /// Of a landing behind which the plan goes on with another flight.
+    pub turnaround: Turnaround,
     /// Its legs, in order; empty for take-off and land. Plans that were edited share what is the same in them.
     pub legs: Vec<Arc<Leg>>,
+}
+
+/// What is expected to happen on the ground between two flights.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Turnaround {
+    /// Share of the energy that the next flight begins with, 0..1; `None`: all of it.
+    pub energy: Option<f64>,
+    /// How long it takes, seconds; `None`: no time.
+    pub time_s: Option<f64>,
 }
 
 /// An alternative that ends on a runway.

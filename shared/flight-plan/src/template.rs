@@ -15,7 +15,7 @@ pub(crate) use home::bring_home;
 
 use crate::{
     Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Holding, HoldingLength, Id,
-    Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection, Value,
+    Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection, Turnaround, Value,
 };
 use aircraft::Profile;
 use frame::Frame;
@@ -158,6 +158,7 @@ fn stage(id: &str, name: &str, kind: StageKind) -> Stage {
         runway: None,
         altitude: None,
         speed_mps: None,
+        turnaround: Turnaround::default(),
         legs: Vec::new(),
     }
 }

@@ -203,7 +203,7 @@ impl Pattern {
 impl Stage {
     /// The stage as it is by itself.
     pub fn without_legs(&self) -> Stage {
-        let Stage { id, name, kind, emergency, runway, altitude, speed_mps, legs: _ } = self;
+        let Stage { id, name, kind, emergency, runway, altitude, speed_mps, turnaround, legs: _ } = self;
         Stage {
             id: id.clone(),
             name: name.clone(),
@@ -212,6 +212,7 @@ impl Stage {
             runway: runway.clone(),
             altitude: altitude.clone(),
             speed_mps: speed_mps.clone(),
+            turnaround: *turnaround,
             legs: Vec::new(),
         }
     }
@@ -293,7 +294,16 @@ impl FlightPlan {
         self.emergency_plans.iter().find(|e| e.id == *id)
     }
 
-    /// The runway of the first take-off stage: where the aircraft stands, and what `home` altitudes are above.
+    /// Indices of the main plan's stages with which a flight begins: the first one, and each behind a landing.
+    pub fn flights(&self) -> impl Iterator<Item = usize> {
+        let begins = |index: &usize| {
+            let before = index.checked_sub(1).and_then(|before| self.stages.get(before));
+            before.is_none_or(|stage| stage.kind == crate::StageKind::Land)
+        };
+        (0..self.stages.len()).filter(begins)
+    }
+
+    /// The runway of the first take-off stage: where the aircraft stands, and what `home` altitudes are above, in all flights.
     pub fn home(&self) -> Option<&crate::Runway> {
         let take_off = self.stages.iter().find(|s| s.kind == crate::StageKind::TakeOff)?;
         self.runway(take_off.runway.as_ref()?)

@@ -108,6 +108,7 @@ pub fn stage(id: Id, name: &str, kind: StageKind) -> Stage {
         runway: None,
         altitude: None,
         speed_mps: None,
+        turnaround: Default::default(),
         legs: Vec::new(),
     }
 }

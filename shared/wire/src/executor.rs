@@ -53,7 +53,9 @@ same_variants!(domain::Command = contract::Command {
 
 same_fields!(domain::Refusal = contract::Refusal { code, reason });
 
-same_variants!(domain::Phase = contract::Phase { Idle, Flying, Holding, AwaitingDecision, Finished });
+same_variants!(
+    domain::Phase = contract::Phase { Idle, Flying, Holding, AwaitingDecision, Finished, Grounded }
+);
 
 same_variants!(domain::Branching = contract::Branching { Main, Emergency(plan) });
 

@@ -150,7 +150,14 @@ fn commands(s: &mut Source) -> Vec<Command> {
 }
 
 fn phases(_: &mut Source) -> Vec<Phase> {
-    vec![Phase::Idle, Phase::Flying, Phase::Holding, Phase::AwaitingDecision, Phase::Finished]
+    vec![
+        Phase::Idle,
+        Phase::Flying,
+        Phase::Holding,
+        Phase::AwaitingDecision,
+        Phase::Finished,
+        Phase::Grounded,
+    ]
 }
 
 fn branchings(s: &mut Source) -> Vec<Branching> {

@@ -3,7 +3,8 @@
 use super::make::Group;
 use crate::command::Selection;
 use flight_plan::{
-    Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, ZoneKind,
+    Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, Turnaround,
+    ZoneKind,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -109,6 +110,7 @@ impl Builder<'_> {
             depth,
             tag: stage_tag(stage.kind),
             text: title(&stage.name, stage.id.as_str()),
+            detail: turnaround(&stage.turnaround),
             selection: Some(Selection::Stage(stage.id.clone())),
             folds: !stage.legs.is_empty(),
             nests: true,
@@ -251,6 +253,13 @@ pub fn title(name: &str, id: &str) -> String {
 /// What is in force inside; shared, where it is the same.
 fn within(outer: &Arc<Alternates>, choice: &EmergencyChoice, of: &Id) -> Arc<Alternates> {
     if choice.by_cause.is_empty() { outer.clone() } else { Arc::new(outer.within(choice, Some(of))) }
+}
+
+/// What is expected on the ground behind a landing.
+fn turnaround(Turnaround { energy, time_s }: &Turnaround) -> String {
+    let time = time_s.map(|seconds| format!("stands {}", crate::units::duration(seconds)));
+    let energy = energy.map(|share| format!("then {:.0} % energy", share * 100.0));
+    time.into_iter().chain(energy).collect::<Vec<_>>().join(", ")
 }
 
 fn stage_tag(kind: StageKind) -> &'static str {

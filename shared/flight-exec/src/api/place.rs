@@ -60,6 +60,8 @@ pub enum Phase {
     AwaitingDecision,
     /// The last waypoint was flown.
     Finished,
+    /// Standing at the end of a flight behind which the plan has another one: a start begins that.
+    Grounded,
 }
 
 /// A snapshot for people and services.

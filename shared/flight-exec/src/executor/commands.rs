@@ -52,13 +52,35 @@ impl Executor {
         if self.program().is_none() {
             return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
         }
-        self.flight = Flight::default();
+        let cursor = match self.later_flight() {
+            Some(mut cursor) => {
+                cursor.move_path_to(self.here());
+                cursor
+            }
+            None => {
+                self.flight = Flight::default();
+                self.life.values.begin_flight(&self.setup.program.plan, out);
+                Cursor::start(None, self.here(), self.life.numbers.passage())
+            }
+        };
         self.life.clock.start();
-        self.life.values.begin_flight(&self.setup.program.plan, out);
-        let cursor = Cursor::start(None, self.here(), self.life.numbers.passage());
         self.enter_phase(Phase::Flying, out);
         self.jump(cursor, out);
         Ok(())
+    }
+
+    /// At the beginning of the flight that is to be started now, if others of the plan were flown before it: then what they left behind
+    /// is kept. It may have been started already, and nothing came of that.
+    fn later_flight(&self) -> Option<Cursor> {
+        let horizon = &self.flight.horizon;
+        let started = horizon.front().filter(|_| self.is_flying()).map(|front| &front.before);
+        let cursor = self.grounded().or(started)?;
+        (cursor.section.is_none() && cursor.stage > 0).then(|| cursor.clone())
+    }
+
+    /// Standing between two flights of the plan: the beginning of the next one.
+    pub(crate) fn grounded(&self) -> Option<&Cursor> {
+        self.flight.horizon.tail().filter(|_| self.life.mode.is_grounded())
     }
 
     /// What was flown before is not gone on with: the aircraft was brought down, or carried back.
@@ -175,7 +197,7 @@ impl Executor {
         cursor.move_path_to(self.here_at_level_of(&cursor));
         let mut probe = cursor.clone();
         if matches!(probe.next(&self.world()), Step::Ended { .. }) {
-            return Err(refusal("last-leg", "it is the last leg: there is nothing to skip to"));
+            return Err(refusal("last-leg", "it is the last leg of the flight: there is nothing to skip to"));
         }
         self.check_in_reach(&cursor, &self.world())?;
         // skipped before it was entered, it is passed all the same, and what led to it with it
@@ -225,6 +247,21 @@ impl Executor {
         Ok(())
     }
 
+    /// What belongs to another flight of the plan is not flown to: the landing between is there for the energy.
+    fn check_in_this_flight(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
+        let flight_of = |path: &LegPath| {
+            let begun = |first: &usize| *first <= path.stage;
+            path.emergency_plan.is_none().then(|| program.flown().flights().take_while(begun).count())
+        };
+        let present = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
+        let present = present.and_then(|leg| program.path(&leg)).and_then(|path| flight_of(&path));
+        if present.zip(flight_of(target)).is_some_and(|(present, target)| present != target) {
+            let reason = "this leg belongs to another flight of the plan, and a landing is between: name a leg of this flight";
+            return Err(refusal("other-flight", reason));
+        }
+        Ok(())
+    }
+
     fn go_to(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {
         self.flying_program()?;
         self.check_taken_off()?;
@@ -253,6 +290,7 @@ impl Executor {
         };
         let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
         self.check_not_a_take_off(&program, &target)?;
+        self.check_in_this_flight(&program, &target)?;
         let now = self.place_reached();
         let mut cursor = now.moved_to(&target, &self.world());
         cursor.move_path_to(self.here_at_level_of(&now));
@@ -329,7 +367,8 @@ impl Executor {
             let reason = "there is no plan, so there are no variables: commit a plan first";
             return Err(refusal("no-plan", reason));
         }
-        let (plan, in_flight) = (&self.setup.program.plan, self.is_flying());
+        let in_flight = self.is_flying() || self.life.mode.is_grounded();
+        let plan = &self.setup.program.plan;
         let written = self.life.values.write(plan, (name, value), by, in_flight, out);
         written.map_err(|e| refusal("bad-variable", e.to_string()))?;
         // the way is changed after the debouncing time

@@ -64,7 +64,7 @@ impl Executor {
 
     /// Leg (or stage) of the main plan that is being flown; where nothing is issued, or only what an earlier plan had, the
     /// one that comes next.
-    fn main_leg(&self) -> Option<Id> {
+    pub(super) fn main_leg(&self) -> Option<Id> {
         let world = self.world();
         let tail = self.flight.horizon.tail().map(|t| t.place(&world).leg);
         let legs = self.flight.horizon.iter().map(|h| h.place.leg.clone()).chain(tail);

@@ -3,7 +3,7 @@
 use super::Executor;
 use crate::api::{Event, Output, Phase, PlacePointer, Token};
 use crate::flight::Flight;
-use crate::layout::cursor::{SilentLeg, Step};
+use crate::layout::cursor::{Cursor, SilentLeg, Step};
 use crate::layout::stretch::IssuedWaypoint;
 use crate::layout::world::World;
 use crate::value::{Choice, Decision};
@@ -129,8 +129,19 @@ impl Executor {
         self.fly_past(self.flight.horizon.len(), out);
         if let Some(last) = last {
             self.announce_end(&last, out);
-            self.finish(out);
+            match self.bookmark(0).next_flight(&self.world()) {
+                Some(cursor) => self.stand(cursor, out),
+                None => self.finish(out),
+            }
         }
+    }
+
+    /// One flight is over, and the plan waits for a start to go on with the next one, where `cursor` is.
+    fn stand(&mut self, cursor: Cursor, out: &mut Vec<Output>) {
+        self.flight.horizon.cut(0, cursor);
+        // as when the last flight is over
+        self.proposed = None;
+        self.enter_phase(Phase::Grounded, out);
     }
 
     /// The aircraft was brought down by somebody else: what is ahead is not flown, and nothing of it happens.
@@ -218,8 +229,11 @@ impl Executor {
         }
     }
 
-    /// Where the flight is in the plan.
+    /// Where the flight is in the plan; on the ground, the stage that begins the next one.
     pub(crate) fn place(&self) -> Option<PlacePointer> {
+        if let Some(next) = self.grounded() {
+            return Some(next.place(&self.world()));
+        }
         let front = self.flight.horizon.front()?;
         let flown_m = self.path_ahead().distance_flown_m() - front.leg_start_m;
         Some(PlacePointer { distance_m: flown_m.max(0.0), ..front.place.clone() })

@@ -22,6 +22,9 @@ impl Executor {
             let advice = "was not the last acceptable one proposed: propose it first";
             refusal("not-proposed", format!("plan {hash} {advice}"))
         })?;
+        if self.life.mode.is_grounded() {
+            return self.commit_between_flights(proposed, entry, out);
+        }
         if !self.is_flying() {
             self.activate(proposed, out);
             self.flight.horizon.clear_path();
@@ -41,6 +44,31 @@ impl Executor {
             }
         }
         self.plan_before = before.until_taken(out.get(put_out..).unwrap_or_default());
+        Ok(())
+    }
+
+    /// On the ground between two flights: the next one begins with the same stage, or with the one named, in the new plan.
+    fn commit_between_flights(
+        &mut self,
+        new: Arc<Program>,
+        entry: Option<&Id>,
+        out: &mut Vec<Output>,
+    ) -> Result<(), Refusal> {
+        let Some(before) = self.grounded().cloned() else { return Ok(()) };
+        let stage = entry.cloned().unwrap_or_else(|| before.place(&self.world()).stage);
+        let begins = |path: &LegPath| {
+            let is_stage = path.emergency_plan.is_none() && path.indices.is_empty();
+            is_stage && new.flown().flights().any(|first| first == path.stage)
+        };
+        let Some(target) = new.path(&stage).filter(begins) else {
+            let reason = format!(
+                "no flight of the new plan begins with `{stage}`: name the stage that the next flight begins with in the commit, or rewind first to begin anew"
+            );
+            return Err(refusal("entry-needed", reason));
+        };
+        let cursor = before.placed_at(&target, &[], &new);
+        self.activate(new, out);
+        self.flight.horizon.cut(0, cursor);
         Ok(())
     }
 

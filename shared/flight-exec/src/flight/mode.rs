@@ -29,6 +29,11 @@ impl Mode {
         matches!(self.phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
     }
 
+    /// Standing between two flights of the plan.
+    pub fn is_grounded(&self) -> bool {
+        self.phase == Phase::Grounded
+    }
+
     pub fn is_holding(&self) -> bool {
         self.phase == Phase::Holding
     }

@@ -92,6 +92,8 @@ pub enum CursorPhase {
     Waiting,
     /// The plan is over.
     Ended,
+    /// It has landed at the end of a flight, before the stage that begins the next one.
+    Grounded,
 }
 
 /// One loop around the cursor.
@@ -146,7 +148,7 @@ pub struct Emission {
 pub enum Step {
     /// A waypoint.
     Waypoint(Box<Emission>),
-    /// Nothing: the plan is over.
+    /// Nothing: the plan is over, or it stands on the ground until its next flight is started.
     Ended {
         /// What happened since the last waypoint.
         notes: CursorLog,
@@ -195,7 +197,7 @@ impl Cursor {
                 return Step::Waypoint(emission);
             }
             match self.doing {
-                CursorPhase::Ended => return Step::Ended { notes },
+                CursorPhase::Ended | CursorPhase::Grounded => return Step::Ended { notes },
                 CursorPhase::Waiting => return Step::Waiting,
                 CursorPhase::Arriving => self.arrive(world, &mut notes),
                 CursorPhase::Flying | CursorPhase::Leaving => match self.wait_due(world, &mut notes) {

@@ -118,7 +118,7 @@ fn earliest(legs: &[Arc<Leg>]) -> [f64; 2] {
         .fold([0.0; 2], |[m, s], [metres, seconds]| [f64::max(m, metres), f64::max(s, seconds)])
 }
 
-/// Some condition or number of the main plan depends on the flight itself.
+/// What follows may depend on how long it was flown and how much was used: some condition or number of the main plan reads the flight.
 pub(super) fn reads_flight(program: &Program) -> bool {
     let reads = |source: &str| program.expression(source).is_ok_and(|e| e.reads_flight());
     let mut found = false;
@@ -126,7 +126,8 @@ pub(super) fn reads_flight(program: &Program) -> bool {
         stage.for_each_expression(&mut |source, _| found |= reads(source));
         found |= legs_read(&stage.legs, &reads);
     }
-    found
+    // the energy begins anew in each flight: it is not shifted by what was used before
+    found || program.flown().flights().nth(1).is_some()
 }
 
 fn legs_read(legs: &[Arc<Leg>], reads: &dyn Fn(&str) -> bool) -> bool {
@@ -139,7 +140,7 @@ fn legs_read(legs: &[Arc<Leg>], reads: &dyn Fn(&str) -> bool) -> bool {
 
 impl Comparison<'_> {
     fn stages(&mut self, index: usize, old: &Stage, new: &Stage) {
-        let header = |s: &Stage| (s.altitude.clone(), s.speed_mps.clone(), s.runway.clone());
+        let header = |s: &Stage| (s.altitude.clone(), s.speed_mps.clone(), s.runway.clone(), s.turnaround);
         let mut sources = Vec::new();
         old.for_each_expression(&mut |source, _| sources.push(source.clone()));
         if header(old) != header(new) || sources.iter().any(|s| self.reads_otherwise(s)) {

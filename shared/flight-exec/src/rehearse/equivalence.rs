@@ -13,7 +13,7 @@ pub(super) fn are_equivalent(one: &Situation, other: &Situation) -> bool {
     #[rustfmt::skip]
     let Situation {
         executor, aircraft, guidance, buffer, moment, now_us, due, stepped_us, waiting_us, requests: _, fired, ended, entered: _,
-        distance_m: _, passage: _, steered: _, passages: _, waypoints: _, renumbering: _,
+        began_us: _, used_before_j: _, distance_m: _, passage: _, steered: _, passages: _, waypoints: _, renumbering: _,
     } = one;
     if !aircraft.moves_as(&other.aircraft) || *guidance != other.guidance {
         return false;

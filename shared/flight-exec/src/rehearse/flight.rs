@@ -21,6 +21,7 @@ use std::sync::Arc;
 use terrain::Terrain;
 
 mod orders;
+mod turnaround;
 
 /// The executor gets the aircraft's state so often, microseconds.
 const REPORT_EVERY_US: u64 = 500_000;
@@ -99,6 +100,10 @@ impl<'a> Flight<'a> {
     pub(super) fn on_to_the_next_leg(&mut self, progress: Progress) -> Result<bool, PreviewError> {
         let step_us = microseconds(self.given.options.step_s.clamp(0.02, 0.2));
         while !self.is_over() {
+            if self.at.executor.grounded().is_some() {
+                self.turn_around()?;
+                return Ok(true);
+            }
             let next = self.at.buffer.get(1).map(Target::from);
             let guided = self.at.guidance.step(self.at.aircraft.state(), next.as_ref());
             if guided.reached && !self.at.buffer.is_empty() {
@@ -168,7 +173,7 @@ impl<'a> Flight<'a> {
         let (battery, result) = (self.at.aircraft.battery(), &mut self.result);
         result.time_s = self.at.time_s();
         result.distance_m = self.at.distance_m;
-        result.energy_j = self.at.used_j();
+        result.energy_j = self.at.used_in_all_j();
         result.battery_left = battery.share();
         result.landed = self.at.aircraft.state().on_ground;
         let fired = self.at.fired.iter().enumerate();
@@ -404,6 +409,7 @@ pub(super) fn empty() -> Preview {
         refusals: Vec::new(),
         proposals: Vec::new(),
         legs: Vec::new(),
+        stops: Vec::new(),
         not_fired: Vec::new(),
         time_s: 0.0,
         distance_m: 0.0,

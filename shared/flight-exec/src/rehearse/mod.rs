@@ -96,6 +96,23 @@ pub struct LegPassage {
     pub waypoints: u64,
 }
 
+/// A stop on the ground between two flights of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stop {
+    /// The stage that landed.
+    pub stage: Id,
+    /// So many of the [`Preview::legs`] are over: the next one belongs to the next flight.
+    pub legs: usize,
+    /// Seconds since the start at which it landed.
+    pub from_s: f64,
+    /// Seconds since the start at which the next flight begins.
+    pub until_s: f64,
+    /// Share of the energy with which it landed, 0..1.
+    pub battery_left: f64,
+    /// Share of the energy with which the next flight begins, 0..1.
+    pub battery_after: f64,
+}
+
 /// A waypoint that was steered to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FlownWaypoint {
@@ -124,6 +141,9 @@ pub struct Preview {
     pub proposals: Vec<(f64, ProposalReport)>,
     /// Passages of legs, in order.
     pub legs: Vec<LegPassage>,
+    /// Stops on the ground between the plan's flights, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stops: Vec<Stop>,
     /// Triggers of the scenario that never fired, by index.
     pub not_fired: Vec<usize>,
     /// Duration, seconds.

@@ -351,7 +351,7 @@ impl Flown {
         let battery = self.end.aircraft.battery();
         self.preview.time_s = self.end.time_s();
         self.preview.distance_m = self.end.distance_m;
-        self.preview.energy_j = self.end.used_j();
+        self.preview.energy_j = self.end.used_in_all_j();
         self.preview.battery_left = battery.share();
         self.preview.landed = self.end.aircraft.state().on_ground;
     }

@@ -13,6 +13,7 @@ pub(super) struct Marks {
     refusals: usize,
     proposals: usize,
     legs: usize,
+    stops: usize,
 }
 
 /// From one point to another.
@@ -32,6 +33,7 @@ impl Marks {
             refusals: preview.refusals.len(),
             proposals: preview.proposals.len(),
             legs: preview.legs.len(),
+            stops: preview.stops.len(),
         }
     }
 
@@ -43,6 +45,7 @@ impl Marks {
             refusals: of(self.refusals, other.refusals),
             proposals: of(self.proposals, other.proposals),
             legs: of(self.legs, other.legs),
+            stops: of(self.stops, other.stops),
         }
     }
 
@@ -81,6 +84,7 @@ impl Between {
         preview.refusals.splice(a.refusals..b.refusals, flown.refusals);
         preview.proposals.splice(a.proposals..b.proposals, flown.proposals);
         preview.legs.splice(a.legs..b.legs, flown.legs);
+        preview.stops.splice(a.stops..b.stops, flown.stops);
     }
 }
 
@@ -127,7 +131,7 @@ impl Shift {
         index.map(|i| i.saturating_add_signed(self.indices))
     }
 
-    /// To what a preview has behind certain marks.
+    /// To what a preview has behind certain marks. It has no stops there: a plan of several flights takes over no former flight.
     pub fn apply(&self, preview: &mut Preview, behind: Marks) {
         for point in preview.track.iter_mut().skip(behind.track) {
             point.time_s = self.time_s(point.time_s);

@@ -5,7 +5,7 @@ use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
 use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
 use aircraft::{Aircraft, Guidance, Profile, Target};
-use flight_plan::{Id, Program};
+use flight_plan::{Id, Program, Runway};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -32,6 +32,10 @@ pub(super) struct Situation {
     pub ended: bool,
     /// A leg was begun since this was last read.
     pub entered: bool,
+    /// When the present flight of the plan began, microseconds since the start of the first one.
+    pub began_us: u64,
+    /// Energy used in the flights before, joules.
+    pub used_before_j: f64,
     /// Over the ground, metres.
     pub distance_m: f64,
     /// The passage being flown, its distance and energy still those at its beginning.
@@ -129,6 +133,8 @@ impl Situation {
             fired: vec![false; triggers],
             ended: false,
             entered: false,
+            began_us: 0,
+            used_before_j: 0.0,
             distance_m: 0.0,
             passage: None,
             steered: None,
@@ -143,9 +149,15 @@ impl Situation {
         seconds(self.now_us)
     }
 
+    /// Energy that is gone of what the aircraft can hold, joules.
     pub fn used_j(&self) -> f64 {
         let battery = self.aircraft.battery();
         battery.capacity_j - battery.energy_left_j
+    }
+
+    /// Energy used in all flights of the plan so far, joules.
+    pub fn used_in_all_j(&self) -> f64 {
+        self.used_before_j + self.used_j()
     }
 
     /// Index of the passage being flown, among all of the flight.
@@ -161,7 +173,7 @@ impl Situation {
     /// It has flown longer or farther than it may, or has no energy left.
     pub fn exceeded(&self, options: &Options) -> Option<PreviewError> {
         let (seconds, leg) = (self.time_s(), self.leg());
-        if seconds > options.most_s {
+        if seconds - self::seconds(self.began_us) > options.most_s {
             return Some(PreviewError::TooLong { seconds, leg });
         }
         if self.waypoints > options.most_waypoints {
@@ -190,8 +202,13 @@ fn placed(program: &Program, profile: &Profile, start: Start) -> Result<Aircraft
         }
         Start::Runway => {
             let runway = program.plan.home().ok_or(PreviewError::NoStart)?;
-            let (elevation_m, heading_deg) = (runway.elevation_amsl_m, runway.heading_deg);
-            Ok(Aircraft::on_runway(profile.clone(), runway.threshold, elevation_m, heading_deg))
+            Ok(standing(runway, profile))
         }
     }
+}
+
+/// On a runway, ready to take off.
+pub(super) fn standing(runway: &Runway, profile: &Profile) -> Aircraft {
+    let (elevation_m, heading_deg) = (runway.elevation_amsl_m, runway.heading_deg);
+    Aircraft::on_runway(profile.clone(), runway.threshold, elevation_m, heading_deg)
 }

@@ -9,7 +9,7 @@ use flight_plan::{Id, LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     problems.extend(match &view.flights.planned {
-        Ok(planned) => low_reserve(view, planned.battery_left),
+        Ok(planned) => low_reserve(view, planned),
         Err(PreviewError::OutOfEnergy { seconds, leg }) => Some(out_of_energy(view, *seconds, leg)),
         Err(error) => without_end(error),
     });
@@ -34,7 +34,7 @@ fn without_end(error: &PreviewError) -> Option<Problem> {
 /// What is wrong with the energy if somebody chooses other branches.
 fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError>) -> Option<Problem> {
     let mut problem = match flight {
-        Ok(flight) => low_reserve(view, flight.battery_left)?,
+        Ok(flight) => low_reserve(view, flight)?,
         Err(PreviewError::OutOfEnergy { seconds, leg }) => out_of_energy(view, *seconds, leg),
         Err(_) => return None,
     };
@@ -43,14 +43,22 @@ fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError
     Some(problem)
 }
 
-fn low_reserve(view: &View, left: f64) -> Option<Problem> {
+/// Of its flights the first that lands with too little.
+fn low_reserve(view: &View, preview: &Preview) -> Option<Problem> {
     let reserve = view.conditions.margins.energy_share;
+    let stops = preview.stops.iter().map(|stop| (stop.battery_left, Some(&stop.stage)));
+    let mut landings = stops.chain([(preview.battery_left, None)]);
+    let (left, at) = landings.find(|(left, _)| *left < reserve)?;
     let message = format!(
         "shorten the plan or fly it slower: it lands with {:.0} % of the energy, {:.0} % is the reserve",
         left * 100.0,
         reserve * 100.0
     );
-    (left < reserve).then(|| Problem::warning("low-reserve", message))
+    let problem = Problem::warning("low-reserve", message);
+    Some(match at {
+        Some(stage) => problem.of(stage),
+        None => problem,
+    })
 }
 
 fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {

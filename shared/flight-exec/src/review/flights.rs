@@ -19,9 +19,9 @@ use crate::layout::stretch::IssuedWaypoint;
 use crate::rehearse::{
     Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
 };
-use crate::value::{Config, Decision};
+use crate::value::{Config, Decision, LoopCount};
 use aircraft::{Aircraft, Profile, Wind};
-use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program};
+use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Runway};
 use geometry::LatLon;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -107,6 +107,20 @@ impl Circumstances<'_> {
         });
         executor.put_aircraft(aircraft);
         executor
+    }
+
+    /// The flight that begins at a cursor: where, and how long the aircraft stands before it, seconds.
+    fn next_flight(&self, mut cursor: Cursor) -> Option<(Beginning, StartPoint, f64)> {
+        let stages = self.program.stages(None);
+        let before = stages.get(cursor.stage.checked_sub(1)?)?.turnaround;
+        let runway = self.program.plan.runway(stages.get(cursor.stage)?.runway.as_ref()?)?;
+        let used_j = (1.0 - before.energy.unwrap_or(1.0)) * self.profile.energy_j;
+        let beginning = Beginning { used_j, ..Beginning::on(runway) };
+        let path = beginning.path(&self.tireless);
+        let (distance_m, time_s) = (cursor.path.distance_m, cursor.path.time_s);
+        cursor.move_path_to(PathState { distance_m, time_s, ..path });
+        let start_point = StartPoint { kept: Vec::new(), cursor };
+        Some((beginning, start_point, before.time_s.unwrap_or(0.0)))
     }
 
     /// Where the main plan is begun, or gone on with.
@@ -209,15 +223,41 @@ impl Flights {
         let mut flown: Vec<(Way, HashSet<Id>)> = Vec::new();
         while let Some(way) = ways.pop().or_else(|| self.unseen(program, &flown)) {
             let decisions = decisions(program, &way, &from);
-            let layout = lay_out(&given.executor, given.start_point(beginning), &counts, &decisions);
+            let taken = self.fly_way(given, beginning, &counts, &decisions);
+            self.fly_chosen(given, beginning, choices(&decisions, &from, &taken));
+            flown.push((way, taken.iter().map(|(leg, _)| leg.clone()).collect()));
+            self.taken.extend(taken);
+        }
+    }
+
+    /// One way through the main plan, flight after flight; gives the branches taken.
+    fn fly_way(
+        &mut self,
+        given: &Circumstances,
+        beginning: Beginning,
+        counts: &[LoopCount],
+        decisions: &[Decision],
+    ) -> HashSet<(Id, Id)> {
+        let mut taken = HashSet::new();
+        let mut ahead = Some((beginning, given.start_point(beginning), 0.0));
+        while let Some((beginning, start_point, start_s)) = ahead.take() {
+            let mut layout = lay_out(&given.executor, start_point, counts, decisions);
             self.complete &= layout.complete;
-            self.fly_chosen(given, beginning, choices(&decisions, &from, &layout.taken));
-            flown.push((way, layout.taken.iter().map(|(leg, _)| leg.clone()).collect()));
-            self.taken.extend(layout.taken.iter().cloned());
+            taken.extend(layout.taken.drain());
             self.refused.extend(layout.refused.iter().cloned());
             self.without_ground.extend(layout.without_ground.iter().cloned());
-            self.main.push(fly(beginning.aircraft(&given.tireless), layout, given.wind, None, 0.0));
+            if start_s > 0.0 {
+                // who starts it may do so later
+                layout.hurried_from = Some(0);
+            }
+            let next = layout.next.take().and_then(|cursor| given.next_flight(cursor));
+            let flown = fly(beginning.aircraft(&given.tireless), layout, given.wind, None, start_s);
+            let landed_s = start_s + flown.points.last().map_or(0.0, |point| point.time_s);
+            self.main.push(flown);
+            ahead =
+                next.map(|(begin, start_point, on_ground_s)| (begin, start_point, landed_s + on_ground_s));
         }
+        taken
     }
 
     /// The plan with the branches of a way; not if it has no choice, or if the plan as it stands takes them anyway.
@@ -306,11 +346,15 @@ impl Flights {
 }
 
 /// Points of a previewed flight, so many seconds apart, with the energy used by then: within a passage it is used evenly.
-pub(super) fn points(planned: &Preview, every_s: f64) -> Vec<Origin> {
+/// `full_j`: what the aircraft holds.
+pub(super) fn points(planned: &Preview, full_j: f64, every_s: f64) -> Vec<Origin> {
     let mut used_j = Vec::with_capacity(planned.legs.len());
     // what was used before its first passage
     let mut sum_j = planned.energy_j - planned.legs.iter().map(|passage| passage.energy_j).sum::<f64>();
-    for passage in &planned.legs {
+    for (index, passage) in planned.legs.iter().enumerate() {
+        if let Some(stop) = planned.stops.iter().find(|stop| stop.legs == index) {
+            sum_j = (1.0 - stop.battery_after) * full_j;
+        }
         used_j.push(sum_j);
         sum_j += passage.energy_j;
     }
@@ -356,13 +400,7 @@ fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain
 /// On the runway; without a take-off, over the first place that the plan names, at the height at which it asks to be there.
 fn beginning(program: &Program, terrain: &dyn Terrain, begin: Option<Start>) -> Beginning {
     if let Some(runway) = program.plan.home() {
-        return Beginning {
-            position: runway.threshold,
-            altitude_amsl_m: runway.elevation_amsl_m,
-            heading_deg: runway.heading_deg,
-            on_ground: true,
-            used_j: 0.0,
-        };
+        return Beginning::on(runway);
     }
     let (position, altitude_amsl_m, heading_deg) = match begin.or_else(|| Start::of(program, terrain)) {
         Some(Start::InFlight { position, altitude_amsl_m, heading_deg }) => {
@@ -392,6 +430,16 @@ fn takes(planned: &Preview, choices: &[Choice]) -> bool {
 }
 
 impl Beginning {
+    fn on(runway: &Runway) -> Self {
+        Self {
+            position: runway.threshold,
+            altitude_amsl_m: runway.elevation_amsl_m,
+            heading_deg: runway.heading_deg,
+            on_ground: true,
+            used_j: 0.0,
+        }
+    }
+
     fn of(aircraft: &AircraftState, profile: &Profile) -> Self {
         Self {
             position: aircraft.position,

@@ -35,8 +35,10 @@ pub(super) struct Layout {
     pub refused: Vec<(Id, String)>,
     /// Legs that are left because nothing is known of the ground from which their altitude counts, and what to do about it.
     pub without_ground: Vec<(Id, String)>,
-    /// It came to the plan's end.
+    /// It came to the plan's end, or to that of one of its flights.
     pub complete: bool,
+    /// Where the flight behind that begins.
+    pub next: Option<Cursor>,
     /// So many of the waypoints are aboard already.
     pub kept: usize,
     /// Index of the first waypoint that a real flight may come to later than this one: a loop was left early, a holding or a wait.
@@ -159,6 +161,7 @@ pub(super) fn lay_out(
             Step::Ended { notes } => {
                 layout.note(notes);
                 layout.complete = true;
+                layout.next = cursor.next_flight(&world);
                 break;
             }
             Step::Stalled { notes } => {

@@ -225,8 +225,10 @@ impl View<'_> {
     /// those of the bounded flights.
     fn origins_with_energy(&self) -> Vec<Origin> {
         const EVERY_S: f64 = 5.0;
+        let full_j = self.profile.energy_j;
         let whole = self.flights.whole();
-        let mut points: Vec<Origin> = whole.flat_map(|preview| flights::points(preview, EVERY_S)).collect();
+        let mut points: Vec<Origin> =
+            whole.flat_map(|preview| flights::points(preview, full_j, EVERY_S)).collect();
         if points.is_empty() {
             points = self.origins(EVERY_S).collect();
         }

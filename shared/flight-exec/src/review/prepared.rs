@@ -61,12 +61,15 @@ impl Zones {
     pub fn of(program: &Program, profile: &Profile, conditions: Conditions) -> Self {
         let home_m = program.plan.home().map_or(0.0, |r| r.elevation_amsl_m);
         let power_w = demanded_power_w(profile, profile.cruise_airspeed_mps, 0.0, 1.0);
+        let stages = &program.plan.stages;
+        let on_ground_s: f64 = stages.iter().filter_map(|stage| stage.turnaround.time_s).sum();
+        let flights = program.plan.flights().count().max(1) as f64;
         let mut zones = Self {
             zones: Vec::new(),
             refused: Vec::new(),
             start_unix_s: conditions.start_unix_s,
             margin_m: conditions.margins.zone_m,
-            latest_s: profile.energy_j / power_w.max(1.0),
+            latest_s: flights * profile.energy_j / power_w.max(1.0) + on_ground_s,
         };
         for zone in &program.plan.zones {
             match prepared(zone, home_m, conditions.margins.zone_m) {

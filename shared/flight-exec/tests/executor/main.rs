@@ -5,6 +5,7 @@ mod changes;
 mod commands;
 mod damaged;
 mod endings;
+mod flights;
 #[path = "../common/grid.rs"]
 mod grid;
 mod kept;

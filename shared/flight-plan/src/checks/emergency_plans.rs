@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::remedy::with_kind;
-use crate::{Edit, EmergencyChoice, EmergencyPlan, Id, Leg, LegKind, Problem, Stage, StageKind};
+use crate::{Edit, EmergencyChoice, EmergencyPlan, Id, Leg, LegKind, Problem, Stage, StageKind, Turnaround};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for plan in &view.plan.emergency_plans {
@@ -52,6 +52,7 @@ fn landing(view: &Inspection, plan: &EmergencyPlan) -> Option<Edit> {
         runway: Some(plan.runway.clone()),
         altitude: None,
         speed_mps: None,
+        turnaround: Turnaround::default(),
         legs: Vec::new(),
     });
     Some(Edit::AppendStage { to: Some(plan.id.clone()), stage })

@@ -1,12 +1,15 @@
 //! `take-off-incomplete`, `land-incomplete`: a runway or altitude is missing, or the climb-out ends no higher than it
-//! begins; `no-landing`: the flight ends in the air; `stage-order`: take-off is not first or
-//! landing not last; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
+//! begins; `no-landing`: the flight ends in the air; `stage-order`: take-off neither first nor after a landing, or a landing
+//! neither last nor before a take-off; `bad-turnaround`, `unused-turnaround`: what is said of the time on the ground is impossible,
+//! or no flight follows; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
 
 use super::Inspection;
-use crate::{Altitude, AltitudeReference, Edit, Id, Problem, Stage, StageKind, Value};
+use crate::{Altitude, AltitudeReference, Edit, Id, Problem, Stage, StageKind, Turnaround, Value};
 
 /// Climb-out altitude where a take-off has none, metres above its runway.
 const CLIMB_OUT_M: f64 = 100.0;
+/// Longest time on the ground between two flights, seconds.
+const MOST_ON_GROUND_S: f64 = 86_400.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let plan = view.plan;
@@ -16,15 +19,19 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (stages, landing) in lists {
         for (index, stage) in stages.iter().enumerate() {
             complete(view, stage, landing, problems);
+            let kind_at = |index: usize| stages.get(index).map(|stage| stage.kind);
+            let before = index.checked_sub(1).and_then(kind_at);
+            let behind = kind_at(index + 1);
             let wrong = match stage.kind {
-                StageKind::TakeOff => index != 0 || landing.is_some(),
-                StageKind::Land => index + 1 != stages.len(),
+                StageKind::TakeOff => landing.is_some() || before.is_some_and(|b| b != StageKind::Land),
+                StageKind::Land => behind.is_some_and(|b| landing.is_some() || b != StageKind::TakeOff),
                 _ => false,
             };
             if wrong {
-                let message = "take off only in the first stage of the main plan, and land only in the last stage of a plan";
+                let message = "take off first in the main plan or directly after a landing there, and land last in a plan or, in the main plan, directly before the take-off of another flight";
                 problems.push(Problem::error("stage-order", message).of(&stage.id));
             }
+            turnaround(stage, stage.kind == StageKind::Land && behind.is_some(), problems);
         }
     }
 }
@@ -35,6 +42,20 @@ fn no_landing(stages: &[Stage]) -> Option<Problem> {
     let flies = stages.iter().any(|stage| !stage.legs.is_empty() || stage.kind == StageKind::TakeOff);
     let message = "add a land stage at the end: without one the flight does not end on the ground, the aircraft circles at its last place until somebody acts";
     flies.then(|| Problem::warning("no-landing", message).of(&last.id))
+}
+
+/// `used`: another flight follows.
+fn turnaround(stage: &Stage, used: bool, problems: &mut Vec<Problem>) {
+    let Turnaround { energy, time_s } = stage.turnaround;
+    let energy_is_bad = energy.is_some_and(|share| !(share > 0.0 && share <= 1.0));
+    if energy_is_bad || time_s.is_some_and(|seconds| !(0.0..=MOST_ON_GROUND_S).contains(&seconds)) {
+        let message = "write `turnaroundEnergy` as a share above 0 and up to 1, and `turnaroundTime` as seconds, at most a day";
+        problems.push(Problem::error("bad-turnaround", message).of(&stage.id));
+    } else if !used && stage.turnaround != Turnaround::default() {
+        let message =
+            "remove the turnaround, or put a take-off stage behind this landing: no other flight follows it";
+        problems.push(Problem::warning("unused-turnaround", message).of(&stage.id));
+    }
 }
 
 /// `landing`: the runway of the emergency plan that the stage is in.
@@ -126,6 +147,36 @@ mod tests {
         let landing = r#"<stage id="land" type="land" runway="R"/>"#;
         let plan = crate::checks::testing::plan_with(r#"<IF id="a" fix="A"/>"#);
         assert_eq!(codes(&plan.replacen(landing, "", 1)), ["no-landing"]);
+    }
+
+    #[test]
+    fn another_flight_follows_a_landing_in_the_main_plan() {
+        let to = |id: &str| {
+            format!(
+                r#"<stage id="{id}" type="take-off" runway="R" altitude="100" altitudeReference="home"/>"#
+            )
+        };
+        let land = |id: &str, more: &str| format!(r#"<stage id="{id}" type="land" runway="R" {more}/>"#);
+        let way =
+            |id: &str| WAY.replace("\"w\"", &format!("\"{id}\"")).replace("\"a\"", &format!("\"{id}-a\""));
+        let stages = |between: &str| {
+            format!("{}{}{}{between}{}{}", to("t"), way("w"), land("l", ""), way("x"), land("m", ""))
+        };
+        let turnaround = |more: &str| {
+            format!("{}{}{}{}{}{}", to("t"), way("w"), land("l", more), to("u"), way("x"), land("m", ""))
+        };
+        let cases: [(&str, &[&str]); 7] = [
+            (&stages(&to("u")), &[]),
+            (&stages(""), &["stage-order"]),
+            (&stages(&format!("{}{}", way("y"), to("u"))), &["stage-order", "stage-order"]),
+            (&turnaround(r#"turnaroundEnergy="0.9" turnaroundTime="600""#), &[]),
+            (&turnaround(r#"turnaroundEnergy="1.5""#), &["bad-turnaround"]),
+            (&turnaround(r#"turnaroundTime="-1""#), &["bad-turnaround"]),
+            (&format!("{}{}{}", to("t"), WAY, land("l", r#"turnaroundTime="60""#)), &["unused-turnaround"]),
+        ];
+        for (stages, expected) in cases {
+            assert_eq!(codes(&document(stages)), expected, "{stages}");
+        }
     }
 
     /// The runway is at 300 m.

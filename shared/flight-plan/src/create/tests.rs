@@ -150,6 +150,10 @@ fn stages_are_added_in_the_order_of_a_flight_and_moved() {
     assert_eq!(ids(&moved(1)), ["take-off", "arrival", "mission", "land"]);
     assert_eq!(shift_stage(&plan, &"land".into(), 1), None);
     assert_eq!(shift_stage(&plan, &"none".into(), 1), None);
+    for kind in [StageKind::TakeOff, StageKind::Land, StageKind::Mission] {
+        plan = add_stage(&plan, kind).1.apply(&plan).unwrap();
+    }
+    assert_eq!(ids(&plan)[4..], ["take-off2", "mission2", "land2"], "another flight");
 }
 
 #[test]

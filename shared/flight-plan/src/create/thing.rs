@@ -4,7 +4,7 @@ use crate::template;
 use crate::uses::SlotMut;
 use crate::{
     Edit, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Runway,
-    Stage, StageKind, Thing, Value, Variable, VariableValue, Zone, ZoneKind, ZoneShape,
+    Stage, StageKind, Thing, Turnaround, Value, Variable, VariableValue, Zone, ZoneKind, ZoneShape,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -84,16 +84,23 @@ fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
         runway: plan.runways.first().filter(|_| on_runway).map(|runway| runway.id.clone()),
         altitude: (kind == StageKind::TakeOff).then(template::climb_out),
         speed_mps: None,
+        turnaround: Turnaround::default(),
         legs: Vec::new(),
     }
 }
 
-/// A new stage of the main plan, before the first one that comes later in a flight.
+/// A new stage of the main plan, before the first one of its last flight that comes later; a take-off behind a whole flight begins
+/// another one.
 pub fn add_stage(plan: &FlightPlan, kind: StageKind) -> (Id, Edit) {
     let stage = stage(plan, kind);
     let id = stage.id.clone();
     let stage = Box::new(stage);
-    let edit = match plan.stages.iter().find(|other| order(other.kind) > order(kind)) {
+    let last = plan.stages.get(plan.flights().last().unwrap_or(0)..).unwrap_or_default();
+    let lands = last.last().is_some_and(|stage| stage.kind == StageKind::Land);
+    let takes_off = last.first().is_some_and(|stage| stage.kind == StageKind::TakeOff);
+    let begins_another = kind == StageKind::TakeOff && takes_off && lands;
+    let later = last.iter().find(|other| order(other.kind) > order(kind)).filter(|_| !begins_another);
+    let edit = match later {
         Some(later) => Edit::InsertStage { stage, before: later.id.clone() },
         None => Edit::AppendStage { to: None, stage },
     };

@@ -3,7 +3,7 @@
 use super::course::Approach;
 use crate::{
     Altitude, AltitudeReference, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Stage,
-    StageKind, Value,
+    StageKind, Turnaround, Value,
 };
 use geometry::LatLon;
 use std::sync::Arc;
@@ -47,6 +47,7 @@ pub fn trial(plan: &FlightPlan, at: Approach, altitude_amsl_m: f64, leg: &Leg) -
         runway: None,
         altitude: Some(level(altitude_amsl_m)),
         speed_mps: None,
+        turnaround: Turnaround::default(),
         legs: legs.into_iter().map(Arc::new).collect(),
     };
     FlightPlan {

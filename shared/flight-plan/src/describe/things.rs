@@ -316,6 +316,14 @@ const STAGE: Description = thing(
             EMERGENCY,
             BY_CAUSES,
         ],
+        &[
+            P(number("turnaroundEnergy", "Energy after", Quantity::Share, 0.05, "1")
+                .help("Of a landing before another flight: the share of the energy that the next flight begins with.")
+                .without("all of it")),
+            P(number("turnaroundTime", "Time on the ground", Quantity::Time, 0.0, "600")
+                .help("Of a landing before another flight: how long it is expected to stand until it is started again.")
+                .without("none")),
+        ],
     ],
 );
 

@@ -8,7 +8,7 @@ use super::values::position;
 use super::{NAMESPACE, attributes};
 use crate::{
     Altitude, AltitudeReference, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Location,
-    Parameter, Problem, Procedure, Runway, Stage, StageKind, Zone,
+    Parameter, Problem, Procedure, Runway, Stage, StageKind, Turnaround, Zone,
 };
 use geometry::LatLon;
 use simdutf8::compat::Utf8Error;
@@ -324,6 +324,10 @@ impl<'a> Document<'a> {
             runway: self.reference(&element, "runway"),
             altitude: self.altitude(&element),
             speed_mps: self.value(&element, "speed"),
+            turnaround: Turnaround {
+                energy: self.number(&element, "turnaroundEnergy"),
+                time_s: self.number(&element, "turnaroundTime"),
+            },
             legs: Vec::new(),
         };
         self.legs(&element, &mut stage.legs, &mut stage.emergency);

@@ -5,7 +5,7 @@ use super::write_legs::{alone, leg};
 use super::{NAMESPACE, zone};
 use crate::{
     Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure,
-    Runway, Stage, StageKind, TurnDirection, Value, Variable, VariableValue, Zone,
+    Runway, Stage, StageKind, TurnDirection, Turnaround, Value, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};
@@ -311,7 +311,9 @@ fn stage_tag(stage: &Stage) -> Tag {
     };
     let tag = Tag::new("stage").with("id", &stage.id).text("name", &stage.name).with("type", kind);
     let tag = fallback(tag, &stage.emergency).maybe("runway", stage.runway.as_ref());
-    tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref())
+    let tag = tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref());
+    let Turnaround { energy, time_s } = stage.turnaround;
+    tag.maybe("turnaroundEnergy", energy).maybe("turnaroundTime", time_s)
 }
 
 fn stage(out: &mut Writer, stage: &Stage) {

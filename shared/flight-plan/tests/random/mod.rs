@@ -342,8 +342,9 @@ fn leg() -> BoxedStrategy<Leg> {
 fn stage() -> BoxedStrategy<Stage> {
     use StageKind::{Approach, Arrival, Departure, EnRoute, Land, Mission, TakeOff};
     let kind = proptest::sample::select(vec![TakeOff, Departure, EnRoute, Mission, Arrival, Approach, Land]);
-    (id(), text(), kind, emergency(), of(id()), of(altitude()), of(value()), vec(leg(), 0..5))
-        .prop_map(|(id, name, kind, emergency, runway, altitude, speed_mps, legs)| Stage {
+    let turnaround = (of(number()), of(number())).prop_map(|(energy, time_s)| Turnaround { energy, time_s });
+    (id(), text(), kind, emergency(), of(id()), of(altitude()), of(value()), turnaround, vec(leg(), 0..5))
+        .prop_map(|(id, name, kind, emergency, runway, altitude, speed_mps, turnaround, legs)| Stage {
             id,
             name,
             kind,
@@ -351,6 +352,7 @@ fn stage() -> BoxedStrategy<Stage> {
             runway,
             altitude,
             speed_mps,
+            turnaround,
             legs: shared(legs),
         })
         .boxed()

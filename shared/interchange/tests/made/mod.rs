@@ -38,6 +38,7 @@ pub fn plan(legs: Vec<Leg>) -> FlightPlan {
         runway: (kind != StageKind::Mission).then(|| "R05".into()),
         altitude: None,
         speed_mps: None,
+        turnaround: Default::default(),
         legs,
     };
     FlightPlan {

@@ -4,6 +4,7 @@
 mod asks;
 mod gateway;
 mod gateway_faults;
+mod two_flights;
 
 use crate::fp_manager::journal::faulty::{Death, Faulty, Random};
 use crate::fp_manager::journal::{Job, Limits, Log, Saved, Storage, Writer, encode};

@@ -8,7 +8,7 @@ use crate::layout::expand::trail::{Trail, Visit};
 use crate::layout::path::distance_m;
 use crate::layout::world::World;
 use crate::value::{By, Choice};
-use flight_plan::{Branch, Fork, Id, IterativeForm, Leg, LegKind, Loop, Stage};
+use flight_plan::{Branch, Fork, Id, IterativeForm, Leg, LegKind, Loop, Stage, StageKind};
 use std::sync::Arc;
 
 /// Most intersections whose passings are counted apart.
@@ -98,11 +98,22 @@ impl Cursor {
     }
 
     pub(super) fn next_stage(&mut self, world: &World) {
+        let landed = self.current_stage(world).is_some_and(|stage| stage.kind == StageKind::Land);
         self.stage += 1;
         self.loops.clear();
         self.index = 0;
-        let over = self.stage >= self.stages(world).len();
-        self.doing = if over { CursorPhase::Ended } else { CursorPhase::Arriving };
+        self.doing = match self.current_stage(world) {
+            None => CursorPhase::Ended,
+            Some(_) if landed => CursorPhase::Grounded,
+            Some(_) => CursorPhase::Arriving,
+        };
+    }
+
+    /// At the beginning of the flight behind the landing that it is at, if there is one.
+    pub fn next_flight(&self, world: &World) -> Option<Cursor> {
+        let mut ahead = self.clone();
+        ahead.next(world);
+        (ahead.doing == CursorPhase::Grounded).then_some(Cursor { doing: CursorPhase::Arriving, ..ahead })
     }
 
     /// Keeps what a pass back would need.
