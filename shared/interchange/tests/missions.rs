@@ -142,3 +142,35 @@ fn a_landing_that_is_not_as_high_as_its_runway_is_told() {
     };
     assert_eq!((at("0"), at("12")), (0, 1));
 }
+
+/// Three fields: each flight takes off where the one before has landed; what stands between is left out.
+#[test]
+fn a_mission_that_lands_and_takes_off_again_is_several_flights() {
+    let import = behind_two(
+        "4 0 3 21 0 0 0 0 36.3400 -84.1600 0 1\n5 0 3 16 0 0 0 0 36.35 -84.15 90 1\n\
+         6 0 3 22 15 0 0 0 36.3500 -84.1500 70 1\n7 0 3 16 0 0 0 0 36.36 -84.14 110 1\n\
+         8 0 0 177 2 1 0 0 0 0 0 1\n9 0 3 21 0 0 0 0 36.3700 -84.1400 10 1\n\
+         10 0 3 22 15 0 0 0 0 0 75 1\n11 0 3 16 0 0 0 0 36.33 -84.16 120 1\n\
+         12 0 3 21 0 0 0 0 36.3190 -84.1730 0 1\n",
+    );
+    assert_eq!(
+        outline(&import.plan),
+        [
+            "take-off on runway at 80 home",
+            "mission",
+            "  item2: TF 36.3273 -84.1498, 120 home",
+            "  item3: TF 36.3209 -84.1537, 100 home",
+            "land on landing",
+            "take-off on landing at 70 home",
+            "mission-2",
+            "  item7: TF 36.36 -84.14, 110 home",
+            "land on landing-2",
+            "take-off on landing-2 at 75 home",
+            "mission-3",
+            "  item11: TF 36.33 -84.16, 120 home",
+            "land on landing-3",
+        ]
+    );
+    assert_eq!(said(&import, "several-flights").len(), 1);
+    assert_eq!((said(&import, "after-landing"), said(&import, "jump")), (vec!["line 7"], vec!["line 10"]));
+}

@@ -18,18 +18,14 @@ impl Importer<'_> {
         if item.command == cmd::VTOL_TAKEOFF {
             self.notes.push("vtol", &item.place, "a vertical take-off becomes one from a runway");
         }
-        let Some(position) = self.home.or(item.position()).or(ahead) else {
+        // another flight takes off where the one before has landed
+        let Some((id, position)) = self.landed.take().or_else(|| self.home_runway(item, ahead)) else {
             return self.notes.push(
                 "no-position",
                 &item.place,
                 "a take-off without home or position is left out",
             );
         };
-        let elevation_m = self.home_amsl_m(&item.place);
-        let direction =
-            Direction { heading_deg: item.param(4), towards: item.position().or(ahead), from: None };
-        let naming = (&mut *self.names, &mut *self.notes);
-        let id = self.runways.at("runway", (position, elevation_m), direction, &item.place, naming);
         let mut stage =
             synthetic::stage(self.names.take("take-off", "take-off"), "Take-off", StageKind::TakeOff);
         stage.runway = Some(id);
@@ -37,6 +33,16 @@ impl Importer<'_> {
         self.level = stage.altitude.clone();
         self.take_off = Some(stage);
         self.arrive(Some(position));
+    }
+
+    fn home_runway(&mut self, item: &Item, ahead: Option<LatLon>) -> Option<(Id, LatLon)> {
+        let position = self.home.or(item.position()).or(ahead)?;
+        let elevation_m = self.home_amsl_m(&item.place);
+        let direction =
+            Direction { heading_deg: item.param(4), towards: item.position().or(ahead), from: None };
+        let naming = (&mut *self.names, &mut *self.notes);
+        let id = self.runways.at("runway", (position, elevation_m), direction, &item.place, naming);
+        Some((id, position))
     }
 
     pub(super) fn land(&mut self, item: &Item) {
@@ -113,7 +119,8 @@ impl Importer<'_> {
         let naming = (&mut *self.names, &mut *self.notes);
         let id = self.runways.at("landing", (position, elevation_m), direction, at, naming);
         let mut stage = synthetic::stage(self.names.take("land", "land"), "Landing", StageKind::Land);
-        stage.runway = Some(id);
+        stage.runway = Some(id.clone());
+        self.landed = Some((id, position));
         self.land = Some(stage);
     }
 

@@ -30,6 +30,10 @@ pub fn read(mut mission: Mission, assumptions: &Assumptions, mut notes: Notes) -
         runways,
         datum: Datum { home_amsl_m, has_take_off },
         home: mission.home,
+        flown: Vec::new(),
+        flown_legs: 0,
+        begins_at: i64::MIN,
+        landed: None,
         take_off: None,
         land: None,
         legs: Vec::new(),
@@ -96,6 +100,13 @@ pub(super) struct Importer<'a> {
     pub(super) runways: Runways<'a>,
     pub(super) datum: Datum,
     pub(super) home: Option<LatLon>,
+    /// Stages of the flights before the present one, and how many legs they have.
+    flown: Vec<Stage>,
+    flown_legs: usize,
+    /// The number of the item that the present flight begins with.
+    begins_at: i64,
+    /// The runway of the last landing, and where it is.
+    pub(super) landed: Option<(Id, LatLon)>,
     pub(super) take_off: Option<Stage>,
     pub(super) land: Option<Stage>,
     pub(super) legs: Vec<Placed>,
@@ -116,11 +127,17 @@ impl Importer<'_> {
             Entry::Item(item) => (&item.place, item.number),
             Entry::Leg { place, number, .. } | Entry::Landing { place, number, .. } => (place, *number),
         };
+        if self.land.is_some() && takes_off_again(entry) {
+            self.end_flight();
+            self.begins_at = number;
+            let message = "the mission lands and takes off again: each flight is taken to begin with all the energy; say in the landing what is to be expected (turnaroundEnergy, turnaroundTime)";
+            self.notes.again("several-flights", place, message);
+        }
         if self.land.is_some() {
             let message = "this comes after the landing and is left out: move it to an emergency plan if it is a go-around";
             return self.notes.again("after-landing", place, message);
         }
-        if self.legs.len() >= MAX_ITEMS {
+        if self.flown_legs + self.legs.len() >= MAX_ITEMS {
             return self.notes.again("too-many", place, "this is beyond what is read, and left out");
         }
         match entry {
@@ -222,6 +239,10 @@ impl Importer<'_> {
         self.flush_at_end();
         let (target, repeats) = (item.param(1), item.param(2));
         let target = if target.is_finite() { crate::saturated(target) } else { i64::MAX };
+        if target < self.begins_at {
+            let message = format!("the jump to item {target} leads back over a landing and is left out");
+            return self.notes.push("jump", &item.place, message);
+        }
         match jumps::close(&mut self.legs, target, item.number, repeats, self.names) {
             Ok(()) if repeats != 0.0 => self.looped(item, repeats),
             Ok(()) => {}
@@ -309,24 +330,39 @@ impl Importer<'_> {
     }
 
     fn finish(mut self, plan: &mut FlightPlan) {
-        self.flush_at_end();
-        if !self.legs.is_empty() {
-            let mut mission =
-                synthetic::stage(self.names.take("mission", "mission"), "Mission", StageKind::Mission);
-            // there is nothing to track from before the first leg
-            if self.take_off.is_none()
-                && let Some(first) = self.legs.first_mut()
-                && let LegKind::Tf(to) = &first.leg.kind
-            {
-                first.leg.kind = LegKind::Df { to: to.clone(), turn: None };
-            }
-            mission.legs = self.legs.into_iter().map(|l| l.leg.into()).collect();
-            plan.stages.push(mission);
-        }
-        plan.stages.splice(0..0, self.take_off);
-        plan.stages.extend(self.land);
+        self.end_flight();
+        plan.stages = self.flown;
         plan.runways = self.runways.into_vec();
     }
+
+    /// Take-off, legs and landing become stages; what follows is another flight.
+    fn end_flight(&mut self) {
+        self.flush_at_end();
+        let (take_off, legs) = (self.take_off.take(), std::mem::take(&mut self.legs));
+        self.flown_legs += legs.len();
+        let takes_off = take_off.is_some();
+        self.flown.extend(take_off);
+        if !legs.is_empty() {
+            let mut mission =
+                synthetic::stage(self.names.take("mission", "mission"), "Mission", StageKind::Mission);
+            let mut legs: Vec<Leg> = legs.into_iter().map(|placed| placed.leg).collect();
+            // there is nothing to track from before the first leg
+            if !takes_off
+                && let Some(first) = legs.first_mut()
+                && let LegKind::Tf(to) = &first.kind
+            {
+                first.kind = LegKind::Df { to: to.clone(), turn: None };
+            }
+            mission.legs = legs.into_iter().map(Into::into).collect();
+            self.flown.push(mission);
+        }
+        self.flown.extend(self.land.take());
+    }
+}
+
+/// Behind a landing.
+fn takes_off_again(entry: &Entry) -> bool {
+    matches!(entry, Entry::Item(item) if matches!(item.command, cmd::TAKEOFF | cmd::VTOL_TAKEOFF))
 }
 
 /// A camera command as an action.
