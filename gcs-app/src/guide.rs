@@ -2,9 +2,11 @@
 //!
 //! Answers come from the card (`panels/start.rs`) and from the map (`map/tools/guided.rs`); both see the same state.
 
+use crate::airfields::{self, Landing};
 use flight_plan::Runway;
 use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 
 /// The mission lies so far beside the runway, metres from its nearer edge.
 const ASIDE_M: f64 = 2000.0;
@@ -141,6 +143,8 @@ impl Default for Guide {
 impl Guide {
     /// Takes an answer.
     pub fn take(&mut self, answer: Answer) {
+        let is_drawn = matches!(answer, Answer::Runway(..));
+        let before = self.threshold;
         match answer {
             Answer::Place(at) => (self.threshold, self.drawing, self.search) = (Some(at), None, None),
             Answer::Runway(threshold, end) => self.take_runway(threshold, end),
@@ -149,6 +153,24 @@ impl Guide {
             Answer::Draw(drawing) => self.drawing = drawing,
             Answer::Close => (self.closed, self.drawing) = (true, None),
         }
+        // who means an airport means its runway
+        if let Some(runway) =
+            self.threshold.filter(|at| !is_drawn && before != Some(*at)).and_then(airfields::at)
+        {
+            self.take_runway(runway.threshold, runway.end);
+        }
+    }
+
+    /// The airport's runway that it is, where it is one.
+    pub fn landing(&self) -> Option<Landing> {
+        let (_, landings) = airfields::near(self.threshold?)?;
+        landings.into_iter().find(|landing| self.is(landing))
+    }
+
+    /// The runway is this one of an airport, in this direction.
+    pub fn is(&self, landing: &Landing) -> bool {
+        let off_deg = normalise_180(landing.threshold.bearing_deg(landing.end) - self.heading_deg);
+        self.threshold.is_some_and(|at| at.distance_m(landing.threshold) < 1.0) && off_deg.abs() < 1.0
     }
 
     /// Opens the card again; what was answered before stays.
@@ -202,8 +224,9 @@ impl Guide {
 
     /// What the plan is made of; `None` as long as no place is known. The runway's elevation is looked up when the plan is made.
     pub fn outline(&self) -> Option<Outline> {
+        let name = self.landing().map(|landing| format!("R{}", landing.name));
         let runway = Runway {
-            id: runway_name(self.heading_deg).as_str().into(),
+            id: name.unwrap_or_else(|| runway_name(self.heading_deg)).as_str().into(),
             threshold: self.threshold?,
             elevation_amsl_m: 0.0,
             heading_deg: self.heading_deg,
@@ -251,6 +274,24 @@ mod tests {
         let drawn = Extent::Drawn(vec![HERE, HERE.destination(0.0, 900.0), HERE.destination(90.0, 900.0)]);
         guide.take(Answer::Mission(drawn.clone()));
         assert_eq!(guide.outline().unwrap().extent, drawn);
+    }
+
+    #[test]
+    fn an_airport_that_is_meant_gives_its_runway() {
+        let mut guide = Guide::default();
+        let girona = LatLon::new(41.901, 2.761);
+        guide.take(Answer::Place(girona));
+        let runway = guide.outline().unwrap().runway;
+        assert_eq!((runway.id.as_str(), runway.length_m), ("R01", 2401.0));
+        assert!((runway.heading_deg - 16.0).abs() < 2.0, "{}", runway.heading_deg);
+        let there = guide.threshold.unwrap();
+        guide.take(Answer::Form(Box::new(Guide { heading_deg: 90.0, ..guide.clone() })));
+        assert_eq!(
+            (guide.threshold, guide.heading_deg),
+            (Some(there), 90.0),
+            "what is typed is not taken back"
+        );
+        assert_eq!(guide.outline().unwrap().runway.id.as_str(), "R09");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 mod say;
 
 pub mod actions;
+pub mod airfields;
 pub mod app;
 pub mod assets;
 pub mod chart;

@@ -5,8 +5,8 @@ use super::{App, Now, path_aboard};
 use crate::command::{DocumentCommand, LinkCommand, Queue, ViewCommand};
 use crate::dock::Content;
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, consider, decision, emergency, flight, interchange, maps, push,
-    recover, start, story, toasts, tour, unsaved,
+    Elevations, Scene, bar, browse, changed, consider, decision, emergency, field, flight, interchange, maps,
+    push, recover, start, story, toasts, tour, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -76,6 +76,7 @@ impl App {
                 });
             }
             over_map(ui, floor, &scene, queue);
+            notice(ui, floor, &scene, queue);
             toasts::show(ui, floor, &scene, queue);
         });
         dialogs(ui, &scene, queue);
@@ -91,7 +92,6 @@ fn strips(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     commands(ui, scene, queue);
     emergency::show(ui, scene, queue);
     story::show(ui, scene, queue);
-    notice(ui, scene, queue);
     announcements(ui, scene, queue);
     if !consider::show(ui, scene, queue) {
         push::show(ui, scene, queue);
@@ -149,18 +149,23 @@ fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-fn notice(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// Over the map, so that nothing moves under the pointer; clear of a decision that is asked for.
+fn notice(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
-    let frame = theme::panel(ui);
-    Panel::top("notice").frame(frame).show(ui, |ui| {
+    let side = if decision::open(scene).is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_TOP };
+    floating(ui, "notice", map, side, |ui| {
+        ui.set_max_width(NOTICE);
         ui.horizontal(|ui| {
-            if ui.small_button("✖").on_hover_text("Close this message").clicked() {
+            if field::small_button(ui, "✖", "Close this message") {
                 queue.view(ViewCommand::DismissNotice);
             }
             ui.add(egui::Label::new(RichText::new(text).color(theme::of(ui).caution)).wrap());
         });
     });
 }
+
+/// Greatest width of a message, screen points.
+const NOTICE: f32 = 440.0;
 
 /// Smallest map that a card fits on, screen points.
 const MIN_MAP: egui::Vec2 = egui::vec2(300.0, 160.0);

@@ -1,6 +1,7 @@
 //! Carrying out commands, one function per owner.
 
 use super::App;
+use crate::airfields::Ground;
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
@@ -129,12 +130,11 @@ impl App {
 
     /// Says so where it is not known.
     fn ground_amsl_m(&mut self, at: LatLon) -> f64 {
-        let ground = self.layers.ground().elevation_m(at);
-        if ground.is_none() {
-            let why = "The ground is not known here: the runway is taken to be at sea level. Add elevation tiles, or correct it.";
-            self.view.notice = Some(why.into());
+        let ground = Ground::of(self.layers.ground().as_ref(), at);
+        if ground == Ground::Unknown {
+            self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
         }
-        ground.unwrap_or(0.0)
+        ground.amsl_m()
     }
 
     fn add_runway(&mut self, threshold: LatLon, end: LatLon, both: bool) -> Result<(), String> {

@@ -21,12 +21,37 @@ pub struct Place<'a> {
     at: (i32, i32),
     /// What it is called; an airport by code and name.
     pub name: &'a str,
+    elevation_amsl_m: Option<i32>,
+    /// Its runways, as the file has them.
+    runways: &'a [u8],
 }
 
-impl Place<'_> {
+/// An end of a runway.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End<'a> {
+    /// What a landing there calls it: `01L`.
+    pub name: &'a str,
+    /// Where it is, to a metre.
+    pub position: LatLon,
+    /// Metres AMSL, where that is known.
+    pub elevation_amsl_m: Option<f64>,
+}
+
+impl<'a> Place<'a> {
     /// Where it is, to 100 m.
     pub fn position(&self) -> LatLon {
         LatLon::new(f64::from(self.at.0) / 1000.0, f64::from(self.at.1) / 1000.0)
+    }
+
+    /// Metres AMSL; of an airport, where it is known.
+    pub fn elevation_amsl_m(&self) -> Option<f64> {
+        self.elevation_amsl_m.map(f64::from)
+    }
+
+    /// Both ends of each runway of an airport that is known, the longest one first.
+    pub fn runways(&self) -> Vec<[End<'a>; 2]> {
+        // they were read once
+        runways(&mut Bytes(self.runways), self.at).unwrap_or_default()
     }
 
     /// The whole degree of latitude below it.
@@ -75,7 +100,7 @@ pub const GROUPS: usize = 5;
 /// # Errors
 /// It is damaged.
 pub fn read(bytes: &[u8]) -> Result<Vec<Group<'_>>, PlacesError> {
-    let mut rest = Bytes(bytes.strip_prefix(b"LWPL\x01").ok_or(PlacesError)?);
+    let mut rest = Bytes(bytes.strip_prefix(b"LWPL\x02").ok_or(PlacesError)?);
     let number = rest.count()?;
     let groups = (0..number).map(|_| group(&mut rest)).collect::<Result<Vec<_>, _>>()?;
     if groups.len() == GROUPS && rest.0.is_empty() { Ok(groups) } else { Err(PlacesError) }
@@ -90,13 +115,42 @@ fn group<'a>(rest: &mut Bytes<'a>) -> Result<Group<'a>, PlacesError> {
         north = north.checked_add(rest.signed()?).ok_or(PlacesError)?;
         let length = rest.count()?;
         let name = std::str::from_utf8(rest.take(length)?).map_err(|_| PlacesError)?;
-        let place = Place { at: (north, east), name };
+        let elevation_amsl_m = elevation(rest)?;
+        let before = rest.0;
+        runways(rest, (north, east))?;
+        let runways = before.get(..before.len() - rest.0.len()).ok_or(PlacesError)?;
+        let place = Place { at: (north, east), name, elevation_amsl_m, runways };
         if !place.position().is_valid() || places.last().is_some_and(|before| before.band() > place.band()) {
             return Err(PlacesError);
         }
         places.push(place);
     }
     Ok(Group(places))
+}
+
+/// 0: not known.
+fn elevation(rest: &mut Bytes<'_>) -> Result<Option<i32>, PlacesError> {
+    Ok(rest.unsigned()?.checked_sub(1).and_then(|n| i32::try_from(n).ok()).map(|n| n - 999))
+}
+
+fn runways<'a>(rest: &mut Bytes<'a>, at: (i32, i32)) -> Result<Vec<[End<'a>; 2]>, PlacesError> {
+    let number = rest.count()?;
+    let fine = |milli: i32| milli.checked_mul(100).ok_or(PlacesError);
+    let mut runways = Vec::new();
+    for _ in 0..number {
+        let (mut north, mut east) = (fine(at.0)?, fine(at.1)?);
+        let mut end = || -> Result<End<'a>, PlacesError> {
+            east = east.checked_add(rest.signed()?).ok_or(PlacesError)?;
+            north = north.checked_add(rest.signed()?).ok_or(PlacesError)?;
+            let elevation_amsl_m = elevation(rest)?.map(f64::from);
+            let length = rest.count()?;
+            let name = std::str::from_utf8(rest.take(length)?).map_err(|_| PlacesError)?;
+            let position = LatLon::new(f64::from(north) / 1e5, f64::from(east) / 1e5);
+            position.is_valid().then_some(End { name, position, elevation_amsl_m }).ok_or(PlacesError)
+        };
+        runways.push([end()?, end()?]);
+    }
+    Ok(runways)
 }
 
 #[cfg(test)]
@@ -117,6 +171,21 @@ mod tests {
         let near: Vec<&str> =
             groups[4].within(LatLon::new(36.2, -84.4), LatLon::new(36.5, -84.0)).map(|p| p.name).collect();
         assert!(near.iter().any(|name| name.starts_with("KJAU")), "{near:?}");
+    }
+
+    #[test]
+    fn airports_have_elevation_and_runways() {
+        let groups = read(FILE).unwrap();
+        let girona = groups[2].iter().find(|place| place.name.starts_with("LEGE ")).unwrap();
+        assert_eq!(girona.elevation_amsl_m(), Some(143.0));
+        let runways = girona.runways();
+        let [[south, north]] = runways.as_slice() else { panic!("{runways:?}") };
+        assert_eq!((south.name, north.name, south.elevation_amsl_m), ("01", "19", Some(123.0)));
+        let way = south.position.inverse(north.position);
+        assert!((way.distance_m - 2400.0).abs() < 50.0, "{}", way.distance_m);
+        assert!((way.bearing_start_deg - 16.0).abs() < 2.0, "{}", way.bearing_start_deg);
+        let paris = groups[0].iter().find(|place| place.name == "Paris").unwrap();
+        assert!(paris.elevation_amsl_m().is_none() && paris.runways().is_empty());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The beginning of a plan: a card over the map of an empty document. A few answers give a plan that can be flown.
 
+mod airfield;
 mod place;
 
 use super::{Scene, field, primary_button};
@@ -76,7 +77,7 @@ fn ask(ui: &mut Ui, scene: &Scene<'_>, guide: &mut Guide, queue: &mut Queue) {
             ui.add_space(4.0);
             templates(ui, guide);
             ui.add_space(4.0);
-            answers(ui, threshold, guide, scene.units(), queue);
+            answers(ui, threshold, guide, scene, queue);
         }
     }
 }
@@ -130,10 +131,12 @@ fn templates(ui: &mut Ui, guide: &mut Guide) {
     ui.label(RichText::new(guide.template.about()).color(theme::of(ui).weak));
 }
 
-fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, u: Units, queue: &mut Queue) {
+fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, scene: &Scene<'_>, queue: &mut Queue) {
+    let u = scene.units();
     if let Some(at) = place::ask(ui, "Runway at", Some(threshold), guide, u, queue) {
         guide.threshold = Some(at);
     }
+    airfield::offer(ui, threshold, guide, scene);
     draw_button(ui, "Draw the runway", Drawing::Runway, guide);
     number(ui, "Heading", &mut guide.heading_deg, DEGREES, 0.0..=359.9);
     number(ui, "Length", &mut guide.length_m, u.length(), 50.0..=5000.0);

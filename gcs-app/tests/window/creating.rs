@@ -76,7 +76,10 @@ fn place_is_typed_and_what_is_none_is_refused() {
         window.steps(2);
         window.harness.get_by_role_and_label(egui::accesskit::Role::TextInput, "Place").type_text(typed);
         window.press(Key::Enter);
-        assert_eq!(guide(&window).threshold, expected, "{typed}");
+        let off_m = guide(&window).threshold.zip(expected).map(|(at, expected)| at.distance_m(expected));
+        // an airport is where its runway begins
+        assert_eq!(guide(&window).threshold.is_some(), expected.is_some(), "{typed}");
+        assert!(off_m.is_none_or(|metres| metres < 2000.0), "{typed}: {off_m:?}");
     }
 }
 
@@ -105,7 +108,7 @@ fn a_name_of_several_places_is_chosen_from_a_list_and_nothing_typed_is_lost() {
     let named = guide(&window).search.clone().unwrap().named;
     assert!(named.len() > 1 && guide(&window).threshold.is_none(), "{named:?}");
     window.click(&named[1].name);
-    assert_eq!(guide(&window).threshold, Some(named[1].at));
+    assert!(guide(&window).threshold.unwrap().distance_m(named[1].at) < 2000.0);
     assert!(guide(&window).search.is_none());
 }
 
@@ -295,4 +298,41 @@ fn window_with_unsaved_changes_asks_before_it_closes() {
     assert!(window.shows("The window is about to close"));
     window.click("Cancel");
     assert!(!window.shows("The window is about to close"));
+}
+
+/// No elevations are loaded there.
+#[test]
+fn an_airport_gives_the_runway_and_the_ground_of_a_new_mission() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    window.harness.get_by_role_and_label(Role::TextInput, "Place").focus();
+    window.steps(2);
+    window.harness.get_by_role_and_label(Role::TextInput, "Place").type_text("LEGE");
+    window.steps(2);
+    window.press(Key::Enter);
+    assert!(window.shows("123 m AMSL, as LEGE Girona-Costa Brava has it"));
+    window.click("Runway 19");
+    assert!((guide(&window).heading_deg - 196.0).abs() < 2.0 && window.shows("143 m AMSL"));
+    window.click("Create");
+    let runway = window.plan().runways[0].clone();
+    assert_eq!((runway.id.as_str(), runway.elevation_amsl_m), ("R19", 143.0));
+    assert_eq!(window.app().view().notice, None);
+}
+
+#[test]
+fn ground_that_nobody_knows_is_said_to_be_assumed() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    window.harness.get_by_role_and_label(Role::TextInput, "Place").focus();
+    window.steps(2);
+    window.harness.get_by_role_and_label(Role::TextInput, "Place").type_text("-48.9 -123.4");
+    window.steps(2);
+    window.press(Key::Enter);
+    assert!(window.shows("not known here: 0 m assumed"));
+    window.click("Create");
+    assert!(window.app().view().notice.as_ref().unwrap().contains("Load elevations"));
+    let map = window.harness.get_by_label("Map").rect();
+    window.click("Close this message");
+    assert_eq!(window.app().view().notice, None);
+    assert_eq!(window.harness.get_by_label("Map").rect(), map, "a message moves nothing");
 }
