@@ -30,6 +30,7 @@ pub const DIALECT: Dialect = Dialect {
     steer: modes::steer,
     arm: &[Command::Arm],
     forgets_speed: false,
+    need: None,
 };
 
 const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false };

@@ -6,6 +6,7 @@ use super::commands::Command;
 use super::item::Item;
 use super::list::Feeding;
 use super::mission::{Entry, Rules};
+use super::parameters::Need;
 use crate::gateway::order::{Aim, Mode};
 use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
 use std::borrow::Cow;
@@ -35,4 +36,6 @@ pub struct Dialect {
     pub arm: &'static [Command],
     /// A change of mode makes it forget the airspeed that was commanded.
     pub forgets_speed: bool,
+    /// The parameter that decides whether it can be flown.
+    pub need: Option<&'static Need>,
 }

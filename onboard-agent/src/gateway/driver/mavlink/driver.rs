@@ -9,6 +9,7 @@ use super::commands::{Client, Command};
 use super::dialect::Dialect;
 use super::list::{Change, List, Step};
 use super::mission::Outcome;
+use super::parameters::Needed;
 use super::session::{self, Session, SessionEvent};
 use crate::gateway::order::{Aim, Mode, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
@@ -50,6 +51,9 @@ pub struct MavlinkDriver {
     session: Session,
     list: List,
     known: Option<Known>,
+    needed: Needed,
+    /// What was last said of whether it can be flown.
+    told: Option<Result<&'static str, String>>,
     seen: Option<Seen>,
     /// Orders in flight that take several commands.
     steps: Vec<Steps>,
@@ -136,7 +140,16 @@ impl MavlinkDriver {
         }
         self.stirred = true;
         match event {
-            SessionEvent::Heartbeat(beat) => self.on_heartbeat(now, &beat, more),
+            SessionEvent::Heartbeat(beat) => {
+                self.on_heartbeat(now, &beat, more);
+                self.check_parameter(now);
+            }
+            SessionEvent::Parameter(value) => {
+                if let Some(need) = self.dialect().and_then(|dialect| dialect.need) {
+                    self.needed.said(need, &value);
+                }
+                self.judge();
+            }
             SessionEvent::Current(seq) => {
                 self.reports.push_back(Report::Alive);
                 self.list.steers_to(now, seq);
@@ -168,6 +181,15 @@ impl MavlinkDriver {
         }
     }
 
+    /// At each heartbeat, as long as it is not as it has to be.
+    fn check_parameter(&mut self, now: Time) {
+        let need = self.dialect().and_then(|dialect| dialect.need);
+        if let (Some(need), Some(peer)) = (need, self.session.peer()) {
+            self.needed.tick(now, need, peer, &mut self.session.out);
+            self.judge();
+        }
+    }
+
     /// The first heartbeat says what it is; it stays that.
     fn recognise(&mut self, beat: &HEARTBEAT_DATA) {
         let kind = (beat.autopilot, beat.mavtype);
@@ -179,20 +201,37 @@ impl MavlinkDriver {
                 }
                 self.list.supported = dialect.is_some();
                 self.known = Some(Known { kind, dialect });
-                let capability = dialect.map(|dialect| dialect.name).ok_or_else(|| unsupported(kind));
-                self.reports.push_back(Report::Capability(capability));
+                self.judge();
             }
             Some(known) if known.kind != kind && known.dialect.is_some() => {
                 self.list.supported = false;
                 self.known = Some(Known { kind, dialect: None });
-                let why = format!(
-                    "It was {} and says now that it is {}: start the agent anew.",
-                    people(known.kind),
-                    people(kind)
-                );
-                self.reports.push_back(Report::Capability(Err(why)));
+                let (was, is) = (people(known.kind), people(kind));
+                self.tell(Err(format!("It was {was} and says now that it is {is}: start the agent anew.")));
             }
             Some(_) => {}
+        }
+    }
+
+    /// Says whether it can be flown, once that is known and when it changes.
+    fn judge(&mut self) {
+        let Some(Known { kind, dialect }) = self.known else { return };
+        let Some(dialect) = dialect else {
+            // one that turned into another was refused by name
+            return if self.told.is_none() {
+                self.tell(Err(unsupported(kind)))
+            };
+        };
+        let verdict = dialect.need.map_or(Some(Ok(())), |need| self.needed.verdict(need));
+        if let Some(verdict) = verdict {
+            self.tell(verdict.map(|()| dialect.name));
+        }
+    }
+
+    fn tell(&mut self, capability: Result<&'static str, String>) {
+        if self.told.as_ref() != Some(&capability) {
+            self.told = Some(capability.clone());
+            self.reports.push_back(Report::Capability(capability));
         }
     }
 

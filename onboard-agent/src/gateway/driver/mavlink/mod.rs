@@ -1,6 +1,6 @@
 //! The driver of MAVLink autopilots and what their dialects share: the conversation (`session`), the waypoints (`chain`)
 //! and the list that they go to (`list`, `item`), what is done to it (`mission`, by `transfer` and `partial_write`),
-//! commands, streams, telemetry and timeouts. It knows no autopilot's habits: those are a `dialect`.
+//! commands, parameters, streams, telemetry and timeouts. It knows no autopilot's habits: those are a `dialect`.
 
 pub mod chain;
 pub mod commands;
@@ -9,6 +9,7 @@ pub mod driver;
 pub mod item;
 pub mod list;
 pub mod mission;
+pub mod parameters;
 mod partial_write;
 mod rto;
 pub mod session;

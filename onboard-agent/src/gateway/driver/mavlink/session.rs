@@ -35,6 +35,8 @@ pub enum SessionEvent {
     Command(Client, Result<(), String>),
     /// What was done to its list ended.
     Mission(Outcome),
+    /// A parameter.
+    Parameter(PARAM_VALUE_DATA),
     /// Telemetry.
     Telemetry(Report),
 }
@@ -195,6 +197,7 @@ impl Session {
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
                 self.current(now, current.seq, events);
             }
+            MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
             _ => match self.mission.on_message(now, message, peer, &mut self.out) {
                 Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
                 None => self.readings.take(now, message, events, &mut self.ignored),

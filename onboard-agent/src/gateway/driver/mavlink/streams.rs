@@ -13,7 +13,7 @@ const OBSERVED: Duration = Duration::from_secs(3);
 const MAX_DOUBLINGS: u32 = 5;
 
 /// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
-const WANTED: [(u32, u32); 14] = [
+const WANTED: [(u32, u32); 15] = [
     (GLOBAL_POSITION_INT_DATA::ID, 100),
     (ATTITUDE_DATA::ID, 100),
     (MISSION_CURRENT_DATA::ID, 100),
@@ -21,6 +21,7 @@ const WANTED: [(u32, u32); 14] = [
     (GPS_RAW_INT_DATA::ID, 400),
     (SYS_STATUS_DATA::ID, 500),
     (WIND_DATA::ID, 500),
+    (WIND_COV_DATA::ID, 500),
     (RPM_DATA::ID, 500),
     (EFI_STATUS_DATA::ID, 1000),
     (FUEL_STATUS_DATA::ID, 1000),

@@ -51,6 +51,7 @@ impl Readings {
                 out.extend(said.map(SessionEvent::Telemetry));
             }),
             MavMessage::WIND(m) => self.wind(m),
+            MavMessage::WIND_COV(m) => self.wind_vector(m),
             MavMessage::SCALED_PRESSURE(m) => self.pressure(m),
             MavMessage::GPS_RAW_INT(m) => {
                 out.push(SessionEvent::Telemetry(Report::Gps(gps(m, self.unix_s(now)))));
@@ -133,6 +134,14 @@ impl Readings {
         let (from, speed) = (f64::from(m.direction).to_radians(), f64::from(m.speed));
         (from.is_finite() && (0.0..100.0).contains(&speed)).then_some(())?;
         self.wind = (-speed * from.sin(), -speed * from.cos());
+        Some(())
+    }
+
+    /// This message says where it blows to.
+    fn wind_vector(&mut self, m: &WIND_COV_DATA) -> Option<()> {
+        let (north, east) = (f64::from(m.wind_x), f64::from(m.wind_y));
+        (0.0..100.0).contains(&north.hypot(east)).then_some(())?;
+        self.wind = (east, north);
         Some(())
     }
 

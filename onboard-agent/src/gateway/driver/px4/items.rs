@@ -39,7 +39,8 @@ pub fn encode(seq: u16, item: &Item, peer: Peer, take_off: TakeOff) -> Entry {
         ItemKind::Land => data.command = MavCmd::MAV_CMD_NAV_LAND,
         ItemKind::Jump { to } => {
             data.param4 = 0.0;
-            item::make_jump(&mut data, to, FOR_EVER);
+            // what would be an altitude makes lists differ that are the same otherwise
+            item::make_jump(&mut data, to, FOR_EVER - item.altitude_amsl_m as f32);
         }
     }
     data

@@ -13,6 +13,7 @@ use super::mavlink::Peer;
 use super::mavlink::dialect::Dialect;
 use super::mavlink::item::{self, Item};
 use super::mavlink::mission::{Entry, Rules};
+use super::mavlink::parameters::Need;
 use items::TakeOff;
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
 
@@ -29,6 +30,7 @@ pub const FIXED_WING: Dialect = Dialect {
     steer: |_, aim| modes::steer(aim),
     arm: &modes::ARM,
     forgets_speed: true,
+    need: Some(&NO_LANDING_NEEDED),
 };
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.
@@ -49,6 +51,13 @@ const VTOLS: [MavType; 5] = [
 ];
 
 const RULES: Rules = Rules { same: items::same, id: Some(items::checksum), reads_in_order: true };
+
+/// The list holds the next part of the flight, and the landing only when that is near.
+const NO_LANDING_NEEDED: Need = Need {
+    name: "MIS_TKO_LAND_REQ",
+    wanted: 0,
+    otherwise: "PX4 then refuses a list without a landing, and so every list of a longer flight",
+};
 
 fn is_px4(beat: &HEARTBEAT_DATA) -> bool {
     beat.autopilot == MavAutopilot::MAV_AUTOPILOT_PX4

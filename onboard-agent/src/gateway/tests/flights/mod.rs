@@ -6,6 +6,7 @@ use crate::gateway::driver::{self, FromLink};
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
 use geometry::LatLon;
+use sim::Personality;
 use sim::core::{Peer, Simulator};
 use std::time::Duration;
 use usal::Instance;
@@ -49,9 +50,14 @@ pub fn station(restored: Option<Snapshot>) -> Station {
 
 impl Flight {
     pub fn new(seed: u64, faults: &[&str]) -> Self {
+        Self::of(Personality::ArduPlane, seed, faults)
+    }
+
+    /// With another autopilot.
+    pub fn of(personality: Personality, seed: u64, faults: &[&str]) -> Self {
         let config = sim::Config::default();
-        let mut sim =
-            Simulator::new(config.profile, config.home, aircraft::Wind::from_direction(270.0, 5.0), seed);
+        let wind = aircraft::Wind::from_direction(270.0, 5.0);
+        let mut sim = Simulator::of(personality, config.profile, config.home, wind, seed);
         sim.connect(PEER);
         for fault in faults {
             assert!(sim.inject(fault.parse().unwrap()));
@@ -297,6 +303,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod px4;
 mod runways;
 mod strangers;
 mod tests;

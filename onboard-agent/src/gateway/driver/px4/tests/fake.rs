@@ -40,6 +40,8 @@ pub struct Px4 {
     pub refuses_modes: u32,
     /// Lists that were taken into use.
     pub uses: u32,
+    /// What its lists need to have.
+    pub required: i32,
     pub speeds: Vec<f32>,
     /// Places that it was sent to; `None`: hold here.
     pub sent_to: Vec<Option<(i32, i32)>>,
@@ -132,6 +134,15 @@ impl Px4 {
 
     pub fn receive(&mut self, message: &MavMessage) {
         match message {
+            MavMessage::PARAM_REQUEST_READ(r) if r.param_id.to_str() == Ok("MIS_TKO_LAND_REQ") => {
+                let value = PARAM_VALUE_DATA {
+                    param_value: f32::from_bits(self.required as u32),
+                    param_id: r.param_id,
+                    param_type: MavParamType::MAV_PARAM_TYPE_INT32,
+                    ..PARAM_VALUE_DATA::DEFAULT
+                };
+                self.out.push(MavMessage::PARAM_VALUE(value));
+            }
             MavMessage::MISSION_COUNT(c) => self.on_count(c.count),
             MavMessage::MISSION_ITEM_INT(item) => self.on_item(item),
             MavMessage::MISSION_REQUEST_LIST(_) if !matches!(self.transfer, Transfer::Receiving { .. }) => {
@@ -236,6 +247,8 @@ impl Px4 {
                 None => self.armed = p1 > 0.5,
             },
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => self.speeds.push(p2),
+            // on the ground it says yes, and keeps its own
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT if !self.armed => {}
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => {
                 self.seq = Some(p1 as u16);
                 self.current();

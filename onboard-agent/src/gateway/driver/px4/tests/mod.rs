@@ -30,6 +30,8 @@ struct Rig {
     /// What comes through.
     pass: Pass,
     orders: u64,
+    /// The PX4 is silent.
+    driver_only: bool,
 }
 
 fn place(n: u64) -> LatLon {
@@ -60,13 +62,16 @@ impl Rig {
             decoder: Decoder::default(),
             pass: Box::new(|_, _| true),
             orders: 0,
+            driver_only: false,
         }
     }
 
     /// 100 ms.
     fn step(&mut self) {
         self.now += Duration::from_millis(100);
-        self.px4.step();
+        if !self.driver_only {
+            self.px4.step();
+        }
         for message in std::mem::take(&mut self.px4.out) {
             if (self.pass)(To::Driver, &message) {
                 self.hear(&message);
@@ -194,6 +199,8 @@ fn the_autopilot_says_which_it_is_and_what_cannot_be_flown_is_refused_in_plain_w
         let message = MavMessage::HEARTBEAT(beat);
         assert!((DEFAULT.recognises)(&encode(SENDER, 0, &message)) && !(DEFAULT.recognises)(b"hello"));
         rig.hear(&message);
+        (rig.px4.kind, rig.driver_only) = (mavtype, autopilot != MavAutopilot::MAV_AUTOPILOT_PX4);
+        rig.until("a verdict", |rig| rig.capability().is_some());
         rig.capability().unwrap()
     };
     let px4 = MavAutopilot::MAV_AUTOPILOT_PX4;
@@ -225,6 +232,41 @@ fn waypoints_that_were_fed_before_it_was_known_are_aboard_as_soon_as_it_is() {
         reasons.clone().all(|e| e.param1 == 0.0 && e.param4.is_nan()),
         "it refuses what it does not know"
     );
+}
+
+#[test]
+fn a_parameter_that_forbids_our_lists_is_named_with_the_remedy_and_asked_for_again() {
+    let mut rig = Rig::new();
+    rig.px4.required = 2;
+    rig.run(3);
+    let why = rig.capability().unwrap().unwrap_err();
+    assert!(why.contains("MIS_TKO_LAND_REQ is 2") && why.contains("Set it to 0"), "{why}");
+    rig.px4.required = 0;
+    rig.run(5);
+    assert_eq!(rig.capability(), Some(Ok("PX4 fixed wing")));
+}
+
+#[test]
+fn firmware_without_the_parameter_is_flown() {
+    let mut rig = Rig::new();
+    rig.pass = Box::new(|_, m| !matches!(m, MavMessage::PARAM_REQUEST_READ(_)));
+    rig.run(5);
+    assert_eq!(rig.capability(), None);
+    rig.run(20);
+    assert_eq!(rig.capability(), Some(Ok("PX4 fixed wing")));
+}
+
+#[test]
+fn the_same_plan_again_begins_at_its_beginning() {
+    let mut rig = Rig::flying();
+    rig.px4.seq = Some(7);
+    rig.px4.armed = false;
+    rig.run(2);
+    rig.order(Order::Forget);
+    rig.reports.clear();
+    rig.feed(0, waypoints(1, 12));
+    rig.until("ready", Rig::ready);
+    assert_eq!(rig.px4.seq, Some(0));
 }
 
 #[test]

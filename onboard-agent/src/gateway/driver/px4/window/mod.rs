@@ -24,6 +24,8 @@ use ring::{RING, entry};
 const AHEAD: u64 = 28;
 /// A new list is sent when fewer waypoints than this are ahead.
 const REFILL: u64 = 16;
+/// Numbers that make lists differ.
+const MOST_EDITIONS: u16 = 1000;
 /// More lists than this that may be in use are as good as none that is known.
 const MOST_LISTS: usize = 4;
 
@@ -63,6 +65,8 @@ pub struct Window {
     sent_to: Option<u64>,
     /// It shows that it does not: it is told again.
     disobeys: bool,
+    /// Lists that are the same otherwise differ by this.
+    edition: u16,
 }
 
 impl Feeding for Window {
@@ -140,8 +144,16 @@ impl Feeding for Window {
         if !self.installed {
             return if may_install && !self.chain.is_empty() { self.install() } else { None };
         }
-        if let Some(position) = self.sent_to {
+        if let Some(position) = self.sent_to.filter(|_| self.entered) {
             return self.disobeys.then(|| self.set_current(position));
+        }
+        if self.sent_to.is_some() {
+            // on the ground only a new list says where to begin, and the same one again is no news
+            if !self.disobeys || !may_install {
+                return None;
+            }
+            self.edition = (self.edition + 1) % MOST_EDITIONS;
+            return self.install();
         }
         self.stretch();
         let jump = self.chain.jump().or(self.overrun);
@@ -312,6 +324,7 @@ impl Window {
     fn install(&mut self) -> Option<Change> {
         self.chain.restart();
         self.lists.clear();
+        self.sent_to = None;
         self.end = 0;
         self.entered = false;
         self.stretch();
@@ -320,7 +333,8 @@ impl Window {
 
     fn upload(&mut self, jump: Option<u64>, new_from: u64) -> Option<Change> {
         let first = self.chain.first();
-        let items = ring::list(first, self.end, self.chain.before(first), |p| self.wanted(p))?;
+        let ends = (first, self.end);
+        let items = ring::list(ends, self.edition, self.chain.before(first), |p| self.wanted(p))?;
         let current = jump.map(entry);
         // of a list that nobody knows, nothing can be overrun
         let new_from = if self.lists.is_empty() { u64::MAX } else { new_from };

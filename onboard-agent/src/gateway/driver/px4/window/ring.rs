@@ -17,10 +17,10 @@ pub fn entry(position: u64) -> u16 {
 }
 
 /// The whole list while `first` is steered to and the end loiter is at `end`. `passed` came before `first`. Entries
-/// that are out of reach behind the end loiter are the same.
+/// that are out of reach behind the end loiter are the same. The jump carries the `edition` as its altitude.
 pub fn list(
-    first: u64,
-    end: u64,
+    (first, end): (u64, u64),
+    edition: u16,
     passed: Option<Item>,
     wanted: impl Fn(u64) -> Option<Item>,
 ) -> Option<Vec<Item>> {
@@ -38,7 +38,7 @@ pub fn list(
     for number in 1..=RING {
         items.push(at(position_in(number))?);
     }
-    items.push(Item { kind: ItemKind::Jump { to: 1 }, ..filler });
+    items.push(Item { kind: ItemKind::Jump { to: 1 }, altitude_amsl_m: f64::from(edition), ..filler });
     Some(items)
 }
 

@@ -35,6 +35,8 @@ const ALL: Serial = Serial(u64::MAX);
 struct Autopilot {
     list: Vec<Item>,
     seq: u16,
+    /// On the ground it says yes to another current entry, and keeps its own.
+    landed: bool,
     target: Option<Item>,
     /// Every target so far.
     steered: Vec<Item>,
@@ -66,6 +68,7 @@ impl Autopilot {
                 self.list.clone_from(items);
                 self.load(current.unwrap_or(self.seq));
             }
+            Change::SetCurrent(_) if self.landed => {}
             Change::SetCurrent(seq) => self.load(*seq),
             Change::Overwrite { .. } => panic!("PX4 takes no part of a list"),
         }
@@ -221,7 +224,7 @@ fn what_replaces_cancelled_waypoints_is_flown_from_its_first_however_far_it_got_
 fn the_same_plan_again_is_no_news_for_px4_and_begins_at_its_beginning_all_the_same() {
     let mut rig = Rig::new(6);
     (0..10).for_each(|_| rig.reach());
-    rig.flying = false;
+    (rig.flying, rig.autopilot.landed) = (false, true);
     rig.window.clear();
     rig.window.feed(ALL, waypoints(1, 6));
     rig.settle();

@@ -1,0 +1,95 @@
+//! Whole flights on a simulated PX4, whose list is replaced whole.
+
+use super::*;
+
+fn flight(personality: Personality, seed: u64, faults: &[&str]) -> Flight {
+    let mut flight = Flight::of(personality, seed, faults);
+    assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
+    flight
+}
+
+fn tokens(flight: &Flight) -> Vec<u64> {
+    flight.progress().into_iter().flatten().collect()
+}
+
+#[test]
+fn a_flight_of_more_waypoints_than_the_ring_holds_is_flown_from_take_off_to_landing() {
+    for personality in [Personality::Px4, Personality::Px4Vtol] {
+        let mut flight = flight(personality, 1, &[]);
+        let mut plan = vec![take_off()];
+        plan.extend(zigzag(0, 60, 150.0));
+        plan.extend(zigzag(0, 59, 150.0).into_iter().rev());
+        plan.extend(landing());
+        let last = plan.len() as u64;
+        flight.launch(plan);
+        flight.run_until(2400.0, "landing", |f| f.state() == GatewayState::Stop);
+        assert_eq!(tokens(&flight), (1..=last).collect::<Vec<_>>());
+        let states: Vec<_> = flight.changes().into_iter().map(|c| c.1).collect();
+        use GatewayState::*;
+        assert_eq!(states, [Stop, TakeOff, Nav, Approach, Land, Stop]);
+    }
+}
+
+#[test]
+fn packets_lost_0_to_20_percent_the_same_waypoints_are_flown() {
+    for (seed, loss) in [(11, 0.0), (12, 0.1), (13, 0.2)] {
+        println!("seed {seed}, loss {loss}");
+        let fault = format!("packet-loss={loss}");
+        let mut flight = flight(Personality::Px4, seed, &[&fault, "duplicate=0.1"]);
+        let mut plan = vec![take_off()];
+        plan.extend(zigzag(0, 50, 250.0));
+        flight.launch(plan);
+        flight.run_until(1500.0, "the 45th waypoint", |f| f.has_reached(45));
+        let tokens = tokens(&flight);
+        assert!(tokens.windows(2).all(|w| w[0] < w[1]), "{tokens:?}");
+    }
+}
+
+#[test]
+fn cancelled_waypoints_are_not_flown_and_a_hold_and_a_heading_are_what_they_are() {
+    let mut flight = flight(Personality::Px4, 3, &[]);
+    flight.launch(std::iter::once(take_off()).chain(zigzag(0, 20, 300.0)).collect());
+    flight.run_until(120.0, "the fifth", |f| f.has_reached(5));
+    let other = zigzag(8, 6, 280.0);
+    let first = flight.next;
+    assert_eq!(flight.feed(Some(5), other), FeedAnswer::Accepted);
+    flight.run_until(120.0, "the new ones", |f| f.has_reached(first + 1));
+    assert!(tokens(&flight).iter().all(|t| *t <= 5 || *t >= first), "{:?}", tokens(&flight));
+    flight.ask(GatewayRequest::Hold).unwrap();
+    flight.run_until(5.0, "Hold", |f| f.state() == GatewayState::Hold);
+    let altitude_amsl_m = GROUND_M + 150.0;
+    let direct = GatewayRequest::Direct { heading_deg: 90.0, altitude_amsl_m, airspeed_mps: 24.0 };
+    flight.ask(direct).unwrap();
+    flight.run_until(5.0, "Directed", |f| f.state() == GatewayState::Directed);
+    flight.run(20.0);
+    assert_eq!(flight.state(), GatewayState::Directed);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(5.0, "Nav", |f| f.state() == GatewayState::Nav);
+    flight.run_until(300.0, "the last one", |f| f.has_reached(first + 5));
+}
+
+#[test]
+fn fp_manager_killed_the_gateway_returns_and_lands_by_itself() {
+    let mut flight = flight(Personality::Px4, 2, &[]);
+    flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());
+    flight.store_runway();
+    flight.run(30.0);
+    flight.alive = false;
+    flight.run_until(900.0, "landed", |f| f.state() == GatewayState::Stop);
+    let states: Vec<_> = flight.changes().into_iter().map(|c| c.1).collect();
+    use GatewayState::*;
+    assert_eq!(states[3..], [SafeHold, SafeReturn, SafeApproach, SafeLand, Stop]);
+}
+
+#[test]
+fn a_parameter_that_forbids_long_flights_is_named_before_the_launch() {
+    let mut flight = Flight::of(Personality::Px4, 1, &[]);
+    flight.run_until(20.0, "heard", |f| {
+        f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
+    });
+    assert!(flight.join("plan").accepted);
+    flight.feed(None, std::iter::once(take_off()).chain(zigzag(0, 20, 300.0)).collect());
+    flight.run(5.0);
+    let why = flight.ask(GatewayRequest::Launch).unwrap_err();
+    assert!(why.contains("MIS_TKO_LAND_REQ is 2"), "{why}");
+}
