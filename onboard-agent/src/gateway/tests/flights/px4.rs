@@ -5,6 +5,8 @@ use super::*;
 fn flight(personality: Personality, seed: u64, faults: &[&str]) -> Flight {
     let mut flight = Flight::of(personality, seed, faults);
     assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
+    // it is asked for its parameter first
+    flight.run(5.0);
     flight
 }
 
