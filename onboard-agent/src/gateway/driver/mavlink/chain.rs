@@ -121,6 +121,11 @@ impl Chain {
         }
     }
 
+    /// Count positions from another number.
+    pub fn renumber(&mut self, first: u64) {
+        self.first = first;
+    }
+
     /// Count positions from 0 again, without what was being left behind.
     pub fn restart(&mut self) {
         if self.left_behind {

@@ -97,7 +97,9 @@ impl Autopilot {
         let seq = self.run.current;
         let landed = matches!(self.run.active, Some(Item { kind: Kind::Land, .. }));
         self.reached.push(seq);
-        if landed {
+        let goes_on = self.rules.flies_on_after_landing
+            && self.run.upcoming(self.mission.items(), self.rules.first_item).is_some();
+        if landed && !goes_on {
             self.run.phase = Phase::Complete;
             // a return that ended in the mission's landing was the mission in the end
             self.mode = Mode::Auto;

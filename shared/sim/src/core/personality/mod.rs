@@ -89,6 +89,8 @@ pub struct Rules {
     pub needs_mission_for_mode: bool,
     /// When the list has run out.
     pub list_end: ListEnd,
+    /// After a landing it takes off again for what is behind it on the list.
+    pub flies_on_after_landing: bool,
     /// A take-off that comes up in the air is passed over.
     pub skips_take_off_in_air: bool,
     /// After the take-off mode it holds in the mode that is for it.

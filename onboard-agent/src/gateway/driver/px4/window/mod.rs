@@ -7,7 +7,8 @@
 //! PX4 keeps the list in use until a new one is complete, and then goes on at the same entry, with what the new list
 //! has there. As a position has the same entry in every list of ours, the aircraft may reach waypoints while a list
 //! is on its way up: it goes on right with the new one. Only where it has to *leave* what it steers to, the new list
-//! names the entry to go on at. What a lost answer leaves open is which of a few lists is in use ([`Window::lists`]):
+//! names the entry to go on at. A list with a landing ends there, without a jump (`ring::list_that_lands`); where the
+//! landing is behind the jump, positions are counted anew, and the list says where to go on. What a lost answer leaves open is which of a few lists is in use ([`Window::lists`]):
 //! what is the same in all of them is certain, the rest is not claimed.
 
 mod ring;
@@ -15,10 +16,11 @@ mod ring;
 mod tests;
 
 use crate::gateway::driver::mavlink::chain::Chain;
-use crate::gateway::driver::mavlink::item::{Item, matches};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
 use crate::gateway::order::{Fed, Serial, Target};
 use ring::{RING, entry};
+use usal::contract::Action;
 
 /// Waypoints ahead of the aircraft that are put on board.
 const AHEAD: u64 = 28;
@@ -129,8 +131,8 @@ impl Feeding for Window {
     }
 
     fn is_astray(&self, seq: u16) -> bool {
-        let settled = self.entered && self.pending.is_none() && self.sent_to.is_none();
-        settled && self.position_of(seq).is_none()
+        let settled = self.pending.is_none() && self.sent_to.is_none() && self.overrun.is_none();
+        self.entered && settled && self.position_of(seq).is_none()
     }
 
     fn bring_back(&mut self) {
@@ -156,6 +158,9 @@ impl Feeding for Window {
             return self.install();
         }
         self.stretch();
+        if self.landing().is_some_and(|landing| !ring::lies_flat(self.chain.first(), landing)) {
+            self.renumber();
+        }
         let jump = self.chain.jump().or(self.overrun);
         match self.deviation() {
             Some(new_from) => self.upload(jump, new_from),
@@ -255,10 +260,10 @@ impl Window {
         (first..=self.farthest.max(coming).max(first)).find(|p| entry(*p) == seq)
     }
 
-    /// The first end loiter in a list, from where the aircraft is.
+    /// The first end loiter or landing in a list, from where the aircraft is.
     fn farthest_of(&self, list: &[Item]) -> u64 {
         let first = self.chain.first();
-        let ends = |p: &u64| list.get(usize::from(entry(*p))).is_some_and(ring::is_end_loiter);
+        let ends = |p: &u64| list.get(usize::from(entry(*p))).is_some_and(ring::is_end);
         (first..first + RING - 1).find(ends).unwrap_or(first + AHEAD)
     }
 
@@ -293,7 +298,12 @@ impl Window {
     /// What is wanted at a position. `None`: nothing is known to circle about.
     fn wanted(&self, position: u64) -> Option<Item> {
         match self.chain.at(position) {
-            Some(waypoint) if position < self.end => Some(Item::of(waypoint)),
+            Some(waypoint) if position < self.end => {
+                let item = Item::of(waypoint);
+                // a landing that is left for something else does not end the list
+                let is_left = item.kind == ItemKind::Land && !self.ends_at(position);
+                Some(if is_left { ring::passing(item) } else { item })
+            }
             _ => {
                 let before = self.chain.before(position).or_else(|| self.aboard(position))?;
                 Some(before.end_loiter())
@@ -308,7 +318,29 @@ impl Window {
         if !enough || self.end < first {
             self.end = full.min(first + AHEAD);
         }
-        self.end = self.end.min(full);
+        self.end = self.landing().map_or(self.end.min(full), |landing| landing + 1);
+    }
+
+    /// It is to land at a position, and nothing comes behind that.
+    fn ends_at(&self, position: u64) -> bool {
+        let is_left = position == self.chain.first() && self.chain.jump().is_some();
+        !is_left && self.chain.at(position).is_some_and(|w| matches!(w.action, Action::Land { .. }))
+    }
+
+    /// The landing that is to be on board.
+    fn landing(&self) -> Option<u64> {
+        (self.chain.first()..self.end).find(|p| self.ends_at(*p))
+    }
+
+    /// Counts positions anew, so that what is left lies flat. What is on board has other numbers, and says nothing:
+    /// until the new list is in use, nothing that is reported counts.
+    fn renumber(&mut self) {
+        let length = self.end - self.chain.first();
+        self.chain.renumber(1);
+        self.end = 1 + length;
+        self.farthest = self.end;
+        self.lists.clear();
+        self.overrun = Some(1);
     }
 
     /// First position that is not on board as wanted, for certain.
@@ -318,7 +350,8 @@ impl Window {
             (Some(have), Some(want)) => matches(&have, &want),
             (_, want) => want.is_none(),
         };
-        (first..=self.end).find(|p| !self.chain.is_left_behind(*p) && !in_order(*p))
+        let last = self.landing().unwrap_or(self.end);
+        (first..=last).find(|p| !self.chain.is_left_behind(*p) && !in_order(*p))
     }
 
     fn install(&mut self) -> Option<Change> {
@@ -334,7 +367,11 @@ impl Window {
     fn upload(&mut self, jump: Option<u64>, new_from: u64) -> Option<Change> {
         let first = self.chain.first();
         let ends = (first, self.end);
-        let items = ring::list(ends, self.edition, self.chain.before(first), |p| self.wanted(p))?;
+        let (passed, wanted) = (self.chain.before(first), |p| self.wanted(p));
+        let items = match self.landing() {
+            Some(landing) => ring::list_that_lands((first, landing), passed, wanted)?,
+            None => ring::list(ends, self.edition, passed, wanted)?,
+        };
         let current = jump.map(entry);
         // of a list that nobody knows, nothing can be overrun
         let new_from = if self.lists.is_empty() { u64::MAX } else { new_from };

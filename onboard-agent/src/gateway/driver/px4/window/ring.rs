@@ -8,7 +8,7 @@ pub const RING: u64 = 40;
 /// Entry of the jump back to entry 1.
 const JUMP: usize = 1 + RING as usize;
 
-/// The entry of a position: the same in every list.
+/// The entry of a position: the same in every list that follows another without a renumbering.
 pub fn entry(position: u64) -> u16 {
     match position {
         0 => 0,
@@ -42,6 +42,32 @@ pub fn list(
     Some(items)
 }
 
+/// The whole list while `first` is steered to and `landing` is the last to be flown. It ends there: PX4 takes off again
+/// for what stands behind a landing, and hangs for ever on a jump back from there. See [`lies_flat`].
+pub fn list_that_lands(
+    (first, landing): (u64, u64),
+    passed: Option<Item>,
+    wanted: impl Fn(u64) -> Option<Item>,
+) -> Option<Vec<Item>> {
+    // what is never flown again; and what the landing comes from, if it is all that is left
+    let passed = match passed {
+        Some(item) => item,
+        None => wanted(first)?,
+    };
+    let before = (0..entry(first)).map(|_| Some(passing(passed)));
+    before.chain((first..=landing).map(wanted)).collect()
+}
+
+/// What is flown from `first` to `landing` needs no jump.
+pub fn lies_flat(first: u64, landing: u64) -> bool {
+    u64::from(entry(landing)) == u64::from(entry(first)) + (landing - first)
+}
+
+/// It only leads past its place.
+pub fn passing(item: Item) -> Item {
+    Item { kind: ItemKind::Fly { over: false }, ..item }
+}
+
 /// Entry 0 is never flown again, but PX4 wants to see what a landing in entry 1 comes from, and that no list begins with one.
 fn opening(item: Item) -> Item {
     if item.kind == ItemKind::Land { item.end_loiter() } else { item }
@@ -52,9 +78,22 @@ pub fn is_end_loiter(item: &Item) -> bool {
     matches!(item.kind, ItemKind::Loiter { radius_m } if radius_m == 0.0)
 }
 
-/// A list has the shape that [`list`] gives it.
+/// Nothing is flown behind it.
+pub fn is_end(item: &Item) -> bool {
+    is_end_loiter(item) || item.kind == ItemKind::Land
+}
+
+/// A list has the shape that [`list`] or [`list_that_lands`] gives it.
 pub fn is_ours(list: &[Item]) -> bool {
-    list.len() == JUMP + 1 && matches!(list.last(), Some(Item { kind: ItemKind::Jump { to: 1 }, .. }))
+    let Some((last, before)) = list.split_last() else { return false };
+    match last.kind {
+        ItemKind::Jump { to: 1 } => list.len() == JUMP + 1,
+        ItemKind::Land => {
+            let flown = |item: &Item| !matches!(item.kind, ItemKind::Jump { .. } | ItemKind::Land);
+            (1..JUMP).contains(&before.len()) && before.iter().all(flown)
+        }
+        _ => false,
+    }
 }
 
 /// Of the waypoints known before, those that are really on board from `first` on.

@@ -23,6 +23,7 @@ pub(super) static RULES: Rules = Rules {
     first_mode: Mode::Manual,
     needs_mission_for_mode: true,
     list_end: ListEnd::Return,
+    flies_on_after_landing: false,
     skips_take_off_in_air: false,
     holds_after_take_off: false,
     returns_to_land: false,

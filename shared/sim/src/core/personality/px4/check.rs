@@ -13,7 +13,7 @@ pub fn problem(a: &Autopilot, items: &[Item], is_vtol: bool) -> Option<&'static 
     if !is_vtol && items.iter().any(is_for_vtol) {
         return Some("it has items for a VTOL");
     }
-    required(a, items).or_else(|| take_off(a, items)).or_else(|| landing(a, items))
+    required(a, items).or_else(|| take_off(a, items)).or_else(|| landing(a, items)).or_else(|| loops(items))
 }
 
 fn is_for_vtol(item: &Item) -> bool {
@@ -59,6 +59,13 @@ fn landing(a: &Autopilot, items: &[Item]) -> Option<&'static str> {
         [before, land] if land.kind == Kind::Land && before.is_navigation() => approach(a, before, land),
         _ => None,
     })
+}
+
+/// The real one hangs for ever on it, when it reckons how long the way home is.
+fn loops(items: &[Item]) -> Option<&'static str> {
+    let land = items.iter().position(|i| i.kind == Kind::Land)?;
+    let back = |i: &Item| matches!(i.kind, Kind::Jump { to, .. } if usize::from(to) <= land);
+    items.iter().skip(land).any(back).then_some("a jump leads back from behind the landing")
 }
 
 fn approach(a: &Autopilot, before: &Item, land: &Item) -> Option<&'static str> {

@@ -39,6 +39,7 @@ const FIXED_WING: Rules = Rules {
     first_mode: Mode::Loiter,
     needs_mission_for_mode: false,
     list_end: ListEnd::Hold,
+    flies_on_after_landing: true,
     skips_take_off_in_air: true,
     holds_after_take_off: true,
     returns_to_land: true,

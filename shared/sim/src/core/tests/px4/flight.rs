@@ -208,3 +208,31 @@ fn items_for_a_vtol_make_the_list_of_a_plane_unfit() {
     ground.enter(MISSION);
     assert_eq!(ground.arm(), MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
 }
+
+#[test]
+fn what_stands_behind_a_landing_is_flown_after_the_touch_down() {
+    let mut ground = Ground::px4();
+    let home = ground.home();
+    let mut items = circuit(home);
+    items.push(waypoint(home.destination(52.0, 2500.0)));
+    ground.px4_upload(&items);
+    ground.settle();
+    ground.enter(MISSION);
+    ground.arm();
+    assert!(ground.fly_until(900.0, |sim| sim.autopilot.run.current == 7));
+    ground.fly_until(60.0, |_| false);
+    assert!(ground.sim.autopilot.is_armed());
+}
+
+#[test]
+fn a_jump_back_from_behind_a_landing_makes_the_list_unfit() {
+    let mut ground = Ground::px4();
+    let mut items = circuit(ground.home());
+    let jump = wire(MavCmd::MAV_CMD_DO_JUMP, LatLon::new(0.0, 0.0), 0.0);
+    let frame = MavFrame::MAV_FRAME_MISSION;
+    items.push(MISSION_ITEM_INT_DATA { param1: 1.0, param2: 65_535.0, frame, ..jump });
+    ground.px4_upload(&items);
+    ground.settle();
+    ground.enter(MISSION);
+    assert_eq!(ground.arm(), MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+}

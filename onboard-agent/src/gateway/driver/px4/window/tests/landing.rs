@@ -1,0 +1,110 @@
+//! Lists that end with a landing.
+
+use super::*;
+
+/// A take-off, waypoints and a landing.
+fn whole_flight(before: u64) -> Vec<Fed> {
+    let take_off = waypoint(1, Action::TakeOff { heading_deg: 0.0 });
+    let mut plan = vec![Fed { serial: Serial(1), waypoint: take_off }];
+    plan.extend(waypoints(2, before));
+    let land = waypoint(before + 2, Action::Land { heading_deg: 0.0 });
+    plan.push(Fed { serial: Serial(before + 2), waypoint: land });
+    plan
+}
+
+fn launched(plan: Vec<Fed>) -> Rig {
+    let mut rig = Rig { window: Window::default(), autopilot: Autopilot::default(), flying: false };
+    rig.window.feed(ALL, plan);
+    rig.settle();
+    rig.flying = true;
+    rig
+}
+
+#[test]
+fn a_list_with_a_landing_ends_there_wherever_it_lies_in_the_ring_and_nothing_is_missed() {
+    for before in 1..130 {
+        let mut rig = launched(whole_flight(before));
+        for _ in 0..before + 9 {
+            rig.reach();
+            rig.settle();
+        }
+        let list = &rig.autopilot.list;
+        assert_eq!(list.last().map(|item| item.kind), Some(ItemKind::Land), "{before}");
+        assert!(list.iter().all(|item| !matches!(item.kind, ItemKind::Jump { .. })), "{before}");
+        assert_eq!(rig.steered(), (2..before + 2).collect::<Vec<_>>());
+        assert_eq!(rig.window.target(), Target::Waypoint(Serial(before + 2)));
+        assert!(ring::is_ours(list) && rig.window.ready(), "{before}");
+    }
+}
+
+#[test]
+fn a_landing_behind_the_jump_is_laid_out_flat_whatever_is_lost_on_the_way() {
+    for fate in [Fate::Lost, Fate::Unanswered] {
+        let mut rig = launched(whole_flight(50));
+        let mut change = None;
+        while change.is_none() {
+            rig.reach();
+            change = rig.begin().and_then(|change| match &change {
+                Change::Upload { items, .. } if items.len() < 42 => Some(change),
+                _ => {
+                    rig.end(&change, Fate::Done);
+                    None
+                }
+            });
+        }
+        let change = change.unwrap();
+        assert!(matches!(change, Change::Upload { current: Some(1), .. }), "{change:?}");
+        rig.end(&change, fate);
+        for _ in 0..60 {
+            rig.report();
+            rig.settle();
+            rig.reach();
+        }
+        let mut steered = rig.steered();
+        steered.dedup();
+        assert_eq!(steered, (2..52).collect::<Vec<_>>());
+        assert_eq!(rig.window.target(), Target::Waypoint(Serial(52)));
+    }
+}
+
+#[test]
+fn a_landing_that_is_left_for_other_waypoints_ends_no_list() {
+    let mut rig = launched(whole_flight(5));
+    (0..6).for_each(|_| rig.reach());
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(7)), "on the approach");
+    rig.window.feed(Serial(0), waypoints(100, 5));
+    rig.settle();
+    (0..9).for_each(|_| rig.reach());
+    assert_eq!(rig.steered()[5..], [100, 101, 102, 103, 104]);
+    assert_eq!(rig.window.target(), Target::End);
+}
+
+#[test]
+fn waypoints_behind_a_landing_wait_for_it() {
+    let mut plan = whole_flight(5);
+    plan.extend(waypoints(8, 3));
+    let mut rig = launched(plan);
+    (0..9).for_each(|_| rig.reach());
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(7)));
+    assert!(rig.window.ready());
+}
+
+#[test]
+fn px4_sees_a_take_off_first_and_what_each_landing_comes_from() {
+    for before in 1..90 {
+        let mut rig = launched(whole_flight(before));
+        let land = before + 2;
+        assert_eq!(rig.autopilot.list[0].kind, ItemKind::TakeOff);
+        for _ in 0..before + 1 {
+            rig.reach();
+            rig.settle();
+            let list = &rig.autopilot.list;
+            assert!(list.iter().skip(1).all(|item| item.kind != ItemKind::TakeOff));
+            if let Some(at) = list.iter().position(|item| item.kind == ItemKind::Land) {
+                let wanted = Item::of(&waypoint(land - 1, Action::Fly));
+                assert!(at > 0 && matches(&list[at - 1], &wanted), "{before}: {:?}", list[at.max(1) - 1]);
+            }
+        }
+        assert_eq!(rig.autopilot.target.unwrap().kind, ItemKind::Land, "{before}");
+    }
+}
