@@ -133,6 +133,7 @@ impl Station {
 fn log(report: &Report) {
     match report {
         Report::Failed(id, why) => tracing::warn!(?id, why, "order failed"),
+        Report::PutOff(id, why) => tracing::warn!(?id, why, "order put off"),
         Report::Rebooted => tracing::warn!("the autopilot started anew"),
         Report::Capability(Ok(kind)) => tracing::info!(kind, "autopilot"),
         Report::Capability(Err(why)) => tracing::error!(why, "autopilot"),

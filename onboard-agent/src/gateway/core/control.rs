@@ -10,6 +10,8 @@ use usal::contract::{Action, GatewayState};
 
 /// An order that failed is given again after this.
 const RETRY: Duration = Duration::from_millis(1000);
+/// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
+const ARMS_WITHIN: Duration = Duration::from_secs(20);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
 /// Airspeeds closer than this are the same, m/s.
@@ -51,6 +53,8 @@ pub struct Control {
     /// Since when the wanted mode is confirmed.
     confirmed_at: Option<Time>,
     arm: Option<OrderId>,
+    /// Since when it is to be armed, and puts it off.
+    put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
     adopt: Option<OrderId>,
 }
@@ -75,6 +79,7 @@ impl Default for Control {
             ordered: None,
             confirmed_at: None,
             arm: None,
+            put_off_since: None,
             speed: None,
             adopt: None,
         }
@@ -100,6 +105,7 @@ impl Control {
         self.confirmed = false;
         self.confirmed_at = None;
         self.disobeys_since = None;
+        self.put_off_since = None;
         self.retry_at = None;
     }
 
@@ -128,6 +134,11 @@ impl Control {
         self.retry_at = Some(now + RETRY);
         self.forget(id);
         arming
+    }
+
+    /// It does not arm yet; true: it has had its time to.
+    pub fn is_put_off_for_good(&mut self, now: Time) -> bool {
+        now.saturating_sub(*self.put_off_since.get_or_insert(now)) >= ARMS_WITHIN
     }
 
     /// An order is no longer in flight.

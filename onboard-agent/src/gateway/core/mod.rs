@@ -151,6 +151,7 @@ impl Gateway {
         match report {
             Report::Course(course) => self.set_course(course),
             Report::Done(id) => self.control.done(id),
+            Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
@@ -162,6 +163,15 @@ impl Gateway {
         let ends = self.buffer.last().is_some_and(|w| w.end_of_plan);
         self.buffer.set_course(course);
         self.ended |= ends && self.buffer.at_end();
+    }
+
+    /// It is ordered again for a while, as long as nobody wants something else.
+    fn put_off(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
+        if self.control.is_put_off_for_good(now) {
+            return self.failed(now, id, why, out);
+        }
+        self.control.failed(now, id);
+        self.cause = format!("the autopilot does not arm yet, it is asked again: {why}");
     }
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {

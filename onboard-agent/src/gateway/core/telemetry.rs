@@ -51,6 +51,7 @@ fn is_voice(report: &Report) -> bool {
         report,
         Report::Done(_)
             | Report::Failed(..)
+            | Report::PutOff(..)
             | Report::Adopted(..)
             | Report::Course(_)
             | Report::Rebooted

@@ -10,9 +10,10 @@ mod tests;
 mod window;
 
 use super::mavlink::commands::Command;
-use super::mavlink::dialect::Dialect;
+use super::mavlink::dialect::{Dialect, Manner};
 use super::mavlink::mission::Rules;
-use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType};
+use mavlink::MessageData;
+use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType, WIND_DATA};
 
 /// ArduPlane, a fixed wing.
 pub const DIALECT: Dialect = Dialect {
@@ -31,6 +32,7 @@ pub const DIALECT: Dialect = Dialect {
     arm: &[Command::Arm],
     forgets_speed: false,
     need: None,
+    manner: Manner { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID },
 };
 
 const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false };

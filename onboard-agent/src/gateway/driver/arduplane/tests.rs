@@ -118,9 +118,8 @@ impl Rig {
     fn ended(&mut self) -> Option<Ended> {
         self.events.drain(..).find_map(|event| match event {
             SessionEvent::Mission(Outcome::Verified) | SessionEvent::Command(_, Ok(())) => Some(Ended::Done),
-            SessionEvent::Mission(Outcome::Failed(why)) | SessionEvent::Command(_, Err(why)) => {
-                Some(Ended::Failed(why))
-            }
+            SessionEvent::Mission(Outcome::Failed(why)) => Some(Ended::Failed(why)),
+            SessionEvent::Command(_, Err(refusal)) => Some(Ended::Failed(refusal.why)),
             SessionEvent::Mission(Outcome::List(list)) => {
                 Some(Ended::List(list.iter().map(items::decode).collect()))
             }

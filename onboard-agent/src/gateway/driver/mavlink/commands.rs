@@ -92,14 +92,29 @@ pub struct Commands {
     rto: Rto,
 }
 
+/// Why a command was not carried out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refusal {
+    /// In words.
+    pub why: String,
+    /// The autopilot says that it may be carried out later.
+    pub for_now: bool,
+}
+
+impl From<String> for Refusal {
+    fn from(why: String) -> Self {
+        Self { why, for_now: false }
+    }
+}
+
 /// How a command ended.
-pub type Ended = (Client, Result<(), String>);
+pub type Ended = (Client, Result<(), Refusal>);
 
 impl Commands {
     /// Takes a command.
     pub fn give(&mut self, client: Client, command: Command) -> Option<Ended> {
         if self.queue.len() >= LONGEST_QUEUE {
-            return Some((client, Err("too many commands are waiting".into())));
+            return Some((client, Err(Refusal::from("too many commands are waiting".to_string()))));
         }
         match command {
             // what is urgent does not wait behind what is not
@@ -141,13 +156,13 @@ impl Commands {
                     "the autopilot accepted {:?} and has not shown since whether it did it",
                     given.command
                 );
-                self.end(Err(why))
+                self.end(Err(why.into()))
             }
             Some(_) => None,
             None if !self.rto.expired(now) => None,
             None if given.tries >= TRIES => {
                 let why = format!("the autopilot did not answer {:?}", given.command);
-                self.end(Err(why))
+                self.end(Err(why.into()))
             }
             None => {
                 given.tries += 1;
@@ -158,7 +173,7 @@ impl Commands {
         }
     }
 
-    fn end(&mut self, result: Result<(), String>) -> Option<Ended> {
+    fn end(&mut self, result: Result<(), Refusal>) -> Option<Ended> {
         self.flight.take().map(|g| (g.client, result))
     }
 
@@ -187,7 +202,8 @@ impl Commands {
             }
             refused => {
                 let why = format!("the autopilot refused {:?}: {refused:?}", given.command);
-                self.end(Err(why))
+                let for_now = refused == MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
+                self.end(Err(Refusal { why, for_now }))
             }
         }
     }
@@ -206,7 +222,7 @@ impl Commands {
             return self.end(Ok(()));
         }
         let why = format!("the autopilot accepted {:?} and did not do it", given.command);
-        if now >= at + EFFECT { self.end(Err(why)) } else { None }
+        if now >= at + EFFECT { self.end(Err(why.into())) } else { None }
     }
 }
 

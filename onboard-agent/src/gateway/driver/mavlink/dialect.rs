@@ -8,7 +8,8 @@ use super::list::Feeding;
 use super::mission::{Entry, Rules};
 use super::parameters::Need;
 use crate::gateway::order::{Aim, Mode};
-use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
+use mavlink::MessageData;
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavType, WIND_DATA};
 use std::borrow::Cow;
 
 /// A kind of autopilot.
@@ -38,4 +39,22 @@ pub struct Dialect {
     pub forgets_speed: bool,
     /// The parameter that decides whether it can be flown.
     pub need: Option<&'static Need>,
+    /// How it is spoken to.
+    pub manner: Manner,
+}
+
+/// How an autopilot is spoken to.
+#[derive(Debug, Clone, Copy)]
+pub struct Manner {
+    /// What we say that we are: some tell their reasons to a ground station only.
+    pub we_are: MavType,
+    /// The message that says the wind.
+    pub wind: u32,
+}
+
+impl Default for Manner {
+    /// As long as it is not known what it is.
+    fn default() -> Self {
+        Self { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID }
+    }
 }

@@ -3,9 +3,11 @@
 //! What an autopilot does in its own way is its [`Dialect`], which the first heartbeat chooses: nobody has to say which
 //! autopilot it is. One without a dialect is refused in plain words, and so is one that turns into another.
 
-use super::super::{DIALECTS, Driver, FromLink, Registration};
+mod capability;
+
+use super::super::{Driver, FromLink, Registration};
 use super::Peer;
-use super::commands::{Client, Command};
+use super::commands::{Client, Command, Refusal};
 use super::dialect::Dialect;
 use super::list::{Change, List, Step};
 use super::mission::Outcome;
@@ -57,6 +59,8 @@ pub struct MavlinkDriver {
     seen: Option<Seen>,
     /// Orders in flight that take several commands.
     steps: Vec<Steps>,
+    /// The order to arm, while it is in flight.
+    arming: Option<OrderId>,
     /// What it is being made to do.
     steering: Option<(OrderId, Aim)>,
     /// It was sent to a place, and has not been sent elsewhere since.
@@ -106,7 +110,10 @@ impl MavlinkDriver {
 
     fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
         match self.dialect() {
-            Some(dialect) => self.give(now, id, dialect.arm.to_vec(), events),
+            Some(dialect) => {
+                self.arming = Some(id);
+                self.give(now, id, dialect.arm.to_vec(), events);
+            }
             None => self.refuse(id),
         }
     }
@@ -156,7 +163,9 @@ impl MavlinkDriver {
             }
             SessionEvent::Mission(outcome) => self.list_ended(now, outcome),
             SessionEvent::Command(Client::List, Ok(())) => self.list.done(),
-            SessionEvent::Command(Client::List, Err(why)) => self.list_ended(now, Outcome::Failed(why)),
+            SessionEvent::Command(Client::List, Err(refusal)) => {
+                self.list_ended(now, Outcome::Failed(refusal.why));
+            }
             SessionEvent::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
             SessionEvent::Command(Client::Nobody, _) | SessionEvent::Telemetry(_) => {}
         }
@@ -178,60 +187,6 @@ impl MavlinkDriver {
         let changed = before.is_some_and(|before| before.mode != beat.custom_mode);
         if changed && dialect.forgets_speed {
             self.say_speed_again(now, dialect, events);
-        }
-    }
-
-    /// At each heartbeat, as long as it is not as it has to be.
-    fn check_parameter(&mut self, now: Time) {
-        let need = self.dialect().and_then(|dialect| dialect.need);
-        if let (Some(need), Some(peer)) = (need, self.session.peer()) {
-            self.needed.tick(now, need, peer, &mut self.session.out);
-            self.judge();
-        }
-    }
-
-    /// The first heartbeat says what it is; it stays that.
-    fn recognise(&mut self, beat: &HEARTBEAT_DATA) {
-        let kind = (beat.autopilot, beat.mavtype);
-        match self.known {
-            None => {
-                let dialect = DIALECTS.iter().copied().find(|dialect| (dialect.is)(beat));
-                if let Some(dialect) = dialect {
-                    self.list.keep(dialect.feeding);
-                }
-                self.list.supported = dialect.is_some();
-                self.known = Some(Known { kind, dialect });
-                self.judge();
-            }
-            Some(known) if known.kind != kind && known.dialect.is_some() => {
-                self.list.supported = false;
-                self.known = Some(Known { kind, dialect: None });
-                let (was, is) = (people(known.kind), people(kind));
-                self.tell(Err(format!("It was {was} and says now that it is {is}: start the agent anew.")));
-            }
-            Some(_) => {}
-        }
-    }
-
-    /// Says whether it can be flown, once that is known and when it changes.
-    fn judge(&mut self) {
-        let Some(Known { kind, dialect }) = self.known else { return };
-        let Some(dialect) = dialect else {
-            // one that turned into another was refused by name
-            return if self.told.is_none() {
-                self.tell(Err(unsupported(kind)))
-            };
-        };
-        let verdict = dialect.need.map_or(Some(Ok(())), |need| self.needed.verdict(need));
-        if let Some(verdict) = verdict {
-            self.tell(verdict.map(|()| dialect.name));
-        }
-    }
-
-    fn tell(&mut self, capability: Result<&'static str, String>) {
-        if self.told.as_ref() != Some(&capability) {
-            self.told = Some(capability.clone());
-            self.reports.push_back(Report::Capability(capability));
         }
     }
 
@@ -287,7 +242,7 @@ impl MavlinkDriver {
         &mut self,
         now: Time,
         id: OrderId,
-        result: Result<(), String>,
+        result: Result<(), Refusal>,
         more: &mut Vec<SessionEvent>,
     ) {
         if result.is_ok()
@@ -299,10 +254,21 @@ impl MavlinkDriver {
         if let Some((_, aim)) = self.steering.take_if(|(of, _)| *of == id) {
             self.steered(aim, result.is_ok());
         }
+        let arming = self.arming.take_if(|of| *of == id).is_some();
         self.reports.push_back(match result {
             Ok(()) => Report::Done(id),
-            Err(why) => Report::Failed(id, why),
+            Err(refusal) if arming => self.not_armed(now, id, refusal),
+            Err(refusal) => Report::Failed(id, refusal.why),
         });
+    }
+
+    /// It gives its reasons in words of its own.
+    fn not_armed(&self, now: Time, id: OrderId, Refusal { why, for_now }: Refusal) -> Report {
+        let why = match self.session.words.lately(now) {
+            Some(words) => format!("{why} (it says: {words})"),
+            None => why,
+        };
+        if for_now { Report::PutOff(id, why) } else { Report::Failed(id, why) }
     }
 
     fn next_step(&mut self, id: OrderId) -> Option<Command> {
@@ -423,16 +389,4 @@ impl Driver for MavlinkDriver {
     fn hello(&mut self) {
         self.session.hello();
     }
-}
-
-fn people((autopilot, kind): (MavAutopilot, MavType)) -> String {
-    let plain = |name: String| {
-        name.replace("MAV_AUTOPILOT_", "").replace("MAV_TYPE_", "").replace('_', " ").to_lowercase()
-    };
-    format!("{} on {}", plain(format!("{autopilot:?}")), plain(format!("{kind:?}")))
-}
-
-fn unsupported(kind: (MavAutopilot, MavType)) -> String {
-    let known = DIALECTS.iter().map(|dialect| dialect.name).collect::<Vec<_>>().join(", ");
-    format!("{} is not supported. Connect one of: {known}.", people(kind))
 }

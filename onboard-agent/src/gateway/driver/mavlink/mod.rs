@@ -1,6 +1,6 @@
 //! The driver of MAVLink autopilots and what their dialects share: the conversation (`session`), the waypoints (`chain`)
 //! and the list that they go to (`list`, `item`), what is done to it (`mission`, by `transfer` and `partial_write`),
-//! commands, parameters, streams, telemetry and timeouts. It knows no autopilot's habits: those are a `dialect`.
+//! commands, parameters, streams, telemetry, words and timeouts. It knows no autopilot's habits: those are a `dialect`.
 
 pub mod chain;
 pub mod commands;
@@ -16,6 +16,7 @@ pub mod session;
 mod streams;
 mod telemetry;
 mod transfer;
+mod words;
 
 use mavlink::dialects::ardupilotmega::MavMissionType;
 

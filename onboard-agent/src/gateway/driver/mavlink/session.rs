@@ -4,10 +4,12 @@
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
 
 use super::Peer;
-use super::commands::{Client, Command, Commands, Shown};
+use super::commands::{Client, Command, Commands, Refusal, Shown};
+use super::dialect::Manner;
 use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
+use super::words::Words;
 use crate::gateway::driver::FromLink;
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
@@ -32,7 +34,7 @@ pub enum SessionEvent {
     /// It steers to this entry of its list.
     Current(u16),
     /// A command ended.
-    Command(Client, Result<(), String>),
+    Command(Client, Result<(), Refusal>),
     /// What was done to its list ended.
     Mission(Outcome),
     /// A parameter.
@@ -55,6 +57,10 @@ pub struct Session {
     commands: Commands,
     streams: Streams,
     readings: Readings,
+    /// How it is spoken to.
+    pub manner: Manner,
+    /// What it said.
+    pub words: Words,
     beat_at: Time,
     stepped: Option<i64>,
     sequence: u8,
@@ -132,7 +138,7 @@ impl Session {
 
     /// Says that we are here, out of turn.
     pub fn hello(&mut self) {
-        self.out.push(heartbeat());
+        self.out.push(heartbeat(self.manner.we_are));
     }
 
     /// When `tick` is due.
@@ -145,11 +151,11 @@ impl Session {
     pub fn tick(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
         if now >= self.beat_at {
             self.beat_at = now + HEARTBEAT;
-            self.out.push(heartbeat());
+            self.out.push(heartbeat(self.manner.we_are));
             self.log_garbage(now);
         }
         let Some(peer) = self.peer else { return };
-        self.streams.tick(now, peer, &mut self.out);
+        self.streams.tick(now, peer, self.manner.wind, &mut self.out);
         let ended = self.commands.tick(now, peer, &mut self.out);
         events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
         events.extend(self.mission.tick(now, peer, &mut self.out).map(SessionEvent::Mission));
@@ -197,6 +203,7 @@ impl Session {
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
                 self.current(now, current.seq, events);
             }
+            MavMessage::STATUSTEXT(text) => self.words.hear(now, text),
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
             _ => match self.mission.on_message(now, message, peer, &mut self.out) {
                 Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
@@ -273,10 +280,10 @@ fn is_autopilot(beat: &HEARTBEAT_DATA) -> bool {
     beat.autopilot != MavAutopilot::MAV_AUTOPILOT_INVALID
 }
 
-fn heartbeat() -> MavMessage {
+fn heartbeat(we_are: MavType) -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         custom_mode: 0,
-        mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
+        mavtype: we_are,
         autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
         base_mode: MavModeFlag::empty(),
         system_status: MavState::MAV_STATE_ACTIVE,

@@ -31,6 +31,9 @@ const WANTED: [(u32, u32); 15] = [
     (HOME_POSITION_DATA::ID, 0),
 ];
 
+/// Of these each autopilot has one.
+const WINDS: [u32; 2] = [WIND_DATA::ID, WIND_COV_DATA::ID];
+
 /// What came of each.
 #[derive(Debug, Clone, Default)]
 pub struct Streams {
@@ -75,10 +78,11 @@ impl Streams {
         }
     }
 
-    /// Asks for what is missing.
-    pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
+    /// Asks for what is missing; of the messages that say the wind, for this one.
+    pub fn tick(&mut self, now: Time, peer: Peer, wind: u32, out: &mut Vec<MavMessage>) {
         for ((id, interval_ms), stream) in WANTED.iter().zip(&mut self.streams) {
-            let wanted = *interval_ms > 0 || !self.got_home;
+            let other_wind = WINDS.contains(id) && *id != wind;
+            let wanted = !other_wind && (*interval_ms > 0 || !self.got_home);
             if wanted && stream.is_due(now, *interval_ms) {
                 out.push(ask(*id, *interval_ms, peer));
             }

@@ -10,12 +10,13 @@ mod tests;
 mod window;
 
 use super::mavlink::Peer;
-use super::mavlink::dialect::Dialect;
+use super::mavlink::dialect::{Dialect, Manner};
 use super::mavlink::item::{self, Item};
 use super::mavlink::mission::{Entry, Rules};
 use super::mavlink::parameters::Need;
 use items::TakeOff;
-use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+use mavlink::MessageData;
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, WIND_COV_DATA};
 
 /// PX4 on a fixed wing.
 pub const FIXED_WING: Dialect = Dialect {
@@ -31,6 +32,8 @@ pub const FIXED_WING: Dialect = Dialect {
     arm: &modes::ARM,
     forgets_speed: true,
     need: Some(&NO_LANDING_NEEDED),
+    // it tells its reasons only where it hears a ground station
+    manner: Manner { we_are: MavType::MAV_TYPE_GCS, wind: WIND_COV_DATA::ID },
 };
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.

@@ -6,7 +6,9 @@ fn flight(personality: Personality, seed: u64, faults: &[&str]) -> Flight {
     let mut flight = Flight::of(personality, seed, faults);
     assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
     // it is asked for its parameter first
-    flight.run(5.0);
+    while !flight.ask(GatewayRequest::Launch).unwrap_err().contains("nothing to fly") {
+        flight.step();
+    }
     flight
 }
 
@@ -94,4 +96,34 @@ fn a_parameter_that_forbids_long_flights_is_named_before_the_launch() {
     flight.run(5.0);
     let why = flight.ask(GatewayRequest::Launch).unwrap_err();
     assert!(why.contains("MIS_TKO_LAND_REQ is 2"), "{why}");
+}
+
+/// On the ground with a plan, and launched as soon as that is allowed.
+fn launched_early() -> Flight {
+    let mut flight = flight(Personality::Px4, 1, &[]);
+    assert!(flight.join("plan").accepted);
+    flight.feed(None, std::iter::once(take_off()).chain(zigzag(0, 20, 300.0)).collect());
+    while flight.ask(GatewayRequest::Launch).is_err() {
+        flight.step();
+    }
+    flight
+}
+
+#[test]
+fn one_that_still_starts_up_is_asked_again_until_it_arms() {
+    let mut flight = launched_early();
+    assert!(flight.now.as_secs_f64() < 4.0, "{:?}", flight.now);
+    flight.run_until(10.0, "take-off", |f| f.state() == GatewayState::TakeOff);
+}
+
+#[test]
+fn one_that_never_arms_is_refused_in_the_end() {
+    let mut flight = launched_early();
+    assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 2.0));
+    flight.feed(None, std::iter::once(take_off()).chain(zigzag(0, 10, 300.0)).collect());
+    flight.run(15.0);
+    assert!(flight.report().contains("asked again"), "{}", flight.report());
+    flight.run(15.0);
+    assert!(flight.report().contains("launch refused by the autopilot"), "{}", flight.report());
+    assert_eq!(flight.state(), GatewayState::Stop);
 }

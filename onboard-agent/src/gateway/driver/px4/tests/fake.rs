@@ -34,6 +34,8 @@ pub struct Px4 {
     pub armed: bool,
     /// Firmware that has no names for lists.
     pub nameless: bool,
+    /// It heard a ground station: it gives reasons.
+    pub hears_station: bool,
     /// Why it won't be armed.
     pub refuses_arming: Option<&'static str>,
     /// So many changes of mode are refused.
@@ -109,6 +111,9 @@ impl Px4 {
     }
 
     pub fn say(&mut self, words: &str) {
+        if !self.hears_station {
+            return;
+        }
         let text = STATUSTEXT_DATA {
             severity: MavSeverity::MAV_SEVERITY_CRITICAL,
             text: words.into(),
@@ -134,6 +139,7 @@ impl Px4 {
 
     pub fn receive(&mut self, message: &MavMessage) {
         match message {
+            MavMessage::HEARTBEAT(beat) => self.hears_station |= beat.mavtype == MavType::MAV_TYPE_GCS,
             MavMessage::PARAM_REQUEST_READ(r) if r.param_id.to_str() == Ok("MIS_TKO_LAND_REQ") => {
                 let value = PARAM_VALUE_DATA {
                     param_value: f32::from_bits(self.required as u32),

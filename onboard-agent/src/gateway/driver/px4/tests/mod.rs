@@ -132,7 +132,7 @@ impl Rig {
     fn outcome(&self, id: OrderId) -> Option<Result<(), String>> {
         self.reports.iter().find_map(|report| match report {
             Report::Done(of) if *of == id => Some(Ok(())),
-            Report::Failed(of, why) if *of == id => Some(Err(why.clone())),
+            Report::Failed(of, why) | Report::PutOff(of, why) if *of == id => Some(Err(why.clone())),
             _ => None,
         })
     }
@@ -267,6 +267,20 @@ fn the_same_plan_again_begins_at_its_beginning() {
     rig.feed(0, waypoints(1, 12));
     rig.until("ready", Rig::ready);
     assert_eq!(rig.px4.seq, Some(0));
+}
+
+#[test]
+fn why_it_does_not_arm_it_says_in_its_own_words_and_may_be_asked_again() {
+    let mut rig = Rig::loaded();
+    rig.px4.refuses_arming = Some("Arming denied: no valid local position");
+    // its words come after its answer: they are told with the next one
+    let _ = rig.carry_out(Order::Arm);
+    rig.reports.clear();
+    let why = rig.carry_out(Order::Arm).unwrap_err();
+    assert!(why.contains("it says: Arming denied: no valid local position"), "{why}");
+    assert!(matches!(rig.reports.last(), Some(Report::PutOff(..))), "{:?}", rig.reports);
+    rig.px4.refuses_arming = None;
+    assert_eq!(rig.carry_out(Order::Arm), Ok(()));
 }
 
 #[test]

@@ -1,0 +1,75 @@
+//! What the autopilot is, and whether it can be flown.
+
+use super::super::super::DIALECTS;
+use super::{Known, MavlinkDriver};
+use crate::gateway::order::{Report, Time};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+
+impl MavlinkDriver {
+    /// At each heartbeat, as long as it is not as it has to be.
+    pub(super) fn check_parameter(&mut self, now: Time) {
+        let need = self.dialect().and_then(|dialect| dialect.need);
+        if let (Some(need), Some(peer)) = (need, self.session.peer()) {
+            self.needed.tick(now, need, peer, &mut self.session.out);
+            self.judge();
+        }
+    }
+
+    /// The first heartbeat says what it is; it stays that.
+    pub(super) fn recognise(&mut self, beat: &HEARTBEAT_DATA) {
+        let kind = (beat.autopilot, beat.mavtype);
+        match self.known {
+            None => {
+                let dialect = DIALECTS.iter().copied().find(|dialect| (dialect.is)(beat));
+                if let Some(dialect) = dialect {
+                    self.list.keep(dialect.feeding);
+                    self.session.manner = dialect.manner;
+                }
+                self.list.supported = dialect.is_some();
+                self.known = Some(Known { kind, dialect });
+                self.judge();
+            }
+            Some(known) if known.kind != kind && known.dialect.is_some() => {
+                self.list.supported = false;
+                self.known = Some(Known { kind, dialect: None });
+                let (was, is) = (people(known.kind), people(kind));
+                self.tell(Err(format!("It was {was} and says now that it is {is}: start the agent anew.")));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Says whether it can be flown, once that is known and when it changes.
+    pub(super) fn judge(&mut self) {
+        let Some(Known { kind, dialect }) = self.known else { return };
+        let Some(dialect) = dialect else {
+            // one that turned into another was refused by name
+            return if self.told.is_none() {
+                self.tell(Err(unsupported(kind)))
+            };
+        };
+        let verdict = dialect.need.map_or(Some(Ok(())), |need| self.needed.verdict(need));
+        if let Some(verdict) = verdict {
+            self.tell(verdict.map(|()| dialect.name));
+        }
+    }
+
+    fn tell(&mut self, capability: Result<&'static str, String>) {
+        if self.told.as_ref() != Some(&capability) {
+            self.told = Some(capability.clone());
+            self.reports.push_back(Report::Capability(capability));
+        }
+    }
+}
+
+fn people((autopilot, kind): (MavAutopilot, MavType)) -> String {
+    let plain = |name: String| {
+        name.replace("MAV_AUTOPILOT_", "").replace("MAV_TYPE_", "").replace('_', " ").to_lowercase()
+    };
+    format!("{} on {}", plain(format!("{autopilot:?}")), plain(format!("{kind:?}")))
+}
+
+fn unsupported(kind: (MavAutopilot, MavType)) -> String {
+    let known = DIALECTS.iter().map(|dialect| dialect.name).collect::<Vec<_>>().join(", ");
+    format!("{} is not supported. Connect one of: {known}.", people(kind))
+}
