@@ -328,7 +328,7 @@ impl<'a> Scene<'a> {
     /// What an error forbids to fly: legs and stages, and the zones that they come into conflict with.
     pub fn faulty(&self) -> HashSet<&'a Id> {
         let errors = self.problems().filter(|problem| problem.is_error());
-        errors.flat_map(|problem| problem.subject.iter().chain(&problem.zone)).collect()
+        errors.flat_map(|problem| problem.subject.iter().chain(problem.zone.as_deref())).collect()
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {

@@ -86,7 +86,7 @@ pub struct Problem {
     /// Whose problem: a leg, stage, fix, runway, variable or emergency plan.
     pub subject: Option<Id>,
     /// A zone that the subject comes into conflict with.
-    pub zone: Option<Id>,
+    pub zone: Option<Box<Id>>,
     /// Where in the document, if the plan was read from one.
     pub location: Option<Location>,
     /// For people; says what to do.
@@ -121,7 +121,7 @@ impl Problem {
 
     /// The same problem, with this zone.
     pub fn with_zone(self, zone: &Id) -> Self {
-        Self { zone: Some(zone.clone()), ..self }
+        Self { zone: Some(Box::new(zone.clone())), ..self }
     }
 
     /// The same problem, at this place of the document.
