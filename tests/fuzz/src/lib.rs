@@ -24,7 +24,7 @@ pub use recording::recording;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// Every target.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     ("xml", xml),
     ("cel", cel),
     ("plan", plan),
