@@ -11,7 +11,7 @@ fn fragment(name: &str) -> (Arc<Program>, Preview) {
     let loaded = Source { file, ..Source::default() }.load().unwrap();
     let (program, profile) = loaded.compile().unwrap();
     let calm = Air::default();
-    let preview = forecast::fly(&program, &profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
+    let preview = forecast::fly(&program, profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
     (program, preview)
 }
 
