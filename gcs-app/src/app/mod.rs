@@ -362,14 +362,19 @@ impl App {
         Some(ticket)
     }
 
-    /// A window with unsaved changes stays open until the operator has decided.
+    /// A window with unsaved changes, or that watches a flight, stays open until the operator has decided.
     fn ask_before_closing(&mut self, ctx: &egui::Context) {
         if self.leaving {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if ctx.input(|i| i.viewport().close_requested()) && self.has_unsaved() {
+        } else if ctx.input(|i| i.viewport().close_requested()) && self.may_not_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.view.unsaved = Some(Replacement::Quit);
         }
+    }
+
+    /// Something would be lost with the window: changes, or the sight of a flight.
+    fn may_not_close(&self) -> bool {
+        self.has_unsaved() || self.vehicles.flying().next().is_some()
     }
 
     /// Some document has changes that are in no file, shown or not.

@@ -94,7 +94,7 @@ impl App {
 
     pub(super) fn ask_or_replace(&mut self, with: Replacement) {
         let would_be_lost = match with {
-            Replacement::Quit => self.has_unsaved(),
+            Replacement::Quit => self.may_not_close(),
             _ => self.document.is_dirty(),
         };
         if would_be_lost {
@@ -105,7 +105,11 @@ impl App {
     }
 
     fn replace(&mut self, with: Replacement) {
-        (self.view.unsaved, self.view.browsing) = (None, None);
+        self.view.unsaved = None;
+        // a file that turns out to be none leaves the dialog as it was
+        if !matches!(with, Replacement::Open(_)) {
+            self.view.browsing = None;
+        }
         match with {
             Replacement::New => {
                 self.shelf.open(&mut self.document, Document::default());

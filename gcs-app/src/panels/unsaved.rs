@@ -1,4 +1,5 @@
-//! The question before plans with unsaved changes give way to something else, or are closed with the window.
+//! The question before plans with unsaved changes give way to something else, or are closed with the window; and before a
+//! window that watches a flight is closed.
 
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
@@ -14,12 +15,28 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         true => scene.shelf.unsaved(scene.document).collect(),
         false => vec![scene.document],
     };
+    let flying = if quits { flying(scene) } else { None };
     let modal = Modal::new(Id::unique("unsaved")).show(ui.ctx(), |ui| {
         ui.set_width(400.0);
-        title(ui, &documents);
-        ui.label(consequence(with));
+        if !documents.is_empty() {
+            title(ui, &documents);
+            ui.label(consequence(with));
+        }
+        if let Some(flying) = &flying {
+            ui.strong(flying);
+            ui.label("It flies on by its plan, and nobody watches it from this window any more.");
+        }
         ui.add_space(8.0);
         ui.horizontal(|ui| {
+            if documents.is_empty() {
+                if ui.button("Close all the same").clicked() {
+                    queue.document(DocumentCommand::Discard(with.clone()));
+                }
+                if ui.add(primary_button("Cancel", theme::of(ui))).clicked() {
+                    queue.view(ViewCommand::KeepUnsaved);
+                }
+                return;
+            }
             let save = if quits { "Save and quit" } else { "Save first" };
             if ui.add(primary_button(save, theme::of(ui))).clicked() {
                 if quits {
@@ -40,6 +57,13 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
         queue.view(ViewCommand::KeepUnsaved);
     }
+}
+
+/// Who is in the air.
+fn flying(scene: &Scene<'_>) -> Option<String> {
+    let names: Vec<&str> = scene.vehicles.flying().map(|name| name.as_str()).collect();
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    (!names.is_empty()).then(|| format!("{} {verb} in the air", names.join(", ")))
 }
 
 fn title(ui: &mut Ui, documents: &[&Document]) {

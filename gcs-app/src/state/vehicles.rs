@@ -78,6 +78,12 @@ impl Vehicles {
         self.by_name.get_mut(name)
     }
 
+    /// Those in the air that are watched over an open link.
+    pub fn flying(&self) -> impl Iterator<Item = &VehicleName> {
+        let is_it = |vehicle: &Vehicle| vehicle.open_link().is_some() && vehicle.is_airborne();
+        self.by_name.iter().filter(move |(_, vehicle)| is_it(vehicle)).map(|(name, _)| name)
+    }
+
     /// Those the operator may choose among, by name: a name that was only mistyped is none of them.
     pub fn choices(&self) -> impl Iterator<Item = (&VehicleName, &Vehicle)> {
         let is_choice = |name: &VehicleName, v: &Vehicle| {

@@ -346,3 +346,15 @@ fn between_two_flights_the_next_one_is_started() {
     assert!(window.harness.query_by_label_contains("Start the next flight").is_some());
     assert!(window.harness.query_by_label_contains("Skip leg").is_none());
 }
+
+#[test]
+fn a_window_that_watches_a_flight_asks_before_it_closes() {
+    let (mut window, _) = flying();
+    window.press_ctrl(Key::Q);
+    assert!(window.shows("is in the air") && !window.app().is_leaving());
+    window.click("Cancel");
+    assert!(!window.shows("is in the air"));
+    window.press_ctrl(Key::Q);
+    window.click("Close all the same");
+    assert!(window.app().is_leaving());
+}
