@@ -125,7 +125,9 @@ impl Purpose {
     /// A file of this name is listed.
     fn lists(self, path: &Path) -> bool {
         match (self, FileFormat::by_path(path)) {
-            (Self::Open, format) => format.is_some_and(FileFormat::is_read),
+            // missions are saved as text, too; what one is is decided by its content
+            (Self::Open, None) => path.extension().is_some_and(|e| e.eq_ignore_ascii_case("txt")),
+            (Self::Open, Some(format)) => format.is_read(),
             (Self::Save, format) => format == Some(FileFormat::Legwork),
             (Self::Export(format), of_path) => of_path == Some(FileFormat::Other(format)),
         }
@@ -216,6 +218,7 @@ impl Files {
         self.work(move || {
             let others: Vec<&str> =
                 Format::ALL.iter().filter(|(_, format)| format.is_read()).map(|(name, _)| *name).collect();
+            let others: Vec<&str> = others.into_iter().chain(["txt"]).collect();
             let dialog = rfd::FileDialog::new();
             let dialog = match foreign {
                 false => dialog.add_filter("Flight plan", &["xml"]).add_filter("Other programs", &others),
@@ -283,7 +286,11 @@ impl Files {
         let (desktop, document) = (self.desktop, writing.document);
         self.save_by(document, move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
-            asked(desktop, Purpose::Save, || dialog.save_file(), |path| saving::save(path, &writing))
+            let save = |path| {
+                let (path, over) = completed(path, "xml", writing.over);
+                saving::save(path, &Writing { over, ..writing })
+            };
+            asked(desktop, Purpose::Save, || dialog.save_file(), save)
                 .or(Some(FileEvent::NotSaved { document, why: None }))
         });
     }
@@ -310,7 +317,10 @@ impl Files {
             let format = exported.format;
             let dialog = rfd::FileDialog::new().add_filter(crate::formats::label(format), &[format.name()]);
             let dialog = dialog.set_file_name(suggestion);
-            let write = |path: PathBuf| write_export(path, &exported, Over::Anything);
+            let write = |path: PathBuf| {
+                let (path, over) = completed(path, format.name(), Over::Anything);
+                write_export(path, &exported, over)
+            };
             asked(desktop, Purpose::Export(format), || dialog.save_file(), write)
         });
     }
@@ -377,6 +387,15 @@ fn asked(
     }
 }
 
+/// A name that was typed without what it ends in gets that; nobody was asked about a file that is there under the whole name.
+fn completed(mut path: PathBuf, extension: &str, over: Over) -> (PathBuf, Over) {
+    if path.extension().is_some() {
+        return (path, over);
+    }
+    path.set_extension(extension);
+    (path, Over::Nothing)
+}
+
 fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEvent {
     match saving::export(&path, &exported.bytes, over) {
         Ok(()) => FileEvent::ExportWritten { path, exported: exported.clone() },
@@ -386,4 +405,16 @@ fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEven
 
 fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_without_extension_is_completed_and_overwrites_nothing_unseen() {
+        let of = |name: &str| completed(name.into(), "xml", Over::Anything);
+        assert_eq!(of("a/plan"), ("a/plan.xml".into(), Over::Nothing));
+        assert_eq!(of("a/plan.kml"), ("a/plan.kml".into(), Over::Anything));
+    }
 }

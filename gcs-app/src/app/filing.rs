@@ -53,9 +53,12 @@ impl App {
                 opened.path().into_iter().for_each(|path| self.recent.add(path));
                 self.shelf.open(&mut self.document, *opened);
                 self.show_another();
-                self.view.notice = None;
+                (self.view.notice, self.view.browsing) = (None, None);
             }
-            FileEvent::Opened(Content::Foreign(imported)) => self.view.imported = Some(imported.into()),
+            FileEvent::Opened(Content::Foreign(imported)) => {
+                self.view.browsing = None;
+                self.view.imported = Some(imported.into());
+            }
             FileEvent::Reread { path, theirs } => {
                 if self.document.path() == Some(path.as_path()) {
                     self.document.reread(*theirs);

@@ -46,7 +46,7 @@ mod tests {
             list(folder.path(), purpose).unwrap().into_iter().map(|e| e.name).collect()
         };
         assert_eq!(names(Purpose::Save), ["z", "A.XML", "b.xml"]);
-        assert_eq!(names(Purpose::Open), ["z", "A.XML", "b.xml", "c.kml"]);
+        assert_eq!(names(Purpose::Open), ["z", "A.XML", "b.xml", "c.kml", "notes.txt"]);
         assert_eq!(names(Purpose::Export(Format::Csv)), ["z", "d.csv"]);
     }
 }

@@ -57,6 +57,7 @@ pub struct Imported {
 
 /// Reads it as what was chosen; the sentence says why that can't be, and what to do.
 pub(super) fn read(path: &Path, choices: &Choices, progress: &Progress) -> Result<Content, String> {
+    let path = &with_extension(path);
     let stamp = Stamp::of(path);
     let bytes = bytes(path, progress).map_err(|why| format!("{} can't be opened: {why}", path.display()))?;
     match FileFormat::of(path, &bytes) {
@@ -82,6 +83,14 @@ pub(super) fn read(path: &Path, choices: &Choices, progress: &Progress) -> Resul
             Ok(Content::Foreign(Box::new(Imported { path, format, choices, import, features })))
         }
     }
+}
+
+/// The plan of that name, where somebody left out what it ends in.
+fn with_extension(path: &Path) -> PathBuf {
+    let mut whole = path.as_os_str().to_owned();
+    whole.push(".xml");
+    let whole = PathBuf::from(whole);
+    if !path.exists() && whole.is_file() { whole } else { path.to_owned() }
 }
 
 /// A dropped file or folder is a map or elevations; else it is taken to be a plan.
@@ -172,6 +181,18 @@ mod tests {
         }
         assert!(why(folder.path()).contains("it is no file"));
         assert!(why(&folder.path().join("none.xml")).contains("can't be opened"));
+    }
+
+    #[test]
+    fn a_plan_is_found_without_its_extension() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("survey.v2.xml"), "<flightPlan/>").unwrap();
+        let Ok(Content::Plan(document)) =
+            read(&folder.path().join("survey.v2"), &Choices::default(), &Progress::default())
+        else {
+            panic!()
+        };
+        assert_eq!(document.path(), Some(folder.path().join("survey.v2.xml").as_path()));
     }
 
     #[test]

@@ -95,6 +95,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         folder_row(ui, browsing, queue);
         entries(ui, browsing, queue);
         let typed = name_row(ui, browsing, queue);
+        // what could not be opened is said here: the dialog covers the window
+        if let (Some(why), Purpose::Open) = (&scene.view.notice, browsing.purpose) {
+            ui.add(egui::Label::new(RichText::new(why).color(theme::of(ui).caution)).wrap());
+        }
         ui.add_space(6.0);
         buttons(ui, browsing, typed, queue);
     });
