@@ -277,6 +277,7 @@ impl MapState {
         self.items.run(ui, &canvas, !self.tools.offers_handles(), queue);
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);
+        variables::take_dropped(ui, &canvas, queue);
         clipboard::run(ui, response, &mut self.menu, &canvas, queue);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);

@@ -2,12 +2,19 @@
 
 use super::sketch::{PlacedVariable, Sketch};
 use super::text;
+use super::tools::Canvas;
+use super::tools::pick::things_near;
 use super::view::View;
-use crate::command::Selection;
+use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
-use crate::theme::Palette;
-use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use crate::panels::binding::DraggedVariable;
+use crate::theme::{self, Palette};
+use egui::{Align2, DragAndDrop, Painter, Pos2, Shape, Stroke, Ui, vec2};
 use flight_plan::Id;
+use flight_plan::create::bindings;
+
+const NOWHERE: &str =
+    "Drop a place or an area on a leg that goes there, and a number on its field in the inspector.";
 
 /// From the middle of a mark to its corners, screen points.
 const MARK: f32 = 6.0;
@@ -39,6 +46,36 @@ fn draw_one(painter: &Painter, view: &View, variable: &PlacedVariable, selected:
     // clear of what is flown around it
     let above = at - vec2(0.0, radius.max(MARK) + 3.0);
     text::haloed(painter, above, Align2::CENTER_BOTTOM, &name(&variable.name), 11.5, p.text, p);
+}
+
+/// A variable whose row is dragged onto a leg's place gives that place.
+pub fn take_dropped(ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
+    let Some(dragged) = DragAndDrop::payload::<DraggedVariable>(ui.ctx()) else { return };
+    let Some(at) = ui.input(|i| i.pointer.latest_pos()).filter(|at| canvas.view.rect.contains(*at)) else {
+        return;
+    };
+    let plan = canvas.scene.document.plan();
+    let binds = |thing: Selection| match thing {
+        Selection::Leg(leg) => {
+            let place = bindings(plan, &leg).into_iter().find(|binding| binding.number.is_none())?;
+            let edit =
+                place.choices.into_iter().find(|(name, _)| *name == dragged.0).map(|(_, edit)| edit)?;
+            Some((leg, edit))
+        }
+        _ => None,
+    };
+    let found = things_near(at, canvas).into_iter().find_map(binds);
+    if found.is_some() {
+        ui.painter().circle_stroke(at, 12.0, Stroke::new(2.0, theme::of(ui).accent));
+    }
+    match found {
+        _ if !ui.input(|i| i.pointer.any_released()) => {}
+        Some((leg, edit)) => {
+            queue.edit(edit);
+            queue.view(ViewCommand::Select(Some(Selection::Leg(leg))));
+        }
+        None => queue.view(ViewCommand::Notice(NOWHERE.into())),
+    }
 }
 
 /// As people write it.

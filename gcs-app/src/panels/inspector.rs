@@ -9,6 +9,7 @@ pub mod inherited;
 mod level;
 mod list;
 mod page;
+mod runway;
 mod together;
 mod value;
 
@@ -74,6 +75,7 @@ fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
     match draft.subject() {
         Subject::Plan => hint(ui),
         Subject::Variable(name) => aboard::variable(ui, scene, name, queue),
+        Subject::Runway(id) => runway::other_direction(ui, scene, id, queue),
         Subject::Leg(id) if ui.button("Delete this leg").clicked() => {
             queue.edit(Edit::DeleteLeg { leg: id.clone() });
         }

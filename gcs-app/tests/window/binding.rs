@@ -117,3 +117,33 @@ fn binding_and_a_new_way_have_keys() {
     window.press(Key::W);
     assert!(window.shows(&format!("Draw legs on a new way from {leg}")));
 }
+
+#[test]
+fn a_variable_is_dragged_from_the_plan_to_what_it_says() {
+    let mut window = window();
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    let before = window.plan();
+    let row = |window: &Window, name: &str| {
+        window.harness.get_by_role_and_label(Role::TreeItem, name).rect().lerp_inside(egui::vec2(0.4, 0.5))
+    };
+    let field = window.find_beginning(Role::Button, "Airspeed: ");
+    let from = row(&window, "VAR fast");
+    window.drag(from, field - from);
+    assert_eq!(speed(&window, "side2"), Some(Value::Expression("fast".into())));
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before, "one step");
+    let from = row(&window, "VAR fire");
+    // onto the line of the leg
+    let to = window.centre("Fix A") + (window.centre("Fix B") - window.centre("Fix A")) * 0.5;
+    window.drag(from, to - from);
+    let place = window.plan().leg(&"side2".into()).unwrap().leg.place().cloned();
+    let says = |name: &str| Some(Place::Position(Value::Expression(name.into())));
+    assert_eq!(place, says("fire"));
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before, "one step");
+    // a number is no place
+    let from = row(&window, "VAR fast");
+    window.drag(from, to - from);
+    assert!(window.plan() == before && window.shows("on its field in the inspector"));
+}

@@ -37,7 +37,7 @@ impl Window {
     }
 
     /// Of those of this role the first whose name begins so.
-    fn find_beginning(&self, role: Role, name: &str) -> Pos2 {
+    pub fn find_beginning(&self, role: Role, name: &str) -> Pos2 {
         let begins = |node: &Node<'_>| node.accesskit_node().label().is_some_and(|l| l.starts_with(name));
         let found = self.harness.query_all_by_role(role).find(begins);
         found.unwrap_or_else(|| panic!("nothing begins with {name:?}: {:?}", self.names())).rect().center()

@@ -436,3 +436,31 @@ fn altitudes_of_several_legs_that_differ_are_mixed_and_set_by_one_step() {
     panels.click("Leave out the altitude");
     assert!(panels.leg_of("scan").altitude.is_none() && panels.leg_of("crossing").altitude.is_none());
 }
+
+#[test]
+fn the_other_direction_of_a_runway_is_levelled_by_a_button() {
+    let mut panels = Panels::open(None);
+    let mut plan = panels.plan();
+    let runway = plan.runways[0].clone();
+    let threshold = runway.threshold.destination(runway.heading_deg, runway.length_m);
+    let heading_deg = (runway.heading_deg + 180.0) % 360.0;
+    let elevation_amsl_m = runway.elevation_amsl_m + 7.0;
+    let other = flight_plan::Runway {
+        id: "other".into(),
+        threshold,
+        heading_deg,
+        elevation_amsl_m,
+        approach_entry: None,
+        ..runway.clone()
+    };
+    plan.runways.push(other);
+    panels.0.state_mut().document.replace(plan.clone());
+    panels.select(Some(Selection::Runway(runway.id.clone())));
+    assert!(panels.shows("other, the other direction, begins at"));
+    panels
+        .click(&format!("{} there too", gcs_app::units::Units::Si.altitude().show(runway.elevation_amsl_m)));
+    assert_eq!(panels.plan().runway(&"other".into()).unwrap().elevation_amsl_m, runway.elevation_amsl_m);
+    assert!(!panels.shows("the other direction"));
+    panels.undo();
+    assert_eq!(panels.plan(), plan, "one step");
+}

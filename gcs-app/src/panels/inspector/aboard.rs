@@ -33,7 +33,10 @@ pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
         }
     });
     if let Some(place) = iteration_of(scene, id) {
-        ui.label(RichText::new(crate::panels::flight::iteration(&place)).color(theme::of(ui).active));
+        ui.label(
+            RichText::new(crate::panels::flight::iteration(&place, scene.vehicle))
+                .color(theme::of(ui).active),
+        );
     }
 }
 

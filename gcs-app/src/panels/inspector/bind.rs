@@ -1,12 +1,12 @@
-//! The menu beside a value that makes it what a variable says.
+//! The menu beside a value that makes it what a variable says, and variables that are dropped on it.
 
 use super::page::Page;
 use crate::panels::binding;
 use crate::theme;
-use egui::{Popup, RichText, Role, Ui, WidgetInfo};
+use egui::{Popup, Pos2, Rect, RichText, Role, Ui, WidgetInfo, pos2};
 use flight_plan::create::{Binding, bindings};
 use flight_plan::describe::{Kind, OneOf, Property, Row, Subject};
-use flight_plan::{Use, VariableValue};
+use flight_plan::{Id, Use};
 
 /// Of its button, screen points.
 pub const WIDTH: f32 = 26.0;
@@ -15,8 +15,8 @@ pub const WIDTH: f32 = 26.0;
 pub fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: f64) {
     menu(ui, page, property.label, |ui, page| {
         for variable in &page.plan().variables {
-            let is_number = matches!(variable.initial, VariableValue::Number(_));
-            if is_number && ui.button(variable.name.as_str()).clicked() {
+            if binding::is_number(page.plan(), &variable.name) && ui.button(variable.name.as_str()).clicked()
+            {
                 page.set(property, Some(format!("= {}", variable.name)));
                 ui.close();
             }
@@ -26,6 +26,30 @@ pub fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: 
             ui.close();
         }
     });
+}
+
+/// A variable that is dropped on the row between here and the cursor gives its number.
+pub fn drop_number(ui: &Ui, page: &mut Page<'_, '_>, property: &Property, from: Pos2) {
+    let plan = page.plan();
+    if let Kind::Value(_) = property.kind
+        && let Some(name) = binding::dropped(ui, row_since(ui, from), |name| binding::is_number(plan, name))
+    {
+        page.set(property, Some(format!("= {name}")));
+    }
+}
+
+/// Likewise a place.
+pub fn drop_place(ui: &Ui, page: &mut Page<'_, '_>, binding: &Binding, from: Pos2) {
+    let fits = |name: &Id| binding.choices.iter().any(|(choice, _)| choice == name);
+    let Some(name) = binding::dropped(ui, row_since(ui, from), fits) else { return };
+    if let Some((_, edit)) = binding.choices.iter().find(|(choice, _)| *choice == name) {
+        page.queue.edit(edit.clone());
+    }
+}
+
+/// What was drawn since the cursor was there.
+pub fn row_since(ui: &Ui, from: Pos2) -> Rect {
+    Rect::from_min_max(from, pos2(ui.max_rect().right(), ui.cursor().top() - ui.spacing().item_spacing.y))
 }
 
 /// A leg's place or area, where this row says it.

@@ -55,6 +55,7 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     let inside = way.and_then(|way| one.ways.get(way)).map_or(&[][..], |way| way.rows);
     let name = page.name(one.label);
     let binding = bind::place_of(page, one);
+    let from = ui.cursor().min;
     let (chosen, below) = field::row_with_help(ui, one.label, one.help, |ui| {
         let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
         let alone = inside.split_first().filter(|_| short && !page.is_several());
@@ -71,6 +72,9 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         }
         chosen
     });
+    if let Some(binding) = &binding {
+        bind::drop_place(ui, page, binding, from);
+    }
     match below {
         Some((property, below)) => value::finish(ui, page, property, below),
         None => rows(ui, page, inside),

@@ -1,13 +1,13 @@
 //! An altitude with what it is measured from: one row, or what holds where there is none or where legs differ.
 
 use super::page::Page;
-use super::{inherited, value};
+use super::{bind, inherited, value};
 use crate::command::ViewCommand;
-use crate::panels::field;
 use crate::panels::table::typed;
-use egui::Ui;
+use crate::panels::{binding, field};
+use egui::{Pos2, Ui};
 use flight_plan::describe::{Change, OneOf, Property, Row, Subject};
-use flight_plan::{AltitudeReference, Edit};
+use flight_plan::{Altitude, AltitudeReference, Edit, Value};
 
 /// It is an altitude and its reference, or nothing.
 pub fn is_level(one: &OneOf) -> bool {
@@ -25,9 +25,16 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     if page.is_several() && page.elements().any(|element| said(element) != first) {
         return mixed(ui, page, one);
     }
+    let from = ui.cursor().min;
     match way {
-        Some(0) => own(ui, page, one, metres, reference),
-        _ => absent(ui, page, one),
+        Some(0) => {
+            own(ui, page, one, metres, reference);
+            bind::drop_number(ui, page, metres, from);
+        }
+        _ => {
+            absent(ui, page, one);
+            drop_absent(ui, page, from);
+        }
     }
 }
 
@@ -55,6 +62,18 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
             remove(ui, page, one);
         });
     }
+}
+
+/// A variable that is dropped where an altitude is inherited gives one of its own, above what that one is.
+fn drop_absent(ui: &Ui, page: &mut Page<'_, '_>, from: Pos2) {
+    let plan = page.plan();
+    let Some(of) = page.leg_or_stage().filter(|_| !page.is_several()) else { return };
+    let row = bind::row_since(ui, from);
+    let Some(name) = binding::dropped(ui, row, |name| binding::is_number(plan, name)) else { return };
+    let reference = inherited::altitude(page.scene, of).map(|said| said.value.reference);
+    let metres = Value::Expression(name.as_str().into());
+    let altitude = Some(Altitude { metres, reference: reference.unwrap_or(AltitudeReference::Amsl) });
+    page.queue.edit(Edit::SetAltitude { of: of.clone(), altitude });
 }
 
 /// Legs that differ: what is typed is for all of them.

@@ -23,6 +23,7 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
             return mixed(ui, page, property.label, property.help, Some(to_first));
         }
     }
+    let from = ui.cursor().min;
     let below = field::row_with_help(ui, property.label, property.help, |ui| {
         let below = field(ui, page, property);
         if page.is_several() && below.is_none() {
@@ -30,6 +31,7 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
         }
         below
     });
+    bind::drop_number(ui, page, property, from);
     finish(ui, page, property, below);
 }
 

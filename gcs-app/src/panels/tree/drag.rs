@@ -6,11 +6,12 @@ use super::row::{HEIGHT, depth, indent};
 use super::rows::Row;
 use crate::command::{Queue, Selection};
 use crate::panels::Scene;
+use crate::panels::binding::DraggedVariable;
 use crate::theme;
 use egui::containers::menu::menu_style;
 use egui::{
-    Area, CursorIcon, Frame, Id as WidgetId, Layout, Order, Popup, PopupAnchor, PopupKind, Pos2, Rect,
-    RichText, Stroke, StrokeKind, Ui, pos2, vec2,
+    Area, CursorIcon, DragAndDrop, Frame, Id as WidgetId, Layout, Order, Popup, PopupAnchor, PopupKind, Pos2,
+    Rect, RichText, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 use flight_plan::create::{self, StageSpot};
 use flight_plan::{Edit, FlightPlan, Id};
@@ -98,6 +99,10 @@ impl Drag {
     /// Shows where it would go. True when it was let go: see [`Drag::drop`].
     pub fn show(&mut self, ui: &Ui, rows: &[Row], view: View, plan: &FlightPlan) -> bool {
         let Some(at) = ui.input(|i| i.pointer.latest_pos()) else { return false };
+        if let What::Thing(Selection::Variable(name)) = &self.what {
+            // fields of the inspector and the map take it
+            DragAndDrop::set_payload(ui.ctx(), DraggedVariable(name.clone()));
+        }
         self.find(rows, view, at, plan);
         if let Some((mark, outcome)) = &self.over {
             paint(ui, *mark, view, outcome.is_ok());
