@@ -1,5 +1,6 @@
 //! The documents shipped inside, by topics: each heading begins one. Nothing is fetched from anywhere.
 
+use crate::actions;
 use crate::command::Selection;
 use crate::panels::Scene;
 use flight_plan::Id;
@@ -56,7 +57,15 @@ pub fn topics() -> Vec<Topic> {
         let file = topic.key.split('#').next().unwrap_or_default();
         topic.text = with_links(&topic.text, |target| resolve(file, target, &keys));
     }
+    topics.push(keys_of_actions());
     topics
+}
+
+/// The keys as they are, whatever the documents say.
+fn keys_of_actions() -> Topic {
+    let lines = actions::keys().map(|(name, keys)| format!("- **{keys}**: {name}\n"));
+    let text = format!("# Keys\n\n{}", lines.collect::<String>());
+    Topic { key: "keys".into(), title: "Keys".into(), level: 1, text }
 }
 
 /// A document, cut at its headings.
@@ -181,6 +190,15 @@ mod tests {
                 rest = after;
             }
         }
+    }
+
+    #[test]
+    fn keys_are_those_of_the_actions() {
+        let topics = topics();
+        let keys = &topics.iter().find(|topic| topic.key == "keys").unwrap().text;
+        assert!(keys.contains("- **Ctrl+Z**: Undo\n"), "{keys}");
+        let moves = keys.lines().find(|line| line.ends_with("Move what is selected up")).unwrap();
+        assert!(moves.contains("Ctrl+") && moves.contains(" or Alt+"), "{moves}");
     }
 
     #[test]

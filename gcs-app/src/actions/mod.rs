@@ -12,7 +12,7 @@ mod table;
 use crate::command::{Command, ViewCommand};
 use crate::map::tools::{Card, is_guided};
 use crate::panels::{PanelId, Scene};
-use egui::{Context, KeyboardShortcut, Modifiers};
+use egui::{Context, KeyboardShortcut, ModifierNames, Modifiers};
 use std::borrow::Cow;
 
 /// Where an action stands in menus, and what it is about.
@@ -141,6 +141,13 @@ pub fn all(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     actions.extend(fittings.tools.iter().map(|(card, in_use)| tool(card, *in_use, guided)));
     actions.extend(fittings.panels.iter().map(panel));
     actions
+}
+
+/// What has a key, with all of its keys: `Undo`, `Ctrl+Z`.
+pub fn keys() -> impl Iterator<Item = (&'static str, String)> {
+    let written = |key: &KeyboardShortcut| key.format(&ModifierNames::NAMES, cfg!(target_os = "macos"));
+    let keys = move |entry: &table::Entry| entry.keys.iter().map(written).collect::<Vec<_>>().join(" or ");
+    table::ENTRIES.iter().filter(|entry| !entry.keys.is_empty()).map(move |entry| (entry.name, keys(entry)))
 }
 
 fn tool(card: &'static Card, in_use: bool, guided: bool) -> Action {

@@ -23,7 +23,7 @@ type Asked = Result<Command, &'static str>;
 pub struct Entry {
     group: Group,
     pub id: &'static str,
-    name: &'static str,
+    pub name: &'static str,
     kind: fn(&Scene<'_>) -> Kind,
     pub keys: &'static [KeyboardShortcut],
     ask: fn(&Scene<'_>) -> Asked,

@@ -3,8 +3,10 @@
 use super::tools::pick::things_near;
 use super::tools::{Asked, Canvas, new_leg};
 use crate::command::{Queue, Selection, ViewCommand};
+use crate::map::path;
 use crate::map::tools::pen::way;
 use crate::panels::tree::menu as tree_menu;
+use crate::panels::what_if::{self, CAUSES, cause_name};
 use crate::panels::{Scene, tree};
 use crate::theme;
 use crate::units;
@@ -105,6 +107,7 @@ fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) ->
         ui.send_viewport_cmd(ViewportCommand::RequestPaste);
     }
     ui.separator();
+    what_happens_here(ui, canvas, opened.at, queue);
     what_is_here(ui, canvas, opened.place);
     pastes
 }
@@ -163,6 +166,20 @@ fn insert(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) 
     offer("Hold here".into(), LegChoice::Hm, &behind);
 }
 
+/// On the path: an alarm at this point of it.
+fn what_happens_here(ui: &mut Ui, canvas: &Canvas<'_>, at: Pos2, queue: &mut Queue) {
+    let Some(time_s) = path::time_near(at, canvas.view, canvas.scene) else { return };
+    ui.menu_button("What happens here", |ui| {
+        for cause in CAUSES {
+            if ui.button(cause_name(cause)).clicked() {
+                queue.view(ViewCommand::Scrub(Some(time_s)));
+                queue.view(ViewCommand::Raise(Some(cause)));
+                queue.view(ViewCommand::ShowPanel(what_if::ID, true));
+            }
+        }
+    });
+}
+
 /// Elevation, and the way from the aircraft and from what is selected.
 fn what_is_here(ui: &mut Ui, canvas: &Canvas<'_>, place: LatLon) {
     let scene = canvas.scene;
@@ -177,7 +194,8 @@ fn what_is_here(ui: &mut Ui, canvas: &Canvas<'_>, place: LatLon) {
         lines.push(format!("From the aircraft {}", way(from, place, scene.units())));
     }
     if let Some((id, from)) = selected_place(canvas) {
-        lines.push(format!("From {id} {}", way(from, place, scene.units())));
+        let name = scene.document.plan().label(id);
+        lines.push(format!("From {name} {}", way(from, place, scene.units())));
     }
     for line in lines {
         ui.label(RichText::new(line).size(12.0).color(weak));
@@ -216,5 +234,5 @@ fn name(scene: &Scene<'_>, thing: &Selection) -> String {
         Selection::Zone(_) => "Zone",
         Selection::Procedure(_) => "Procedure",
     };
-    format!("{kind} {}", thing.id())
+    format!("{kind} {}", plan.label(thing.id()))
 }

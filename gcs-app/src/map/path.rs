@@ -147,10 +147,15 @@ pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palett
 /// While an alarm is raised, a click on the path puts the cursor there.
 pub fn move_cursor(response: &egui::Response, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
     let at = response.interact_pointer_pos().filter(|_| scene.view.alarm.is_some() && response.clicked());
-    let near = at.and_then(|at| point_near(at, view, scene));
-    if let Some(point) = near.and_then(|index| scene.forecast().points.get(index)) {
-        queue.view(ViewCommand::Scrub(Some(point.time_s)));
+    if let Some(time_s) = at.and_then(|at| time_near(at, view, scene)) {
+        queue.view(ViewCommand::Scrub(Some(time_s)));
     }
+}
+
+/// When the path comes to where the pointer is, seconds from its start; `None`: it is not there.
+pub fn time_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<f64> {
+    let point = point_near(at, view, scene).and_then(|index| scene.forecast().points.get(index))?;
+    Some(point.time_s)
 }
 
 /// The index of the point of the path under the pointer.

@@ -82,7 +82,7 @@ pub fn draw_emergencies(painter: &Painter, view: &View, sketch: &Sketch, scene: 
                 painter,
                 view.place(*first) + vec2(8.0, -8.0),
                 Align2::LEFT_BOTTOM,
-                &format!("⚑ {id}"),
+                &format!("⚑ {}", scene.document.plan().label(id)),
                 12.0,
                 p.contingency,
                 p,

@@ -2,7 +2,7 @@
 
 use super::{Panel, PanelId, Place, Scene, age_of, alarms, field, pfd, value_with_age};
 use crate::command::{FlyCommand, Queue};
-use crate::state::{Outcome, Request};
+use crate::state::{Outcome, Request, Vehicle};
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
@@ -60,7 +60,7 @@ fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
     let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", name(&p.stage), name(&p.leg)));
     value_with_age(ui, "Leg", &leg, age);
     if let Some(place) = place.filter(|p| !p.iterations.is_empty()) {
-        let loops: Vec<String> = place.iterations.iter().map(iteration).collect();
+        let loops: Vec<String> = place.iterations.iter().map(|i| iteration(i, scene.vehicle)).collect();
         value_with_age(ui, "Iteration", &loops.join(" ▸ "), age);
     }
     if let Some(alternate) = status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref()) {
@@ -80,10 +80,10 @@ fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
 }
 
 /// `patrol 3/20 ↩`: the pass being flown, how many there are, and an arrow when it goes backwards.
-pub fn iteration(place: &IterationPlace) -> String {
+pub fn iteration(place: &IterationPlace, vehicle: &Vehicle) -> String {
     let of = place.of.map_or_else(|| "∞".to_owned(), |n| n.to_string());
     let back = if place.reverse { " ◀" } else { "" };
-    format!("{} {}/{of}{back}", place.leg, place.iteration)
+    format!("{} {}/{of}{back}", vehicle.name_of(&place.leg), place.iteration)
 }
 
 /// Waypoints and seconds in the gateway's buffer, as a bar that is full at a minute.
@@ -220,14 +220,15 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let name = chosen
         .as_ref()
         .or(in_force.as_ref())
-        .map_or_else(|| "the alternate in force".to_owned(), Id::to_string);
+        .map_or_else(|| "the alternate in force".to_owned(), |id| scene.vehicle.name_of(id));
     let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();
     if plans.len() > 1 {
         let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
         let shown = combo.show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, None, "In force here");
             for plan in plans {
-                ui.selectable_value(&mut chosen, Some(plan.id.clone()), plan.id.as_str());
+                let label = scene.vehicle.name_of(&plan.id);
+                ui.selectable_value(&mut chosen, Some(plan.id.clone()), label);
             }
         });
         shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));

@@ -54,7 +54,9 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         }
         difference(ui, "+", "added", plan, &report.added, p.good);
         difference(ui, "~", "changed", plan, &report.changed, p.accent);
-        difference(ui, "−", "removed", plan, &report.removed, p.weak);
+        // they are in the other plan
+        let aboard = scene.vehicle.aboard.as_ref().map_or(plan.as_ref(), |aboard| aboard.plan.as_ref());
+        difference(ui, "−", "removed", aboard, &report.removed, p.weak);
         if report.added.is_empty() && report.changed.is_empty() && report.removed.is_empty() {
             ui.label(RichText::new("No leg differs from the plan aboard.").color(p.weak));
         }

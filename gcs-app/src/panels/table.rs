@@ -204,8 +204,11 @@ impl Table {
             .column(egui_extras::Column::initial(120.0).at_least(60.0).clip(true))
             .column(egui_extras::Column::initial(150.0).at_least(60.0).clip(true))
             .column(egui_extras::Column::initial(90.0).at_least(50.0).clip(true))
+            .column(egui_extras::Column::initial(44.0).at_least(36.0))
+            .column(egui_extras::Column::initial(68.0).at_least(44.0))
+            .column(egui_extras::Column::initial(98.0).at_least(44.0))
             .columns(egui_extras::Column::initial(50.0).at_least(36.0), 3)
-            .columns(egui_extras::Column::remainder().at_least(60.0), 8);
+            .columns(egui_extras::Column::remainder().at_least(60.0), 5);
         if std::mem::take(&mut self.cursor.moved) {
             table = table.scroll_to_row(self.cursor.row, None);
         }

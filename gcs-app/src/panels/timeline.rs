@@ -8,7 +8,7 @@ use crate::units;
 use egui::{Align2, FontId, Key, Painter, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 /// How many times as fast as the flight the cursor may run.
-pub const SPEEDS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 30.0, 50.0, 100.0, 200.0];
+pub const SPEEDS: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0];
 
 /// Play and pause of the preview, and what it comes to.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

@@ -17,6 +17,8 @@ use egui::{RichText, ScrollArea, Ui, vec2};
 #[derive(Debug)]
 pub struct WhatIfPanel;
 
+/// Its identifier.
+pub const ID: PanelId = "what-if";
 /// Width of a column, screen points.
 const COLUMN: f32 = 212.0;
 /// Of a slider beside its number and name.
@@ -24,7 +26,7 @@ const SLIDER: f32 = 44.0;
 
 impl Panel for WhatIfPanel {
     fn id(&self) -> PanelId {
-        "what-if"
+        ID
     }
     fn name(&self) -> &'static str {
         "What if"

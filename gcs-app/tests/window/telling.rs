@@ -109,8 +109,14 @@ fn the_tour_leads_to_what_is_there_and_is_offered_once() {
     let mut window = Window::open(SQUARE);
     window.harness.state_mut().offer_tour();
     window.steps(3);
+    let at = window.centre("Next");
     for step in 1..=6 {
         assert!(window.shows(&format!("{step} of 6")), "step {step}");
+        let button = window.centre(if step < 6 { "Next" } else { "Done" });
+        assert!(button.distance(at) < 6.0, "it stays where it is: step {step}, {button}");
+        // beside the buttons, over the map
+        window.click_at(at - egui::vec2(0.0, 60.0));
+        assert!(window.app().view().selection.is_none(), "step {step}");
         window.click(if step < 6 { "Next" } else { "Done" });
     }
     assert_eq!(window.app().view().tour, None);

@@ -81,17 +81,17 @@ pub(super) fn heads(units: crate::units::Units) -> [String; Column::COUNT] {
         "Leg".into(),
         "Altitude".into(),
         "Airspeed".into(),
+        "ETE".into(),
+        "Energy left".into(),
+        format!("Above ground, {altitude}"),
         "Type".into(),
         "Pass".into(),
         "Track".into(),
         format!("Distance, {distance}"),
         format!("Total, {distance}"),
         format!("Altitude AMSL, {altitude}"),
-        "ETE".into(),
         "Elapsed".into(),
         format!("Speed, {}", units.speed().symbol),
-        "Energy left".into(),
-        format!("Above ground, {altitude}"),
     ]
 }
 
@@ -104,7 +104,8 @@ pub(super) fn cells(scene: &Scene<'_>, passage: &Passage, said: &Said) -> [Strin
     let (altitude, airspeed) = (altitude_text(scene, said, points), airspeed_text(scene, said));
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         let mut cells = [(); Column::COUNT].map(|()| "–".to_owned());
-        cells[..5].clone_from_slice(&[name, altitude, airspeed, kind.into(), pass]);
+        cells[..3].clone_from_slice(&[name, altitude, airspeed]);
+        cells[6..8].clone_from_slice(&[kind.into(), pass]);
         return cells;
     };
     let u = scene.units();
@@ -112,17 +113,17 @@ pub(super) fn cells(scene: &Scene<'_>, passage: &Passage, said: &Said) -> [Strin
         name,
         altitude,
         airspeed,
+        units::duration(last.time_s - first.time_s),
+        format!("{:.0} %", 100.0 * passage.energy_left),
+        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
         kind.into(),
         pass,
         track(first, last),
         u.distance().number(last.distance_m - first.distance_m),
         u.distance().number(last.distance_m),
         u.altitude().number(last.altitude_amsl_m),
-        units::duration(last.time_s - first.time_s),
         units::duration(last.time_s),
         u.speed().number((last.distance_m - first.distance_m) / (last.time_s - first.time_s)),
-        format!("{:.0} %", 100.0 * passage.energy_left),
-        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
     ]
 }
 
