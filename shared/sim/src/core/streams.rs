@@ -9,6 +9,9 @@ pub type Streamed = (u32, u64, u8);
 /// In place of a stream: the interval is nobody's to change.
 pub const UNCHANGEABLE: u8 = u8::MAX;
 
+/// No message that is sent comes more seldom: a real ArduPlane takes a longer interval for this one.
+const LONGEST_NS: u64 = 60_000_000_000;
+
 #[derive(Debug, Clone, Copy)]
 struct Stream {
     id: u32,
@@ -31,7 +34,7 @@ impl Streams {
     }
 
     /// Sets an interval in microseconds: −1 stops it, 0 is the default; false for an unknown message.
-    /// Nothing comes more often than the simulator's step.
+    /// Nothing comes more often than the simulator's step, nothing more seldom than once a minute.
     pub fn set_interval_us(&mut self, id: u32, interval_us: f64, now_ns: u64) -> bool {
         let default = self.known.iter().find(|(known, _, of)| *known == id && *of != UNCHANGEABLE);
         let stream = self.streams.iter_mut().find(|s| s.id == id);
@@ -40,7 +43,7 @@ impl Streams {
         };
         stream.interval_ns = match interval_us {
             us if us < 0.0 => 0,
-            us if us >= 1.0 => ((us * 1000.0) as u64).max(STEP_NS),
+            us if us >= 1.0 => ((us * 1000.0) as u64).clamp(STEP_NS, LONGEST_NS),
             _ => default_ms * 1_000_000,
         };
         stream.due_ns = now_ns;
@@ -99,6 +102,16 @@ mod tests {
             let mut streams = streams();
             assert!(streams.set_interval_us(30, interval_us, 0));
             assert_eq!(count(&mut streams, 30, 10), expected, "{interval_us}");
+        }
+    }
+
+    #[test]
+    fn an_interval_beyond_all_time_is_a_minute() {
+        for endless in [61e6, 1e18, f64::MAX, f64::INFINITY] {
+            let mut streams = streams();
+            assert!(streams.set_interval_us(30, endless, 0));
+            assert_eq!(count(&mut streams, 30, 121), 3, "{endless}");
+            assert_eq!(streams.interval_us(30), 60_000_000);
         }
     }
 
