@@ -2,6 +2,7 @@
 
 use crate::core::autopilot::Home;
 use crate::core::faults::FaultRequest;
+use crate::core::mode::Mode;
 use crate::core::personality::Personality;
 use aircraft::{Profile, Wind};
 use geometry::LatLon;
@@ -78,6 +79,8 @@ pub enum Control {
     Clear(String),
     /// Another wind.
     Wind(Wind),
+    /// Another flight mode, as by the pilot's switch.
+    Mode(Mode),
     /// The end.
     Stop,
 }
@@ -85,16 +88,17 @@ pub enum Control {
 impl FromStr for Control {
     type Err = String;
 
-    /// One line: `fault FAULT`, `clear NAME`, `wind DIRECTION,SPEED` or `stop`.
+    /// One line: `fault FAULT`, `clear NAME`, `wind DIRECTION,SPEED`, `mode NAME` or `stop`.
     fn from_str(line: &str) -> Result<Self, String> {
         let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
         match word {
             "fault" => rest.trim().parse().map(Control::Inject).map_err(|e| format!("{e}")),
             "clear" => Ok(Control::Clear(rest.trim().to_owned())),
             "wind" => parse_wind(rest).map(Control::Wind),
+            "mode" => rest.trim().parse().map(Control::Mode),
             "stop" | "quit" => Ok(Control::Stop),
             _ => Err(format!(
-                "{word:?} is no command; write: fault FAULT, clear NAME, wind DIRECTION,SPEED or stop"
+                "{word:?} is no command; write: fault FAULT, clear NAME, wind DIRECTION,SPEED, mode NAME or stop"
             )),
         }
     }
@@ -159,8 +163,9 @@ mod tests {
         assert_eq!("stop".parse(), Ok(Control::Stop));
         assert_eq!("clear silence\n".parse(), Ok(Control::Clear("silence".into())));
         assert_eq!("wind 270,5".parse(), Ok(Control::Wind(Wind::from_direction(270.0, 5.0))));
+        assert_eq!("mode rtl".parse(), Ok(Control::Mode(Mode::ReturnToLaunch)));
         assert!(matches!(" fault engine-out@3 ".parse(), Ok(Control::Inject(_))));
-        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "dance"] {
+        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "mode", "mode upside-down", "dance"] {
             assert!(bad.parse::<Control>().is_err(), "{bad}");
         }
     }

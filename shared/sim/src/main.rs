@@ -10,7 +10,8 @@ use std::process::ExitCode;
 
 /// A simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does, or PX4.
 ///
-/// While it runs, lines on standard input control it: fault FAULT, clear NAME, wind DIRECTION,SPEED, stop.
+/// While it runs, lines on standard input control it: fault FAULT, clear NAME, wind DIRECTION,SPEED,
+/// mode NAME (as by the pilot's switch: manual, circle, fbwa, auto, rtl, loiter or land), stop.
 #[derive(Debug, Parser)]
 #[command(name = "legwork-sim", version)]
 struct Options {

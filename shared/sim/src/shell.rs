@@ -429,6 +429,11 @@ impl Runner {
                 }
             }
             Some(Control::Wind(wind)) => self.simulator.autopilot.wind = wind,
+            Some(Control::Mode(mode)) => {
+                if !self.simulator.autopilot.set_mode(mode) {
+                    tracing::warn!("the autopilot does not take {mode:?} now");
+                }
+            }
         }
         true
     }

@@ -1,5 +1,7 @@
 //! Flight modes; the autopilots have their own numbers for them.
 
+use std::str::FromStr;
+
 /// A flight mode. The names are ArduPlane's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
@@ -21,4 +23,27 @@ pub enum Mode {
     Guided,
     /// Down, where it is.
     Land,
+}
+
+/// What a pilot can switch to.
+const NAMES: [(&str, Mode); 7] = [
+    ("manual", Mode::Manual),
+    ("circle", Mode::Circle),
+    ("fbwa", Mode::FlyByWireA),
+    ("auto", Mode::Auto),
+    ("rtl", Mode::ReturnToLaunch),
+    ("loiter", Mode::Loiter),
+    ("land", Mode::Land),
+];
+
+impl FromStr for Mode {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = NAMES.iter().find(|(name, _)| *name == text).map(|(_, mode)| *mode);
+        known.ok_or_else(|| {
+            let names = NAMES.map(|(name, _)| name).join(", ");
+            format!("{text:?} is no mode for a pilot; write one of: {names}")
+        })
+    }
 }
