@@ -6,9 +6,14 @@ use std::process::{Command, Output};
 
 /// Runs `legwork demo --headless` on a plan of the assets.
 fn demo(plan: &str, report: &Path) -> Output {
+    demo_on("arduplane", plan, report)
+}
+
+/// The same on an autopilot.
+fn demo_on(autopilot: &str, plan: &str, report: &Path) -> Output {
     let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/plans").join(plan);
     Command::new(env!("CARGO_BIN_EXE_legwork"))
-        .args(["demo", "--headless", "--plan"])
+        .args(["demo", "--headless", "--autopilot", autopilot, "--plan"])
         .arg(plan)
         .arg("--report")
         .arg(report)
@@ -41,6 +46,15 @@ fn a_flight_as_planned_succeeds_and_leaves_its_report() {
     for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
         assert!(legs.lines().any(|line| line.starts_with(leg)), "{leg} is missing:\n{legs}");
     }
+}
+
+#[test]
+fn px4_flies_the_same_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = demo_on("px4", "square.xml", folder.path());
+    let (out, err) = (text(&run.stdout), text(&run.stderr));
+    assert_eq!(run.status.code(), Some(0), "{out}\n{err}");
+    assert!(out.contains("The mission was flown as planned."), "{out}");
 }
 
 /// One file, whole for `legwork log --check`, with what the report was made from.

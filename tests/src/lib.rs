@@ -3,4 +3,5 @@
 pub mod binaries;
 pub mod logs;
 pub mod plans;
+pub mod programme;
 pub mod rig;

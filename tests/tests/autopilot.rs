@@ -1,43 +1,52 @@
-//! The same agent on a real autopilot, whatever is there; opt-in:
+//! The flight-test programme on a real autopilot, whatever is there; opt-in:
 //!
 //! `LEGWORK_AUTOPILOT=tcp:127.0.0.1:5760 cargo test -p system-tests --test autopilot -- --nocapture`
 //!
-//! The mission is laid around the place where the autopilot stands: take-off, departure with an RF, one sweep of the
-//! scan loop, a plan update in flight, an emergency plan, landing. It prints what it saw.
+//! The mission is laid around the place where the autopilot stands; each flight ends on the ground, and the next begins there.
+//! `LEGWORK_SCENARIOS=nominal,gateway_killed` flies only these; `LEGWORK_TABLE="ArduPlane 4.7"` writes the results into the
+//! column of that name in `assets/docs/flight-tests.md`.
 #![cfg(test)]
 
-use system_tests::rig::{Rig, id};
-use usal::contract::{Cause, Command, GatewayState, VariableValue};
+use std::env::var;
+use system_tests::programme::{Scenario, scenarios, table};
+use system_tests::rig::Rig;
 
-/// Longest wait for the next thing to happen, seconds of the autopilot's time.
-const LIMIT_S: f64 = 1200.0;
+const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/docs/flight-tests.md");
 
-async fn on_leg(rig: &mut Rig, leg: &str) {
-    rig.until(leg, LIMIT_S, |_, seen| seen.entered(leg)).await.unwrap();
-    println!("{:8.1} s  on leg {leg}", rig.seen.time_s);
+/// Flies it; how long it took, seconds of the autopilot's time.
+async fn flown(scenario: &Scenario, autopilot: &str) -> anyhow::Result<f64> {
+    let mut rig = Rig::attach(autopilot).await?;
+    println!("{}: the autopilot stands at {:?}", scenario.name, rig.field);
+    let began_s = rig.seen.time_s;
+    scenario.fly(&mut rig).await?;
+    println!("{}", rig.story());
+    Ok(rig.seen.time_s - began_s)
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn real_autopilot_flies_the_mission() {
-    let Ok(autopilot) = std::env::var("LEGWORK_AUTOPILOT") else {
+async fn real_autopilot_flies_the_programme() {
+    let Ok(autopilot) = var("LEGWORK_AUTOPILOT") else {
         println!("not flown: set LEGWORK_AUTOPILOT, for example to tcp:127.0.0.1:5760");
         return;
     };
-    let mut rig = Rig::attach(&autopilot).await.unwrap();
-    println!("autopilot stands at {:?}", rig.field);
-    rig.fly_mission().await.unwrap();
-    for leg in ["out", "round", "far", "sweep"] {
-        on_leg(&mut rig, leg).await;
+    let only = var("LEGWORK_SCENARIOS").unwrap_or_default();
+    let is_wanted = |s: &Scenario| only.is_empty() || only.split(',').any(|name| name == s.name);
+    let mut outcomes = table::Outcomes::new();
+    for scenario in scenarios().filter(|s| s.is_for_any_autopilot && is_wanted(s)) {
+        let outcome = match flown(scenario, &autopilot).await {
+            Ok(took_s) => format!("passed, {took_s:.0} s"),
+            Err(error) => {
+                println!("{error:#}");
+                "failed".into()
+            }
+        };
+        println!("{}: {outcome}", scenario.name);
+        outcomes.insert(scenario.name.to_owned(), outcome);
     }
-    let report = rig.load(&rig.field.mission(2400.0)).await.unwrap();
-    println!("{:8.1} s  plan updated in flight: {report:?}", rig.seen.time_s);
-    rig.command(Command::SetVariable { name: id("found"), value: VariableValue::Bool(true) }).await.unwrap();
-    on_leg(&mut rig, "back").await;
-    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).await.unwrap();
-    println!("{:8.1} s  emergency raised", rig.seen.time_s);
-    on_leg(&mut rig, "home-df").await;
-    rig.until("landed", LIMIT_S, |_, seen| seen.landed()).await.unwrap();
-    println!("{:8.1} s  landed\n{}", rig.seen.time_s, rig.story());
-    rig.expect_on_runway().unwrap();
-    assert!(!rig.seen.went_to(GatewayState::SafeHold), "{}", rig.story());
+    if let Ok(column) = var("LEGWORK_TABLE") {
+        let document = std::fs::read_to_string(DOCUMENT).unwrap();
+        std::fs::write(DOCUMENT, table::renewed(&document, Some((&column, &outcomes))).unwrap()).unwrap();
+    }
+    let failed: Vec<_> = outcomes.iter().filter(|(_, outcome)| *outcome == "failed").collect();
+    assert!(failed.is_empty(), "{failed:?}");
 }

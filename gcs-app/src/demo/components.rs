@@ -41,6 +41,8 @@ pub struct Setup<'a> {
     pub profile: aircraft::Profile,
     /// The wind.
     pub wind: Wind,
+    /// Which autopilot is simulated.
+    pub autopilot: sim::Personality,
     /// Simulated seconds per second; 0: as fast as possible.
     pub speed: f64,
     /// The ground.
@@ -56,6 +58,8 @@ impl Components {
     /// A port can't be had, or the simulator can't be started.
     pub fn start(setup: &Setup) -> anyhow::Result<Self> {
         let simulator = sim::spawn(sim::Config {
+            personality: setup.autopilot,
+            params: params(setup.autopilot),
             link: sim::Link::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0))),
             home: sim::Home {
                 position: setup.home.threshold,
@@ -111,6 +115,14 @@ pub fn why_ended(name: &str, ended: Result<anyhow::Result<()>, JoinError>) -> St
         Ok(Ok(())) => format!("the {name} has ended by itself"),
         Ok(Err(error)) => format!("the {name} has failed: {error:#}"),
         Err(error) => format!("the {name} has crashed: {error}"),
+    }
+}
+
+/// What has to be set of an autopilot before it flies plans: PX4 wants a landing in every list, else.
+fn params(autopilot: sim::Personality) -> Vec<(String, f32)> {
+    match autopilot {
+        sim::Personality::ArduPlane => Vec::new(),
+        sim::Personality::Px4 | sim::Personality::Px4Vtol => vec![("MIS_TKO_LAND_REQ".to_owned(), 0.0)],
     }
 }
 

@@ -58,6 +58,9 @@ pub struct Args {
     /// Where the wind comes from (degrees true) and its speed (m/s).
     #[arg(long, value_name = "DIRECTION,SPEED", value_parser = wind::parse, default_value = "270,5")]
     pub wind: Wind,
+    /// Which autopilot the simulator behaves as: arduplane, px4 or px4-vtol.
+    #[arg(long, value_name = "AUTOPILOT", default_value_t = sim::Personality::ArduPlane)]
+    pub autopilot: sim::Personality,
     /// Simulated seconds per second; 0: as fast as possible. [default: 20 with a window, else 0]
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     pub speed: Option<f64>,
@@ -174,6 +177,7 @@ fn setup<'a>(args: &Args, prepared: &'a Prepared, speed: f64, recordings: &'a Pa
         home: &prepared.home,
         profile: prepared.profile.clone(),
         wind: args.wind,
+        autopilot: args.autopilot,
         speed,
         terrain: prepared.terrain.clone(),
         recordings,
@@ -295,6 +299,7 @@ mod tests {
             report: folder.path().to_owned(),
             plan: Some(square.into()),
             wind: Wind::default(),
+            autopilot: sim::Personality::default(),
             speed: None,
             screenshot: None,
             after: 0.0,

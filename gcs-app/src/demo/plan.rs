@@ -171,6 +171,7 @@ mod tests {
             report: "unused".into(),
             plan: None,
             wind: Wind::from_direction(270.0, 5.0),
+            autopilot: sim::Personality::default(),
             speed: None,
             screenshot: None,
             after: 0.0,

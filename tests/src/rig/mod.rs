@@ -1,70 +1,34 @@
 //! A whole system on loopback, whose time goes on only when the test says so.
 
+mod ground;
+mod processes;
+mod seen;
+
 use crate::binaries::Program;
 use crate::logs::Logs;
 use crate::plans::Field;
 use anyhow::{Context, bail, ensure};
 use geometry::LatLon;
+use ground::Ground;
+use processes::Places;
+pub use seen::Seen;
 use std::{path::Path, time::Duration};
 use usal::{
-    Config, EventSubscriber, Occurrence, Participant, Presence, Session, Start, VariableSubscriber,
+    Occurrence,
     contract::{
-        Attitude, ClockTick, Command, FpManagerEvent, GatewayEvent, GatewayState, GatewayStatus, Navigation,
-        PlanEvent, PlanStatus, Position, ProposalReport, Propose, Recording, TimedGatewayEvent,
+        Attitude, Command, GatewayEvent, GatewayState, GatewayStatus, Navigation, PlanStatus, Position,
+        ProposalReport, Propose, Recording,
     },
-    topics::{self, fp_manager, gateway, storage},
+    topics::{self, fp_manager},
 };
 
 /// Where the simulator stands.
 pub const FIELD: Field =
     Field { threshold: LatLon::new(36.4905, -84.2710), elevation_m: 322.0, heading_deg: 52.0 };
 
-const VEHICLE: &str = "test";
 const CALL: Duration = Duration::from_secs(20);
 /// Wall-clock time in which a part of the system must do something.
 const PATIENCE: Duration = Duration::from_secs(60);
-
-/// What happened so far, and what is known.
-#[derive(Default)]
-pub struct Seen {
-    /// Simulated seconds.
-    pub time_s: f64,
-    /// The FP Manager's events.
-    pub plan: Vec<PlanEvent>,
-    /// The gateway's events.
-    pub gateway: Vec<GatewayEvent>,
-}
-
-impl Seen {
-    /// Legs entered, in order.
-    pub fn legs(&self) -> Vec<&str> {
-        self.plan
-            .iter()
-            .filter_map(|event| match event {
-                PlanEvent::LegEntered { place } => Some(place.leg.as_str()),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// The aircraft has been on this leg.
-    pub fn entered(&self, leg: &str) -> bool {
-        self.legs().contains(&leg)
-    }
-
-    /// The gateway went through this state.
-    pub fn went_to(&self, state: GatewayState) -> bool {
-        self.gateway.iter().any(|e| matches!(e, GatewayEvent::StateChanged { to, .. } if *to == state))
-    }
-
-    /// It took off and stands again.
-    pub fn landed(&self) -> bool {
-        let flown = self.gateway.iter().skip_while(|e| {
-            !matches!(e, GatewayEvent::StateChanged { to: GatewayState::Nav | GatewayState::TakeOff, .. })
-        });
-        flown.into_iter().any(|e| matches!(e, GatewayEvent::StateChanged { to: GatewayState::Stop, .. }))
-    }
-}
 
 /// Simulator, gateway, FP Manager, and the test as a ground station and clock participant.
 pub struct Rig {
@@ -80,65 +44,17 @@ pub struct Rig {
     pub seen: Seen,
     /// Where it flies.
     pub field: Field,
-    endpoint: String,
-    state: tempfile::TempDir,
-    pace: Pace,
+    places: Places,
     ground: Option<Ground>,
-    logs: Logs,
 }
 
 /// How time passes.
 #[derive(Clone, Copy, PartialEq)]
-enum Pace {
+pub enum Pace {
     /// Tick by tick, when the test says so.
     Lockstep,
     /// By itself: an autopilot that knows nothing of us.
     Free,
-}
-
-/// The test's side of the contract.
-struct Ground {
-    session: Session,
-    clock: Option<Participant>,
-    plan_events: EventSubscriber<FpManagerEvent>,
-    gateway_events: EventSubscriber<TimedGatewayEvent>,
-    status: VariableSubscriber<PlanStatus>,
-    state: VariableSubscriber<GatewayStatus>,
-    position: VariableSubscriber<Position>,
-    navigation: VariableSubscriber<Navigation>,
-    attitude: VariableSubscriber<Attitude>,
-    recording: VariableSubscriber<Recording>,
-    presence: Presence,
-}
-
-impl Ground {
-    async fn open(endpoint: &str, pace: Pace) -> anyhow::Result<Self> {
-        let session = Session::open(Config::client(VEHICLE, endpoint).named("operator")).await?;
-        Ok(Self {
-            plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
-            gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,
-            status: session.follow(fp_manager::STATUS)?,
-            state: session.follow(gateway::STATE)?,
-            position: session.follow(gateway::POSITION)?,
-            navigation: session.follow(gateway::NAVIGATION)?,
-            attitude: session.follow(gateway::ATTITUDE)?,
-            recording: session.follow(storage::RECORDING)?,
-            presence: session.presence()?,
-            clock: match pace {
-                Pace::Lockstep => Some(Participant::join(&session, "test")?),
-                Pace::Free => None,
-            },
-            session,
-        })
-    }
-
-    /// Waits until time has gone on, and gives it; in lockstep with the tick to be acknowledged.
-    async fn next(&mut self) -> Option<(f64, Option<ClockTick>)> {
-        match &mut self.clock {
-            Some(clock) => clock.next().await.map(|tick| (tick.time_s, Some(tick))),
-            None => self.position.changed().await.map(|position| (position.stamped.time_s, None)),
-        }
-    }
 }
 
 impl Rig {
@@ -178,15 +94,10 @@ impl Rig {
         pace: Pace,
         logs: Logs,
     ) -> anyhow::Result<Self> {
-        let state = tempfile::tempdir()?;
-        let folder = state.path().join("gateway").display().to_string();
-        let endpoint = format!("tcp/127.0.0.1:{}", free_port()?);
-        let mut arguments = vec!["gateway", "--vehicle", VEHICLE, "--listen", &endpoint];
-        arguments.extend(["--autopilot", autopilot, "--state-dir", &folder]);
-        arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
-        let gateway = Program::start("onboard-agent", &arguments, &logs, "gateway")?;
-        let fp_manager = start_fp_manager(&endpoint, state.path(), pace, &logs)?;
-        let ground = Some(Ground::open(&endpoint, pace).await.with_context(|| logs.ends())?);
+        let places = Places::new(autopilot, pace, logs)?;
+        let gateway = places.start_gateway()?;
+        let fp_manager = places.start_fp_manager()?;
+        let ground = Ground::open(&places.endpoint, pace).await.with_context(|| places.logs.ends())?;
         Ok(Self {
             simulator,
             gateway,
@@ -194,11 +105,8 @@ impl Rig {
             storage: None,
             seen: Seen::default(),
             field: FIELD,
-            endpoint,
-            state,
-            pace,
-            ground,
-            logs,
+            places,
+            ground: Some(ground),
         })
     }
 
@@ -290,22 +198,34 @@ impl Rig {
     /// A ground station comes (back).
     pub async fn come_back(&mut self) -> anyhow::Result<()> {
         self.seen = Seen::default();
-        self.ground = Some(Ground::open(&self.endpoint, self.pace).await?);
+        self.ground = Some(Ground::open(&self.places.endpoint, self.places.pace).await?);
         Ok(())
     }
 
     /// Starts the FP Manager anew over the state it left.
     pub fn restart_fp_manager(&mut self) -> anyhow::Result<()> {
-        self.fp_manager = start_fp_manager(&self.endpoint, self.state.path(), self.pace, &self.logs)?;
+        self.fp_manager = self.places.start_fp_manager()?;
+        Ok(())
+    }
+
+    /// Starts the gateway anew over the state it left, at the same place.
+    pub fn restart_gateway(&mut self) -> anyhow::Result<()> {
+        self.gateway = self.places.start_gateway()?;
         Ok(())
     }
 
     /// Starts the flight recorder, which takes no part in the time.
     pub fn start_storage(&mut self, state: &Path) -> anyhow::Result<()> {
-        let folder = state.display().to_string();
-        let arguments = service_arguments("storage", &self.endpoint, &folder, self.pace);
-        self.storage = Some(Program::start("onboard-agent", &arguments, &self.logs, "storage")?);
+        self.storage = Some(self.places.start_storage(state)?);
         Ok(())
+    }
+
+    /// Does something to the simulated world, in the words of the simulator's standard input.
+    ///
+    /// # Errors
+    /// The autopilot is somebody else's: its world is not ours to change.
+    pub fn disturb(&mut self, line: &str) -> anyhow::Result<()> {
+        self.simulator.as_mut().context("only a simulated world can be disturbed")?.send_line(line)
     }
 
     /// Waits, without letting time go on, until the flight recorder says so of itself.
@@ -394,28 +314,6 @@ impl Rig {
         ensure!(off_m < 600.0, "it stands {off_m:.0} m from the threshold\n{}", self.story());
         Ok(())
     }
-}
-
-/// A TCP port that nobody uses now.
-fn free_port() -> anyhow::Result<u16> {
-    Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port())
-}
-
-fn start_fp_manager(endpoint: &str, state: &Path, pace: Pace, logs: &Logs) -> anyhow::Result<Program> {
-    let folder = state.join("fp-manager").display().to_string();
-    Program::start(
-        "onboard-agent",
-        &service_arguments("fp-manager", endpoint, &folder, pace),
-        logs,
-        "fp-manager",
-    )
-}
-
-/// The command line of a service that connects to the gateway.
-fn service_arguments<'a>(service: &'a str, endpoint: &'a str, folder: &'a str, pace: Pace) -> Vec<&'a str> {
-    let mut arguments = vec![service, "--vehicle", VEHICLE, "--connect", endpoint, "--state-dir", folder];
-    arguments.extend((pace == Pace::Lockstep).then_some("--simulated"));
-    arguments
 }
 
 /// A value of the plan's `number` type.

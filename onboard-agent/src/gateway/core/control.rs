@@ -209,7 +209,7 @@ impl Gateway {
     fn meet_in_flight(&mut self, out: &mut Vec<Output>) {
         let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
         let aloft = self.telemetry.is_airborne() && self.telemetry.on_ground == Some(false);
-        if self.state != GatewayState::Stop || !unknown || !aloft || self.control.adopt.is_some() {
+        if is_flying(self.state) || !unknown || !aloft || self.control.adopt.is_some() {
             return;
         }
         match self.telemetry.mode {

@@ -196,6 +196,8 @@ impl Gateway {
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(intent, self.telemetry.mode);
             out.push(Output::Save);
+        } else if !is_flying(self.state) {
+            self.change(Trigger::PilotTook, "met in flight: nothing that it has aboard is ours", out);
         }
     }
 
@@ -228,7 +230,12 @@ impl Gateway {
         if now.saturating_sub(last_received) > OFF_AFTER {
             return self.change(Trigger::Lost, "the autopilot is silent", out);
         }
-        self.change(Trigger::Heartbeat, "the autopilot is heard", out);
+        if self.telemetry.stands(now) {
+            self.change(Trigger::Heartbeat, "the autopilot is heard", out);
+        } else if self.state == GatewayState::Off {
+            // what it has aboard says in whose hands it is
+            self.cause = "the autopilot is heard, and flies already".into();
+        }
         if is_flying(self.state) && self.telemetry.is_landed() {
             return self.land(out);
         }
@@ -258,7 +265,7 @@ impl Gateway {
         }
         let Some(waypoint) = self.buffer.current() else {
             // adopted, and nothing is known of what it flies: Safe mode will see to it
-            let unknown = self.state == GatewayState::Stop && self.buffer.at_end();
+            let unknown = !is_flying(self.state) && self.buffer.at_end();
             return unknown.then_some((Trigger::Cruising, "met in flight"));
         };
         let seen = match waypoint.action {

@@ -88,13 +88,13 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (Off, Heartbeat) => Stop,
         (Stop, Lost) => Off,
 
-        // the ground, and how the flight begins (an armed autopilot may be met in flight)
-        (Stop, Departing) => TakeOff,
-        (Stop, Cruising) => Nav,
-        (Stop, Approaching) => Approach,
-        (Stop, Landing) => Land,
-        (Stop, HoldConfirmed) => Hold,
-        (Stop, PilotTook) => Manual,
+        // the ground, and how the flight begins (an autopilot may be met in flight)
+        (Off | Stop, Departing) => TakeOff,
+        (Off | Stop, Cruising) => Nav,
+        (Off | Stop, Approaching) => Approach,
+        (Off | Stop, Landing) => Land,
+        (Off | Stop, HoldConfirmed) => Hold,
+        (Off | Stop, PilotTook) => Manual,
         (Off | Stop, _) => return None,
 
         // the end of the flight; the human pilot; both from anywhere in the air
@@ -141,7 +141,7 @@ mod tests {
     /// One line per state: the triggers that mean something and where they lead, in the order of
     /// [`TRIGGERS`]; `.` is nothing.
     const TABLE: &str = "
-    Off          Stop . . . . . . . . . . . . . Terminate
+    Off          Stop . TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
     Stop         . Off TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
     TakeOff      . . . Nav Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
@@ -243,7 +243,7 @@ mod tests {
         for from in STATES {
             reached.extend(TRIGGERS.iter().filter_map(|t| next(from, *t)).map(|s| format!("{s:?}")));
             let to = next(from, Trigger::PilotTook);
-            let free = (is_flying(from) || from == GatewayState::Stop) && from != GatewayState::Manual;
+            let free = !matches!(from, GatewayState::Manual | GatewayState::Terminate);
             assert_eq!(to == Some(GatewayState::Manual), free, "{from:?}");
         }
         assert_eq!(reached.len(), STATES.len());

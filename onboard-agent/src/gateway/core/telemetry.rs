@@ -3,6 +3,7 @@
 use crate::gateway::order::{Fix, Mode, Report, Time};
 use geometry::LatLon;
 use std::borrow::Cow;
+use std::time::Duration;
 use usal::contract::{Air, Attitude, Engine, Gps, Position, Power};
 
 /// A value and when it came.
@@ -11,11 +12,16 @@ pub type Timed<T> = Option<(Time, T)>;
 /// Velocities below this have no direction, m/s.
 const STANDING_MPS: f64 = 0.5;
 
+/// An armed autopilot that has not said for so long whether it stands on the ground will not say it.
+const SAYS_WHERE: Duration = Duration::from_secs(5);
+
 /// See the module's text.
 #[derive(Debug, Clone)]
 pub struct Telemetry {
     /// Last sign of life.
     pub last_received: Option<Time>,
+    /// First heartbeat.
+    pub first_beat: Option<Time>,
     /// Mode, once received.
     pub mode: Option<Mode>,
     /// What the autopilot calls it.
@@ -63,6 +69,7 @@ impl Default for Telemetry {
     fn default() -> Self {
         Self {
             last_received: None,
+            first_beat: None,
             mode: None,
             mode_name: Cow::Borrowed("unknown"),
             armed: false,
@@ -88,6 +95,7 @@ impl Telemetry {
         }
         match report {
             Report::Heartbeat { mode, name, armed } => {
+                self.first_beat.get_or_insert(now);
                 self.mode = Some(*mode);
                 self.mode_name.clone_from(name);
                 self.armed = *armed;
@@ -115,6 +123,12 @@ impl Telemetry {
     /// In the air, as far as is known.
     pub fn is_airborne(&self) -> bool {
         self.armed && self.on_ground != Some(true)
+    }
+
+    /// On the ground, as it says; unarmed, or silent about it, it is believed to be there.
+    pub fn stands(&self, now: Time) -> bool {
+        let Some(first_beat) = self.first_beat else { return false };
+        !self.armed || self.on_ground.unwrap_or(now >= first_beat + SAYS_WHERE)
     }
 
     /// Surely on the ground with the engine off.

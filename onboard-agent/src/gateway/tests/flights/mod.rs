@@ -303,6 +303,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod met_in_flight;
 mod px4;
 mod runways;
 mod strangers;

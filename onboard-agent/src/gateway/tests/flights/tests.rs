@@ -306,31 +306,6 @@ fn hold_resume_direct_and_terminate_are_confirmed_by_the_autopilot() {
 }
 
 #[test]
-fn gateway_killed_the_autopilot_flies_on_and_the_next_gateway_adopts_the_flight() {
-    for with_memory in [true, false] {
-        let mut flight = Flight::on_zigzag(9, &[], 30, 300.0);
-        flight.run(25.0);
-        let snapshot: Snapshot = flight.station.gateway().snapshot();
-        let json = serde_json::to_string(&snapshot).unwrap();
-        let before = flight.progress().iter().flatten().copied().last().unwrap();
-        let restored = with_memory.then(|| serde_json::from_str(&json).unwrap());
-        flight.station = station(restored);
-        flight.events.clear();
-        let expected = if with_memory { GatewayState::Nav } else { GatewayState::SafeHold };
-        flight.run_until(15.0, "adopted", |f| f.state() == expected);
-        let answer = flight.join("plan");
-        assert!(answer.accepted, "{answer:?}");
-        if with_memory {
-            assert!(answer.current.unwrap().0 >= before && answer.highest == Token(31));
-            flight.run_until(100.0, "further", |f| f.has_reached(before + 4));
-        } else {
-            assert_eq!(flight.feed(Some(0), zigzag(12, 10, 300.0)), FeedAnswer::Accepted);
-            flight.run_until(300.0, "further", |f| f.has_reached(34));
-        }
-    }
-}
-
-#[test]
 fn a_flight_ended_by_force_stays_ended_when_the_gateway_starts_anew() {
     let mut flight = Flight::on_zigzag(15, &[], 30, 300.0);
     flight.ask(GatewayRequest::Terminate { confirm: "test".into() }).unwrap();

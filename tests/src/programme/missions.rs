@@ -1,0 +1,45 @@
+//! The mission as it is planned, in all weathers.
+
+use super::{Scenario, expect_whole_mission, land_by_plan};
+use crate::rig::Rig;
+
+pub const SCENARIOS: &[Scenario] = &[
+    Scenario {
+        name: "nominal",
+        happens: "nothing, at 5 m/s of wind",
+        expected: "three sweeps of the loop, landing on the runway",
+        simulator: &["--wind", "270,5"],
+        is_for_any_autopilot: true,
+        fly: |rig| Box::pin(whole(rig)),
+    },
+    Scenario {
+        name: "strong_wind",
+        happens: "12 m/s of wind",
+        expected: "three sweeps of the loop, landing on the runway",
+        simulator: &["--wind", "250,12"],
+        is_for_any_autopilot: false,
+        fly: |rig| Box::pin(whole(rig)),
+    },
+    Scenario {
+        name: "bad_radio",
+        happens: "a fifth of all packets is lost, some come twice or late",
+        expected: "three sweeps of the loop, landing on the runway",
+        simulator: &[
+            "--fault",
+            "packet-loss=0.2",
+            "--fault",
+            "duplicate=0.05",
+            "--fault",
+            "reorder=0.05",
+            "--seed",
+            "7",
+        ],
+        is_for_any_autopilot: false,
+        fly: |rig| Box::pin(whole(rig)),
+    },
+];
+
+async fn whole(rig: &mut Rig) -> anyhow::Result<()> {
+    land_by_plan(rig).await?;
+    expect_whole_mission(rig)
+}

@@ -1,0 +1,123 @@
+//! The flight-test programme: what is done to a flight, and what must come of it. The same scenarios are flown on our
+//! simulator's personalities by `cargo test`, and on a real autopilot when one is there.
+
+mod changes;
+mod emergencies;
+mod links;
+mod missions;
+mod pilots;
+mod processes;
+pub mod table;
+
+use crate::rig::Rig;
+use anyhow::{Context, ensure};
+use std::pin::Pin;
+use usal::contract::GatewayState;
+
+/// Longest flight of the mission, seconds of the autopilot's time.
+const FLIGHT_S: f64 = 3000.0;
+
+/// The rest of a flight.
+type Rest<'a> = Pin<Box<dyn Future<Output = anyhow::Result<()>> + 'a>>;
+
+/// One flight of the programme.
+pub struct Scenario {
+    /// Its name, as a test's.
+    pub name: &'static str,
+    /// What is done to it.
+    pub happens: &'static str,
+    /// What must come of it.
+    pub expected: &'static str,
+    /// Arguments of the simulator.
+    simulator: &'static [&'static str],
+    /// It needs nothing of the autopilot but that it flies; else the simulated world has to be disturbed.
+    pub is_for_any_autopilot: bool,
+    fly: for<'a> fn(&'a mut Rig) -> Rest<'a>,
+}
+
+impl Scenario {
+    /// Flies it on our simulator, which behaves as `personality`; what was seen of the flight if it does not come as it must.
+    ///
+    /// # Errors
+    /// A program does not start, or something comes otherwise than expected.
+    pub async fn simulate(&self, personality: &str) -> anyhow::Result<()> {
+        let mut arguments = vec!["--personality", personality];
+        // a mission without a landing is flown, too
+        arguments.extend(["--param", "MIS_TKO_LAND_REQ=0"].iter().filter(|_| personality == "px4"));
+        arguments.extend(self.simulator);
+        let mut rig = Rig::start(&arguments).await?;
+        self.fly(&mut rig).await
+    }
+
+    /// Flies it with what is there.
+    ///
+    /// # Errors
+    /// Something comes otherwise than expected.
+    pub async fn fly(&self, rig: &mut Rig) -> anyhow::Result<()> {
+        rig.fly_mission().await?;
+        let flown = (self.fly)(rig).await;
+        flown.with_context(|| rig.story()).with_context(|| format!("{}: {}", self.name, self.expected))
+    }
+}
+
+/// All of them, in the order of the table.
+pub const SCENARIOS: &[&[Scenario]] = &[
+    missions::SCENARIOS,
+    changes::SCENARIOS,
+    emergencies::SCENARIOS,
+    processes::SCENARIOS,
+    links::SCENARIOS,
+    pilots::SCENARIOS,
+];
+
+/// All of them, in the order of the table.
+pub fn scenarios() -> impl Iterator<Item = &'static Scenario> {
+    SCENARIOS.iter().copied().flatten()
+}
+
+/// The one of this name.
+///
+/// # Errors
+/// There is none.
+pub fn scenario(name: &str) -> anyhow::Result<&'static Scenario> {
+    scenarios().find(|scenario| scenario.name == name).with_context(|| format!("no scenario {name}"))
+}
+
+async fn on_leg(rig: &mut Rig, leg: &str) -> anyhow::Result<()> {
+    rig.until(leg, FLIGHT_S, |_, seen| seen.entered(leg)).await
+}
+
+async fn in_state(rig: &mut Rig, state: GatewayState, within_s: f64) -> anyhow::Result<()> {
+    let is_there = |rig: &Rig| rig.gateway_status().is_some_and(|s| s.state == state);
+    rig.until(&format!("{state:?}"), within_s, |rig, _| is_there(rig)).await
+}
+
+async fn alarmed(rig: &mut Rig, id: &str, within_s: f64) -> anyhow::Result<()> {
+    rig.until(id, within_s, |_, seen| seen.alarmed(id)).await
+}
+
+/// It lands on its runway.
+async fn land(rig: &mut Rig) -> anyhow::Result<()> {
+    rig.until("landed", FLIGHT_S, |_, seen| seen.landed()).await?;
+    rig.expect_on_runway()
+}
+
+/// It lands by its plan, never by Safe mode.
+async fn land_by_plan(rig: &mut Rig) -> anyhow::Result<()> {
+    land(rig).await?;
+    ensure!(!rig.seen.went_to(GatewayState::SafeHold), "it went to Safe mode");
+    Ok(())
+}
+
+/// The whole mission was flown, every leg once and each sweep of the loop.
+fn expect_whole_mission(rig: &Rig) -> anyhow::Result<()> {
+    let legs = rig.seen.legs();
+    for leg in ["out", "round", "far", "end", "back", "downwind", "final"] {
+        ensure!(legs.contains(&leg), "{leg} is missing: {legs:?}");
+    }
+    for leg in ["out", "round", "far", "back", "downwind", "final"] {
+        ensure!(rig.seen.passes(leg) == 1, "{leg} was flown again: {legs:?}");
+    }
+    ensure!(rig.seen.passes("sweep") == 3, "three sweeps: {legs:?}");
+    Ok(())
+}

@@ -1,0 +1,63 @@
+//! The agent's processes: how they are started, and what they leave for those that come after them.
+
+use super::Pace;
+use crate::binaries::Program;
+use crate::logs::Logs;
+use std::path::Path;
+
+/// The vehicle's name.
+pub const VEHICLE: &str = "test";
+
+/// Where the agent's processes find each other, the autopilot and their state.
+pub struct Places {
+    /// Zenoh endpoint of the gateway.
+    pub endpoint: String,
+    /// How time passes.
+    pub pace: Pace,
+    /// What the processes log.
+    pub logs: Logs,
+    autopilot: String,
+    state: tempfile::TempDir,
+}
+
+impl Places {
+    /// New ones: nothing is left of anything earlier.
+    pub fn new(autopilot: &str, pace: Pace, logs: Logs) -> anyhow::Result<Self> {
+        Ok(Self {
+            endpoint: format!("tcp/127.0.0.1:{}", free_port()?),
+            pace,
+            logs,
+            autopilot: autopilot.to_owned(),
+            state: tempfile::tempdir()?,
+        })
+    }
+
+    /// The gateway, over the state that it left before.
+    pub fn start_gateway(&self) -> anyhow::Result<Program> {
+        let own = ["--listen", &self.endpoint, "--autopilot", &self.autopilot];
+        self.start("gateway", &own, &self.state.path().join("gateway"))
+    }
+
+    /// The FP Manager, over the state that it left before.
+    pub fn start_fp_manager(&self) -> anyhow::Result<Program> {
+        self.start("fp-manager", &["--connect", &self.endpoint], &self.state.path().join("fp-manager"))
+    }
+
+    /// The flight recorder.
+    pub fn start_storage(&self, state: &Path) -> anyhow::Result<Program> {
+        self.start("storage", &["--connect", &self.endpoint], state)
+    }
+
+    fn start(&self, service: &'static str, own: &[&str], state: &Path) -> anyhow::Result<Program> {
+        let folder = state.display().to_string();
+        let mut arguments = vec![service, "--vehicle", VEHICLE, "--state-dir", &folder];
+        arguments.extend(own);
+        arguments.extend((self.pace == Pace::Lockstep).then_some("--simulated"));
+        Program::start("onboard-agent", &arguments, &self.logs, service)
+    }
+}
+
+/// A TCP port that nobody uses now.
+fn free_port() -> anyhow::Result<u16> {
+    Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port())
+}

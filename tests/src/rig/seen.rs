@@ -1,0 +1,60 @@
+//! What a test has heard of a flight.
+
+use usal::contract::{GatewayEvent, GatewayState, PlanEvent};
+
+/// What happened so far, and what is known.
+#[derive(Default)]
+pub struct Seen {
+    /// Simulated seconds.
+    pub time_s: f64,
+    /// The FP Manager's events.
+    pub plan: Vec<PlanEvent>,
+    /// The gateway's events.
+    pub gateway: Vec<GatewayEvent>,
+}
+
+impl Seen {
+    /// Legs entered, in order.
+    pub fn legs(&self) -> Vec<&str> {
+        self.plan
+            .iter()
+            .filter_map(|event| match event {
+                PlanEvent::LegEntered { place } => Some(place.leg.as_str()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The aircraft has been on this leg.
+    pub fn entered(&self, leg: &str) -> bool {
+        self.legs().contains(&leg)
+    }
+
+    /// The gateway went through this state.
+    pub fn went_to(&self, state: GatewayState) -> bool {
+        self.gateway.iter().any(|e| matches!(e, GatewayEvent::StateChanged { to, .. } if *to == state))
+    }
+
+    /// It took off and stands again.
+    pub fn landed(&self) -> bool {
+        let flown = self.gateway.iter().skip_while(|e| {
+            !matches!(e, GatewayEvent::StateChanged { to: GatewayState::Nav | GatewayState::TakeOff, .. })
+        });
+        flown.into_iter().any(|e| matches!(e, GatewayEvent::StateChanged { to: GatewayState::Stop, .. }))
+    }
+
+    /// This alarm was raised.
+    pub fn alarmed(&self, id: &str) -> bool {
+        self.gateway.iter().any(|e| matches!(e, GatewayEvent::AlarmRaised(alarm) if alarm.id == id))
+    }
+
+    /// This alarm is over.
+    pub fn calmed(&self, id: &str) -> bool {
+        self.gateway.iter().any(|e| matches!(e, GatewayEvent::AlarmCleared { id: of } if of == id))
+    }
+
+    /// So often this leg was entered.
+    pub fn passes(&self, leg: &str) -> usize {
+        self.legs().iter().filter(|entered| **entered == leg).count()
+    }
+}

@@ -1,0 +1,63 @@
+//! The flight-test programme on the personalities of our simulator, with the real binaries and in lockstep: time goes on only
+//! when the test says so.
+#![cfg(test)]
+
+use system_tests::programme::{scenario, scenarios};
+
+/// A test for each scenario and personality.
+macro_rules! programme {
+    ($($name:ident)*) => {
+        programme!(arduplane: $($name)*);
+        programme!(px4: $($name)*);
+
+        #[test]
+        fn every_scenario_is_flown() {
+            let flown = [$(stringify!($name)),*];
+            assert_eq!(scenarios().map(|s| s.name).collect::<Vec<_>>(), flown);
+        }
+    };
+    ($personality:ident: $($name:ident)*) => {
+        mod $personality {
+            $(
+                #[tokio::test(flavor = "multi_thread")]
+                async fn $name() {
+                    super::fly(stringify!($personality), stringify!($name)).await;
+                }
+            )*
+        }
+    };
+}
+
+async fn fly(personality: &str, name: &str) {
+    let flown = scenario(name).unwrap().simulate(personality).await;
+    assert!(flown.is_ok(), "{:#}", flown.unwrap_err());
+}
+
+programme! {
+    nominal
+    strong_wind
+    bad_radio
+    variable_moves_the_sweep
+    plan_update_in_flight
+    decision_by_default
+    decision_by_operator
+    hold_and_resume
+    emergency_at_leg_level
+    emergency_at_stage_level
+    emergency_at_plan_level
+    engine_lost
+    engine_lost_unreported
+    battery_low
+    gps_lost
+    fp_manager_killed
+    fp_manager_gone_for_good
+    gateway_killed
+    agent_restarted
+    ground_station_gone
+    link_cut_1_s
+    link_cut_5_s
+    link_cut_30_s
+    link_cut_300_s
+    pilot_takes_over_and_gives_back
+    operator_takes_back
+}
