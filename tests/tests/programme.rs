@@ -1,5 +1,5 @@
 //! The flight-test programme on the personalities of our simulator, with the real binaries and in lockstep: time goes on only
-//! when the test says so.
+//! when the test says so. Those on PX4 are flown with `--release`, as `.ci/run` does: all of them take some minutes otherwise.
 #![cfg(test)]
 
 use system_tests::programme::{scenario, scenarios};
@@ -7,8 +7,8 @@ use system_tests::programme::{scenario, scenarios};
 /// A test for each scenario and personality.
 macro_rules! programme {
     ($($name:ident)*) => {
-        programme!(arduplane: $($name)*);
-        programme!(px4: $($name)*);
+        programme!(arduplane: $(#[cfg(test)] $name)*);
+        programme!(px4: $(#[cfg_attr(debug_assertions, ignore = "flown with --release")] $name)*);
 
         #[test]
         fn every_scenario_is_flown() {
@@ -16,9 +16,10 @@ macro_rules! programme {
             assert_eq!(scenarios().map(|s| s.name).collect::<Vec<_>>(), flown);
         }
     };
-    ($personality:ident: $($name:ident)*) => {
+    ($personality:ident: $(#[$how:meta] $name:ident)*) => {
         mod $personality {
             $(
+                #[$how]
                 #[tokio::test(flavor = "multi_thread")]
                 async fn $name() {
                     super::fly(stringify!($personality), stringify!($name)).await;
