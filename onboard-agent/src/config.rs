@@ -1,6 +1,7 @@
 //! What the agent is started with: command line over configuration file over defaults.
 
 use crate::gateway::driver::{self, Registration};
+use crate::inside::Address;
 use crate::registry::{Entry, SERVICES};
 use crate::services::storage;
 use crate::{exposure, fp_manager, gateway, supervisor};
@@ -129,6 +130,10 @@ pub struct Options {
     /// Time is the simulator's, in lockstep.
     #[arg(long)]
     pub simulated: bool,
+    /// The socket by which the vehicle's own services reach the gateway; `run` tells it to them.
+    #[arg(long, value_name = "SOCKET", hide = true)]
+    #[serde(skip)]
+    pub inside: Option<PathBuf>,
 }
 
 impl Options {
@@ -157,6 +162,7 @@ impl Options {
             record_reserve_mib: self.record_reserve_mib.or(file.record_reserve_mib),
             config: None,
             simulated: self.simulated || file.simulated,
+            inside: self.inside,
         })
     }
 
@@ -166,6 +172,12 @@ impl Options {
 
     fn listen(&self) -> &str {
         self.listen.as_deref().unwrap_or(usal::DEFAULT_ENDPOINT)
+    }
+
+    /// Where the other services find the gateway.
+    fn hub(&self) -> String {
+        let inside = || self.inside.as_ref().map(|socket| Address::new(socket).endpoint());
+        self.connect.clone().or_else(inside).unwrap_or_else(|| self.listen().to_owned())
     }
 
     /// The gateway's configuration.
@@ -178,6 +190,7 @@ impl Options {
         Ok(gateway::Config {
             vehicle: self.vehicle().to_owned(),
             listen: self.listen().to_owned(),
+            inside: self.inside.as_ref().map(Address::new),
             autopilot: autopilot.parse().context("--autopilot")?,
             driver: self.driver()?,
             profile: self.profile()?,
@@ -195,7 +208,6 @@ impl Options {
     /// # Errors
     /// A profile, tile or plan can't be read.
     pub fn fp_manager(&self) -> anyhow::Result<fp_manager::Config> {
-        let connect = self.connect.as_deref().unwrap_or(self.listen());
         let plan = self.plan.as_deref().map(read_text).transpose()?;
         let terrain: Arc<dyn Terrain> = Arc::new(self.tiles()?.unwrap_or_default());
         Ok(fp_manager::Config {
@@ -204,7 +216,7 @@ impl Options {
             plan,
             state_dir: self.state_dir.clone(),
             simulated: self.simulated,
-            ..fp_manager::Config::new(self.vehicle(), connect)
+            ..fp_manager::Config::new(self.vehicle(), &self.hub())
         })
     }
 
@@ -214,8 +226,7 @@ impl Options {
     /// There is no state directory, or a profile or tile can't be read.
     pub fn storage(&self) -> anyhow::Result<storage::Config> {
         let folder = self.state_dir.as_ref().context("recordings need a folder: give --state-dir")?;
-        let connect = self.connect.as_deref().unwrap_or(self.listen());
-        let usual = storage::Config::new(self.vehicle(), connect, folder.join(RECORDINGS));
+        let usual = storage::Config::new(self.vehicle(), &self.hub(), folder.join(RECORDINGS));
         let bytes = |mib: Option<u64>, usual: u64| mib.map_or(usual, |mib| mib.saturating_mul(1 << 20));
         Ok(storage::Config {
             limits: storage::Limits {
@@ -250,7 +261,7 @@ impl Options {
         for (name, value) in texts.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
             arguments.extend([name.into(), value.into()]);
         }
-        let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir)];
+        let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir), ("--inside", &self.inside)];
         for (name, value) in paths.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
             arguments.extend([name.into(), value.into()]);
         }
@@ -330,7 +341,7 @@ mod tests {
     #[test]
     fn every_option_reaches_the_children() {
         let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --driver d \
-                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --insecure --simulated";
+                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --inside i.sock --insecure --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
             ["onboard-agent".into(), "gateway".into()]

@@ -4,6 +4,7 @@ pub mod config;
 pub mod exposure;
 pub mod fp_manager;
 pub mod gateway;
+pub mod inside;
 pub mod registry;
 pub mod services;
 pub mod supervisor;

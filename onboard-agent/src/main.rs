@@ -1,6 +1,7 @@
 //! Command line of `onboard-agent`.
 
 use onboard_agent::config::{Cli, Options, Task};
+use onboard_agent::inside::Inside;
 use onboard_agent::registry::SERVICES;
 use onboard_agent::single_instance::AlreadyRunning;
 use onboard_agent::{Shutdown, Trigger, shutdown, supervisor};
@@ -49,8 +50,10 @@ fn startable(options: Options, shutdown: &Shutdown) -> anyhow::Result<Options> {
     Ok(options)
 }
 
-async fn run(options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
+async fn run(mut options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
     let program = std::env::current_exe()?;
+    let inside = Inside::new()?;
+    options.inside = Some(inside.address().as_path().to_owned());
     supervisor::run(&program, &options.processes(), shutdown).await
 }
 

@@ -43,12 +43,12 @@ def test_events_in_the_gateways_name_start_no_emergency_and_move_no_plan_on(agen
 
 def test_idle_connections_lock_nobody_out(agent, endpoint):  # noqa: F811
     host, port = endpoint.removeprefix("tcp/").rsplit(":", 1)
-    idle = [socket.create_connection((host, int(port))) for _ in range(150)]
+    idle = [socket.create_connection((host, int(port))) for _ in range(300)]
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))
     config.insert_json5("scouting/multicast/enabled", "false")
-    late = until(lambda: opened(config), 10, "a new client is let in")
+    late = until(lambda: opened(config), 2, "a new client is let in")
     answer = until(lambda: call(late, "gateway", "describe", {}), 10, "an answer")
     assert answer["service"] == "gateway", answer
     late.close()

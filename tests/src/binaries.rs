@@ -5,7 +5,7 @@ use anyhow::{Context, bail};
 use std::{
     io::{BufRead, BufReader},
     path::PathBuf,
-    process::{Child, Command, Stdio},
+    process::{Child, Command, ExitStatus, Stdio},
     sync::{LazyLock, mpsc},
     time::{Duration, Instant},
 };
@@ -74,11 +74,35 @@ impl Program {
         }
     }
 
+    /// Its process.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// SIGKILL, as by a crash.
     pub fn kill(&mut self) -> anyhow::Result<()> {
         self.child.kill().context("kill")?;
         self.child.wait().context("wait")?;
         Ok(())
+    }
+
+    /// SIGTERM.
+    pub fn ask_to_end(&self) -> anyhow::Result<()> {
+        let asked = Command::new("kill").args(["-TERM", &self.id().to_string()]).status().context("kill")?;
+        anyhow::ensure!(asked.success(), "{} can't be asked to end", self.name);
+        Ok(())
+    }
+
+    /// Its exit status, once it has ended by itself.
+    pub fn ended(&mut self) -> anyhow::Result<ExitStatus> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(status) = self.child.try_wait().context("wait")? {
+                return Ok(status);
+            }
+            anyhow::ensure!(Instant::now() < end, "{} does not end", self.name);
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// Writes a line to its standard input.

@@ -1,8 +1,8 @@
 //! What the gateway is started with.
 
 use super::driver::{self, Registration};
+use crate::inside::Address;
 use aircraft::Profile;
-use autopilot_link::Address;
 use std::path::PathBuf;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -12,10 +12,12 @@ use terrain::Terrain;
 pub struct Config {
     /// The vehicle's name, part of every key.
     pub vehicle: String,
-    /// Where the session listens, `tcp/127.0.0.1:7447`.
+    /// Where everybody connects, `tcp/127.0.0.1:7447`.
     pub listen: String,
+    /// Where the vehicle's own services connect; `None`: at a place that nobody else is told.
+    pub inside: Option<Address>,
     /// The autopilot's address.
-    pub autopilot: Address,
+    pub autopilot: autopilot_link::Address,
     /// The autopilot's driver.
     pub driver: Registration,
     /// The aircraft.
@@ -30,10 +32,11 @@ pub struct Config {
 
 impl Config {
     /// The trainer, without terrain or memory, in flight.
-    pub fn new(vehicle: &str, listen: &str, autopilot: Address) -> Self {
+    pub fn new(vehicle: &str, listen: &str, autopilot: autopilot_link::Address) -> Self {
         Self {
             vehicle: vehicle.into(),
             listen: listen.into(),
+            inside: None,
             autopilot,
             driver: driver::DEFAULT,
             profile: Profile::default(),

@@ -7,6 +7,7 @@
 
 mod config;
 pub mod core;
+mod door;
 pub mod driver;
 pub mod order;
 mod publish;

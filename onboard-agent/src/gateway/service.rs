@@ -35,6 +35,8 @@ pub enum Input {
     Heartbeat(Heartbeat, Option<Instance>),
     /// Whether what is kept comes to the disk.
     Kept(bool),
+    /// Whether somebody floods the port.
+    Flooded(bool),
     /// The simulator asks for no step.
     Waiting(Duration),
     /// The simulator's step has been done by all.
@@ -86,6 +88,7 @@ impl Service for FcsGateway {
                 self.station.input(now, CoreInput::Heartbeat { count, plan, from });
             }
             Input::Kept(stored) => self.station.input(now, CoreInput::Stored(stored)),
+            Input::Flooded(flooded) => self.station.input(now, CoreInput::Flooded(flooded)),
             Input::Waiting(late) => self.wait(late),
             Input::Stepped => {
                 if let Some(step_ns) = self.step_ns.take() {

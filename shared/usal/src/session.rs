@@ -29,12 +29,12 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 pub enum Role {
     /// Everybody else connects here (the gateway).
     Hub {
-        /// Endpoint, `tcp/host:port`.
+        /// Endpoint, `tcp/host:port` or `unixsock-stream//path`.
         listen: String,
     },
     /// Connects to the hub, now or as soon as it is there, again and again.
     Client {
-        /// Endpoint, `tcp/host:port`.
+        /// Endpoint, `tcp/host:port` or `unixsock-stream//path`.
         connect: String,
     },
 }

@@ -50,6 +50,8 @@ pub struct AlarmInputs {
     pub no_runway_stored: bool,
     /// What must survive a restart can't be written.
     pub not_stored: bool,
+    /// Somebody floods the port that everybody reaches.
+    pub flooded: bool,
 }
 
 /// The alarms, and what may become one.
@@ -124,6 +126,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::OtherFpManager => inputs.other_fp_manager,
         Watch::Exposed => inputs.exposed,
         Watch::NotStored => inputs.not_stored,
+        Watch::Flooded => inputs.flooded,
     }
 }
 
@@ -276,6 +279,13 @@ mod tests {
         let events = story(&[(150, still, moving(0.0)), (2, other, moving(0.0))]);
         let told = [(100, "+stands-still"), (150, "-stands-still"), (150, "+not-in-command")];
         assert_eq!(events, told.map(|(tenth, name)| (tenth, name.to_owned())));
+    }
+
+    #[test]
+    fn a_flooded_port_is_told_and_its_end_too() {
+        let flooded = AlarmInputs { flooded: true, ..AlarmInputs::default() };
+        let events = story(&[(5, flooded, moving(0.0)), (2, AlarmInputs::default(), moving(0.0))]);
+        assert_eq!(events, [(0, "+port-flooded".into()), (5, "-port-flooded".into())]);
     }
 
     #[test]

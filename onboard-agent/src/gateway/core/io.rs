@@ -33,6 +33,8 @@ pub enum Input {
     Report(Report),
     /// What must survive a restart is on the disk, or can't be written there.
     Stored(bool),
+    /// Somebody floods the port, or no longer does.
+    Flooded(bool),
     /// The FP Manager is alive, and flies this plan.
     Heartbeat {
         /// Counts up from the start of its process.

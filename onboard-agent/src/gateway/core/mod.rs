@@ -57,6 +57,8 @@ pub struct Gateway {
     low_reported: bool,
     /// What must survive a restart can't be written.
     not_stored: bool,
+    /// Somebody floods the port.
+    flooded: bool,
     /// The flight was ended by force, perhaps before a restart; until it is on the ground.
     terminated: bool,
     /// A flight was met in the air: what was known of it.
@@ -84,6 +86,7 @@ impl Gateway {
             reported: None,
             low_reported: false,
             not_stored: false,
+            flooded: false,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
         }
@@ -95,6 +98,7 @@ impl Gateway {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
             Input::Stored(stored) => self.not_stored = !stored,
+            Input::Flooded(flooded) => self.flooded = flooded,
             Input::Heartbeat { count, plan, from } => self.fp_manager.heartbeat(now, count, plan, from),
             Input::Join(request, join, from) => {
                 let answer = self.join(now, join, from, out);
@@ -213,6 +217,7 @@ impl Gateway {
             other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),
             not_stored: self.not_stored,
+            flooded: self.flooded,
         };
         let mut events = vec![];
         self.alarms.update(now, &self.telemetry, inputs, &mut events);

@@ -36,6 +36,8 @@ pub enum Watch {
     Exposed,
     /// The state directory can not be written.
     NotStored,
+    /// Somebody opens connections without end.
+    Flooded,
 }
 
 /// What is said of a watch, and how long it has to be wrong before that is said.
@@ -51,7 +53,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 15] = [
+pub const WATCHES: [Watch; 16] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -67,6 +69,7 @@ pub const WATCHES: [Watch; 15] = [
     Watch::OtherFpManager,
     Watch::Exposed,
     Watch::NotStored,
+    Watch::Flooded,
 ];
 
 const WORDS: [Words; WATCHES.len()] = [
@@ -204,6 +207,15 @@ const WORDS: [Words; WATCHES.len()] = [
         severity: Severity::Caution,
         source: "gateway",
         advice: "Runways and the state of the flight can't be stored: a gateway that starts anew forgets them. Check the disk of the state directory.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::Flooded,
+        id: "port-flooded",
+        severity: Severity::Caution,
+        source: "gateway",
+        advice: "Somebody opens connections to the agent's port and says nothing, or more than an address may have. They are closed; a new ground station may need several tries. The gateway's log says from where.",
         cause: None,
         patience: Duration::from_secs(0),
     },
