@@ -5,11 +5,13 @@
 //! `mavlink` is the driver of MAVLink autopilots; `arduplane` and `px4` are the dialects that it knows ([`DIALECTS`]).
 
 mod arduplane;
+pub mod examination;
 mod mavlink;
 mod px4;
 
 use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
+use examination::Examination;
 use mavlink::dialect::Dialect;
 
 /// What a link brings.
@@ -69,6 +71,8 @@ pub struct Registration {
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
     /// autopilot at the other end. In lockstep the simulator asks before each step.
     pub make: fn(lockstep: bool) -> Box<dyn Driver>,
+    /// Makes an examination, for `doctor`; `None`: it can't look an autopilot over.
+    pub examine: Option<fn() -> Box<dyn Examination>>,
 }
 
 /// The drivers: a new one is a line here.

@@ -145,6 +145,7 @@ impl GliderDriver {
 
 /// The driver as it would stand in the list of drivers.
 pub const REGISTRATION: Registration = Registration {
+    examine: None,
     name: "glider",
     recognises: |datagram| datagram.starts_with(b"GLIDER"),
     make: |_| Box::<GliderDriver>::default(),

@@ -11,6 +11,7 @@ mod window;
 
 use super::mavlink::commands::Command;
 use super::mavlink::dialect::{Dialect, Manner};
+use super::mavlink::examine::Advice;
 use super::mavlink::mission::Rules;
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType, WIND_DATA};
@@ -32,7 +33,26 @@ pub const DIALECT: Dialect = Dialect {
     arm: &[Command::Arm],
     forgets_speed: false,
     need: None,
+    advice: &ADVICE,
     manner: Manner { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID },
 };
+
+const ADVICE: [Advice; 3] = [
+    Advice {
+        name: "ARMING_CHECK",
+        is_good: |checks| checks != 0.0,
+        otherwise: "it arms whatever is wrong with it: set it to 1",
+    },
+    Advice {
+        name: "MIS_RESTART",
+        is_good: |restart| restart == 0.0,
+        otherwise: "after each hold it would begin its list anew, and fly back: set it to 0",
+    },
+    Advice {
+        name: "LAND_DISARMDELAY",
+        is_good: |seconds| seconds > 0.0,
+        otherwise: "it never disarms after a landing, so no flight ever ends: set it to 20",
+    },
+];
 
 const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false };

@@ -3,6 +3,7 @@
 use super::Peer;
 use super::chain::Chain;
 use super::commands::Command;
+use super::examine::Advice;
 use super::item::Item;
 use super::list::Feeding;
 use super::mission::{Entry, Rules};
@@ -39,6 +40,8 @@ pub struct Dialect {
     pub forgets_speed: bool,
     /// The parameter that decides whether it can be flown.
     pub need: Option<&'static Need>,
+    /// Parameters that should be so before it is flown.
+    pub advice: &'static [Advice],
     /// How it is spoken to.
     pub manner: Manner,
 }

@@ -5,10 +5,13 @@
 
 mod capability;
 
+pub use capability::unsupported;
+
 use super::super::{Driver, FromLink, Registration};
 use super::Peer;
 use super::commands::{Client, Command, Refusal};
 use super::dialect::Dialect;
+use super::examine::Looked;
 use super::list::{Change, List, Step};
 use super::mission::Outcome;
 use super::parameters::Needed;
@@ -23,6 +26,7 @@ pub const REGISTRATION: Registration = Registration {
     name: "mavlink",
     recognises: session::recognises,
     make: |lockstep| Box::new(MavlinkDriver::new(lockstep)),
+    examine: Some(|| Box::<Looked>::default()),
 };
 
 /// An autopilot that was heard.

@@ -6,6 +6,7 @@ pub mod chain;
 pub mod commands;
 pub mod dialect;
 pub mod driver;
+pub mod examine;
 pub mod item;
 pub mod list;
 pub mod mission;

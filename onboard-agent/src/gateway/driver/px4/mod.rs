@@ -11,6 +11,7 @@ mod window;
 
 use super::mavlink::Peer;
 use super::mavlink::dialect::{Dialect, Manner};
+use super::mavlink::examine::Advice;
 use super::mavlink::item::{self, Item};
 use super::mavlink::mission::{Entry, Rules};
 use super::mavlink::parameters::Need;
@@ -32,6 +33,7 @@ pub const FIXED_WING: Dialect = Dialect {
     arm: &modes::ARM,
     forgets_speed: true,
     need: Some(&NO_LANDING_NEEDED),
+    advice: &ADVICE,
     // it tells its reasons only where it hears a ground station
     manner: Manner { we_are: MavType::MAV_TYPE_GCS, wind: WIND_COV_DATA::ID },
 };
@@ -61,6 +63,12 @@ const NO_LANDING_NEEDED: Need = Need {
     wanted: 0,
     otherwise: "PX4 then refuses a list without a landing, and so every list of a longer flight",
 };
+
+const ADVICE: [Advice; 1] = [Advice {
+    name: "COM_DISARM_LAND",
+    is_good: |seconds| seconds > 0.0,
+    otherwise: "it never disarms after a landing, so no flight ever ends: set it to 2",
+}];
 
 fn is_px4(beat: &HEARTBEAT_DATA) -> bool {
     beat.autopilot == MavAutopilot::MAV_AUTOPILOT_PX4

@@ -69,7 +69,8 @@ fn people((autopilot, kind): (MavAutopilot, MavType)) -> String {
     format!("{} on {}", plain(format!("{autopilot:?}")), plain(format!("{kind:?}")))
 }
 
-fn unsupported(kind: (MavAutopilot, MavType)) -> String {
+/// Why such an autopilot is not flown, and what would be.
+pub fn unsupported(kind: (MavAutopilot, MavType)) -> String {
     let known = DIALECTS.iter().map(|dialect| dialect.name).collect::<Vec<_>>().join(", ");
     format!("{} is not supported. Connect one of: {known}.", people(kind))
 }

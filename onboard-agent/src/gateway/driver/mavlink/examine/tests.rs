@@ -1,0 +1,105 @@
+//! The simulator is looked over, in simulated time.
+
+use super::*;
+use crate::gateway::driver::examination::Degree;
+use sim::core::{Peer as SimPeer, Simulator};
+use sim::{FaultRequest, Personality};
+
+const PEER: SimPeer = SimPeer(1);
+
+/// What is found out about a simulator after `prepare`.
+fn look_over(personality: Personality, prepare: impl Fn(&mut Simulator)) -> Vec<Finding> {
+    let config = sim::Config::default();
+    let mut sim = Simulator::of(personality, config.profile, config.home, aircraft::Wind::default(), 1);
+    sim.connect(PEER);
+    prepare(&mut sim);
+    let (mut looked, mut outbox) = (Looked::default(), Outbox::default());
+    let mut decoder = sim::frame::Decoder::default();
+    for _ in 0..1000 {
+        sim.step();
+        let now = Duration::from_nanos(sim.now_ns());
+        for outgoing in sim.take_outgoing() {
+            looked.receive(now, FromLink::Stream(&outgoing.bytes));
+        }
+        looked.tick(now);
+        if looked.is_complete(now) {
+            return looked.findings(now);
+        }
+        outbox.clear();
+        looked.send(&mut outbox);
+        for bytes in outbox.frames() {
+            decoder.push(bytes);
+            for frame in sim::frame::take_frames(&mut decoder) {
+                sim.receive(PEER, frame);
+            }
+        }
+    }
+    panic!("never complete: {:?}", looked.findings(Time::MAX));
+}
+
+fn warm_up(sim: &mut Simulator) {
+    // its position is found first
+    (0..600).for_each(|_| sim.step());
+    sim.take_outgoing();
+}
+
+fn set(sim: &mut Simulator, name: &str, value: f32) {
+    assert!(sim.autopilot.params.set(name, value), "{name}");
+}
+
+fn to_do(findings: &[Finding]) -> Vec<String> {
+    let in_the_way = findings.iter().filter(|finding| finding.degree == Degree::ToDo);
+    in_the_way.map(|finding| format!("{}: {}", finding.about, finding.says)).collect()
+}
+
+#[test]
+fn a_good_autopilot_is_ready_and_everything_is_said_of_it() {
+    for personality in [Personality::ArduPlane, Personality::Px4] {
+        let findings = look_over(personality, |sim| {
+            warm_up(sim);
+            if personality == Personality::Px4 {
+                set(sim, "MIS_TKO_LAND_REQ", 0.0);
+            }
+        });
+        assert_eq!(to_do(&findings), Vec::<String>::new(), "{findings:#?}");
+        for about in
+            ["autopilot", "version", "state", "parameters", "gps", "home", "battery", "streams", "arming"]
+        {
+            assert!(findings.iter().any(|finding| finding.about == about), "{about}: {findings:#?}");
+        }
+    }
+}
+
+#[test]
+fn parameters_in_the_way_are_named_with_the_value_to_set() {
+    let px4 = to_do(&look_over(Personality::Px4, warm_up));
+    assert!(
+        matches!(&px4[..], [only] if only.contains("MIS_TKO_LAND_REQ is 2") && only.contains("to 0")),
+        "{px4:?}"
+    );
+    let plane = to_do(&look_over(Personality::ArduPlane, |sim| {
+        warm_up(sim);
+        set(sim, "ARMING_CHECK", 0.0);
+    }));
+    assert!(matches!(&plane[..], [only] if only.contains("ARMING_CHECK is 0")), "{plane:?}");
+}
+
+#[test]
+fn what_is_missing_in_flight_is_missed_on_the_ground() {
+    for (fault, about) in [("gps-loss", "gps: no 3D fix"), ("low-battery", "battery: ")] {
+        let found = to_do(&look_over(Personality::ArduPlane, |sim| {
+            warm_up(sim);
+            assert!(sim.inject(fault.parse::<FaultRequest>().unwrap()));
+            (0..20).for_each(|_| sim.step());
+        }));
+        assert!(found.iter().any(|line| line.starts_with(about)), "{fault}: {found:?}");
+    }
+}
+
+#[test]
+fn silence_is_never_complete_and_finds_nothing() {
+    let mut looked = Looked::default();
+    looked.tick(Duration::from_secs(100));
+    assert!(!looked.has_heard() && !looked.is_complete(Duration::from_secs(100)));
+    assert_eq!(looked.findings(Duration::from_secs(100)), vec![]);
+}
