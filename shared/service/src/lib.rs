@@ -63,4 +63,9 @@ pub trait Service: Send + 'static {
     fn publish(&mut self, now: Time, board: &mut Board) {
         let _ = (now, board);
     }
+
+    /// It is asked to end: whether it may now. If not it goes on, until it may or somebody insists.
+    fn may_end(&self) -> bool {
+        true
+    }
 }

@@ -43,6 +43,8 @@ pub struct Runtime<S: Service, A> {
     /// When the simulated time was led on last, wall-clock.
     led: Instant,
     failed: Option<anyhow::Error>,
+    /// It was asked to end.
+    ending: bool,
     _books: Books,
     _announcement: Announcement,
 }
@@ -59,6 +61,7 @@ impl Drop for Books {
 /// What comes next.
 enum Next<I> {
     Shutdown,
+    EndNow,
     Beat(Option<Time>),
     Network,
     Input(I),
@@ -77,8 +80,12 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
             if let Some(error) = self.failed.take() {
                 return Err(error);
             }
+            if self.ending && self.service.may_end() {
+                return Ok(());
+            }
             match self.next(shutdown).await {
-                Next::Shutdown => return Ok(()),
+                Next::Shutdown => self.end_soon(),
+                Next::EndNow => return Ok(()),
                 Next::Beat(None) => anyhow::bail!("the network session was closed"),
                 Next::Beat(Some(_)) => self.beat().await?,
                 Next::Network => self.network().await,
@@ -87,10 +94,19 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
         }
     }
 
+    fn end_soon(&mut self) {
+        self.ending = true;
+        if !self.service.may_end() {
+            tracing::warn!("asked to end, the service `{}` stays for as long as it is needed", S::SPEC.name);
+        }
+    }
+
     async fn next(&mut self, shutdown: &mut Shutdown) -> Next<S::Input> {
         let held_until = self.tasks.holds_time_until();
+        let mut ask = shutdown.clone();
         tokio::select! {
-            () = shutdown.requested() => Next::Shutdown,
+            () = ask.requested(), if !self.ending => Next::Shutdown,
+            () = shutdown.insisted() => Next::EndNow,
             beat = next_beat(&mut self.clock, held_until) => Next::Beat(beat),
             () = self.notify.notified() => Next::Network,
             input = self.adapter.next() => Next::Input(input),

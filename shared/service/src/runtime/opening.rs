@@ -58,6 +58,7 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
             statistics: Statistics::default(),
             led: Instant::now(),
             failed: None,
+            ending: false,
             _books: Books([Some(books), lines, versions].into_iter().flatten().collect()),
             _announcement: announcement,
         })

@@ -115,6 +115,11 @@ impl Service for Adder {
     fn publish(&mut self, _: Time, board: &mut Board) {
         board.changing(SUM, self.now.sum, |_| self.now.clone());
     }
+
+    /// With a sum of 13 it is needed.
+    fn may_end(&self) -> bool {
+        (self.now.sum - 13.0).abs() > 1e-9
+    }
 }
 
 /// The adder, its vehicle's hub and a client called `tester`.
@@ -166,6 +171,27 @@ async fn requests_are_answered_events_emitted_and_variables_published() {
     assert_eq!(described, Adder::SPEC.describe());
     assert_eq!(followed::<Adder>(), [Topic { service: "gateway", kind: usal::Kind::Variable, name: "air" }]);
     net.end().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn asked_to_end_it_goes_on_for_as_long_as_it_is_needed() {
+    let net = Net::open(|config| config).await;
+    net.add(13.0).await.unwrap();
+    net.trigger.shut_down();
+    // what is asked after that is answered
+    assert!((net.add(0.0).await.unwrap().sum - 13.0).abs() < 1e-9);
+    assert!(!net.task.is_finished());
+    net.add(1.0).await.unwrap();
+    within(net.task).await.unwrap().unwrap();
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn whoever_insists_ends_it_although_it_is_needed() {
+    let net = Net::open(|config| config).await;
+    net.add(13.0).await.unwrap();
+    net.trigger.shut_down();
+    net.trigger.insist();
+    within(net.task).await.unwrap().unwrap();
 }
 
 #[tokio::test(flavor = "multi_thread")]
