@@ -17,6 +17,7 @@ mod station;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use self::service::from_link;
 pub use autopilot_link::{Address, AddressError};
 pub use config::Config;
 pub use shell::run;

@@ -54,6 +54,8 @@ pub struct FcsGateway {
     /// The simulator's step under way, ns.
     step_ns: Option<i64>,
     complained: bool,
+    /// Nobody is hurt by what a simulator flies on.
+    simulated: bool,
 }
 
 impl Service for FcsGateway {
@@ -103,12 +105,17 @@ impl Service for FcsGateway {
     fn publish(&mut self, now: Time, board: &mut Board) {
         publish::show(now, self.station.gateway(), board);
     }
+
+    /// An aircraft in flight needs somebody to bring it home.
+    fn may_end(&self) -> bool {
+        self.simulated || !self.station.gateway().is_in_flight()
+    }
 }
 
 impl FcsGateway {
-    /// Around a station.
-    pub fn new(station: Station) -> Self {
-        Self { station, step_ns: None, complained: false }
+    /// Around a station. `simulated`: time is the simulator's.
+    pub fn new(station: Station, simulated: bool) -> Self {
+        Self { station, step_ns: None, complained: false, simulated }
     }
 
     /// Goes through what was received; a step of the simulator is done before the rest.
@@ -183,7 +190,7 @@ impl FcsGateway {
 }
 
 /// What an event of the link means to a driver. That a connection broke means nothing: it is made again.
-fn from_link(event: Event, received: &[u8]) -> FromLink<'_> {
+pub fn from_link(event: Event, received: &[u8]) -> FromLink<'_> {
     match event {
         Event::Connected(_) | Event::Gone(_) => FromLink::Connected,
         Event::Stream(_) => FromLink::Stream(received),

@@ -62,7 +62,7 @@ async fn open(
     let settings = Settings { vehicle, profile, terrain, exposed };
     let Registration { recognises, make, .. } = config.driver;
     let station = Station::new(settings, restored, make(config.simulated));
-    Ok((FcsGateway::new(station), Outside { link, door, recognises, received: Vec::new() }))
+    Ok((FcsGateway::new(station, config.simulated), Outside { link, door, recognises, received: Vec::new() }))
 }
 
 impl Adapter<FcsGateway> for Outside {

@@ -224,6 +224,12 @@ impl Gateway {
         out.extend(events.into_iter().map(Output::Event));
     }
 
+    /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it counts as off.
+    pub fn is_in_flight(&self) -> bool {
+        let flies = self.telemetry.is_airborne() || (is_flying(self.state) && self.telemetry.armed);
+        self.state != GatewayState::Off && flies
+    }
+
     fn flies_waypoints(&self) -> bool {
         self.telemetry.armed && self.telemetry.mode == Some(Mode::Waypoints)
     }

@@ -66,6 +66,24 @@ fn fp_manager_killed_holds_at_t1_returns_at_t2_and_lands() {
     assert!(!flight.join_knowing("plan", flight.next).finished);
 }
 
+/// The gateway may not end before.
+#[test]
+fn it_is_in_flight_until_it_stands_in_safe_mode_too() {
+    let in_flight = |flight: &Flight| flight.station.gateway().is_in_flight();
+    let mut flight = Flight::new(2, &[]);
+    flight.run(20.0);
+    assert!(!in_flight(&flight), "on the ground");
+    let mut flight = Flight::on_zigzag(2, &[], 30, 300.0);
+    flight.store_runway();
+    assert!(in_flight(&flight));
+    flight.alive = false;
+    flight.run_until(900.0, "landed", |f| {
+        assert!(in_flight(f) || f.state() == GatewayState::Stop, "{:?}", f.state());
+        f.state() == GatewayState::Stop
+    });
+    assert!(!in_flight(&flight), "it stands");
+}
+
 #[test]
 fn fp_manager_back_in_time_gets_the_aircraft_back() {
     let mut flight = Flight::on_zigzag(3, &[], 30, 300.0);
