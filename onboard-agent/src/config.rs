@@ -1,4 +1,7 @@
-//! What the agent is started with: command line over configuration file over defaults.
+//! What the agent is started with: command line over environment over configuration file over defaults.
+
+pub mod environment;
+pub mod file;
 
 use crate::gateway::driver::{self, Registration};
 use crate::inside::Address;
@@ -7,8 +10,7 @@ use crate::services::storage;
 use crate::{exposure, fp_manager, gateway, supervisor};
 use aircraft::Profile;
 use anyhow::{Context, bail};
-use clap::error::ErrorKind;
-use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, Args, Command, ValueEnum};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,67 +23,6 @@ const RECORDINGS: &str = "recordings";
 const DEFAULT_VEHICLE: &str = "uav1";
 const DEFAULT_AUTOPILOT: &str = "udp:127.0.0.1:14550";
 const DEFAULT_AIRCRAFT: &str = "trainer";
-
-/// Legwork's onboard agent: FCS Gateway, FP Manager and storage, the flight recorder.
-#[derive(Debug, Parser)]
-#[command(name = "onboard-agent", version)]
-pub struct Cli {
-    /// What to do.
-    #[command(subcommand)]
-    pub task: Task,
-}
-
-/// What the agent can do.
-#[derive(Debug)]
-pub enum Task {
-    /// Run every service in a process of its own; restart what dies.
-    Run(Options),
-    /// Run one of them alone.
-    Service(&'static Entry, Options),
-    /// Print the services' descriptions with their JSON Schemas.
-    Describe,
-}
-
-impl FromArgMatches for Task {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let missing = || clap::Error::new(ErrorKind::MissingSubcommand);
-        let (name, matches) = matches.subcommand().ok_or_else(missing)?;
-        match name {
-            "run" => Ok(Self::Run(Options::from_arg_matches(matches)?)),
-            "describe" => Ok(Self::Describe),
-            name => {
-                let entry = SERVICES.iter().find(|entry| entry.spec.name == name).ok_or_else(missing)?;
-                Ok(Self::Service(entry, Options::from_arg_matches(matches)?))
-            }
-        }
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-impl Subcommand for Task {
-    fn augment_subcommands(command: Command) -> Command {
-        let with_options =
-            |name: &'static str, about: String| Options::augment_args(Command::new(name)).about(about);
-        let run = with_options("run", "Run every service in a process of its own; restart what dies".into());
-        let services =
-            SERVICES.iter().map(|entry| with_options(entry.spec.name, format!("Run {}", entry.spec.about)));
-        let describe = Command::new("describe");
-        let describe = describe.about("Print the services' descriptions with their JSON Schemas");
-        command.subcommand(run).subcommands(services).subcommand(describe)
-    }
-
-    fn augment_subcommands_for_update(command: Command) -> Command {
-        Self::augment_subcommands(command)
-    }
-
-    fn has_subcommand(name: &str) -> bool {
-        ["run", "describe"].contains(&name) || SERVICES.iter().any(|entry| entry.spec.name == name)
-    }
-}
 
 /// Options of the services. The configuration file has the same names, with `_` for `-`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
@@ -123,10 +64,13 @@ pub struct Options {
     /// So many MiB of the disk are left free by the recordings [default: 512].
     #[arg(long, value_name = "MIB")]
     pub record_reserve_mib: Option<u64>,
-    /// Configuration file (JSON) for what is not given here.
+    /// Configuration file (TOML; JSON is read as well) for what is not given here.
     #[arg(long, value_name = "FILE")]
     #[serde(skip)]
     pub config: Option<PathBuf>,
+    /// The log on standard error: `text` for people, or `json`, a line for each event [default: text].
+    #[arg(long, value_name = "FORMAT")]
+    pub log_format: Option<LogFormat>,
     /// Time is the simulator's, in lockstep.
     #[arg(long)]
     pub simulated: bool,
@@ -137,17 +81,20 @@ pub struct Options {
 }
 
 impl Options {
-    /// These options, completed from the configuration file they name.
+    /// These options, completed from the environment and the configuration file that they name.
     ///
     /// # Errors
-    /// The file can't be read or says something unknown.
+    /// A variable can't be used, or the file can't be read or says something unknown.
     pub fn completed(self) -> anyhow::Result<Self> {
-        let Some(path) = &self.config else { return Ok(self) };
-        let bytes = read(path)?;
-        let file: Self = serde_json::from_slice(&bytes).with_context(|| {
-            format!("{}: correct it (`onboard-agent run --help` names the options)", path.display())
-        })?;
-        Ok(Self {
+        let given = self.over(environment::options(|name| std::env::var_os(name))?);
+        let Some(path) = &given.config else { return Ok(given) };
+        let file = from_file(path)?;
+        Ok(Self { config: None, ..given.over(file) })
+    }
+
+    /// These, and for what they leave out those of `file`.
+    fn over(self, file: Self) -> Self {
+        Self {
             vehicle: self.vehicle.or(file.vehicle),
             listen: self.listen.or(file.listen),
             insecure: self.insecure || file.insecure,
@@ -160,10 +107,11 @@ impl Options {
             state_dir: self.state_dir.or(file.state_dir),
             record_quota_mib: self.record_quota_mib.or(file.record_quota_mib),
             record_reserve_mib: self.record_reserve_mib.or(file.record_reserve_mib),
-            config: None,
+            log_format: self.log_format.or(file.log_format),
+            config: self.config.or(file.config),
             simulated: self.simulated || file.simulated,
-            inside: self.inside,
-        })
+            inside: self.inside.or(file.inside),
+        }
     }
 
     fn vehicle(&self) -> &str {
@@ -178,6 +126,18 @@ impl Options {
     fn hub(&self) -> String {
         let inside = || self.inside.as_ref().map(|socket| Address::new(socket).endpoint());
         self.connect.clone().or_else(inside).unwrap_or_else(|| self.listen().to_owned())
+    }
+
+    /// Every service that is wanted can be started with these.
+    ///
+    /// # Errors
+    /// One can't.
+    pub fn check(&self) -> anyhow::Result<()> {
+        for entry in SERVICES.iter().filter(|entry| (entry.is_wanted)(self)) {
+            // it runs only once it is awaited
+            drop((entry.start)(self, crate::shutdown().1)?);
+        }
+        Ok(())
     }
 
     /// The gateway's configuration.
@@ -208,7 +168,7 @@ impl Options {
     /// # Errors
     /// A profile, tile or plan can't be read.
     pub fn fp_manager(&self) -> anyhow::Result<fp_manager::Config> {
-        let plan = self.plan.as_deref().map(read_text).transpose()?;
+        let plan = self.plan.as_deref().map(read_text).transpose().context("--plan")?;
         let terrain: Arc<dyn Terrain> = Arc::new(self.tiles()?.unwrap_or_default());
         Ok(fp_manager::Config {
             profile: self.profile()?,
@@ -243,7 +203,10 @@ impl Options {
     /// The command lines of the services' processes.
     pub fn processes(&self) -> Vec<supervisor::Process> {
         let arguments = self.arguments();
-        let process = |entry: &Entry| supervisor::Process::new(entry.spec.name, arguments.clone());
+        let process = |entry: &Entry| supervisor::Process {
+            may_stay: entry.may_stay,
+            ..supervisor::Process::new(entry.spec.name, arguments.clone())
+        };
         SERVICES.iter().filter(|entry| (entry.is_wanted)(self)).map(process).collect()
     }
 
@@ -260,6 +223,9 @@ impl Options {
         ];
         for (name, value) in texts.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
             arguments.extend([name.into(), value.into()]);
+        }
+        if let Some(format) = self.log_format {
+            arguments.extend(["--log-format".into(), format.name().into()]);
         }
         let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir), ("--inside", &self.inside)];
         for (name, value) in paths.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
@@ -292,7 +258,7 @@ impl Options {
         if !name.ends_with(".json") {
             return Profile::by_name(name).context("--aircraft");
         }
-        let text = read_text(Path::new(name))?;
+        let text = read_text(Path::new(name)).context("--aircraft")?;
         Profile::from_json(&text).with_context(|| format!("--aircraft {name}"))
     }
 
@@ -303,12 +269,77 @@ impl Options {
                 .file_name()
                 .and_then(|n| n.to_str())
                 .context("--terrain: a tile's name, like N36W085.hgt")?;
-            let tile = Tile::from_hgt(name, &read(path)?)
+            let tile = Tile::from_hgt(name, &read(path).context("--terrain")?)
                 .with_context(|| format!("--terrain {}", path.display()))?;
             tiles.add(tile);
         }
         Ok((!self.terrain.is_empty()).then_some(tiles))
     }
+}
+
+/// How the log is written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LogFormat {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs: a JSON object a line.
+    Json,
+}
+
+impl LogFormat {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Json => "json",
+        }
+    }
+}
+
+impl From<LogFormat> for service::logging::Format {
+    fn from(format: LogFormat) -> Self {
+        match format {
+            LogFormat::Text => Self::Text,
+            LogFormat::Json => Self::Json,
+        }
+    }
+}
+
+/// The names that a configuration file may set.
+fn settings() -> impl Iterator<Item = String> {
+    let names = |option: &Arg| option.get_id().as_str().to_owned();
+    let command = Options::augment_args(Command::new("file"));
+    let visible = command.get_arguments().filter(|option| !option.is_hide_set()).map(names);
+    visible.filter(|name| name != "config").collect::<Vec<_>>().into_iter()
+}
+
+/// The options that a configuration file sets.
+fn from_file(path: &Path) -> anyhow::Result<Options> {
+    let (name, text) = (path.display().to_string(), read_text(path)?);
+    if is_json(path) {
+        eprintln!("note: {name}: JSON is still read; TOML has comments, see assets/onboard-agent/agent.toml");
+        return serde_json::from_str(&text)
+            .with_context(|| format!("{name}: correct it (`onboard-agent run --help` names the options)"));
+    }
+    Ok(file::parse(&name, &text)?)
+}
+
+/// All that is wrong with a configuration file: how it is written, and what it says.
+///
+/// # Errors
+/// Something is, or it can't be read.
+pub fn check_file(path: &Path) -> anyhow::Result<()> {
+    if is_json(path) {
+        return from_file(path)?.check();
+    }
+    let (name, text) = (path.display().to_string(), read_text(path)?);
+    file::parse_and_check(&name, &text, Options::check)?;
+    Ok(())
+}
+
+fn is_json(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
 fn driver_help() -> String {
@@ -330,18 +361,20 @@ fn read_text(path: &Path) -> anyhow::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::{Cli, Task};
+    use clap::Parser;
 
     fn parse(line: &str) -> Options {
         match Cli::try_parse_from(line.split(' ')).unwrap().task {
-            Task::Run(options) | Task::Service(_, options) => options,
-            Task::Describe => panic!("no options"),
+            Task::Run(options) | Task::Service(_, options) | Task::Doctor(options) => options,
+            Task::Describe | Task::CheckConfig(_) => panic!("no options"),
         }
     }
 
     #[test]
     fn every_option_reaches_the_children() {
         let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --driver d \
-                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --inside i.sock --insecure --simulated";
+                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --inside i.sock --log-format json --insecure --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
             ["onboard-agent".into(), "gateway".into()]
@@ -357,8 +390,8 @@ mod tests {
     #[test]
     fn the_command_line_wins_over_the_file() {
         let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("agent.json");
-        std::fs::write(&path, r#"{"vehicle": "file", "state_dir": "kept", "simulated": true}"#).unwrap();
+        let path = directory.path().join("agent.toml");
+        std::fs::write(&path, "vehicle = 'file'\nstate_dir = 'kept'\nsimulated = true\n").unwrap();
         let options = parse(&format!("onboard-agent run --vehicle line --config {}", path.display()))
             .completed()
             .unwrap();
@@ -377,6 +410,52 @@ mod tests {
             format!("{error:#}").contains("vehikel") && format!("{error:#}").contains("agent.json"),
             "{error:#}"
         );
+    }
+
+    /// What is commented out, with a space behind the sign and a name, is an option.
+    #[test]
+    fn the_example_can_be_used_and_shows_every_option() {
+        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/onboard-agent/agent.toml");
+        let text = std::fs::read_to_string(example).unwrap();
+        assert_eq!(file::parse("agent.toml", &text).unwrap(), Options::default());
+        check_file(Path::new(example)).unwrap();
+        let is_option = |line: &&str| {
+            line.split_once(" = ").is_some_and(|(name, _)| settings().any(|known| known == name))
+        };
+        let shown: Vec<&str> =
+            text.lines().filter_map(|line| line.strip_prefix("# ")).filter(is_option).collect();
+        file::parse("agent.toml", &shown.join("\n")).unwrap();
+        for name in settings() {
+            assert!(shown.iter().any(|line| line.starts_with(&format!("{name} = "))), "{name} is missing");
+        }
+        // the defaults are the true ones
+        let mut options = Options::default();
+        for line in
+            shown.iter().filter(|line| !["terrain", "plan", "state_dir"].iter().any(|n| line.starts_with(n)))
+        {
+            options = options.over(file::parse("agent.toml", line).unwrap());
+        }
+        let (shown, usual) = (options.gateway().unwrap(), Options::default().gateway().unwrap());
+        assert_eq!(
+            (shown.vehicle, shown.listen, shown.autopilot),
+            (usual.vehicle, usual.listen, usual.autopilot)
+        );
+        assert_eq!((shown.driver.name, shown.profile.name), (usual.driver.name, usual.profile.name));
+    }
+
+    #[test]
+    fn all_that_is_wrong_with_a_file_is_said_at_once() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("agent.toml");
+        let text = "aircraft = 'zeppelin'\nautopilot = 'pigeon'\nlisten = 'tcp/0.0.0.0:1'\nplan = 'nowhere.xml'\nvehicle = 'v'\n";
+        std::fs::write(&path, text).unwrap();
+        let told = format!("{:#}", check_file(&path).unwrap_err());
+        assert_eq!(told.lines().count(), 4, "{told}");
+        for (line, says) in
+            told.lines().zip(["1:12: --aircraft", "2:13: --autopilot", "3:10: --listen", "nowhere.xml"])
+        {
+            assert!(line.contains(says), "{told}");
+        }
     }
 
     #[test]

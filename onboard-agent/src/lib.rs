@@ -1,6 +1,8 @@
 //! Shell: FCS Gateway, FP Manager, storage and their supervisor.
 
+pub mod cli;
 pub mod config;
+pub mod doctor;
 pub mod exposure;
 pub mod fp_manager;
 pub mod gateway;

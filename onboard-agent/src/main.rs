@@ -1,10 +1,12 @@
 //! Command line of `onboard-agent`.
 
-use onboard_agent::config::{Cli, Options, Task};
+use onboard_agent::cli::{Cli, Task};
+use onboard_agent::config::{self, Options};
 use onboard_agent::inside::Inside;
 use onboard_agent::registry::SERVICES;
 use onboard_agent::single_instance::AlreadyRunning;
-use onboard_agent::{Shutdown, Trigger, shutdown, supervisor};
+use onboard_agent::{Shutdown, Trigger, doctor, gateway, shutdown, supervisor};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Started wrongly: a restart would not help.
@@ -17,37 +19,70 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(status) => return status,
     };
-    service::logging::init("info,zenoh=error");
+    match cli.task {
+        Task::Describe => describe(),
+        Task::CheckConfig(file) => check_config(&file),
+        // what is wrong is better said once than by every child
+        Task::Run(options) => with(options, async |options, shutdown| match options.check() {
+            Ok(()) => status(run(options, shutdown).await),
+            Err(error) => failed(STARTED_WRONGLY, &error),
+        }),
+        Task::Service(entry, options) => {
+            with(options, async |options, shutdown| match (entry.start)(&options, shutdown) {
+                Ok(running) => status(running.await),
+                Err(error) => failed(STARTED_WRONGLY, &error),
+            })
+        }
+        Task::Doctor(options) => with(options, async |options, shutdown| match options.gateway() {
+            Ok(config) => see_doctor(&config, shutdown).await,
+            Err(error) => failed(STARTED_WRONGLY, &error),
+        }),
+    }
+}
+
+/// Does the work with the completed options, until a signal.
+fn with(options: Options, work: impl AsyncFnOnce(Options, Shutdown) -> ExitCode) -> ExitCode {
+    let options = match options.completed() {
+        Ok(options) => options,
+        Err(error) => return failed(STARTED_WRONGLY, &error),
+    };
+    service::logging::init("info,zenoh=error", options.log_format.unwrap_or_default().into());
     match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
-        Ok(runtime) => runtime.block_on(perform(cli.task)),
+        Ok(runtime) => runtime.block_on(async {
+            let (trigger, shutdown) = shutdown();
+            tokio::spawn(end_on_signals(trigger));
+            work(options, shutdown).await
+        }),
         Err(error) => failed(FAILED, &error.into()),
     }
 }
 
-async fn perform(task: Task) -> ExitCode {
-    let (trigger, shutdown) = shutdown();
-    tokio::spawn(end_on_signal(trigger));
-    match task {
-        Task::Describe => describe(),
-        Task::Run(options) => match options.completed().and_then(|options| startable(options, &shutdown)) {
-            Ok(options) => status(run(options, shutdown).await),
-            Err(error) => failed(STARTED_WRONGLY, &error),
-        },
-        Task::Service(entry, options) => {
-            match options.completed().and_then(|options| (entry.start)(&options, shutdown)) {
-                Ok(running) => status(running.await),
-                Err(error) => failed(STARTED_WRONGLY, &error),
-            }
+fn check_config(file: &Path) -> ExitCode {
+    match config::check_file(file) {
+        Ok(()) => said(&[format!("{}: nothing is wrong with it", file.display())], ExitCode::SUCCESS),
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::from(STARTED_WRONGLY)
         }
     }
 }
 
-/// What is wrong is better said once than by every child.
-fn startable(options: Options, shutdown: &Shutdown) -> anyhow::Result<Options> {
-    for entry in SERVICES.iter().filter(|entry| (entry.is_wanted)(&options)) {
-        drop((entry.start)(&options, shutdown.clone())?);
+async fn see_doctor(config: &gateway::Config, shutdown: Shutdown) -> ExitCode {
+    match doctor::examine(config, shutdown).await {
+        Ok(diagnosis) => {
+            let code = if diagnosis.is_ready() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) };
+            said(&diagnosis.lines(), code)
+        }
+        Err(error) => failed(FAILED, &error),
     }
-    Ok(options)
+}
+
+/// Lines on standard output; a result that can't be written is a failure.
+fn said(lines: &[String], code: ExitCode) -> ExitCode {
+    match lines.iter().try_for_each(|line| stdio::line(format_args!("{line}"))) {
+        Ok(()) => code,
+        Err(error) => failed(stdio::USAGE, &error.into()),
+    }
 }
 
 async fn run(mut options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
@@ -60,10 +95,7 @@ async fn run(mut options: Options, shutdown: Shutdown) -> anyhow::Result<()> {
 fn describe() -> ExitCode {
     let descriptions: Vec<_> = SERVICES.iter().map(|entry| entry.spec.describe()).collect();
     match serde_json::to_string_pretty(&descriptions) {
-        Ok(text) => match stdio::line(format_args!("{text}")) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => failed(stdio::USAGE, &error.into()),
-        },
+        Ok(text) => said(&[text], ExitCode::SUCCESS),
         Err(error) => failed(FAILED, &error.into()),
     }
 }
@@ -81,22 +113,29 @@ fn failed(code: u8, error: &anyhow::Error) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Ctrl-C and, on Unix, the signal by which the supervisor and the system ask to end.
-async fn end_on_signal(trigger: Trigger) {
+/// The first signal asks to end; in flight the gateway then stays until the aircraft is on the ground. The second insists.
+async fn end_on_signals(trigger: Trigger) {
+    next_signal().await;
+    trigger.shut_down();
+    next_signal().await;
+    trigger.insist();
+}
+
+/// Ctrl-C and, on Unix, the signals by which the supervisor, the system and a terminal that is closed ask to end.
+async fn next_signal() {
     #[cfg(unix)]
     {
         use tokio::signal::unix::{SignalKind, signal};
-        match signal(SignalKind::terminate()) {
-            Ok(mut terminate) => {
-                tokio::select! {
-                    _ = terminate.recv() => {}
-                    _ = tokio::signal::ctrl_c() => {}
-                }
+        if let (Ok(mut terminate), Ok(mut hangup)) =
+            (signal(SignalKind::terminate()), signal(SignalKind::hangup()))
+        {
+            tokio::select! {
+                _ = terminate.recv() => {}
+                _ = hangup.recv() => {}
+                _ = tokio::signal::ctrl_c() => {}
             }
-            Err(_) => drop(tokio::signal::ctrl_c().await),
+            return;
         }
     }
-    #[cfg(not(unix))]
     drop(tokio::signal::ctrl_c().await);
-    trigger.shut_down();
 }

@@ -16,6 +16,8 @@ pub struct Entry {
     pub spec: &'static Spec,
     /// With these options `run` starts it.
     pub is_wanted: fn(&Options) -> bool,
+    /// Asked to end, it may stay for as long as an aircraft needs it.
+    pub may_stay: bool,
     /// Makes it of the options, unless these are wrong.
     pub start: fn(&Options, Shutdown) -> anyhow::Result<Running>,
 }
@@ -25,17 +27,20 @@ pub const SERVICES: &[Entry] = &[
     Entry {
         spec: &spec::GATEWAY,
         is_wanted: |_| true,
+        may_stay: true,
         start: |options, end| Ok(Box::pin(gateway::run(options.gateway()?, end))),
     },
     Entry {
         spec: &spec::FP_MANAGER,
         is_wanted: |_| true,
+        may_stay: false,
         start: |options, end| Ok(Box::pin(fp_manager::run(options.fp_manager()?, end))),
     },
     Entry {
         spec: &spec::STORAGE,
         // without a folder there is nowhere to record to
         is_wanted: |options| options.state_dir.is_some(),
+        may_stay: false,
         start: |options, end| {
             Ok(Box::pin(storage::run(options.storage()?, storage::Monitor::default(), end)))
         },
@@ -51,7 +56,7 @@ impl fmt::Debug for Entry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Cli;
+    use crate::cli::Cli;
     use clap::CommandFactory;
     use usal::contract::Kind;
 
@@ -73,7 +78,8 @@ mod tests {
         assert_eq!(names(&aboard), names(spec::SERVICES));
         let command = Cli::command();
         let told: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-        let expected = ["run"].into_iter().chain(names(spec::SERVICES)).chain(["describe"]);
+        let expected =
+            ["run"].into_iter().chain(names(spec::SERVICES)).chain(["describe", "check-config", "doctor"]);
         assert_eq!(told, expected.collect::<Vec<_>>());
         let followed = service::followed::<fp_manager::FpManager>();
         assert!(followed.iter().any(|topic| topic.kind == Kind::Event));

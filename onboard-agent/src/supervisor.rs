@@ -1,8 +1,9 @@
 //! The supervisor: every service in a process of its own; what dies is said and restarted.
 
 use crate::Shutdown;
+use crate::config::environment;
 use anyhow::Context;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 use std::time::{Duration, Instant};
@@ -27,44 +28,71 @@ pub struct Process {
     pub name: &'static str,
     /// Its options.
     pub arguments: Vec<OsString>,
+    /// Asked to end, it may stay for as long as an aircraft needs it; the others are asked once it has ended.
+    pub may_stay: bool,
 }
 
 impl Process {
-    /// Of a subcommand with options.
+    /// Of a subcommand with options, which ends when it is asked to.
     pub fn new(name: &'static str, arguments: Vec<OsString>) -> Self {
-        Self { name, arguments }
+        Self { name, arguments, may_stay: false }
     }
 }
 
-/// Runs the processes until `shutdown`, restarting what dies.
+/// Runs the processes until `shutdown`, restarting what dies. Those that may stay are asked to end first.
 ///
 /// # Errors
 /// A process can't be started, or says that it was started wrongly.
-pub async fn run(program: &Path, processes: &[Process], shutdown: Shutdown) -> anyhow::Result<()> {
-    let mut supervised = JoinSet::new();
+pub async fn run(program: &Path, processes: &[Process], mut shutdown: Shutdown) -> anyhow::Result<()> {
+    let (trigger, others) = crate::shutdown();
+    let (mut supervised, mut staying) = (JoinSet::new(), 0_usize);
     for process in processes {
-        supervised.spawn(keep(program.to_owned(), process.clone(), shutdown.clone()));
+        staying += usize::from(process.may_stay);
+        let (may_stay, told) = (process.may_stay, if process.may_stay { &shutdown } else { &others });
+        let kept = keep(program.to_owned(), process.clone(), told.clone());
+        supervised.spawn(async move { (may_stay, kept.await) });
     }
-    let mut outcome = Ok(());
-    while let Some(ended) = supervised.join_next().await {
-        let ended = ended.context("the supervision of a process failed").flatten();
-        if ended.is_err() && outcome.is_ok() {
-            outcome = ended;
-            // dropping the others' children kills them
-            supervised.abort_all();
+    let (mut outcome, mut asked, mut told) = (Ok(()), shutdown.clone(), false);
+    loop {
+        tokio::select! {
+            ended = supervised.join_next() => {
+                let Some(ended) = ended else { return outcome };
+                let (stayed, ended) = match ended {
+                    Ok(ended) => ended,
+                    Err(error) => (false, Err(error).context("the supervision of a process failed")),
+                };
+                staying -= usize::from(stayed);
+                if ended.is_err() && outcome.is_ok() {
+                    outcome = ended;
+                    // dropping the others' children kills them
+                    supervised.abort_all();
+                }
+            }
+            () = asked.requested(), if staying == 0 && !told => {
+                trigger.shut_down();
+                told = true;
+            }
+            () = shutdown.insisted(), if !told => {
+                trigger.insist();
+                told = true;
+            }
         }
     }
-    outcome
 }
 
 /// Keeps one process running.
 async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> anyhow::Result<()> {
-    let mut pause = PAUSE_MIN;
+    let (mut pause, mut returned) = (PAUSE_MIN, false);
     loop {
         let started = Instant::now();
         let mut child = start(&program, &process)?;
         let status = tokio::select! {
-            () = shutdown.requested() => return end(process.name, &mut child).await,
+            () = time_to_end(&mut shutdown, returned && process.may_stay) => {
+                match end(&process, &mut child, &mut shutdown).await? {
+                    None => return Ok(()),
+                    Some(died) => died,
+                }
+            }
             status = child.wait() => status.with_context(|| format!("waiting for {}", process.name))?,
         };
         anyhow::ensure!(
@@ -81,33 +109,81 @@ async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> any
             describe(status),
             pause.as_millis()
         );
+        let mut asked = shutdown.clone();
         tokio::select! {
-            () = shutdown.requested() => return Ok(()),
+            () = asked.requested(), if !process.may_stay => return Ok(()),
+            () = shutdown.insisted() => return Ok(()),
             () = tokio::time::sleep(pause) => {}
         }
         pause = (pause * 2).min(PAUSE_MAX);
+        returned = true;
+    }
+}
+
+/// A process that has just come back learns what it is about before it is asked whether it may end.
+async fn time_to_end(shutdown: &mut Shutdown, returned: bool) {
+    shutdown.requested().await;
+    if returned {
+        tokio::select! {
+            () = tokio::time::sleep(STABLE) => {}
+            () = shutdown.insisted() => {}
+        }
     }
 }
 
 fn start(program: &Path, process: &Process) -> anyhow::Result<Child> {
-    let child = Command::new(program)
-        .arg(process.name)
-        .args(&process.arguments)
-        .kill_on_drop(true)
-        .spawn()
-        .with_context(|| format!("starting {} {}", program.display(), process.name))?;
+    let mut command = Command::new(program);
+    command.arg(process.name).args(&process.arguments).kill_on_drop(true);
+    // what the environment says is in the arguments, and stays as it was when the agent was started
+    for (name, _) in std::env::vars_os().filter(|(name, _)| is_option(name)) {
+        command.env_remove(name);
+    }
+    // a terminal's Ctrl-C is for the supervisor, which knows who ends first
+    #[cfg(unix)]
+    command.process_group(0);
+    let child =
+        command.spawn().with_context(|| format!("starting {} {}", program.display(), process.name))?;
     tracing::info!(pid = child.id(), "{} started", process.name);
     Ok(child)
 }
 
-/// Asks a process to end, and makes it.
-async fn end(name: &str, child: &mut Child) -> anyhow::Result<()> {
+fn is_option(name: &OsStr) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(environment::PREFIX))
+}
+
+/// Asks a process to end, and makes it. One that may stay is waited for; gives how it died instead, if it did.
+async fn end(
+    process: &Process,
+    child: &mut Child,
+    shutdown: &mut Shutdown,
+) -> anyhow::Result<Option<ExitStatus>> {
+    let name = process.name;
     ask_to_end(child).await;
+    if process.may_stay {
+        tokio::select! {
+            status = tokio::time::timeout(GRACE, child.wait()) => match status {
+                Ok(status) => return ended(name, status),
+                Err(_) => tracing::warn!(
+                    "{name} has not ended: in flight it stays until the aircraft is on the ground; a second signal ends it now"
+                ),
+            },
+            () = shutdown.insisted() => {}
+        }
+        tokio::select! {
+            status = child.wait() => return ended(name, status),
+            () = shutdown.insisted() => ask_to_end(child).await,
+        }
+    }
     if tokio::time::timeout(GRACE, child.wait()).await.is_err() {
         tracing::warn!("{name} does not end; killing it");
         child.kill().await.with_context(|| format!("killing {name}"))?;
     }
-    Ok(())
+    Ok(None)
+}
+
+fn ended(name: &str, status: std::io::Result<ExitStatus>) -> anyhow::Result<Option<ExitStatus>> {
+    let status = status.with_context(|| format!("waiting for {name}"))?;
+    Ok((!status.success()).then_some(status))
 }
 
 /// SIGTERM by the system's own `kill`, as we have no unsafe code; without one the child is killed after the grace.
@@ -187,6 +263,62 @@ mod tests {
         trigger.shut_down();
         supervisor.await.unwrap().unwrap();
         assert!(ended.exists());
+    }
+
+    fn staying(name: &'static str) -> Process {
+        Process { may_stay: true, ..Process::new(name, vec![]) }
+    }
+
+    /// The gateway ignores the first request, as in flight, and ends by the file `landed`.
+    #[tokio::test]
+    async fn the_others_stay_for_as_long_as_the_one_that_may() {
+        let directory = tempfile::tempdir().unwrap();
+        let there = |name: &str| directory.path().join(name);
+        let text = format!(
+            "if [ \"$1\" = gateway ]; then trap 'touch {0}/asked' TERM; echo up >> {0}/up; until [ -e {0}/landed ]; do sleep 0.02; done; exit 0; fi\n\
+             trap 'touch {0}/ended; exit 0' TERM; echo up >> {0}/up; while :; do sleep 0.02; done",
+            directory.path().display()
+        );
+        let path = program(directory.path(), &text);
+        let (trigger, shutdown) = shutdown();
+        let processes = [staying("gateway"), Process::new("fp-manager", vec![])];
+        let supervisor = tokio::spawn(async move { run(&path, &processes, shutdown).await });
+        appears(&there("up"), 2).await;
+        trigger.shut_down();
+        appears(&there("asked"), 0).await;
+        assert!(!there("ended").exists() && !supervisor.is_finished());
+        std::fs::write(there("landed"), "").unwrap();
+        tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
+        assert!(there("ended").exists());
+    }
+
+    #[tokio::test]
+    async fn who_stays_ends_when_somebody_insists() {
+        let directory = tempfile::tempdir().unwrap();
+        let (asked, up) = (directory.path().join("asked"), directory.path().join("up"));
+        let text = format!(
+            "trap 'echo asked >> {}' TERM\necho up >> {}\nwhile :; do sleep 0.02; done",
+            asked.display(),
+            up.display()
+        );
+        let path = program(directory.path(), &format!("{text}\n"));
+        let (trigger, shutdown) = shutdown();
+        let supervisor = tokio::spawn(async move { run(&path, &[staying("gateway")], shutdown).await });
+        appears(&up, 1).await;
+        trigger.shut_down();
+        appears(&asked, 1).await;
+        trigger.insist();
+        tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
+    }
+
+    /// A file with so many lines.
+    async fn appears(path: &Path, lines: usize) {
+        let waited = async {
+            while !std::fs::read_to_string(path).is_ok_and(|text| text.lines().count() >= lines) {
+                tokio::time::sleep(Duration::from_millis(2)).await;
+            }
+        };
+        tokio::time::timeout(Duration::from_secs(30), waited).await.expect("in time");
     }
 
     #[tokio::test]

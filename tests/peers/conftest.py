@@ -47,7 +47,12 @@ class Process:
     def stop(self):
         self.child.terminate()
         try:
-            self.child.wait(5)
+            self.child.wait(1)
+        except subprocess.TimeoutExpired:
+            # in flight the agent stays until it is told twice
+            self.child.terminate()
+        try:
+            self.child.wait(10)
         except subprocess.TimeoutExpired:
             self.child.kill()
             self.child.wait()

@@ -26,6 +26,12 @@ fn build() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
+/// A binary.
+pub fn path(name: &str) -> anyhow::Result<PathBuf> {
+    let folder = BINARIES.as_ref().map_err(|e| anyhow::anyhow!("{e}"))?;
+    Ok(folder.join(name))
+}
+
 /// How long a program may take to say something on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -39,8 +45,7 @@ pub struct Program {
 impl Program {
     /// Starts a binary, which logs as `log`.
     pub fn start(name: &'static str, arguments: &[&str], logs: &Logs, log: &str) -> anyhow::Result<Self> {
-        let folder = BINARIES.as_ref().map_err(|e| anyhow::anyhow!("{e}"))?;
-        let mut child = Command::new(folder.join(name))
+        let mut child = Command::new(path(name)?)
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

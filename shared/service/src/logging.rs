@@ -49,11 +49,24 @@ pub const fn log(service: &'static str) -> Events<Stamped<LogLine>> {
 /// The lines of this process; its first service publishes them.
 static LINES: OnceLock<Mutex<Option<mpsc::Receiver<LogLine>>>> = OnceLock::new();
 
+/// How the log is written to standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// A JSON object a line.
+    Json,
+}
+
 /// Has the process log to standard error and to its first service; `RUST_LOG` says what, else `filter` does.
-pub fn init(filter: &str) {
+pub fn init(filter: &str, format: Format) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(filter));
     let (sender, receiver) = mpsc::channel(QUEUE);
     let told = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
+    let told = match format {
+        Format::Text => told.boxed(),
+        Format::Json => told.json().flatten_event(true).boxed(),
+    };
     let tap = Tap { sender, dropped: AtomicU64::new(0) };
     let set = tracing_subscriber::registry().with(filter).with(told).with(tap).try_init();
     if set.is_ok() {

@@ -1,0 +1,91 @@
+//! Shell: `onboard-agent doctor` looks the autopilot over and says whether it is ready to fly a plan, and what to change.
+//! It asks, and changes nothing.
+
+use crate::Shutdown;
+use crate::gateway::driver::examination::{Degree, Finding};
+use crate::gateway::{Config, from_link};
+use anyhow::{Context, bail};
+use autopilot_link::{Link, Outbox};
+use std::time::{Duration, Instant};
+
+/// Whoever says nothing for so long isn't there.
+const HEARD_WITHIN: Duration = Duration::from_secs(15);
+/// Time passes in such steps.
+const BEAT: Duration = Duration::from_millis(100);
+
+/// What an autopilot is like.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnosis(Vec<Finding>);
+
+impl Diagnosis {
+    /// Nothing is in the way of a flight.
+    pub fn is_ready(&self) -> bool {
+        self.to_do() == 0
+    }
+
+    fn to_do(&self) -> usize {
+        self.0.iter().filter(|finding| finding.degree == Degree::ToDo).count()
+    }
+
+    /// A line for each finding, and the verdict.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines: Vec<String> = self.0.iter().map(line).collect();
+        lines.push(match self.to_do() {
+            0 => "This autopilot is ready to fly a plan.".into(),
+            1 => "This autopilot is not ready to fly a plan: one thing is to do.".into(),
+            count => format!("This autopilot is not ready to fly a plan: {count} things are to do."),
+        });
+        lines
+    }
+}
+
+fn line(Finding { degree, about, says }: &Finding) -> String {
+    let degree = match degree {
+        Degree::Ok => "ok",
+        Degree::Note => "note",
+        Degree::ToDo => "to do",
+    };
+    format!("{degree:<5}  {about}: {says}")
+}
+
+/// Looks the autopilot over.
+///
+/// # Errors
+/// Its link can't be had, nobody answers, or it was asked to end.
+pub async fn examine(config: &Config, mut shutdown: Shutdown) -> anyhow::Result<Diagnosis> {
+    let driver = config.driver;
+    let make = driver
+        .examine
+        .with_context(|| format!("the driver `{}` can't look an autopilot over", driver.name))?;
+    let link = Link::open(&config.autopilot).await;
+    let mut link = link.with_context(|| {
+        format!("the autopilot's link {}: does the agent run already? End it first", config.autopilot)
+    })?;
+    let mut examination = make();
+    let (began, mut beat) = (Instant::now(), tokio::time::interval(BEAT));
+    let (mut received, mut outbox) = (Vec::new(), Outbox::default());
+    loop {
+        tokio::select! {
+            () = shutdown.requested() => bail!("it was ended before it was done"),
+            event = link.next(&mut received, driver.recognises) => {
+                examination.receive(began.elapsed(), from_link(event, &received));
+            }
+            _ = beat.tick() => examination.tick(began.elapsed()),
+        }
+        outbox.clear();
+        examination.send(&mut outbox);
+        link.send_all(&outbox);
+        let now = began.elapsed();
+        if examination.is_complete(now) {
+            return Ok(Diagnosis(examination.findings(now)));
+        }
+        if !examination.has_heard() && now > HEARD_WITHIN {
+            bail!(
+                "nobody answers at {} within {} s: check that the autopilot is powered, the cable or the network, the port \
+                 and the baud rate, that this port speaks MAVLink 2, and that no other program (an agent that runs) has it",
+                config.autopilot,
+                HEARD_WITHIN.as_secs()
+            );
+        }
+    }
+}
