@@ -9,7 +9,9 @@ SCHEMA = TOP / "assets/schema/flight-plan-1.xsd"
 DOCS = TOP / "assets/docs"
 # the first step of the tutorial is an empty plan, which the schema does not allow
 LESSONS = [*DOCS.glob("fragments/*.xml"), *(set(DOCS.glob("tutorial/*.xml")) - {DOCS / "tutorial/step-01.xml"})]
-GOOD = sorted([*(TOP / "assets/plans").glob("*.xml"), *LESSONS]) + [TOP / "shared/flight-plan/tests/data/language.xml"]
+DATA = TOP / "shared/flight-plan/tests/data"
+GOOD = sorted([*(TOP / "assets/plans").glob("*.xml"), *LESSONS]) + [DATA / "language.xml", DATA / "any-order.xml"]
+GOOD += sorted((TOP / "shared/flight-exec/tests/authored").glob("*.xml"))
 BAD = sorted((TOP / "assets/plans/bad").glob("*.xml"))
 # faults of meaning, which a schema cannot see, are for the product's own checks
 SCHEMA_SEES = [path for path in BAD if path.name.startswith("xsd-")]

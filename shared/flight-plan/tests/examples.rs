@@ -64,6 +64,17 @@ fn the_whole_language_is_read_and_written_byte_by_byte() {
     assert_eq!(write(&reading.plan), document);
 }
 
+/// As the schema allows it (see tests/peers/test_schema.py): before and behind what belongs to a leg.
+#[test]
+fn emergencies_and_actions_stand_in_any_order() {
+    let reading = read(include_str!("data/any-order.xml"));
+    assert_eq!(reading.problems, []);
+    let actions = |id: &str| reading.plan.leg(&id.into()).unwrap().leg.actions.len();
+    assert_eq!(["sweep", "circle", "strip", "rounds", "fork", "called"].map(actions), [1, 2, 1, 1, 1, 1]);
+    let emergencies = |id: &str| reading.plan.leg(&id.into()).unwrap().leg.emergency.by_cause.len();
+    assert_eq!(["sweep", "circle", "rounds"].map(emergencies), [1, 1, 1]);
+}
+
 #[test]
 fn each_bad_plan_has_the_problem_in_its_name() {
     let ground = ground();

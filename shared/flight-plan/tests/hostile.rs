@@ -48,6 +48,17 @@ fn a_reference_to_a_forbidden_character() {
     }
 }
 
+/// `until="battery < 0.3"`: the schema's validator sees no XML there.
+#[test]
+fn a_bracket_in_an_attribute_is_no_xml_and_has_its_place() {
+    let plan = plan_of("\n<fixes>\n  <fix id=\"A\" name=\"a < b\" lat=\"1\" lon=\"2\"/></fixes>");
+    let problems = read(plan).problems;
+    let [problem] = problems.as_slice() else { panic!("{problems:?}") };
+    assert_eq!((problem.code, problem.location.unwrap().to_string()), ("not-xml", "3:23".to_owned()));
+    assert!(problem.message.contains("`&lt;`"), "{problem}");
+    assert_eq!(codes(plan_of("<fixes><fix id=\"A\" name=\"a > b\" lat=\"1\" lon=\"2\"/></fixes>")), [""; 0]);
+}
+
 #[test]
 fn a_million_nested_elements() {
     assert_eq!(

@@ -62,6 +62,10 @@ impl<'a> Attributes<'a> {
                 problems.push(Problem::error("too-many-attributes", message).at(place.of(text)));
                 break;
             }
+            if let Some(bracket) = attribute.as_ref().ok().and_then(|a| raw_bracket(a)) {
+                let message = "write `&lt;` for `<` in an attribute's value: XML does not allow the character itself there";
+                problems.push(Problem::error("not-xml", message).at(place.of(bracket)));
+            }
             match attribute.map_err(|e| ("not-xml", e.to_string())).and_then(|a| entry(&a, &list)) {
                 Ok(entry) => list.push(entry),
                 Err((code, message)) => {
@@ -166,6 +170,12 @@ const PARTS: [u8; 256] = {
 /// How many bytes at the beginning of a text are of a part.
 fn begins_with(text: &str, part: u8) -> usize {
     text.bytes().take_while(|byte| PARTS[usize::from(*byte)] & part != 0).count()
+}
+
+/// From a `<` on that stands in a value as it is: that is no XML, although the parser takes it.
+fn raw_bracket<'a>(attribute: &Attribute<'a>) -> Option<&'a str> {
+    let Cow::Borrowed(value) = attribute.value else { return None };
+    value.find('<').and_then(|at| value.get(at..))
 }
 
 fn entry<'a>(attribute: &Attribute<'a>, list: &[Entry<'a>]) -> Result<Entry<'a>, (&'static str, String)> {
