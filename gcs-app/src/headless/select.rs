@@ -4,6 +4,7 @@ use super::source::Loaded;
 use anyhow::{anyhow, bail};
 use flight_exec::rehearse::{Act, Preview, Scenario, Trigger, When};
 use flight_exec::{Branching, Command};
+use flight_plan::suggest::did_you_mean;
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;
 use interchange::Step;
@@ -50,8 +51,10 @@ impl Selection {
             let names = || plan.variables.iter().map(|v| v.name.to_string()).collect::<Vec<_>>().join(", ");
             let known = names();
             let variable = plan.variables.iter_mut().find(|v| v.name.as_str() == name);
-            let variable =
-                variable.ok_or_else(|| anyhow!("there is no variable `{name}`: there are {known}"))?;
+            let variable = variable.ok_or_else(|| {
+                let meant = did_you_mean(name, known.split(", "));
+                anyhow!("there is no variable `{name}`: there are {known}{meant}")
+            })?;
             let value = value(variable, text)?;
             variable.accepts(&value).map_err(|e| anyhow!("{name}: {e}"))?;
             variable.initial = value;
@@ -76,7 +79,8 @@ impl Selection {
             let emergency = plan.emergency_plans.iter().find(|e| e.id.as_str() == name);
             let Some(emergency) = emergency else {
                 let names: Vec<_> = plan.emergency_plans.iter().map(|e| e.id.to_string()).collect();
-                bail!("there is no emergency plan `{name}`: there are {}", names.join(", "));
+                let meant = did_you_mean(name, names.iter().map(String::as_str));
+                bail!("there is no emergency plan `{name}`: there are {}{meant}", names.join(", "));
             };
             let leg = self.raised_at(plan)?;
             let command = Command::Emergency { cause: Cause::Operator, plan: Some(emergency.id.clone()) };
@@ -137,7 +141,7 @@ pub fn known_leg(plan: &FlightPlan, name: &str) -> anyhow::Result<Id> {
             Some(first) => first,
             None => return Ok(stage.id.clone()),
         },
-        (None, None) => bail!("there is no leg `{name}` in the plan"),
+        (None, None) => return Err(no_leg(plan, name)),
     };
     let leg = begun.first_flown();
     if matches!(leg.kind, LegKind::Intersection { .. }) {
@@ -146,8 +150,16 @@ pub fn known_leg(plan: &FlightPlan, name: &str) -> anyhow::Result<Id> {
     Ok(leg.id.clone())
 }
 
+/// No leg and no stage has this name.
+fn no_leg(plan: &FlightPlan, name: &str) -> anyhow::Error {
+    let legs = plan.all_legs();
+    let legs = legs.iter().map(|context| context.leg.id.as_str());
+    let stages = plan.all_stages().map(|(_, stage)| stage.id.as_str());
+    anyhow!("there is no leg `{name}` in the plan{}", did_you_mean(name, legs.chain(stages)))
+}
+
 fn branch_of(plan: &FlightPlan, leg: &str, branch: &str) -> anyhow::Result<(Id, Id)> {
-    let context = plan.leg(&Id::new(leg)).ok_or_else(|| anyhow!("there is no leg `{leg}` in the plan"))?;
+    let context = plan.leg(&Id::new(leg)).ok_or_else(|| no_leg(plan, leg))?;
     let LegKind::Intersection { branches, .. } = &context.leg.kind else {
         bail!("`{leg}` is no intersection");
     };
@@ -155,7 +167,8 @@ fn branch_of(plan: &FlightPlan, leg: &str, branch: &str) -> anyhow::Result<(Id, 
         Some(found) => Ok((context.leg.id.clone(), found.id.clone())),
         None => {
             let names: Vec<_> = branches.iter().map(|b| b.id.to_string()).collect();
-            bail!("`{leg}` has no branch `{branch}`: it has {}", names.join(", "))
+            let meant = did_you_mean(branch, names.iter().map(String::as_str));
+            bail!("`{leg}` has no branch `{branch}`: it has {}{meant}", names.join(", "))
         }
     }
 }
@@ -211,6 +224,8 @@ mod tests {
         }
         assert!(begins("ask").unwrap_err().contains("passed without being flown"));
         assert!(begins("nowhere").unwrap_err().contains("there is no leg"));
+        assert!(begins("swepp").unwrap_err().ends_with("; did you mean `sweep`?"));
+        assert!(begins("take-of").unwrap_err().ends_with("; did you mean `take-off`?"), "a stage");
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod names;
 pub mod problem;
 pub mod procedure;
 pub mod program;
+pub mod suggest;
 pub mod template;
 pub mod transform;
 pub mod uses;

@@ -4,7 +4,7 @@
 use super::Inspection;
 use super::remedy::changed;
 use super::step::Step;
-use super::suggest::meant;
+use crate::suggest::{meant, question};
 use crate::{Branch, DecideBefore, Edit, Id, Leg, LegKind, Problem};
 
 pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
@@ -12,10 +12,13 @@ pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let LegKind::Intersection { branches, default, decide_before } = &leg.kind else { return };
     match default {
         Some(id) if !branches.iter().any(|b| b.id == *id) => {
-            let message = format!("the default `{id}` is no branch of this intersection: name one of them");
-            let near = meant(id, branches.iter().map(|b| &b.id));
+            let near = meant(id.as_str(), branches.iter().map(|b| b.id.as_str()));
+            let message = format!(
+                "the default `{id}` is no branch of this intersection: name one of them{}",
+                near.map_or_else(String::new, question)
+            );
             let problem = Problem::error("unknown-branch", message).of(&leg.id);
-            problems.push(problem.perhaps_fixed_by(near.map(|id| set_default(&leg.id, id))));
+            problems.push(problem.perhaps_fixed_by(near.map(|near| set_default(&leg.id, &near.into()))));
         }
         None if branches.len() > 1 => problems.push(undecided(leg, branches)),
         _ => {}

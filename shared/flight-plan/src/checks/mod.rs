@@ -40,7 +40,6 @@ mod spacings;
 mod speeds;
 mod stages;
 mod step;
-mod suggest;
 mod terrain_clearance;
 mod trace;
 mod tracks;

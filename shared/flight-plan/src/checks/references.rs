@@ -2,7 +2,7 @@
 //! that is not there. (Procedures: where they are instantiated.)
 
 use super::Inspection;
-use super::suggest::meant;
+use crate::suggest::{meant, question};
 use crate::uses::Part;
 use crate::{Act, Edit, EmergencyChoice, Id, Leg, LegAction, LegKind, Place, Problem};
 use std::collections::HashSet;
@@ -97,12 +97,13 @@ impl<'a> Found<'a, '_> {
     }
 
     fn next(&mut self, list: &[Arc<Leg>], leg: &Leg, id: &Id) {
+        let near = self.near(id, list.iter().map(|l| &l.id));
         let message = format!(
-            "`next` names `{id}`, which is no leg of the same list: name a leg of this stage or loop"
+            "`next` names `{id}`, which is no leg of the same list: name a leg of this stage or loop{}",
+            asked(near.as_ref())
         );
         let problem = Problem::error("unknown-leg", message).of(&leg.id);
-        let fix = self.corrected(id, Some(&leg.id), list.iter().map(|l| &l.id));
-        self.problems.push(problem.perhaps_fixed_by(fix));
+        self.problems.push(problem.perhaps_fixed_by(corrected(id, Some(&leg.id), near)));
     }
 
     fn report<'k>(
@@ -113,29 +114,35 @@ impl<'a> Found<'a, '_> {
         of: Option<&Id>,
         known: impl Iterator<Item = &'k Id>,
     ) {
-        let message = format!("there is no {what} `{id}`: add it or name another");
+        let near = self.near(id, known);
+        let message = format!("there is no {what} `{id}`: add it or name another{}", asked(near.as_ref()));
         let problem = Problem::error(code, message);
         let problem = of.map_or(problem.clone(), |of| problem.of(of));
-        let fix = self.corrected(id, of, known);
-        self.problems.push(problem.perhaps_fixed_by(fix));
+        self.problems.push(problem.perhaps_fixed_by(corrected(id, of, near)));
     }
 
-    /// The edit that names what was probably meant.
-    fn corrected<'k>(
-        &mut self,
-        id: &Id,
-        of: Option<&Id>,
-        known: impl Iterator<Item = &'k Id>,
-    ) -> Option<Edit> {
+    /// What was probably meant.
+    fn near<'k>(&mut self, id: &Id, known: impl Iterator<Item = &'k Id>) -> Option<Id> {
         self.left = self.left.checked_sub(1)?;
-        let to = meant(id, known)?.clone();
-        Some(Edit::Refer { of: of.cloned(), from: id.clone(), to })
+        meant(id.as_str(), known.map(Id::as_str)).map(Id::new)
     }
+}
+
+fn asked(near: Option<&Id>) -> String {
+    near.map_or_else(String::new, |near| question(near.as_str()))
+}
+
+/// The edit that names what was probably meant.
+fn corrected(id: &Id, of: Option<&Id>, near: Option<Id>) -> Option<Edit> {
+    Some(Edit::Refer { of: of.cloned(), from: id.clone(), to: near? })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, document_with, fixed_legs, message_of};
+    use crate::{check, read};
+    use aircraft::Profile;
+    use terrain::Flat;
 
     #[test]
     fn names_of_things_that_are_not_there() {
@@ -176,5 +183,69 @@ mod tests {
             (r#"<IF id="a" fix="A" emergency="homr"/>"#, "unknown-emergency-plan"),
             (r#"<IF id="a" fix="A" next="bett"/><TF id="beta" fix="B"/><TF id="c" fix="C"/>"#, "unknown-leg"),
         ]);
+    }
+
+    /// Whatever is named: what is spelt nearly like it is asked for.
+    #[test]
+    fn who_misspells_a_name_is_asked_for_the_nearest() {
+        let leg = |legs: &str, code| message_of(legs, code);
+        let cases = [
+            (leg(r#"<IF id="a" fix="GATA"/>"#, "unknown-fix"), "GATE"),
+            (leg(r#"<IF id="a" fix="A" emergency="hone"/>"#, "unknown-emergency-plan"), "home"),
+            (leg(r#"<IF id="a" fix="A" next="seconds"/><TF id="second" fix="B"/>"#, "unknown-leg"), "second"),
+            (
+                leg(
+                    r#"<IF id="a" fix="A"/><intersection id="i" default="nortth"><branch id="north" next="n"/><branch id="south" next="n"/></intersection><TF id="n" fix="B"/>"#,
+                    "unknown-branch",
+                ),
+                "north",
+            ),
+            (
+                leg(
+                    r#"<IF id="a" fix="A"/><HM id="h" fix="A" turn="left" length="600" until="batterys &lt; 0.5"/>"#,
+                    "unknown-name",
+                ),
+                "battery",
+            ),
+            (
+                leg(
+                    r#"<IF id="a" fix="A"/><HM id="h" fix="A" turn="left" length="600" until="distance_to('GATA') &lt; 90.0"/>"#,
+                    "unknown-name",
+                ),
+                "GATE",
+            ),
+            (
+                leg(
+                    r#"<IF id="a" fix="A"/><HM id="h" fix="A" turn="left" length="600" until="distance_two(position) &lt; 90.0"/>"#,
+                    "unknown-name",
+                ),
+                "distance_to",
+            ),
+        ];
+        for (message, near) in cases {
+            assert!(message.contains(&format!("; did you mean `{near}`?")), "{message}");
+        }
+    }
+
+    #[test]
+    fn who_misspells_a_variable_a_runway_or_a_procedure_is_asked_too() {
+        let variables = r#"<variable name="spacing" type="number" initial="2"/></variables>
+            <procedures><procedure id="box"><TF id="t" fix="B"/></procedure></procedures><variables>"#;
+        let variables = variables.replace("<variables>", "");
+        let stages = r#"<stage id="s" type="mission" altitude="500" altitudeReference="amsl"><IF id="a" fix="A"><action on="end"><set variable="spacings" to="= 1.0"/></action></IF>
+            <call id="c" procedure="boxx"/></stage><stage id="l" type="land" runway="RUNWAY"/>"#;
+        let document = document_with("", stages, "")
+            .replace("<variables></variables>", &format!("<variables>{variables}"))
+            .replace(r#"<runway id="R""#, r#"<runway id="RUNWAI""#)
+            .replace(r#"emergency="home""#, "");
+        let reading = read(&document);
+        assert_eq!(reading.problems, []);
+        let found = check(&reading.plan, &Profile::default(), &Flat(300.0));
+        for (code, near) in
+            [("unknown-variable", "spacing"), ("unknown-procedure", "box"), ("unknown-runway", "RUNWAI")]
+        {
+            let problem = found.iter().find(|p| p.code == code).unwrap();
+            assert!(problem.message.ends_with(&format!("did you mean `{near}`?")), "{problem}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! From CEL source to a checked tree.
 
 use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type};
+use crate::suggest::did_you_mean;
 use crate::{FlightPlan, Id, Variable, VariableValue};
 use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
 use cel::parser::Parser;
@@ -174,11 +175,9 @@ impl Checker<'_> {
             return Ok((Node::Flight(*flight), *kind));
         }
         let Some(variable) = self.names.variables.get(name) else {
-            return Err(self.error(
-                at,
-                "unknown-name",
-                format!("declare the variable `{name}` or correct its name"),
-            ));
+            let message =
+                format!("declare the variable `{name}` or correct its name{}", self.name_meant(name));
+            return Err(self.error(at, "unknown-name", message));
         };
         let kind = match variable.initial {
             VariableValue::Bool(_) => Type::Bool,
@@ -191,6 +190,12 @@ impl Checker<'_> {
             self.variables.push(variable.name.clone());
         }
         Ok((Node::Variable(variable.name.clone()), kind))
+    }
+
+    /// What a name that nobody knows was probably meant to be.
+    fn name_meant(&self, name: &str) -> String {
+        let of_flight = super::flight_names().map(|(known, _)| known);
+        did_you_mean(name, self.names.variables.keys().copied().chain(of_flight))
     }
 
     fn call(&mut self, at: &IdedExpr, call: &CallExpr, depth: usize) -> Checked {
@@ -298,11 +303,10 @@ impl Checker<'_> {
             Expr::Literal(LiteralValue::String(id)) => {
                 let fix = self.names.fixes.get(id.inner());
                 let unknown = || {
-                    self.error(
-                        to,
-                        "unknown-name",
-                        format!("there is no fix `{}`: add it or correct its name", id.inner()),
-                    )
+                    let name = id.inner();
+                    let meant = did_you_mean(name, self.names.fixes.keys().copied());
+                    let message = format!("there is no fix `{name}`: add it or correct its name{meant}");
+                    self.error(to, "unknown-name", message)
                 };
                 let position = *fix.ok_or_else(unknown)?;
                 self.fixes.push(Id::new(id.inner()));
@@ -338,11 +342,9 @@ impl Checker<'_> {
                 return Err(self.error(at, "expression-syntax", message));
             }
             _ => {
-                return Err(self.error(
-                    at,
-                    "unknown-name",
-                    format!("there is no function `{name}`: correct its name"),
-                ));
+                let meant = did_you_mean(name, super::functions().map(|(known, _)| known));
+                let message = format!("there is no function `{name}`: correct its name{meant}");
+                return Err(self.error(at, "unknown-name", message));
             }
         };
         if arguments.len() != parameters.len() {

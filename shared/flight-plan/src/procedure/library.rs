@@ -1,6 +1,7 @@
 //! The plan's procedures, each with the size of its expansion; those that can't be called are refused here.
 
 use super::MAX_NESTING;
+use crate::suggest::did_you_mean;
 use crate::{FlightPlan, Id, Leg, LegKind, Parameter, Problem, Procedure, expression, xml};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -39,7 +40,7 @@ impl<'p> Library<'p> {
             for (leg, id) in calls {
                 match waiting.get_mut(&procedure.id).filter(|_| known.contains(id)) {
                     Some(of) => of.calls.push(id),
-                    None => problems.push(unknown(id).of(&leg.id)),
+                    None => problems.push(unknown(id, plan).of(&leg.id)),
                 }
             }
         }
@@ -131,8 +132,13 @@ struct Waiting<'p> {
     left: usize,
 }
 
-pub(super) fn unknown(id: &Id) -> Problem {
-    Problem::error("unknown-procedure", format!("there is no procedure `{id}`: add it or call another"))
+pub(super) fn unknown(id: &Id, plan: &FlightPlan) -> Problem {
+    let known = plan.procedures.iter().map(|procedure| procedure.id.as_str());
+    let meant = did_you_mean(id.as_str(), known);
+    Problem::error(
+        "unknown-procedure",
+        format!("there is no procedure `{id}`: add it or call another{meant}"),
+    )
 }
 
 /// Reports those of `waiting` that are called by another one of them: the cycles, and what lies between two of them.

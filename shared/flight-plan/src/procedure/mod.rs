@@ -134,7 +134,7 @@ impl Calls<'_> {
         if around.is_some() || self.library.refuses(id) {
             return Ok(None);
         }
-        Err(library::unknown(id))
+        Err(library::unknown(id, self.plan))
     }
 
     fn has_room(&self) -> Result<(), Problem> {

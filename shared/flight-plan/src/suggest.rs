@@ -1,30 +1,38 @@
-//! What somebody meant who misspelt an identifier.
+//! What somebody meant who misspelt a name.
 
-use crate::Id;
-
-/// Most identifiers that are compared with a misspelt one.
+/// Most names that are compared with a misspelt one.
 const MAX_CANDIDATES: usize = 10_000;
-/// Longest identifier that is compared, bytes.
+/// Longest name that is compared, bytes.
 const LONGEST: usize = 64;
 /// One slip for so many letters, up to [`MAX_SLIPS`].
 const LETTERS_A_SLIP: usize = 3;
 const MAX_SLIPS: usize = 2;
 
-/// The one identifier that is spelt nearly like `wanted`: a slip for three letters, two at most; `None` if there is no such
+/// The one name that is spelt nearly like `wanted`: a slip for three letters, two at most; `None` if there is no such
 /// one, or if several are equally near.
-pub(super) fn meant<'a>(wanted: &Id, known: impl Iterator<Item = &'a Id>) -> Option<&'a Id> {
-    let allowed = (wanted.as_str().len() / LETTERS_A_SLIP).min(MAX_SLIPS);
-    let mut best: Option<(usize, &Id)> = None;
+pub fn meant<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let allowed = (wanted.len() / LETTERS_A_SLIP).min(MAX_SLIPS);
+    let mut best: Option<(usize, &str)> = None;
     let mut alone = true;
-    for id in known.take(MAX_CANDIDATES) {
-        let Some(slips) = slips(wanted.as_str(), id.as_str()).filter(|n| *n <= allowed) else { continue };
+    for name in known.take(MAX_CANDIDATES) {
+        let Some(slips) = slips(wanted, name).filter(|n| *n <= allowed) else { continue };
         match best {
-            Some((least, other)) if slips > least || id == other => {}
+            Some((least, other)) if slips > least || name == other => {}
             Some((least, _)) if slips == least => alone = false,
-            _ => (best, alone) = (Some((slips, id)), true),
+            _ => (best, alone) = (Some((slips, name)), true),
         }
     }
-    best.filter(|_| alone).map(|(_, id)| id)
+    best.filter(|_| alone).map(|(_, name)| name)
+}
+
+/// The question behind a sentence about a name that nobody knows; nothing if no other one is near.
+pub fn did_you_mean<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> String {
+    meant(wanted, known).map_or_else(String::new, question)
+}
+
+/// Whether this one was meant.
+pub fn question(name: &str) -> String {
+    format!("; did you mean `{name}`?")
 }
 
 /// Letters to insert, remove or change (Levenshtein 1966); `None` if that is surely too many.
@@ -53,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_only_near_spelling_is_meant() {
-        let known: Vec<Id> = ["COVE", "RIDGE1", "RIDGE2", "north-strip", "A"].map(Id::new).into();
+        let known = ["COVE", "RIDGE1", "RIDGE2", "north-strip", "A"];
         let cases = [
             ("COVA", Some("COVE")),
             ("CAVA", None),
@@ -65,9 +73,16 @@ mod tests {
             ("", None),
         ];
         for (wanted, expected) in cases {
-            let found = meant(&wanted.into(), known.iter()).map(Id::as_str);
+            let found = meant(wanted, known.into_iter());
             assert_eq!(found, expected, "{wanted}");
         }
+    }
+
+    #[test]
+    fn the_question_is_asked_where_something_is_near() {
+        let known = || ["trainer", "foam-wing"].into_iter();
+        assert_eq!(did_you_mean("trainr", known()), "; did you mean `trainer`?");
+        assert_eq!(did_you_mean("glider", known()), "");
     }
 
     #[test]
