@@ -74,7 +74,7 @@ pub(super) const ALL: &[Description] = &[
             &[
                 SPACING,
                 P(value("heading", "Heading", Quantity::Angle, 0.0, "0")
-                    .help("Direction of the tracks, degrees true.")
+                    .help("Direction of the tracks, degrees true in the middle of the area.")
                     .without("the fewest turns")),
                 P(value("overshoot", "Overshoot", Quantity::Length, 0.0, "0")
                     .help("How far the tracks go on beyond the edge.")),

@@ -57,8 +57,9 @@ impl Outline {
                 Ok((frame, circle.map_err(geometric)?))
             }
             Outline::Polygon { corners, holes } => {
-                let origin = corners.first().copied().unwrap_or(LatLon::new(0.0, 0.0));
-                let frame = LocalFrame::new(origin);
+                // in its middle, where a heading is true
+                let frame =
+                    LocalFrame::around(corners).unwrap_or_else(|| LocalFrame::new(LatLon::new(0.0, 0.0)));
                 Ok((frame, Polygon::from_geo(&frame, corners, holes).map_err(geometric)?))
             }
         }
