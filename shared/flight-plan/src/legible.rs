@@ -82,6 +82,15 @@ fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '/' | '\\')
 }
 
+/// Two numbers with as many decimals, one or more, as it takes to see that they differ.
+pub fn told_apart(a: f64, b: f64) -> (String, String) {
+    /// More say nothing of an aircraft.
+    const MOST: usize = 6;
+    let shown = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
+    let differ = (1..MOST).map(shown).find(|(a, b)| a != b);
+    differ.unwrap_or_else(|| shown(MOST))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,5 +131,13 @@ mod tests {
             let own = legible(&format!("{x} {x:.1}")).into_owned();
             prop_assert!(own.split(|c: char| !is_of_number(c)).all(|run| digits(run) <= MAX_DIGITS), "{}", own);
         }
+    }
+
+    #[test]
+    fn numbers_that_differ_are_seen_to_differ() {
+        let told = |a, b| told_apart(a, b);
+        assert_eq!(told(4.04, 4.0), ("4.04".into(), "4.00".into()));
+        assert_eq!(told(7.25, 4.0), ("7.2".into(), "4.0".into()));
+        assert_eq!(told(4.0, 4.0).0, "4.000000");
     }
 }

@@ -123,6 +123,17 @@ fn sample(pair: [u8; 2]) -> i16 {
     if PLAUSIBLE_M.contains(&value) { value } else { VOID }
 }
 
+/// The name of the file (`N36W085.hgt`) that has the elevation of a position; `None`: it is none on Earth.
+pub fn file_name(of: LatLon) -> Option<String> {
+    if !of.is_valid() {
+        return None;
+    }
+    // the tile of the last degree has its northern and eastern edges, too
+    let (south, west) = (of.lat_deg.floor().min(89.0), of.lon_deg.floor().min(179.0));
+    let (ns, ew) = (if south < 0.0 { 'S' } else { 'N' }, if west < 0.0 { 'W' } else { 'E' });
+    Some(format!("{ns}{:02}{ew}{:03}.hgt", south.abs(), west.abs()))
+}
+
 /// `N36W085` (any case, any extension) as degrees of the south-west corner.
 fn corner(name: &str) -> Option<(i32, i32)> {
     let stem = name.split('.').next()?.as_bytes();
@@ -158,6 +169,22 @@ pub(crate) mod tests {
     /// HGT bytes of a 3″ tile whose samples are `f(row, column)`.
     pub(crate) fn hgt(f: impl Fn(usize, usize) -> i16) -> Vec<u8> {
         (0..1201 * 1201).flat_map(|i| f(i / 1201, i % 1201).to_be_bytes()).collect()
+    }
+
+    #[test]
+    fn the_file_of_a_position_is_named() {
+        for (lat, lon, expected) in [
+            (36.3, -84.2, "N36W085.hgt"),
+            (-0.5, 0.5, "S01E000.hgt"),
+            (36.0, -84.0, "N36W084.hgt"),
+            (-90.0, 180.0, "S90E179.hgt"),
+            (90.0, -180.0, "N89W180.hgt"),
+        ] {
+            let name = file_name(LatLon::new(lat, lon)).unwrap();
+            assert_eq!(name, expected);
+            assert!(corner(&name).is_some());
+        }
+        assert_eq!(file_name(LatLon::new(f64::NAN, 0.0)), None);
     }
 
     #[test]

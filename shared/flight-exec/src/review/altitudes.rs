@@ -4,6 +4,7 @@
 use super::View;
 use super::flown::{Flown, Point};
 use super::layout::LaidOut;
+use super::remedy::room_to_climb;
 use crate::api::Action;
 use flight_plan::Problem;
 
@@ -37,7 +38,8 @@ fn problem(view: &View, flown: &Flown, last: &LaidOut, at: &Point) -> Option<Pro
     let what = if missing_m > 0.0 { "below" } else { "above" };
     let way = if flown.emergency.is_some() { "from where this emergency plan is entered, " } else { "" };
     let message = format!(
-        "lengthen this leg, change its altitude or hold to altitude (HA): {way}the aircraft is {:.0} m {what} the {:.0} m AMSL of its end",
+        "{}: {way}the aircraft is {:.0} m {what} the {:.0} m AMSL of its end",
+        room_to_climb(view.program.leg(&last.waypoint.leg).map(|leg| &leg.kind)),
         missing_m.abs(),
         last.wanted_amsl_m
     );

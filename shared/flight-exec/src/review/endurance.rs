@@ -1,11 +1,13 @@
 //! `energy`: the energy does not last to the plan's end; `low-reserve`: it does, but hardly anything is left; `open-ended`: it
-//! does not, where only a person or a service ends a loop or a holding; `not-startable`, `endless-flight`: the flight
+//! does not, where only a person or a service ends a loop or a holding, or a condition that nothing makes true before; `not-startable`, `endless-flight`: the flight
 //! ahead of time does not begin or end.
 
 use super::View;
 use super::flights::Choice;
-use crate::rehearse::{Preview, PreviewError};
-use flight_plan::{Id, LegKind, Problem};
+use crate::rehearse::{LegPassage, Preview, PreviewError};
+use flight_plan::legible::told_apart;
+use flight_plan::{Env, FlightState, Id, Leg, LegKind, Problem};
+use std::collections::HashMap;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     problems.extend(match &view.flights.planned {
@@ -46,13 +48,20 @@ fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError
 /// Of its flights the first that lands with too little.
 fn low_reserve(view: &View, preview: &Preview) -> Option<Problem> {
     let reserve = view.conditions.margins.energy_share;
-    let stops = preview.stops.iter().map(|stop| (stop.battery_left, Some(&stop.stage)));
-    let mut landings = stops.chain([(preview.battery_left, None)]);
-    let (left, at) = landings.find(|(left, _)| *left < reserve)?;
+    let stops = preview.stops.iter().map(|stop| (stop.battery_left, Some(&stop.stage), stop.legs));
+    let mut landings = stops.chain([(preview.battery_left, None, preview.legs.len())]);
+    let mut begins = 0;
+    let (left, at, legs) = landings.find_map(|(left, at, ends)| {
+        let legs = preview.legs.get(std::mem::replace(&mut begins, ends)..ends).unwrap_or_default();
+        (left < reserve).then_some((left, at, legs))
+    })?;
+    let (left_share, wanted_share) = told_apart(left * 100.0, reserve * 100.0);
+    let full_j = view.profile.energy_j;
     let message = format!(
-        "shorten the plan or fly it slower: it lands with {:.0} % of the energy, {:.0} % is the reserve",
-        left * 100.0,
-        reserve * 100.0
+        "shorten the plan or fly it slower: it lands with {left_share} % of the energy ({:.0} kJ), {wanted_share} % is the reserve ({:.0} kJ){}",
+        left * full_j / 1e3,
+        reserve * full_j / 1e3,
+        spent(legs, full_j)
     );
     let problem = Problem::warning("low-reserve", message);
     Some(match at {
@@ -61,22 +70,70 @@ fn low_reserve(view: &View, preview: &Preview) -> Option<Problem> {
     })
 }
 
+/// Where most of the energy goes, as shares of what the aircraft holds.
+fn spent(legs: &[LegPassage], full_j: f64) -> String {
+    const TOLD: usize = 3;
+    let mut by_leg: Vec<(&Id, f64)> = Vec::new();
+    let mut index: HashMap<&Id, usize> = HashMap::new();
+    for passage in legs {
+        let at = *index.entry(&passage.place.leg).or_insert(by_leg.len());
+        match by_leg.get_mut(at) {
+            Some((_, sum_j)) => *sum_j += passage.energy_j,
+            None => by_leg.push((&passage.place.leg, passage.energy_j)),
+        }
+    }
+    by_leg.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let told = by_leg.iter().take(TOLD).map(|(leg, j)| format!("`{leg}` {:.0} %", j / full_j * 100.0));
+    let told: Vec<String> = told.collect();
+    if told.is_empty() { String::new() } else { format!("; most goes to {}", told.join(", ")) }
+}
+
 fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
     let minutes = seconds / 60.0;
     let open = view.program.path(leg).map(|path| view.program.chain(&path)).unwrap_or_default();
-    if let Some(endless) = open.into_iter().find(|l| open_ended(&l.kind)) {
-        let message = format!(
-            "give `{}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min",
-            endless.id
-        );
-        return Problem::warning("open-ended", message).of(&endless.id);
+    let ends = |l: &&&Leg| {
+        matches!(l.kind, LegKind::Iterative { count: None, .. } | LegKind::Hm { max_laps: None, .. })
+    };
+    let Some(endless) = open.iter().find(ends) else {
+        let message = format!("shorten the plan: the energy is used up after {minutes:.0} min, on this leg");
+        return Problem::error("energy", message).of(leg);
+    };
+    let id = &endless.id;
+    match until(&endless.kind).map(|until| (until, holds_when_empty(view, until, seconds))) {
+        Some((until, true)) => {
+            let message = format!(
+                "let `{id}` end earlier: `{until}` becomes true too late, the energy is used up after {minutes:.0} min; it is read only at the end of each pass or lap, so that the energy for one more and for the way home has to be left then"
+            );
+            Problem::error("energy", message).of(id)
+        }
+        Some((until, false)) => {
+            let message = format!(
+                "give `{id}` a count too, or a condition on the battery: `{until}` does not become true by itself before the energy is used up after {minutes:.0} min"
+            );
+            Problem::warning("open-ended", message).of(id)
+        }
+        None => {
+            let message = format!(
+                "give `{id}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min"
+            );
+            Problem::warning("open-ended", message).of(id)
+        }
     }
-    let message = format!("shorten the plan: the energy is used up after {minutes:.0} min, on this leg");
-    Problem::error("energy", message).of(leg)
 }
 
-fn open_ended(kind: &LegKind) -> bool {
-    matches!(kind, LegKind::Iterative { count: None, .. } | LegKind::Hm { max_laps: None, .. })
+/// The condition that ends a loop or a holding.
+fn until(kind: &LegKind) -> Option<&str> {
+    match kind {
+        LegKind::Iterative { until, .. } | LegKind::Hm { until, .. } => until.as_deref(),
+        _ => None,
+    }
+}
+
+/// With nothing left a condition on the energy or the time holds at last; one that nobody and nothing brings about does not.
+fn holds_when_empty(view: &View, until: &str, seconds: f64) -> bool {
+    let start = FlightState::at_start(view.program.plan.home());
+    let flight = FlightState { time_s: seconds, battery: 0.0, fuel: 0.0, ..start };
+    view.program.eval_bool(until, &Env { variables: &view.variables, flight }).unwrap_or(false)
 }
 
 #[cfg(test)]

@@ -76,6 +76,14 @@ impl Flown {
         self.waypoints.get(point.waypoint).map(|w| w.wanted_amsl_m)
     }
 
+    /// What is flown before the leg at a point, and the altitude that it asks for at its end, metres AMSL.
+    pub fn before(&self, point: &Point) -> Option<(&Id, f64)> {
+        let passage = self.waypoints.get(point.waypoint)?.passage;
+        let behind = self.waypoints.get(..point.waypoint)?;
+        let last = behind.iter().rfind(|w| w.passage != passage)?;
+        Some((&last.waypoint.leg, last.wanted_amsl_m))
+    }
+
     /// The leg that is flown at a point.
     pub fn leg(&self, point: &Point) -> Option<&Id> {
         self.waypoints.get(point.waypoint).map(|w| &w.waypoint.leg)

@@ -29,12 +29,14 @@ mod flights;
 mod flown;
 mod foresight;
 mod glide;
+mod held;
 mod landings;
 mod layout;
 pub mod plausibility;
 mod powered;
 mod prepared;
 mod refused;
+mod remedy;
 mod stay_in;
 mod terrain_clearance;
 mod tracks;
@@ -51,6 +53,7 @@ use aircraft::{Profile, Wind};
 use alternates::Origin;
 use emergency_coverage::EmergencyCoverage;
 pub use extremes::{MAX_TRIALS, review_extremes};
+use flight_plan::checks::CLEARANCE_M;
 use flight_plan::{
     AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value, Variables,
 };
@@ -78,8 +81,9 @@ pub struct Conditions {
 /// What is kept in reserve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// Height above the ground away from runways, metres. A little less than what the check of the plan asks for, because what is
-    /// flown differs a little from what is written.
+    /// Height above the ground away from runways that the path as flown keeps, metres. A little less than what the check asks for
+    /// of the plan as it is written ([`flight_plan::checks::CLEARANCE_M`]): turns and climbs as flown differ by some metres from
+    /// the lines of the plan, and a plan that is written well should not be warned of for that.
     pub terrain_m: f64,
     /// Distance from the edges of zones, metres.
     pub zone_m: f64,
@@ -91,7 +95,7 @@ pub struct Margins {
 
 impl Default for Margins {
     fn default() -> Self {
-        Self { terrain_m: 40.0, zone_m: 10.0, energy_share: 0.05, glide_m: 15.0 }
+        Self { terrain_m: CLEARANCE_M - 10.0, zone_m: 10.0, energy_share: 0.05, glide_m: 15.0 }
     }
 }
 
@@ -111,7 +115,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 17] = [
+const RULES: [Rule; 18] = [
     refused::check,
     unseen::check,
     wind::check,
@@ -125,6 +129,7 @@ const RULES: [Rule; 17] = [
     tracks::check,
     waypoints::check,
     endurance::check,
+    held::check,
     landings::check,
     emergency_routes::check,
     powered::check,
@@ -163,7 +168,8 @@ impl<'a> View<'a> {
     fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         RULES.iter().for_each(|rule| rule(self, &mut problems));
-        once(wind::without_what_follows(self, problems), &self.program.warnings)
+        let causes = waypoints::near_pole_alone(wind::without_what_follows(self, problems));
+        once(causes, &self.program.warnings)
     }
 }
 

@@ -90,6 +90,18 @@ impl Zones {
         self.start_unix_s.is_none() && !zone.active.is_empty()
     }
 
+    /// A zone to stay in that has times, if none of the others is always active.
+    pub fn timed_keep_in(&self) -> Option<&Id> {
+        let mut keep_in = self.zones.iter().filter(|zone| zone.kind == ZoneKind::KeepIn);
+        let first = keep_in.clone().next()?;
+        keep_in.all(|zone| !zone.active.is_empty()).then_some(&first.id)
+    }
+
+    /// A zone to stay in is active then, or may be.
+    pub fn confines(&self, when: When) -> bool {
+        self.active(ZoneKind::KeepIn, when).next().is_some()
+    }
+
     /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in; true: it
     /// may be that the zone is not active then.
     pub fn breaches(&self, from: At, to: At, terrain: &dyn Terrain) -> Vec<(&Prepared, Breach, bool)> {

@@ -17,21 +17,43 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
 }
 
 /// Where a leg is nearest to the ground.
-struct Lowest {
+struct Lowest<'a> {
     clearance_m: f64,
     point: Point,
     /// The altitude that the leg asks for there, metres AMSL.
     wanted_amsl_m: f64,
     /// The ground's elevation is known there.
     known: bool,
+    /// What is flown before the leg, and the altitude with which that ends, metres AMSL.
+    before: Option<(&'a Id, f64)>,
 }
 
-fn track<'a>(view: &View, flown: &'a Flown, lowest: &mut HashMap<&'a Id, Lowest>, order: &mut Vec<&'a Id>) {
+impl Lowest<'_> {
+    /// What has to begin higher, and by how much (metres), where the leg itself is high enough and only still climbing: between
+    /// two waypoints the altitude changes evenly.
+    fn begins_too_low(&self, margin_m: f64) -> Option<(&Id, f64, f64)> {
+        let below_m = self.wanted_amsl_m - self.point.altitude_amsl_m;
+        let lacks_m = margin_m - self.clearance_m;
+        let (before, ends_amsl_m) = self.before?;
+        let rise_m = self.wanted_amsl_m - ends_amsl_m;
+        (below_m >= lacks_m && rise_m > 0.0).then(|| {
+            let by_m = (lacks_m * (rise_m / below_m).max(1.0)).min(rise_m);
+            (before, ends_amsl_m, by_m)
+        })
+    }
+}
+
+fn track<'a>(
+    view: &View,
+    flown: &'a Flown,
+    lowest: &mut HashMap<&'a Id, Lowest<'a>>,
+    order: &mut Vec<&'a Id>,
+) {
     for point in flown.points.iter().filter(|p| !flown.enters(p)) {
         let Some((clearance_m, known)) = clearance_m(view, point) else { continue };
         let Some(leg) = flown.leg(point) else { continue };
         let wanted_amsl_m = flown.wanted_amsl_m(point).unwrap_or(point.altitude_amsl_m);
-        let here = Lowest { clearance_m, point: *point, wanted_amsl_m, known };
+        let here = Lowest { clearance_m, point: *point, wanted_amsl_m, known, before: flown.before(point) };
         if lowest.get(leg).is_none_or(|old| clearance_m < old.clearance_m)
             && lowest.insert(leg, here).is_none()
         {
@@ -51,7 +73,7 @@ fn clearance_m(view: &View, point: &Point) -> Option<(f64, bool)> {
 }
 
 fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
-    let Lowest { clearance_m, point, wanted_amsl_m, known } = *lowest;
+    let Lowest { clearance_m, point, wanted_amsl_m, known, .. } = *lowest;
     let kind = view.stage_kind(leg)?;
     // the autopilot performs these, on the runway's elevation and not the terrain's
     if matches!(kind, StageKind::TakeOff | StageKind::Land) {
@@ -61,20 +83,33 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
     let margin_m = view.conditions.margins.terrain_m;
     let (lat, lon) = (point.position.lat_deg, point.position.lon_deg);
     let raise_m = margin_m - clearance_m;
-    let fix = view.relevelled(leg, wanted_amsl_m, raise_m);
+    let (advice, fix) = match lowest.begins_too_low(margin_m) {
+        Some((before, ends_amsl_m, by_m)) => (
+            format!(
+                "raise `{before}` by {:.0} m, or hold to climb (HA) behind it, because this leg is still climbing there",
+                by_m.ceil()
+            ),
+            view.relevelled(before, ends_amsl_m, by_m),
+        ),
+        None => (
+            format!("raise this leg by {:.0} m", raise_m.ceil()),
+            view.relevelled(leg, wanted_amsl_m, raise_m),
+        ),
+    };
     if clearance_m < 0.0 {
         let message = if known {
-            format!("raise this leg by {raise_m:.0} m: it goes into the ground at {lat:.5}, {lon:.5}")
+            format!("{advice}: it goes into the ground at {lat:.5}, {lon:.5}")
         } else {
             format!(
-                "raise this leg by {raise_m:.0} m: at {lat:.5}, {lon:.5}, where no elevation is known, it leads {:.0} m below the sea and the plan's lowest runway; if the ground is that low, load its elevations",
+                "{advice}: at {lat:.5}, {lon:.5}, where no elevation is known, it leads {:.0} m below the sea and the plan's lowest runway; if the ground is that low, load its elevations",
                 -clearance_m
             )
         };
         return Some(Problem::error("below-terrain", message).of(leg).perhaps_fixed_by(fix));
     }
     let message = format!(
-        "raise this leg by {raise_m:.0} m: as flown, it passes {clearance_m:.0} m above the ground at {lat:.5}, {lon:.5}"
+        "{advice}: as flown, it passes {:.0} m above the ground at {lat:.5}, {lon:.5}, and {margin_m:.0} m is the least of a path as flown",
+        clearance_m.floor()
     );
     let problem = Problem::warning("low-clearance", message).of(leg);
     (clearance_m < margin_m && !near_runway).then(|| problem.perhaps_fixed_by(fix))

@@ -3,7 +3,8 @@
 
 use super::View;
 use flight_plan::{Id, Problem};
-use std::collections::HashSet;
+use geometry::LatLon;
+use std::collections::{BTreeSet, HashSet};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let mut reported: HashSet<&Id> = HashSet::new();
@@ -12,9 +13,13 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     problems.extend(unseen_ground(view));
 }
 
+/// Tiles that are named; more are counted.
+const TILES_TOLD: usize = 8;
+
 /// Of take-off and landing nobody asks: they keep to the runway's elevation.
 fn unseen_ground(view: &View) -> Option<Problem> {
     let (mut flown, mut unknown): (HashSet<&Id>, HashSet<&Id>) = Default::default();
+    let mut tiles = Tiles::default();
     let mut first = None;
     let points =
         view.flights.all().flat_map(|f| f.points.iter().filter_map(|p| Some((f.leg(p)?, p.position))));
@@ -23,18 +28,51 @@ fn unseen_ground(view: &View) -> Option<Problem> {
         if steered {
             flown.insert(leg);
         }
-        if steered && !unknown.contains(leg) && view.terrain.elevation_m(position).is_none() {
+        let asked = unknown.contains(leg) && tiles.has(position);
+        if steered && !asked && view.terrain.elevation_m(position).is_none() {
+            tiles.add(position);
             unknown.insert(leg);
             first.get_or_insert((leg, position));
         }
     }
     let (leg, at) = first?;
     let message = format!(
-        "load the elevations around {:.2}, {:.2}, or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
+        "load the elevations {} (around {:.2}, {:.2}), or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
+        tiles.names(),
         at.lat_deg,
         at.lon_deg,
         unknown.len(),
         flown.len()
     );
     Some(Problem::warning("not-reviewed", message).of(leg))
+}
+
+/// Elevation tiles that are missing, by their corners in whole degrees.
+#[derive(Default)]
+struct Tiles {
+    corners: HashSet<(i32, i32)>,
+    names: BTreeSet<String>,
+}
+
+impl Tiles {
+    fn corner(of: LatLon) -> (i32, i32) {
+        (of.lat_deg.floor() as i32, of.lon_deg.floor() as i32)
+    }
+
+    fn has(&self, position: LatLon) -> bool {
+        self.corners.contains(&Self::corner(position))
+    }
+
+    fn add(&mut self, position: LatLon) {
+        self.corners.insert(Self::corner(position));
+        self.names.extend(terrain::tile::file_name(position));
+    }
+
+    fn names(&self) -> String {
+        let told: Vec<&str> = self.names.iter().take(TILES_TOLD).map(String::as_str).collect();
+        match self.names.len().checked_sub(TILES_TOLD).filter(|more| *more > 0) {
+            Some(more) => format!("{} and {more} more", told.join(", ")),
+            None => told.join(", "),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! `keep-out`: the path, turns and holdings included, goes into a zone to keep out of; `keep-in`: it leaves those to stay in;
-//! `bad-zone`: one that no path can be held against.
+//! `bad-zone`: one that no path can be held against; `keep-in-not-active`: nothing confines the flight at a time, because all
+//! zones to stay in have times, and none of them is active then.
 //!
 //! The plan as it stands is reviewed with its real times. A flight that was cut short, or an emergency, may be later: it is reported as a
 //! warning if it meets a zone only then.
@@ -11,6 +12,9 @@ use crate::rehearse::Preview;
 use flight_plan::{Id, Problem, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
+
+/// None of the zones to stay in is active.
+const UNCONFINED: &str = "keep-in-not-active";
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for (zone, error) in &view.zones.refused {
@@ -24,6 +28,24 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     view.flights.planned.iter().for_each(|planned| found.take(view, planned_track(planned)));
     view.flights.all().for_each(|flown| found.take(view, bounded_track(flown)));
     problems.extend(found.problems(view));
+    problems.extend(unconfined(view));
+}
+
+/// The flight as planned comes to where none of its zones to stay in is active, or may do so.
+fn unconfined(view: &View) -> Option<Problem> {
+    let planned = view.flights.planned.as_ref().ok()?;
+    let zone = view.zones.timed_keep_in()?;
+    if view.conditions.start_unix_s.is_none() {
+        let message = "say when the flight starts, or remove its times: outside of them a zone to stay in does not count, and the flight may go anywhere; the start time is not known, and it is taken as always active";
+        return Some(Problem::warning(UNCONFINED, message).of(zone));
+    }
+    let (leg, at) = planned_track(planned).find(|(_, at)| !view.zones.confines(at.when))?;
+    let (When::At(time_s) | When::From(time_s)) = at.when;
+    let message = format!(
+        "give `{zone}` another period, or the plan another zone to stay in: {:.0} min after the start none is active, and the flight may go anywhere then",
+        time_s / 60.0
+    );
+    Some(Problem::warning(UNCONFINED, message).of(leg).with_zone(zone))
 }
 
 /// Points of the plan as it stands, with their legs.

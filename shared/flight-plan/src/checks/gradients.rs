@@ -4,10 +4,12 @@ use super::Inspection;
 use super::path::SHORTEST_M;
 use super::remedy::relevelled;
 use super::step::Step;
+use crate::legible::told_apart;
 use crate::{Edit, IterativeForm, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
-    let Some(rate_mps) = vertical_speed_mps(step) else { return };
+    let Some((gain_m, length_m)) = gain_and_length_m(step) else { return };
+    let rate_mps = gain_m / (length_m / step.speed_mps);
     let (climb, descent) = (view.profile.max_climb_mps, view.profile.max_descent_mps);
     // flown backwards, a climb is a descent
     let (climb, descent) =
@@ -15,9 +17,17 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     if rate_mps > climb || -rate_mps > descent {
         let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descent", descent) };
         let at_least = if step.start.is_none() { "at least " } else { "" };
+        let (takes, does) = told_apart(rate_mps.abs(), limit);
+        let possible_m = length_m / step.speed_mps * limit;
+        let ends = step.entry_altitude_amsl_m().map_or_else(String::new, |from_m| {
+            // in whole metres that it reaches
+            let reached_m =
+                if gain_m > 0.0 { (from_m + possible_m).floor() } else { (from_m - possible_m).ceil() };
+            format!(", end it at {reached_m:.0} m AMSL")
+        });
         let message = format!(
-            "lengthen this leg, change its altitude or hold to {what} (HA): it takes {at_least}{:.1} m/s, the aircraft does {limit:.1} m/s",
-            rate_mps.abs()
+            "lengthen this leg to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
+            (gain_m.abs() / limit * step.speed_mps).ceil()
         );
         let problem = Problem::error("too-steep", message).of(&step.leg.id);
         problems.push(problem.perhaps_fixed_by(gentler(view, step, limit)));
@@ -32,12 +42,12 @@ fn gentler(view: &Inspection, step: &Step, limit_mps: f64) -> Option<Edit> {
     relevelled(view, &step.leg.id, step.altitude(), to_m, reached_m - to_m)
 }
 
-fn vertical_speed_mps(step: &Step) -> Option<f64> {
+/// How much higher it ends than it begins, and how long it is; `None`: there is nothing to gain, or it can't be said.
+fn gain_and_length_m(step: &Step) -> Option<(f64, f64)> {
     let length_m = longest_m(step).filter(|m| *m >= SHORTEST_M)?;
-    let time_s = length_m / step.speed_mps;
     let gain_m = step.end?.altitude_amsl_m? - step.entry_altitude_amsl_m()?;
     // nothing to gain needs no time
-    (gain_m.abs() > 0.1).then(|| gain_m / time_s)
+    (gain_m.abs() > 0.1).then_some((gain_m, length_m))
 }
 
 /// How long its path is; of a track that is entered within a circle: from the farthest side.
@@ -55,7 +65,7 @@ fn flown_backwards(step: &Step) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, fixed_legs, message_of};
 
     /// From A at 500 m to B, 2695 m away: 107.8 s at 25 m/s, so at most 431 m.
     fn with(altitude_m: f64) -> String {
@@ -75,5 +85,29 @@ mod tests {
             ),
         ]);
         fixed_legs(&[(&with(935.0), "too-steep"), (&with(60.0), "too-steep")]);
+    }
+
+    #[test]
+    fn what_is_too_steep_is_told_with_what_would_do() {
+        for (altitude_m, takes) in [(935.0, "4.04"), (931.5, "4.003")] {
+            let message = message_of(&with(altitude_m), "too-steep");
+            let (advice, why) = message.split_once(": ").unwrap();
+            assert!(why.starts_with(&format!("it takes {takes} m/s, the aircraft does 4.0")), "{message}");
+            let reached: f64 =
+                advice.split("end it at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            check_legs(&[(&with(reached), &[])]);
+            check_legs(&[(&with(reached + 1.0), &["too-steep"])]);
+            let length: f64 = advice
+                .strip_prefix("lengthen this leg to ")
+                .unwrap()
+                .split(' ')
+                .next()
+                .unwrap()
+                .parse()
+                .unwrap();
+            let lon = -84.20 + (length + 1.0) / 2694.6 * 0.03;
+            let longer = with(altitude_m).replace(r#"fix="B""#, &format!(r#"lat="36.3" lon="{lon}""#));
+            check_legs(&[(&longer, &[])]);
+        }
     }
 }

@@ -6,6 +6,7 @@
 mod actions;
 mod aircraft;
 mod altitudes;
+mod conditions;
 mod courses;
 mod emergency_coverage;
 mod emergency_plans;
@@ -53,6 +54,7 @@ mod testing;
 pub use incremental_cache::IncrementalCache;
 pub(crate) use inspection::Expressions;
 pub use scans::untied;
+pub use terrain_clearance::MARGIN_M as CLEARANCE_M;
 
 use crate::ids::Ids;
 use crate::{FlightPlan, Id, Problem};
@@ -74,7 +76,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 41] = {
+const RULES: [Rule; 42] = {
     use Rule::{Leg, Plan};
     [
         Plan(empty::check),
@@ -86,6 +88,7 @@ const RULES: [Rule; 41] = {
         Plan(expressions::check),
         Leg(expressions::leg),
         Plan(expression_bounds::check),
+        Leg(conditions::leg),
         Plan(variables::check),
         Plan(zones::check),
         Plan(aircraft::check),
@@ -172,6 +175,7 @@ fn run_checks(
         inspection = Inspection::new(&flown, profile, terrain, &mut recall);
     }
     problems.extend(apply_rules(&mut inspection, &recall));
+    values::near_pole_alone(&mut problems);
     if matches!(flown, Cow::Owned(_)) {
         written_only(&inspection, &mut problems);
     }

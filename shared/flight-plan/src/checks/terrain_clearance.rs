@@ -5,8 +5,9 @@ use super::remedy::relevelled;
 use super::step::{Point, Step};
 use crate::{Edit, LegKind, Problem, StageKind};
 
-/// Height above the ground that a leg keeps, metres; departure, approach and land stages may come nearer.
-const MARGIN_M: f64 = 50.0;
+/// Height above the ground that a leg keeps as it is written, metres; departure, approach and land stages may come nearer. The
+/// review asks for a little less of the path as flown (`flight_exec::Margins`), because turns and climbs differ from the lines.
+pub const MARGIN_M: f64 = 50.0;
 /// Distance between samples of the ground, metres: half of what 3″ data resolves.
 const SPACING_M: f64 = 45.0;
 /// Most samples on a leg.
@@ -16,25 +17,66 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     if is_high(view, step) == Some(true) {
         return;
     }
-    let Some((clearance_m, ground_m)) = lowest_clearance_m(view, step) else { return };
+    let Some(lowest) = lowest(view, step) else { return };
     let near_runway =
         matches!(step.around.stage.kind, StageKind::Departure | StageKind::Approach | StageKind::Land);
-    let leg = &step.leg.id;
-    if clearance_m < 0.0 {
-        let message = format!(
-            "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high there",
-            MARGIN_M - clearance_m
-        );
-        let problem = Problem::error("below-terrain", message).of(leg);
-        problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
-    } else if clearance_m < MARGIN_M && !near_runway {
-        let message = format!(
-            "raise this leg by {:.0} m: it passes {clearance_m:.0} m above the ground",
-            MARGIN_M - clearance_m
-        );
-        let problem = Problem::warning("low-clearance", message).of(leg);
-        problems.push(problem.perhaps_fixed_by(raised(view, step, clearance_m)));
+    let advice = || advice(view, step, &lowest);
+    let (code, message) = match lowest.clearance_m {
+        clearance_m if clearance_m < 0.0 => {
+            let ground_m = lowest.ground_m;
+            let what = format!("it goes into the ground, which is {ground_m:.0} m AMSL high there");
+            ("below-terrain", format!("{}: {what}", advice()))
+        }
+        clearance_m if clearance_m < MARGIN_M && !near_runway => {
+            let what = format!(
+                "it passes {:.0} m above the ground, and a plan is written to keep {MARGIN_M:.0} m",
+                clearance_m.floor()
+            );
+            ("low-clearance", format!("{}: {what}", advice()))
+        }
+        _ => return,
+    };
+    let problem = if lowest.clearance_m < 0.0 { Problem::error } else { Problem::warning };
+    let fix = raised(view, step, &lowest);
+    problems.push(problem(code, message).of(&step.leg.id).perhaps_fixed_by(fix));
+}
+
+/// Where a leg is nearest to the ground.
+struct Lowest {
+    clearance_m: f64,
+    /// The ground's elevation there, metres AMSL.
+    ground_m: f64,
+    /// How far along the leg it is, 0..1.
+    share: f64,
+    /// How much lower than its end the leg still is there, metres.
+    below_end_m: f64,
+}
+
+impl Lowest {
+    /// What it lacks, metres.
+    fn lacks_m(&self) -> f64 {
+        MARGIN_M - self.clearance_m
     }
+
+    /// The leg is only still climbing there: at the altitude of its end it would pass. So much higher it has to begin, metres.
+    fn begin_higher_by_m(&self) -> Option<f64> {
+        (self.below_end_m >= self.lacks_m()).then(|| self.lacks_m() / (1.0 - self.share))
+    }
+}
+
+/// What has to change: the leg, or where it begins.
+fn advice(view: &Inspection, step: &Step, lowest: &Lowest) -> String {
+    let Some(by_m) = lowest.begin_higher_by_m() else {
+        return format!("raise this leg by {:.0} m", lowest.lacks_m().ceil());
+    };
+    let before = match view.before(step) {
+        Some(before) => format!("`{}`", before.leg.id),
+        None => "the climb before this leg".to_owned(),
+    };
+    format!(
+        "raise {before} by {:.0} m, or hold to climb (HA) behind it, because this leg is still climbing there",
+        by_m.ceil()
+    )
 }
 
 /// Even the highest ground around is well below the whole leg.
@@ -45,35 +87,44 @@ fn is_high(view: &Inspection, step: &Step) -> Option<bool> {
     Some(lowest_m - view.terrain.at_most_m(south_west, north_east)? >= MARGIN_M)
 }
 
-/// The leg raised at both ends by what it lacks, to whole metres.
-fn raised(view: &Inspection, step: &Step, clearance_m: f64) -> Option<Edit> {
-    let lacks_m = MARGIN_M - clearance_m;
-    let lift = |of: &Step| relevelled(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, lacks_m);
-    let end = lift(step)?;
-    let Some(before) = view.before(step) else { return Some(end) };
-    let start = lift(before)?;
-    Some(Edit::All(vec![start, end]))
+/// Begun higher, where it only has to climb before; else raised at both ends by what it lacks. To whole metres.
+fn raised(view: &Inspection, step: &Step, lowest: &Lowest) -> Option<Edit> {
+    let lift = |of: &Step, by_m| relevelled(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, by_m);
+    let before = view.before(step);
+    if let Some(by_m) = lowest.begin_higher_by_m() {
+        return lift(before?, by_m);
+    }
+    let end = lift(step, lowest.lacks_m())?;
+    let Some(before) = before else { return Some(end) };
+    Some(Edit::All(vec![lift(before, lowest.lacks_m())?, end]))
 }
 
-/// `(least height above the ground, ground elevation there)`, metres.
-fn lowest_clearance_m(view: &Inspection, step: &Step) -> Option<(f64, f64)> {
+fn lowest(view: &Inspection, step: &Step) -> Option<Lowest> {
     // the preview flies patterns, and sees the ground below all of them
     let end = step.end.filter(|_| !matches!(step.leg.kind, LegKind::Pattern(_)))?;
-    let at_end = clearance_m(view, end, end.altitude_amsl_m?);
+    let to_m = end.altitude_amsl_m?;
+    let at_end = clearance_m(view, end, to_m).map(|(clearance_m, ground_m)| Lowest {
+        clearance_m,
+        ground_m,
+        share: 1.0,
+        below_end_m: 0.0,
+    });
     let along = step.start.zip(step.path).and_then(|(start, path)| {
         let from_m = start.altitude_amsl_m?;
         let samples = (path.length_m() / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
-        let to_m = end.altitude_amsl_m?;
-        let clearance_at = |(share, position)| {
-            let altitude_m = from_m + (to_m - from_m) * share;
-            clearance_m(view, Point { position, altitude_amsl_m: None }, altitude_m)
+        let lowest_at = |(share, position)| {
+            let below_end_m = (to_m - from_m) * (1.0 - share);
+            let there = Point { position, altitude_amsl_m: None };
+            let (clearance_m, ground_m) = clearance_m(view, there, to_m - below_end_m)?;
+            Some(Lowest { clearance_m, ground_m, share, below_end_m })
         };
         let samples = path.along(start.position, end.position, samples as u32);
-        samples.filter_map(clearance_at).min_by(|a, b| a.0.total_cmp(&b.0))
+        samples.filter_map(lowest_at).min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m))
     });
-    at_end.into_iter().chain(along).min_by(|a, b| a.0.total_cmp(&b.0))
+    at_end.into_iter().chain(along).min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m))
 }
 
+/// `(height above the ground, ground elevation there)`, metres.
 fn clearance_m(view: &Inspection, at: Point, altitude_m: f64) -> Option<(f64, f64)> {
     let ground_m = view.terrain.elevation_m(at.position)?;
     Some((altitude_m - ground_m, ground_m))
@@ -82,6 +133,8 @@ fn clearance_m(view: &Inspection, at: Point, altitude_m: f64) -> Option<(f64, f6
 #[cfg(test)]
 mod tests {
     use crate::checks::testing::{codes_over, fixed, plan_with};
+    use crate::{check, read};
+    use aircraft::Profile;
     use geometry::LatLon;
     use terrain::Terrain;
 
@@ -101,6 +154,25 @@ mod tests {
         {
             assert_eq!(codes_over(&plan, &Ridge(ridge_m)), expected, "{ridge_m}");
         }
+    }
+
+    /// From 500 m to 700 m over a ridge in the middle: at 600 m there, it would be high enough at its end.
+    #[test]
+    fn a_leg_that_is_still_climbing_is_begun_higher() {
+        let low = r#"<IF id="a" fix="A"/><TF id="b" fix="B" altitude="700" altitudeReference="amsl"/>"#;
+        for (ridge_m, code) in [(570.0, "low-clearance"), (630.0, "below-terrain")] {
+            let plan = read(plan_with(low)).plan;
+            let found = check(&plan, &Profile::default(), &Ridge(ridge_m));
+            let [problem] = found.as_slice() else { panic!("{found:?}") };
+            assert_eq!(problem.code, code);
+            assert!(problem.message.starts_with("raise `a` by "), "{problem}");
+            assert!(problem.message.contains("or hold to climb (HA) behind it"), "{problem}");
+            let repaired = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+            assert_eq!(check(&repaired, &Profile::default(), &Ridge(ridge_m)), []);
+        }
+        let same = plan_with(&low.replace("700", "500"));
+        let found = check(&read(same).plan, &Profile::default(), &Ridge(470.0));
+        assert!(found[0].message.starts_with("raise this leg by 20 m"), "{found:?}");
     }
 
     /// Over flat ground at 300 m.

@@ -7,6 +7,7 @@ use super::step::Step;
 use crate::uses::Part;
 use crate::{Altitude, DecideBefore, Id, LegKind, Place, Problem, Value, VariableValue, ZoneShape};
 use geometry::{LatLon, geodesy};
+use std::collections::HashSet;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for fix in &view.plan.fixes {
@@ -95,6 +96,30 @@ fn anywhere_near_pole(places: &[LatLon], of: &Id, problems: &mut Vec<Problem>) {
     }
 }
 
+/// What follows from being near a pole: that a shape there is none is not its author's doing.
+const FOLLOWS: [&str; 8] = [
+    "bad-polygon",
+    "bad-scan",
+    "bad-orbit",
+    "bad-pattern",
+    "bad-zone",
+    "variable-bounds",
+    "too-many-tracks",
+    "course-not-intercepted",
+];
+
+/// Of what is too near to a pole only that is said, and once.
+pub(super) fn near_pole_alone(problems: &mut Vec<Problem>) {
+    let is_polar = |p: &Problem| p.code == "near-pole";
+    let polar: HashSet<Option<Id>> =
+        problems.iter().filter(|p| is_polar(p)).map(|p| p.subject.clone()).collect();
+    let mut told = HashSet::new();
+    problems.retain(|p| match is_polar(p) {
+        true => told.insert(p.subject.clone()),
+        false => !(polar.contains(&p.subject) && FOLLOWS.contains(&p.code)),
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use crate::{FlightPlan, LegKind, Place, Value, check, checks::testing::plan_with, read};
@@ -134,5 +159,15 @@ mod tests {
             }),
             ["bad-value"]
         );
+    }
+
+    /// An area with a corner at the pole is no polygon there, either: that follows.
+    #[test]
+    fn of_an_area_at_the_pole_only_that_is_told() {
+        let scan = r#"<IF id="a" fix="A"/><scan id="s" spacing="300"><area><corner lat="90" lon="0"/><corner lat="88.5" lon="20"/><corner lat="88.5" lon="0"/></area></scan>"#;
+        let plan = read(plan_with(scan)).plan;
+        let found = check(&plan, &Profile::default(), &Flat(300.0));
+        let of_scan = found.iter().filter(|p| p.subject == Some("s".into())).map(|p| p.code);
+        assert_eq!(of_scan.collect::<Vec<_>>(), ["near-pole"]);
     }
 }

@@ -213,7 +213,7 @@ const ZONE: Description = Description {
             }),
             Row::Children(Children {
                 label: "Active",
-                help: "When it is active; without a period: always.",
+                help: "When it is active; without a period: always. Outside of its periods it does not count, and a zone to stay in confines nothing then.",
                 of: &[&ACTIVE],
                 least: 0,
                 most: usize::MAX,

@@ -10,6 +10,7 @@
 
 mod compile;
 mod eval;
+pub(crate) mod range;
 mod tokens;
 
 pub use compile::{MAX_DEPTH, MAX_LENGTH, Names, compile, compile_with};

@@ -98,7 +98,10 @@ pub fn read(document: impl AsRef<[u8]>) -> Reading {
 
 fn encoding_problem(bytes: &[u8], error: Utf8Error) -> Option<Problem> {
     let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to())?);
-    let message = "save the document as UTF-8: this byte does not belong to it";
+    let message = match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "save the document as UTF-8: it is in UTF-16",
+        _ => "save the document as UTF-8: this byte does not belong to it",
+    };
     Some(Problem::error("not-utf8", message).at(location_of(&before)))
 }
 

@@ -1,0 +1,232 @@
+//! What the review says of a path: the cause, and a remedy that exists.
+#![cfg(test)]
+
+use aircraft::Profile;
+use flight_exec::{Conditions, review};
+use flight_plan::{Problem, compile_document};
+use geometry::LatLon;
+use std::sync::Arc;
+use terrain::{Flat, Terrain, Tiles};
+
+/// Over flat ground at 300 m: from A to B at 500 m, then these legs, and a landing.
+fn document(before: &str, legs: &str) -> String {
+    format!(
+        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
+             <fixes>
+               <fix id="A" lat="36.30" lon="-84.20"/> <fix id="B" lat="36.30" lon="-84.16"/>
+               <fix id="C" lat="36.33" lon="-84.16"/> <fix id="FAR" lat="36.30" lon="-83.9265"/>
+             </fixes>
+             <runways><runway id="R" lat="36.31" lon="-84.19" elevation="300" heading="90" length="500"/></runways>
+             {before}
+             <mainPlan emergency="home">
+               <stage id="s" type="en-route" altitude="500" altitudeReference="amsl">
+                 <IF id="a" fix="A"/><TF id="b" fix="B"/>{legs}
+               </stage>
+               <stage id="l" type="land" runway="R"/>
+             </mainPlan>
+             <emergencyPlans><emergencyPlan id="home" runway="R">
+               <stage id="e" type="arrival"><DF id="ed" fix="A" altitude="450" altitudeReference="amsl"/></stage>
+               <stage id="el" type="land" runway="R"/></emergencyPlan></emergencyPlans>
+           </flightPlan>"#
+    )
+}
+
+fn found_over(document: &str, ground: Arc<dyn Terrain>, conditions: Conditions) -> Vec<Problem> {
+    let program = compile_document(document.as_bytes(), &Profile::default(), ground.as_ref());
+    let program = program.unwrap_or_else(|problems| panic!("{problems:?}"));
+    review(&Arc::new(program), &Profile::default(), &ground, conditions)
+}
+
+fn found(document: &str) -> Vec<Problem> {
+    found_over(document, Arc::new(Flat(300.0)), Conditions::default())
+}
+
+fn with_code<'p>(problems: &'p [Problem], code: &str) -> &'p Problem {
+    problems.iter().find(|p| p.code == code).unwrap_or_else(|| panic!("no {code}: {problems:?}"))
+}
+
+/// A ridge across the way from B to C.
+struct Ridge(f64);
+
+impl Terrain for Ridge {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        Some(if (p.lat_deg - 36.315).abs() < 0.001 { self.0 } else { 300.0 })
+    }
+}
+
+/// From 500 m to 700 m: 600 m above the ridge in the middle.
+#[test]
+fn a_leg_that_is_still_climbing_has_to_begin_higher() {
+    let climbs = document("", r#"<DF id="c" fix="C" altitude="700" altitudeReference="amsl"/>"#);
+    for (ridge_m, code) in [(580.0, "low-clearance"), (630.0, "below-terrain")] {
+        let problems = found_over(&climbs, Arc::new(Ridge(ridge_m)), Conditions::default());
+        let problem = with_code(&problems, code);
+        assert_eq!(problem.subject, Some("c".into()));
+        assert!(problem.message.starts_with("raise `b` by "), "{problem}");
+        let mut plan = flight_plan::read(&climbs).plan;
+        plan = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+        let again = found_over(&flight_plan::write(&plan), Arc::new(Ridge(ridge_m)), Conditions::default());
+        assert!(again.iter().all(|p| p.code != code), "{again:?}");
+    }
+    let level = climbs.replace("700", "500");
+    let problems = found_over(&level, Arc::new(Ridge(480.0)), Conditions::default());
+    let problem = with_code(&problems, "low-clearance");
+    assert!(problem.message.starts_with("raise this leg by 2"), "{problem}");
+    assert!(problem.message.ends_with("40 m is the least of a path as flown"), "{problem}");
+}
+
+fn rounds(until: &str) -> String {
+    let until = until.replace('&', "&amp;").replace('<', "&lt;");
+    let variables = r#"<variables><variable name="done" type="bool" initial="false"/></variables>"#;
+    let legs = format!(
+        r#"<iterative id="rounds" form="forward" until="{until}"><TF id="out" fix="FAR"/><TF id="in" fix="B"/></iterative>"#
+    );
+    document(variables, &legs)
+}
+
+/// A pass takes 17 % of the energy: with the 13 % after the fifth the condition does not hold yet, and another pass is too long.
+#[test]
+fn a_condition_that_comes_too_late_is_not_open_ended() {
+    let problems = found(&rounds("battery < 0.1"));
+    let problem = with_code(&problems, "energy");
+    assert_eq!(problem.subject, Some("rounds".into()));
+    assert!(problem.message.starts_with("let `rounds` end earlier: `battery < 0.1` becomes true too late"));
+    assert!(problems.iter().all(|p| p.code != "open-ended"), "{problems:?}");
+    assert!(found(&rounds("battery < 0.4")).iter().all(|p| !["energy", "open-ended"].contains(&p.code)));
+}
+
+#[test]
+fn a_condition_that_nothing_makes_true_is_open_ended() {
+    for until in ["done", "done && battery < 0.4", "airspeed > 90.0"] {
+        let problems = found(&rounds(until));
+        let problem = with_code(&problems, "open-ended");
+        let said = format!("`{until}` does not become true by itself before the energy is used up");
+        assert!(problem.message.contains(&said), "{problem}");
+    }
+}
+
+fn hold(fix: &str, until: &str) -> String {
+    let hold = format!(
+        r#"<HM id="hold" fix="{fix}" course="90" turn="left" length="700" until="{until}" maxLaps="2"/><TF id="on" fix="A"/>"#
+    );
+    document("", &hold)
+}
+
+#[test]
+fn a_holding_that_is_left_at_once_is_told() {
+    for (fix, until, told) in [
+        ("C", "time > 1.0", true),
+        ("B", "time > 1.0", true),
+        ("C", "time > 5000.0", false),
+        ("B", "time > 5000.0", false),
+    ] {
+        let until = until.replace('>', "&gt;");
+        let problems = found(&hold(fix, &until));
+        let of_hold =
+            problems.iter().any(|p| p.code == "hold-left-at-once" && p.subject == Some("hold".into()));
+        assert_eq!(of_hold, told, "{fix} {until}: {problems:?}");
+    }
+}
+
+/// 06:00 to 06:10 on the first of June; the flight takes some ten minutes.
+#[test]
+fn what_holds_outside_of_the_times_of_a_zone_to_stay_in_is_told() {
+    let zones = |more: &str| {
+        let zones = format!(
+            r#"<zones><keepIn id="area" lat="36.31" lon="-84.18" radius="9000"><active from="2026-06-01T06:00:00Z" until="2026-06-01T06:04:00Z"/></keepIn>{more}</zones>"#
+        );
+        document(&zones, r#"<TF id="c" fix="C"/><TF id="d" fix="A"/>"#)
+    };
+    let from = |document: &str, minute: i64| {
+        let start_unix_s = Some(1_780_293_600 + 60 * minute);
+        let conditions = Conditions { start_unix_s, ..Conditions::default() };
+        found_over(document, Arc::new(Flat(300.0)), conditions)
+    };
+    let alone = zones("");
+    let problems = found(&alone);
+    let unknown = with_code(&problems, "keep-in-not-active");
+    assert_eq!(unknown.subject, Some("area".into()));
+    assert!(unknown.message.contains("the flight may go anywhere"), "{unknown}");
+    let problems = from(&alone, 0);
+    let ends = with_code(&problems, "keep-in-not-active");
+    assert!(ends.message.contains("4 min after the start none is active"), "{ends}");
+    assert!(from(&alone, -60).iter().any(|p| p.code == "keep-in-not-active"));
+    let wider = r#"<keepIn id="always" lat="36.31" lon="-84.18" radius="12000"/>"#;
+    assert!(found(&zones(wider)).iter().all(|p| p.code != "keep-in-not-active"), "one is always active");
+}
+
+#[test]
+fn a_low_reserve_says_what_is_left_what_is_asked_for_and_where_it_goes() {
+    let mut conditions = Conditions::default();
+    conditions.margins.energy_share = 0.96;
+    let there = document("", r#"<TF id="out" fix="FAR"/><TF id="back" fix="B"/>"#);
+    let problems = found_over(&there, Arc::new(Flat(300.0)), conditions);
+    let message = &with_code(&problems, "low-reserve").message;
+    for said in
+        [" % of the energy (", " kJ), 96.0 % is the reserve (2880 kJ); most goes to `", "`out` ", "`back` "]
+    {
+        assert!(message.contains(said), "{said}: {message}");
+    }
+}
+
+#[test]
+fn elevations_that_are_missing_are_named_by_their_files() {
+    let problems =
+        found_over(&document("", r#"<TF id="c" fix="C"/>"#), Arc::new(Tiles::new()), Conditions::default());
+    let message = &with_code(&problems, "not-reviewed").message;
+    assert!(message.starts_with("load the elevations N36W085.hgt (around "), "{message}");
+    let east = document("", r#"<TF id="east" fix="FAR"/>"#);
+    let problems = found_over(&east, Arc::new(Tiles::new()), Conditions::default());
+    let message = &with_code(&problems, "not-reviewed").message;
+    assert!(message.starts_with("load the elevations N36W084.hgt, N36W085.hgt (around "), "{message}");
+    let above = document("", r#"<TF id="c" fix="C" altitude="200" altitudeReference="agl"/>"#);
+    let problems = found_over(&above, Arc::new(Tiles::new()), Conditions::default());
+    assert!(with_code(&problems, "unknown-terrain").message.contains(" N36W085.hgt of "), "{problems:?}");
+}
+
+/// From one side of the pole to the other: that it is far, takes hours and can't be glided from follows.
+#[test]
+fn of_a_path_past_a_pole_only_that_is_told() {
+    let past = document("", r#"<TF id="c" fix="C"/>"#)
+        .replace(r#"lat="36.30" lon="-84.20""#, r#"lat="88.6" lon="10""#)
+        .replace(r#"lat="36.30" lon="-84.16""#, r#"lat="88.9" lon="-170""#)
+        .replace(r#"lat="36.33" lon="-84.16""#, r#"lat="88.6" lon="30""#)
+        .replace(r#"lat="36.31" lon="-84.19""#, r#"lat="88.5" lon="10""#);
+    let problems = found_over(&past, Arc::new(Flat(300.0)), Conditions::default());
+    assert!(!problems.is_empty() && problems.iter().all(|p| p.code == "near-pole"), "{problems:?}");
+}
+
+/// At 82° N meridians are 0.0012° of heading apart for each 100 m: over 8 km a corner's north is not that of the middle.
+#[test]
+fn a_scan_is_flown_on_its_heading_in_the_middle_of_its_area() {
+    let corners = [(81.964, -0.258), (82.036, -0.258), (82.036, 0.258), (81.964, 0.258)];
+    let corner = |(lat, lon): (f64, f64)| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#);
+    let scan = format!(
+        r#"<scan id="sweep" spacing="1000" heading="0"><area>{}</area></scan>"#,
+        corners.map(corner).concat()
+    );
+    let document = document("", &scan).replace("lat=\"36.", "lat=\"82.").replace("lon=\"-84.", "lon=\"0.");
+    let ground: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let program = compile_document(document.as_bytes(), &Profile::default(), ground.as_ref());
+    let program = Arc::new(program.unwrap_or_else(|problems| panic!("{problems:?}")));
+    let preview = flight_exec::rehearse::preview(
+        &program,
+        &Profile::default(),
+        &ground,
+        aircraft::Wind::default(),
+        flight_exec::rehearse::Start::of(&program, ground.as_ref()).unwrap(),
+        &flight_exec::rehearse::Scenario::default(),
+        &flight_exec::rehearse::Options::default(),
+    )
+    .unwrap();
+    let on_scan = preview.waypoints.iter().filter(|w| w.waypoint.leg == "sweep".into());
+    let places: Vec<LatLon> = on_scan.map(|w| w.waypoint.position).collect();
+    let middle = LatLon::new(82.0, 0.0);
+    let tracks = places.windows(2).filter(|pair| pair[0].distance_m(pair[1]) > 6_000.0);
+    let aside = |pair: &[LatLon]| pair[0].interpolate(pair[1], 0.5).distance_m(middle);
+    let nearest = tracks.min_by(|a, b| aside(a).total_cmp(&aside(b))).unwrap();
+    let course_deg = nearest[0].bearing_deg(nearest[0].interpolate(nearest[1], 0.5));
+    let off_deg = geometry::geodesy::normalise_180(2.0 * course_deg) / 2.0;
+    // half a spacing aside at the most
+    assert!(off_deg.abs() < 0.04, "{off_deg}");
+}
