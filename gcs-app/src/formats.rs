@@ -76,7 +76,7 @@ pub fn names() -> String {
 
 /// The name of an XML document's first element, without its prefix; `None`: there is none near its beginning.
 fn root(bytes: &[u8]) -> Option<String> {
-    let head = String::from_utf8_lossy(bytes.get(..4096).unwrap_or(bytes));
+    let head = interchange::beginning(bytes);
     let mut rest = head.trim_start_matches('\u{feff}');
     loop {
         rest = rest.split_once('<')?.1;
@@ -127,6 +127,9 @@ mod tests {
         assert_eq!(of("-", "<?xml version='1.0'?><!-- no <oops> --><kml/>"), FileFormat::Other(Format::Kml));
         assert_eq!(of("-", "<Document><Placemark/></Document>"), FileFormat::Other(Format::Kml));
         assert_eq!(of("a.xml", "<flightPlan><Placemark/></flightPlan>"), FileFormat::Legwork);
+        let wide: Vec<u8> =
+            "\u{feff}<?xml version='1.0'?><kml/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(FileFormat::of(Path::new("-"), &wide), FileFormat::Other(Format::Kml));
         // that it speaks of KML doesn't make it one
         assert_eq!(of("a.xml", "<missionPlan><!-- from <kml> --></missionPlan>"), FileFormat::Legwork);
         assert_eq!(of("a.xml", "<flightPlan><!-- from <gpx> --></flightPlan>"), FileFormat::Legwork);

@@ -117,7 +117,7 @@ impl Format {
 
     /// By what a file begins with.
     pub fn by_content(bytes: &[u8]) -> Option<Self> {
-        let head = String::from_utf8_lossy(bytes.get(..4096).unwrap_or(bytes));
+        let head = beginning(bytes);
         let head = head.trim_start_matches('\u{feff}').trim_start();
         match () {
             () if bytes.starts_with(b"PK\x03\x04") => Some(Format::Kmz),
@@ -135,6 +135,11 @@ impl Format {
     }
 }
 
+/// What a file begins with, as it may be looked into; UTF-16 is known by its mark.
+pub fn beginning(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
+    text::glimpse(bytes.get(..4096).unwrap_or(bytes), bytes)
+}
+
 /// There is a tag of this name.
 fn opens(head: &str, name: &str) -> bool {
     head.match_indices('<')
@@ -145,7 +150,7 @@ fn opens(head: &str, name: &str) -> bool {
 /// QGC sorts its keys: `fileType` comes early, but a hand-made file may have it at the end.
 fn is_qgc_plan(head: &str, bytes: &[u8]) -> bool {
     let tail = bytes.get(bytes.len().saturating_sub(4096)..).unwrap_or_default();
-    [head, &String::from_utf8_lossy(tail)].iter().any(|part| part.contains("\"fileType\""))
+    [head, &text::glimpse(tail, bytes)].iter().any(|part| part.contains("\"fileType\""))
 }
 
 /// What a file means.

@@ -1,6 +1,6 @@
 //! Items of fence and rally lists: they fly nothing, and become zones and rally points.
 
-use super::{Entry, Item, Mission, commands as cmd};
+use super::{Entry, Item, Mission, RallyPoint, commands as cmd};
 use crate::note::Notes;
 use flight_plan::{Id, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
@@ -17,7 +17,8 @@ pub fn take(mission: &mut Mission, notes: &mut Notes) {
         match item.position() {
             Some(position) => {
                 let height_m = height_m(&item, mission.home_amsl_m, notes);
-                mission.rally.push((item.place, position, height_m));
+                let place = item.place;
+                mission.rally.push(RallyPoint { place, position, height_m, landing_deg: None });
             }
             None => {
                 let message = "this rally point is left out: it has no good position";

@@ -102,6 +102,18 @@ pub struct Approach {
     pub loiter_radius_m: Option<f64>,
 }
 
+/// A place to go to when something fails.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RallyPoint {
+    /// Where in the file.
+    pub place: String,
+    pub position: LatLon,
+    /// Above home, metres, if it is said.
+    pub height_m: Option<f64>,
+    /// Direction of the landing there, degrees true, if it is said.
+    pub landing_deg: Option<f64>,
+}
+
 /// A mission and what belongs to it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mission {
@@ -114,7 +126,7 @@ pub struct Mission {
     /// Its fences.
     pub zones: Vec<Zone>,
     /// Rally points: place in the file, position, metres above home.
-    pub rally: Vec<(String, LatLon, Option<f64>)>,
+    pub rally: Vec<RallyPoint>,
     /// What flies it.
     pub vehicle: Vehicle,
 }

@@ -1,5 +1,6 @@
 //! Rally points as emergency plans, where a runway is near.
 
+use super::RallyPoint;
 use super::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
@@ -16,7 +17,7 @@ const NEAR_M: f64 = 2000.0;
 /// if home is not known.
 pub fn add(
     plan: &mut FlightPlan,
-    rally: &[(String, LatLon, Option<f64>)],
+    rally: &[RallyPoint],
     home_amsl_m: Option<f64>,
     assumptions: &Assumptions,
     (names, notes): (&mut Names, &mut Notes),
@@ -24,7 +25,7 @@ pub fn add(
     if plan.stages.is_empty() {
         return as_runways(plan, rally, home_amsl_m, assumptions, (names, notes));
     }
-    for (place, position, height_m) in rally {
+    for RallyPoint { place, position, height_m, .. } in rally {
         let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
         let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let Some(runway) = nearest.filter(|r| distance(r) <= NEAR_M) else {
@@ -71,19 +72,20 @@ pub fn add(
 /// Without a mission there is no runway that an emergency plan could lead to: each rally point becomes one.
 fn as_runways(
     plan: &mut FlightPlan,
-    rally: &[(String, LatLon, Option<f64>)],
+    rally: &[RallyPoint],
     home_amsl_m: Option<f64>,
     assumptions: &Assumptions,
     (names, notes): (&mut Names, &mut Notes),
 ) {
-    for (place, position, _) in rally {
+    for RallyPoint { place, position, landing_deg, .. } in rally {
         let id = names.take("rally", "rally");
         let message = format!(
             "rally point becomes runway `{id}`: an aeroplane lands there, it does not circle; remove it where it can't"
         );
         notes.push("rally-as-runway", place, message);
         let (elevation_m, length_m) = (home_amsl_m.unwrap_or(0.0), assumptions.runway_length_m);
-        plan.runways.push(runway(id, *position, elevation_m, 0.0, length_m, place, notes));
+        let heading_deg = landing_deg.unwrap_or(0.0);
+        plan.runways.push(runway(id, *position, elevation_m, heading_deg, length_m, place, notes));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::json::{flag, list, number, position_3d};
 use super::{fence, old, pattern, way};
-use crate::mission::{self, Approach, Entry, Item, Mission, commands};
+use crate::mission::{self, Approach, Entry, Item, Mission, RallyPoint, commands};
 use crate::note::Notes;
 use crate::synthetic::{Assumptions, Vehicle};
 use crate::text::text_of;
@@ -113,12 +113,14 @@ fn vehicle(mission: &Value, notes: &mut Notes) -> Vehicle {
     Vehicle { cruise_mps: number(mission, "cruiseSpeed"), is_vtol: VTOL.contains(&kind) }
 }
 
-fn rally(points: &Value, notes: &mut Notes) -> Vec<(String, geometry::LatLon, Option<f64>)> {
+fn rally(points: &Value, notes: &mut Notes) -> Vec<RallyPoint> {
     let mut good = Vec::new();
     for (index, point) in list(points, "points").iter().take(MAX_ITEMS).enumerate() {
         let place = format!("rally point {}", index + 1);
         match position_3d(point) {
-            Some((position, height_m)) => good.push((place, position, height_m)),
+            Some((position, height_m)) => {
+                good.push(RallyPoint { place, position, height_m, landing_deg: None });
+            }
             None => notes.push("no-position", place, "this rally point is left out: it has no good position"),
         }
     }
