@@ -66,15 +66,23 @@ fn runway(text: &str) -> Result<Runway, String> {
 }
 
 impl Foreign {
-    /// The plan that another program's file means; `None`: it is one of ours.
+    /// The plan that another program's file means, for this aircraft where none is named for the plan itself; `None`: it is one
+    /// of ours.
     ///
     /// # Errors
     /// It is not what it seems to be.
-    pub fn import(&self, path: &Path, bytes: &[u8]) -> anyhow::Result<Option<Import>> {
+    pub fn import(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        aircraft: Option<&str>,
+    ) -> anyhow::Result<Option<Import>> {
         let FileFormat::Other(format) = self.from.unwrap_or_else(|| FileFormat::of(path, bytes)) else {
             return Ok(None);
         };
-        formats::import(format, path, bytes, &self.assumptions(path)).map(Some)
+        let mut assumptions = self.assumptions(path);
+        assumptions.aircraft = assumptions.aircraft.or_else(|| aircraft.map(str::to_owned));
+        formats::import(format, path, bytes, &assumptions).map(Some)
     }
 
     fn assumptions(&self, path: &Path) -> Assumptions {
@@ -102,8 +110,8 @@ pub fn print_notes(path: &Path, notes: &[Note]) {
 /// What on the command line changes what a note says.
 fn remedy(code: &str) -> &'static str {
     match code {
-        "aircraft-assumed" => ": --plan-for",
-        "area-as-scan" | "area-as-zone" => ": --areas",
+        "aircraft-assumed" => ": --aircraft NAME",
+        "area-as-scan" | "area-as-zone" => ": --areas WHAT",
         _ => "",
     }
 }

@@ -6,6 +6,7 @@ use crate::assets;
 use aircraft::Profile;
 use anyhow::Context;
 use flight_exec::{Conditions, review, review_extremes};
+use flight_plan::suggest::did_you_mean;
 use flight_plan::{FlightPlan, Problem, Program, Reading};
 use interchange::Note;
 use std::fs::File;
@@ -26,8 +27,9 @@ pub struct Source {
     /// Elevation tiles (SRTM .hgt, named after their corner) instead of the bundled one.
     #[arg(long, value_name = "HGT")]
     pub terrain: Vec<PathBuf>,
-    /// Performance profile of the aircraft (JSON) instead of the one the plan names.
-    #[arg(long, value_name = "JSON")]
+    /// Aircraft instead of the one the plan names: one of ours by name (foam-wing, trainer, long-range-wing, fast-wing,
+    /// vtol-wing), or a performance profile (JSON).
+    #[arg(long, value_name = "NAME|JSON")]
     pub aircraft: Option<PathBuf>,
     /// How other formats are read.
     #[command(flatten, next_help_heading = "Reading other formats")]
@@ -60,7 +62,7 @@ impl Source {
     pub fn load(&self) -> anyhow::Result<Loaded> {
         // one byte more than is allowed: the reader then says that it is too long
         let bytes = read_at_most(&self.file, flight_plan::xml::MAX_BYTES as u64 + 1)?;
-        match self.foreign.import(&self.file, &bytes)? {
+        match self.foreign.import(&self.file, &bytes, self.named_aircraft())? {
             None => self.surround(&bytes),
             Some(import) => {
                 let document = flight_plan::write(&import.plan);
@@ -82,7 +84,7 @@ impl Source {
     pub fn surround(&self, document: &[u8]) -> anyhow::Result<Loaded> {
         let reading = flight_plan::read(document);
         let profile = match &self.aircraft {
-            Some(path) => Ok(profile_from(path)?),
+            Some(path) => Ok(profile(path)?),
             None => Profile::by_name(&reading.plan.aircraft).map_err(|e| e.to_string()),
         };
         Ok(Loaded {
@@ -94,6 +96,11 @@ impl Source {
             terrain: self.load_terrain()?,
             checked: OnceLock::new(),
         })
+    }
+
+    /// The aircraft that is given by the name of one of ours.
+    fn named_aircraft(&self) -> Option<&str> {
+        self.aircraft.as_deref().and_then(Path::to_str).filter(|name| Profile::by_name(name).is_ok())
     }
 
     fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
@@ -132,7 +139,9 @@ impl Loaded {
             // the document's own problems already report that it names none
             (None, Err(_)) if self.reading.plan.aircraft.is_empty() && self.reading.has_errors() => {}
             (None, Err(reason)) => {
-                let message = format!("{reason}: correct the plan's `aircraft`, or give the profile itself");
+                let meant = did_you_mean(&self.reading.plan.aircraft, Profile::names().into_iter());
+                let message =
+                    format!("{reason}: correct the plan's `aircraft`, or give the profile itself{meant}");
                 problems.push(Problem::error("unknown-aircraft", message));
             }
             (None, Ok(_)) => {}
@@ -213,6 +222,19 @@ impl Loaded {
     }
 }
 
+/// One of ours by its name, or that of a file.
+fn profile(path: &Path) -> anyhow::Result<Profile> {
+    let ours = path.to_str().and_then(|name| Profile::by_name(name).ok());
+    ours.map_or_else(|| profile_from(path).with_context(|| not_ours(path)), Ok)
+}
+
+/// What else an aircraft can be that is no file.
+fn not_ours(path: &Path) -> String {
+    let (name, names) = (path.display().to_string(), Profile::names());
+    let meant = did_you_mean(&name, names.iter().copied());
+    format!("`{name}` is none of our aircraft ({}) and no profile{meant}", names.join(", "))
+}
+
 fn profile_from(path: &Path) -> anyhow::Result<Profile> {
     let json = String::from_utf8(read_at_most(path, 1_000_000)?)
         .context("the aircraft profile is not UTF-8 text")?;
@@ -287,6 +309,32 @@ pub(super) mod tests {
         assert_eq!(codes("<oops/>"), ["not-a-plan"]);
         assert_eq!(codes(&plan("")), ["missing-attribute"]);
         assert_eq!(codes(&plan("aircraft=\"zeppelin\"")), ["unknown-aircraft"]);
+    }
+
+    #[test]
+    fn an_aircraft_is_chosen_by_name_and_a_misspelt_one_asked_for() {
+        let plan =
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainr"><mainPlan/></flightPlan>"#;
+        let (_file, source) = source(plan.as_bytes());
+        let said = source.load().unwrap().problems().remove(0).message;
+        assert!(said.ends_with("; did you mean `trainer`?"), "{said}");
+        let with = |name: &str| Source { aircraft: Some(name.into()), ..source.clone() };
+        assert_eq!(with("foam-wing").load().unwrap().profile.unwrap().name, "foam-wing");
+        let error = with("foam-wnig").load().map(|_| ()).unwrap_err();
+        assert!(format!("{error:#}").contains("did you mean `foam-wing`?"), "{error:#}");
+    }
+
+    #[test]
+    fn a_file_of_another_program_is_read_for_the_aircraft_that_is_named() {
+        let (_file, square) = source(b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.3 -84.1 100 1\n");
+        let loaded = Source { aircraft: Some("fast-wing".into()), ..square.clone() }.load().unwrap();
+        assert_eq!(loaded.reading.plan.aircraft, "fast-wing");
+        assert!(loaded.notes.iter().all(|note| note.code != "aircraft-assumed"), "{:?}", loaded.notes);
+        let assumed = square.load().unwrap();
+        let note = assumed.notes.iter().find(|note| note.code == "aircraft-assumed").unwrap();
+        for name in Profile::names() {
+            assert!(note.message.contains(name), "{note}");
+        }
     }
 
     #[test]

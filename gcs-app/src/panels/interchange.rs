@@ -151,8 +151,11 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
 }
 
 fn row(ui: &mut Ui, note: &Note) {
-    let remedy =
-        if note.code == "aircraft-assumed" { "; the inspector of the plan has the others" } else { "" };
+    let remedy = if note.code == "aircraft-assumed" {
+        "; choose it in the inspector of the plan, under Aircraft"
+    } else {
+        ""
+    };
     let text = format!("{}: {}{remedy}", note.place, note.message);
     ui.add(Label::new(text).truncate()).on_hover_text(note.to_string());
 }
