@@ -38,7 +38,7 @@ impl Window {
         self.steps(2);
     }
 
-    fn drop_row(&mut self, from: &str, to: &str, down: f32) {
+    pub fn drop_row(&mut self, from: &str, to: &str, down: f32) {
         let at = self.row(to, down);
         self.drag_row(from, to, down);
         self.harness.drop_at(at);

@@ -61,3 +61,30 @@ fn with_a_fork_selected_legs_are_drawn_into_the_branch_that_is_chosen() {
     assert_eq!(ways(&window), ["side1", "fork1 on>leg1 skip>side3", "leg1", "side2", "side3", "side4"]);
     assert!(window.shows("Draw legs: ") || window.shows("Next leg"), "the next click goes on from there");
 }
+
+#[test]
+fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1400.0), None);
+    window.until_analysed();
+    window.row_menu(("TF side2", 0), "Draw a new way from it");
+    window.steps(3);
+    let at = window.centre("Map");
+    window.click_at(at + vec2(40.0, 90.0));
+    window.click_at(at + vec2(-30.0, 120.0));
+    window.press(Key::V);
+    let both = ["side1", "side2", "fork1 on>side3 way2>leg1", "leg1", "leg2", "side3", "side4"];
+    assert_eq!(ways(&window), both);
+    window.drop_row("TF leg1", "TF side2", 0.2);
+    let out = ["side1", "leg1", "side2", "fork1 on>side3 way2>leg2", "leg2", "side3", "side4"];
+    assert_eq!(ways(&window), out);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window.drop_row("TF leg1", "▸ Way 2", 0.4);
+    assert_eq!(ways(&window), both, "back in its branch");
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    for step in [&out[..], &both] {
+        window.click("Undo");
+        assert_eq!(ways(&window), step, "one step each");
+    }
+}

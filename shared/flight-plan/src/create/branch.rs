@@ -2,6 +2,7 @@
 
 use super::arrange::list_of;
 use super::kind::LegChoice;
+use super::leave::Leaving;
 use super::leg::{Drawn, leg as new_leg};
 use crate::{Branch, Edit, FlightPlan, Id, Leg, LegKind, Spot};
 use aircraft::Profile;
@@ -31,24 +32,8 @@ pub fn insert(plan: &FlightPlan, mut leg: Leg, at: Spot) -> Edit {
 /// Takes a leg out. What led to it leads to what followed it.
 pub fn delete_leg(plan: &FlightPlan, id: &Id) -> Edit {
     let delete = Edit::DeleteLeg { leg: id.clone() };
-    let Some((list, index)) = list_of(plan, id) else { return delete };
-    let following = list.get(index + 1).map(|leg| leg.id.clone());
-    let onward = list.get(index).and_then(|leg| leg.next.clone()).or(following);
-    let mut edits: Vec<Edit> = Vec::new();
-    for leg in list.iter().filter(|leg| leg.id != *id) {
-        let mut changed = leg.as_ref().clone();
-        let is_it = |next: &Option<Id>| next.as_ref() == Some(id);
-        if is_it(&changed.next) {
-            changed.next.clone_from(&onward);
-        }
-        if let LegKind::Intersection { branches, .. } = &mut changed.kind {
-            let hit = branches.iter_mut().filter(|branch| is_it(&branch.next));
-            hit.for_each(|branch| branch.next.clone_from(&onward));
-        }
-        if changed != **leg {
-            edits.push(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(changed) });
-        }
-    }
+    let Some(leaving) = Leaving::of(plan, [id]) else { return delete };
+    let mut edits = leaving.heal().edits;
     edits.push(delete);
     Edit::All(edits)
 }
@@ -207,5 +192,11 @@ mod tests {
         let without = delete_leg(&forked, &"n1".into()).apply(&forked).unwrap();
         assert_eq!(ways(&without), ["a", "b", "fork1 on>c way2>c", "c"]);
         assert_eq!(errors(&without), Vec::<String>::new());
+        // the last leg of a way, with another way behind it in the list
+        let third = begin_way(&forked, &"fork1".into(), &Way::New, drawn("m1")).unwrap();
+        let third = third.apply(&forked).unwrap();
+        let longer = insert(&third, drawn("m2"), Spot::After("m1".into())).apply(&third).unwrap();
+        let without = delete_leg(&longer, &"m2".into()).apply(&longer).unwrap();
+        assert_eq!(ways(&without)[2..], ["fork1 on>c way2>n1 way3>m1", "m1>c", "n1", "c"]);
     }
 }

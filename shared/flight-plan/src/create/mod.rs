@@ -7,6 +7,7 @@ mod binding;
 mod branch;
 mod course;
 mod kind;
+mod leave;
 mod leg;
 mod rearrange;
 mod thing;

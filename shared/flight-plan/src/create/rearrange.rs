@@ -1,9 +1,10 @@
 //! Legs and stages that are there, taken elsewhere, several at once: what a drag in the tree of the plan does.
 
 use super::arrange::list_of;
+use super::leave::Leaving;
 use super::{every_leg, legs_in};
 use crate::clipboard::outermost;
-use crate::{Edit, FlightPlan, Id, Leg, LegKind, Spot};
+use crate::{Branch, Edit, FlightPlan, Id, Leg, LegKind, Spot};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ pub fn relocate(plan: &FlightPlan, legs: &[Id], at: &Spot) -> Result<Option<Edit
     let moved = in_order(plan, legs);
     let (list, index) = list_at(plan, at).ok_or("There is no such place any more: choose another.")?;
     if let Some(around) = moved.iter().find(|leg| is_inside(leg, at)) {
-        return Err(format!("{} can't be put into itself: choose a place outside it.", label(around)));
+        return Err(into_itself(around));
     }
     let ids: HashSet<&Id> = moved.iter().map(|leg| &leg.id).collect();
     let stays = |leg: &&Arc<Leg>| !ids.contains(&leg.id);
@@ -35,14 +36,74 @@ pub fn relocate(plan: &FlightPlan, legs: &[Id], at: &Spot) -> Result<Option<Edit
         return Ok(None);
     }
     let mut edits = leave(plan, &moved, list)?;
+    let healed = Edit::All(edits.clone()).apply(plan).map_err(|error| error.to_string())?;
+    edits.extend(join(&healed, &moved, at));
     let next = after.iter().find(stays).map(|leg| Spot::Before(leg.id.clone()));
     let last = || before.iter().rfind(stays).map(|leg| Spot::After(leg.id.clone()));
-    let mut spot = next.or_else(last).unwrap_or_else(|| at.clone());
+    edits.extend(moves(&moved, next.or_else(last).unwrap_or_else(|| at.clone())));
+    Ok(Some(Edit::All(edits)))
+}
+
+/// Takes legs to a place, one behind the other.
+fn moves(moved: &[&Arc<Leg>], at: Spot) -> Vec<Edit> {
+    let mut spot = at;
+    let mut edits = Vec::new();
     for leg in moved {
         let behind = Spot::After(leg.id.clone());
         edits.push(Edit::MoveLeg { leg: leg.id.clone(), at: std::mem::replace(&mut spot, behind) });
     }
-    Ok(Some(Edit::All(edits)))
+    edits
+}
+
+/// What follows at a place: behind a leg that says what follows it, the last of those that come leads there instead; and to a leg
+/// that is only led to by name, those ways lead to the first of them.
+fn join(plan: &FlightPlan, moved: &[&Arc<Leg>], at: &Spot) -> Vec<Edit> {
+    let replaced = |with: Leg| Edit::ReplaceLeg { leg: with.id.clone(), with: Box::new(with) };
+    let is_moved = |id: &Id| moved.iter().any(|leg| leg.id == *id);
+    match at {
+        Spot::EndOf(_) => Vec::new(),
+        Spot::After(id) => {
+            let before = plan.any_leg(id).filter(|leg| leg.next.is_some() && !is_moved(id));
+            let last = moved.last().and_then(|last| plan.any_leg(&last.id));
+            let Some((before, last)) = before.zip(last.filter(|last| last.as_fork().is_none())) else {
+                return Vec::new();
+            };
+            let (freed, led) = (Leg { next: None, ..before.clone() }, before.next.clone());
+            vec![replaced(freed), replaced(Leg { next: led, ..last.clone() })]
+        }
+        Spot::Before(id) => {
+            let (Some((list, index)), Some(first)) = (list_of(plan, id), moved.first()) else {
+                return Vec::new();
+            };
+            let mut before = list.iter().take(index).filter(|leg| !is_moved(&leg.id));
+            if before.next_back().is_none_or(|leg| falls_through(leg)) {
+                return Vec::new();
+            }
+            let leading = list.iter().filter(|leg| !is_moved(&leg.id) && leads_to(leg).contains(&id));
+            leading.map(|leg| replaced(led_to(leg, id, &first.id))).collect()
+        }
+    }
+}
+
+/// Some way from it leads to what follows in the list.
+fn falls_through(leg: &Leg) -> bool {
+    let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
+    ways.iter().any(|way| way.next.is_none()) || (ways.is_empty() && leg.next.is_none())
+}
+
+/// A leg whose ways lead to another one than they did.
+fn led_to(leg: &Leg, from: &Id, to: &Id) -> Leg {
+    let mut led = leg.clone();
+    let lead = |next: &mut Option<Id>| {
+        if next.as_ref() == Some(from) {
+            *next = Some(to.clone());
+        }
+    };
+    if let LegKind::Intersection { branches, .. } = &mut led.kind {
+        branches.iter_mut().for_each(|way| lead(&mut way.next));
+    }
+    lead(&mut led.next);
+    led
 }
 
 /// The same to the beginning of a fork's branch, which leads on as before; the other ways stay as they are.
@@ -51,34 +112,50 @@ pub fn relocate(plan: &FlightPlan, legs: &[Id], at: &Spot) -> Result<Option<Edit
 /// As for [`relocate`].
 pub fn into_branch(plan: &FlightPlan, legs: &[Id], fork: &Id, branch: &Id) -> Result<Option<Edit>, String> {
     let moved = in_order(plan, legs);
-    let (Some((list, index)), Some(first)) = (list_of(plan, fork), moved.first()) else { return Ok(None) };
     let is_moved = |leg: &Leg| moved.iter().any(|moved| moved.id == leg.id);
+    let (Some((list, index)), Some(first)) = (list_of(plan, fork), moved.first()) else { return Ok(None) };
     let Some(whole) = list.get(index).filter(|leg| !is_moved(leg)) else {
         return Err("A fork can't be put into its own branch: choose another place.".into());
     };
-    let Some(way) = whole.as_fork().and_then(|f| f.branches.iter().find(|b| b.id == *branch)) else {
+    if let Some(around) = moved.iter().find(|leg| is_inside(leg, &Spot::Before(fork.clone()))) {
+        return Err(into_itself(around));
+    }
+    let on = list.get(index + 1).map(|leg| &leg.id);
+    let Some(way) = way_of(whole, branch) else { return Ok(None) };
+    if way.next.as_ref().or(on).is_some_and(|target| moved.iter().any(|leg| leg.id == *target)) {
+        return Ok(None);
+    }
+    let mut edits = leave(plan, &moved, list)?;
+    let healed = Edit::All(edits.clone()).apply(plan).map_err(|error| error.to_string())?;
+    // they are still where they were, but nothing leads to them
+    let Some((list, index)) = list_of(&healed, fork) else { return Ok(None) };
+    let Some((whole, way)) = list.get(index).and_then(|whole| Some((whole, way_of(whole, branch)?))) else {
         return Ok(None);
     };
-    let on = || list.get(index + 1).map(|leg| &leg.id);
-    let Some(target) = way.next.as_ref().or_else(on) else {
-        return relocate(plan, legs, &Spot::After(fork.clone()));
+    let on = list.iter().skip(index + 1).find(|leg| !is_moved(leg)).map(|leg| &leg.id);
+    let Some(target) = way.next.as_ref().or(on) else {
+        edits.extend(moves(&moved, Spot::After(fork.clone())));
+        return Ok(Some(Edit::All(edits)));
     };
     let Some(at) = list.iter().position(|leg| leg.id == *target) else {
         return Err("The branch leads nowhere: give it a leg first.".into());
     };
-    if moved.iter().any(|leg| leg.id == *target) {
-        return Ok(None);
-    }
-    let Some(relocated) = relocate(plan, legs, &Spot::Before(target.clone()))? else { return Ok(None) };
-    let mut edits = Vec::new();
     // what came to the branch's leg from before it in the list says so, or it would come to the new one
     let before = list.get(..at).and_then(|before| before.iter().rfind(|leg| !is_moved(leg)));
     if let Some(before) = before.filter(|before| before.id != *fork) {
         edits.extend(pinned(before, target, None));
     }
-    edits.extend(pinned(whole, on().unwrap_or(target), Some((branch, &first.id))));
-    edits.push(relocated);
+    edits.extend(pinned(whole, on.unwrap_or(target), Some((branch, &first.id))));
+    edits.extend(moves(&moved, Spot::Before(target.clone())));
     Ok(Some(Edit::All(edits)))
+}
+
+fn way_of<'a>(fork: &'a Leg, branch: &Id) -> Option<&'a Branch> {
+    fork.as_fork()?.branches.iter().find(|way| way.id == *branch)
+}
+
+fn into_itself(around: &Leg) -> String {
+    format!("{} can't be put into itself: choose a place outside it.", label(around))
 }
 
 /// Takes legs of one list past their neighbour: up (`-1`) or down (`1`). `None`: there is none, or they are of several lists.
@@ -173,25 +250,31 @@ fn is_inside(leg: &Leg, at: &Spot) -> bool {
     itself || legs_in(leg.body()).iter().any(|inner| inner.id == *id)
 }
 
-/// What must change for legs to leave their lists for another one: what follows a leg is of its own list. A way that would lead
-/// from one list into another is refused.
+/// What must change for legs to leave their places: what led to them leads to what followed them, and they lead on from where they
+/// come to. A way that would lead from one list into another is refused.
 fn leave(plan: &FlightPlan, moved: &[&Arc<Leg>], to: &[Arc<Leg>]) -> Result<Vec<Edit>, String> {
     let is_moved = |id: &Id| moved.iter().any(|leg| leg.id == *id);
     let mut edits = Vec::new();
-    for leg in moved {
-        let Some((from, _)) = list_of(plan, &leg.id).filter(|(from, _)| !std::ptr::eq(*from, to)) else {
-            continue;
-        };
-        let stay = |other: &&Arc<Leg>| !is_moved(&other.id);
-        if let Some(other) = from.iter().filter(stay).find(|other| leads_to(other).contains(&&leg.id)) {
+    let mut lists: Vec<&[Arc<Leg>]> =
+        moved.iter().filter_map(|leg| Some(list_of(plan, &leg.id)?.0)).collect();
+    lists.dedup_by(|a, b| std::ptr::eq(*a, *b));
+    for from in lists {
+        let going = from.iter().map(|leg| &leg.id).filter(|id| is_moved(id));
+        let Some(left) = Leaving::of(plan, going).map(|leaving| leaving.heal()) else { continue };
+        if let Some((other, target)) = left.astray.filter(|_| !std::ptr::eq(from, to)) {
             return Err(format!(
-                "{} leads to {}, and both must be in one list: lead it elsewhere first, or take both along.",
+                "{} leads to {}, nothing follows that, and both must be in one list: lead it elsewhere first, or take both along.",
                 label(other),
-                label(leg)
+                plan.label(&target)
             ));
         }
+        edits.extend(left.edits);
+    }
+    for leg in moved {
+        let stays = list_of(plan, &leg.id).is_some_and(|(from, _)| std::ptr::eq(from, to));
         let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
-        if let Some(way) = ways.iter().find(|way| way.next.as_ref().is_some_and(|next| !is_moved(next))) {
+        let behind = ways.iter().find(|way| way.next.as_ref().is_some_and(|next| !is_moved(next)));
+        if let Some(way) = behind.filter(|_| !stays) {
             return Err(format!(
                 "The branch {} of {} leads to a leg that would stay behind: take it along.",
                 if way.label.is_empty() { way.id.as_str() } else { &way.label },
@@ -350,6 +433,54 @@ mod tests {
         assert_eq!(next(&edited, "c").as_deref(), Some("x"));
         assert_eq!(put(&["z"], "past"), Ok(None), "it is there");
         assert!(put(&["fork"], "on").unwrap_err().contains("its own branch"));
+    }
+
+    /// The legs of the first stage, each with where it says that it leads.
+    fn ways(plan: &FlightPlan) -> String {
+        let said = |next: &Option<Id>| next.as_ref().map_or(String::new(), |next| format!(">{next}"));
+        let leg = |leg: &Arc<Leg>| {
+            let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches).iter();
+            let branches: Vec<String> = branches.map(|b| format!("{}{}", b.id, said(&b.next))).collect();
+            let branches =
+                if branches.is_empty() { String::new() } else { format!("({})", branches.join(" ")) };
+            format!("{}{}{branches}", leg.id, said(&leg.next))
+        };
+        plan.stages[0].legs.iter().map(leg).collect::<Vec<_>>().join(" ")
+    }
+
+    const TWO_WAYS: &str = r#"<flightPlan version="1" id="p"><fixes><fix id="A" at="46.0 8.0"/></fixes><mainPlan>
+        <stage id="one" type="mission">
+          <TF id="a" fix="A"/><TF id="b" fix="A"/>
+          <intersection id="fork"><branch id="on" next="z"/><branch id="w" next="n1"/><branch id="v" next="m1"/></intersection>
+          <TF id="m1" fix="A"/><TF id="m2" fix="A" next="z"/><TF id="n1" fix="A"/><TF id="n2" fix="A"/>
+          <TF id="z" fix="A"/><TF id="y" fix="A"/>
+        </stage><stage id="two" type="mission"/></mainPlan></flightPlan>"#;
+
+    #[test]
+    fn a_leg_goes_out_of_a_branch_and_back_and_each_way_leads_on() {
+        let plan = crate::read(TWO_WAYS.as_bytes()).plan;
+        let all = "a b fork(on>z w>n1 v>m1) m1 m2>z n1 n2 z y";
+        assert_eq!(ways(&plan), all);
+        let cases = [
+            // the first of a way, the last of one, all of one
+            (&["n1"][..], Spot::Before("b".into()), "a n1 b fork(on>z w>n2 v>m1) m1 m2>z n2 z y"),
+            (&["m2"], Spot::After("z".into()), "a b fork(on>z w>n1 v>m1) m1>z n1 n2 z m2 y"),
+            (&["m1", "m2"], Spot::Before("y".into()), "a b fork(on>z w>n1 v>z) n1 n2 z m1 m2 y"),
+            (&["n1"], Spot::EndOf("two".into()), "a b fork(on>z w>n2 v>m1) m1 m2>z n2 z y"),
+            // within its way
+            (&["m1"], Spot::After("m2".into()), "a b fork(on>z w>n1 v>m2) m2 m1>z n1 n2 z y"),
+            (&["n2"], Spot::Before("n1".into()), "a b fork(on>z w>n2 v>m1) m1 m2>z n2 n1 z y"),
+        ];
+        for (legs, at, expected) in cases {
+            let out = relocate(&plan, &ids(legs), &at).unwrap().unwrap().apply(&plan).unwrap();
+            assert_eq!(ways(&out), expected, "{legs:?} {at:?}");
+        }
+        for (leg, way) in [("n1", "w"), ("m1", "v")] {
+            let out = relocate(&plan, &ids(&[leg]), &Spot::Before("b".into())).unwrap().unwrap();
+            let out = out.apply(&plan).unwrap();
+            let back = into_branch(&out, &ids(&[leg]), &"fork".into(), &way.into()).unwrap().unwrap();
+            assert_eq!(ways(&back.apply(&out).unwrap()), all, "{leg} is back");
+        }
     }
 
     #[test]
