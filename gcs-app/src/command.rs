@@ -24,6 +24,8 @@ pub enum Command {
     Document(DocumentCommand),
     /// To what is shown.
     View(ViewCommand),
+    /// To the flight ahead of time.
+    Preview(PreviewCommand),
     /// To the links, and which vehicle is shown.
     Link(LinkCommand),
     /// To the maps and elevations that were brought.
@@ -173,18 +175,6 @@ pub enum ViewCommand {
     Edge(Edge),
     /// Put all panels back to where they are by default.
     ResetLayout,
-    /// Move the cursor along the preview, seconds from its start; `None` hides it.
-    Scrub(Option<f64>),
-    /// Run the preview's cursor, or stop it.
-    Play(bool),
-    /// The preview's cursor runs so many times as fast as the flight.
-    Speed(f64),
-    /// The world that the preview is flown in.
-    WhatIf(Box<WhatIf>),
-    /// Raise an alarm at the preview's cursor, or none.
-    Raise(Option<Cause>),
-    /// Show how alarms would end all along the path.
-    Coverage(bool),
     /// Show a message.
     Notice(String),
     /// Take a message away.
@@ -211,6 +201,25 @@ pub enum ViewCommand {
     DismissToast(u64),
     /// The result of this work is not wanted.
     Cancel(u64),
+}
+
+/// Commands to the preview: where its cursor is, and in which world it is flown.
+#[derive(Debug, Clone)]
+pub enum PreviewCommand {
+    /// Move the cursor along the preview, seconds from its start; `None` hides it, and ends the alarm there.
+    Scrub(Option<f64>),
+    /// Run the preview's cursor, or stop it.
+    Play(bool),
+    /// The preview's cursor runs so many times as fast as the flight.
+    Speed(f64),
+    /// The world that the preview is flown in.
+    WhatIf(Box<WhatIf>),
+    /// Raise an alarm at the preview's cursor, or none.
+    Raise(Option<Cause>),
+    /// Show how alarms would end all along the path.
+    Coverage(bool),
+    /// The plan's own world, and no alarm.
+    Reset,
 }
 
 /// Commands to the links.
@@ -329,6 +338,10 @@ impl Queue {
     /// To the view.
     pub fn view(&mut self, command: ViewCommand) {
         self.0.push(Command::View(command));
+    }
+    /// To the flight ahead of time.
+    pub fn preview(&mut self, command: PreviewCommand) {
+        self.0.push(Command::Preview(command));
     }
     /// To the maps and elevations that were brought.
     pub fn layer(&mut self, command: LayerCommand) {

@@ -2,7 +2,7 @@
 
 use super::{Action, Group, Kind, bindings};
 use crate::command::{
-    Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
+    Command, DocumentCommand, FlyCommand, LinkCommand, PreviewCommand, Replacement, Selection, ViewCommand,
 };
 use crate::guide::Answer;
 use crate::help::topic_of;
@@ -125,12 +125,12 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
     choice(Group::View, "follow", "Follow the aircraft", |s| Kind::Switch(s.view.follow), follow),
     choice(Group::View, "play", "Play the preview", |s| Kind::Switch(s.view.playing), play).with_keys(&[plain(Key::Space)]),
-    choice(Group::WhatIf, "coverage", "Coverage: the path by its worst alarm", |s| Kind::Switch(s.view.coverage), |s| view(ViewCommand::Coverage(!s.view.coverage))),
+    choice(Group::WhatIf, "coverage", "Coverage: the path by its worst alarm", |s| Kind::Switch(s.view.coverage), |s| preview(PreviewCommand::Coverage(!s.view.coverage))),
     choice(Group::WhatIf, "what-if-engine", "The engine fails here", |s| alarm_is(s, Cause::Engine), |s| raise(s, Cause::Engine)),
     choice(Group::WhatIf, "what-if-energy", "The energy is too low here", |s| alarm_is(s, Cause::Energy), |s| raise(s, Cause::Energy)),
     choice(Group::WhatIf, "what-if-link", "The link is lost here", |s| alarm_is(s, Cause::Link), |s| raise(s, Cause::Link)),
     choice(Group::WhatIf, "what-if-gps", "GPS is lost here", |s| alarm_is(s, Cause::Gps), |s| raise(s, Cause::Gps)),
-    entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| view(ViewCommand::WhatIf(Box::default()))),
+    entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| preview(PreviewCommand::Reset)),
     entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
     choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
     choice(Group::Maps, "rings", "Range rings", |s| Kind::Switch(s.view.edge.rings), |s| view(ViewCommand::Edge(Edge { rings: !s.view.edge.rings, ..s.view.edge }))),
@@ -179,6 +179,10 @@ fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
 }
 
+fn preview(command: PreviewCommand) -> Asked {
+    Ok(Command::Preview(command))
+}
+
 /// The help lies over everything: it goes first, then the tour, then the card for a new mission.
 fn escape(scene: &Scene<'_>) -> Asked {
     view(match (&scene.view.help, scene.view.tour) {
@@ -196,7 +200,7 @@ fn alarm_is(scene: &Scene<'_>, cause: Cause) -> Kind {
 }
 
 fn raise(scene: &Scene<'_>, cause: Cause) -> Asked {
-    view(ViewCommand::Raise(Some(cause).filter(|_| scene.view.alarm != Some(cause))))
+    preview(PreviewCommand::Raise(Some(cause).filter(|_| scene.view.alarm != Some(cause))))
 }
 
 fn export(scene: &Scene<'_>, format: Format) -> Asked {
@@ -282,7 +286,7 @@ fn follow(scene: &Scene<'_>) -> Asked {
 }
 
 fn play(scene: &Scene<'_>) -> Asked {
-    view(ViewCommand::Play(!scene.view.playing))
+    preview(PreviewCommand::Play(!scene.view.playing))
 }
 
 fn theme_is(scene: &Scene<'_>, theme: ThemePreference) -> Kind {

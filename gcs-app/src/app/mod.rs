@@ -4,10 +4,13 @@
 mod filing;
 mod focus;
 mod ground;
+mod inbox;
 mod keys;
 mod layout;
+mod links;
 mod messages;
 mod orders;
+mod preview;
 mod remembered;
 mod screenshot;
 mod window;
@@ -22,9 +25,9 @@ use crate::connections::Connections;
 use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
-use crate::forecast::{Aboard, Analysis, Forecast, Question, Worker};
+use crate::forecast::{Aboard, Analysis, Forecast, Worker};
 use crate::layers::Layers;
-use crate::link::{BACKLOG, Call, Links, Order};
+use crate::link::Links;
 use crate::map::MapState;
 use crate::panels::help::Help;
 use crate::panels::palette::CommandPalette;
@@ -32,7 +35,7 @@ use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::shelf::Shelf;
-use crate::state::{LOOK_AHEAD, Outcome, READ_ABOARD, Ticket, Toasts, Vehicle, VehicleName, Vehicles};
+use crate::state::{Toasts, Vehicle, VehicleName, Vehicles};
 use crate::story::{Chapter, Story};
 use crate::theme;
 use remembered::Remembered;
@@ -239,129 +242,6 @@ impl App {
         }
     }
 
-    /// Opens a link to a vehicle and shows that one; an older link to the same vehicle is closed.
-    fn connect(&mut self, endpoint: &str, vehicle: &VehicleName, now_s: f64) {
-        self.disconnect(vehicle);
-        self.connections.add(endpoint, vehicle.as_str());
-        let link = self.links.connect(endpoint, vehicle);
-        self.vehicles.open(vehicle, link, endpoint, now_s);
-    }
-
-    fn disconnect(&self, vehicle: &VehicleName) {
-        if let Some(link) = self.vehicles.get(vehicle).and_then(Vehicle::open_link) {
-            self.links.order(Order::Disconnect { link });
-        }
-    }
-
-    fn drain(&mut self, ctx: &egui::Context) {
-        let now_s = ctx.input(|i| i.time);
-        // no more than that in a frame: who talks without a break must not stop the drawing
-        for _ in 0..=BACKLOG {
-            let Some(message) = self.links.message() else { break };
-            self.vehicles.receive(message, now_s);
-        }
-        self.look_out(now_s);
-        self.adopt_plan_aboard();
-        for vehicle in self.vehicles.due_for_plan(now_s) {
-            self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
-        }
-        for vehicle in self.vehicles.due_for_landing(now_s) {
-            let ticket = self.call(&vehicle, LOOK_AHEAD, Call::Foresee(None), now_s);
-            if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
-                vehicle.outlook.asked_when_it_lands(ticket, now_s);
-            }
-        }
-        self.compare_with_aboard();
-        if let Some(analysis) = self.worker.answer() {
-            self.analysis = analysis;
-        }
-        let (document, version) = (self.document.id(), self.document.version());
-        if self.analysis.document != document {
-            self.analysis = Analysis::default();
-        }
-        self.drain_layers(ctx);
-        self.worker.ask(Question {
-            document,
-            version,
-            plan: self.document.plan().clone(),
-            what_if: self.view.what_if.clone(),
-            alarm: self.view.alarm_at_cursor(),
-            coverage: self.view.coverage,
-        });
-        self.view.behind_since_s = match self.scene(Now::read(ctx)).is_behind() {
-            true => self.view.behind_since_s.or(Some(now_s)),
-            false => None,
-        };
-        while let Some(event) = self.files.next_event() {
-            self.file_event(event, now_s);
-        }
-        self.watch_file();
-        self.go_on_quitting();
-        if let Some((story, chapter)) = &mut self.story {
-            *chapter = story.chapter();
-            story.take_work().into_iter().for_each(|job| self.files.adopt(job));
-        }
-        self.tend_messages(ctx, now_s);
-    }
-
-    /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
-    fn adopt_plan_aboard(&mut self) {
-        let Some(shown) = self.vehicles.shown_name().cloned() else { return };
-        self.drop_plan_of_another(&shown);
-        let Some(aboard) = &self.vehicles.shown().aboard else { return };
-        let version = self.document.version();
-        let here = self.analysis.hash_of(version);
-        if here.is_some_and(|hash| *hash == *aboard.hash) {
-            self.mirrored = Some((shown, version));
-            return;
-        }
-        let is_empty = self.document.plan().stages.is_empty();
-        let was_aboard = here.is_some() && self.mirrored == Some((shown.clone(), version));
-        if self.document.is_nobodys() && (is_empty || was_aboard) {
-            self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
-            self.mirrored = Some((shown, self.document.version()));
-            if is_empty {
-                self.map.fit();
-            }
-        }
-    }
-
-    /// Another vehicle's plan is not to be seen under this one.
-    fn drop_plan_of_another(&mut self, shown: &VehicleName) {
-        let version = self.document.version();
-        let belongs_to_another =
-            self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
-        if belongs_to_another && self.document.is_nobodys() {
-            self.document = Document::default();
-            self.view.select(None);
-            self.view.cursor_s = None;
-        }
-    }
-
-    /// A proposal is shown beside the plan aboard.
-    fn compare_with_aboard(&mut self) {
-        self.aboard.receive();
-        let vehicle = self.vehicles.shown();
-        if let (Some(aboard), true) = (&vehicle.aboard, vehicle.proposal.is_some()) {
-            self.aboard.ask(aboard);
-        }
-    }
-
-    /// Sends a question to a vehicle and notes it; its number, if there is such a vehicle.
-    fn call(&mut self, vehicle: &VehicleName, label: &str, call: Call, now_s: f64) -> Option<Ticket> {
-        let asked = self.vehicles.get_mut(vehicle)?;
-        let ticket = asked.requests.open(label, now_s);
-        let failed = match asked.open_link() {
-            None => Some("there is no link: connect first"),
-            Some(link) if self.links.order(Order::Call { link, ticket, call }) => None,
-            Some(_) => Some("the thread of the links has ended: restart the program"),
-        };
-        if let Some(why) = failed {
-            asked.requests.settle(ticket, Outcome::Refused(why.into()), now_s);
-        }
-        Some(ticket)
-    }
-
     /// A window with unsaved changes, or that watches a flight, stays open until the operator has decided.
     fn ask_before_closing(&mut self, ctx: &egui::Context) {
         if self.leaving {
@@ -413,19 +293,6 @@ impl App {
         if let Some(what) = self.view.rename.take() {
             tree::rename(ctx, what);
         }
-    }
-
-    /// The cursor runs so many times as fast as the flight.
-    fn play(&mut self, ctx: &egui::Context) {
-        if !self.view.playing {
-            return;
-        }
-        let step = f64::from(ctx.input(|i| i.stable_dt)).min(0.1) * self.view.speed.0;
-        let end = self.analysis.forecast.duration_s();
-        let next = self.view.cursor_s.unwrap_or(0.0) + step;
-        self.view.cursor_s = Some(next.min(end));
-        self.view.playing = next < end;
-        ctx.request_repaint();
     }
 }
 

@@ -8,13 +8,12 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
-use crate::panels::Speed;
 use crate::panels::bar::PUSH;
 use crate::state::{LOOK_AHEAD, Proposal, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
-use flight_plan::{Cause, Edit, Id, Place, Thing, create, diff};
+use flight_plan::{Edit, Id, Place, Thing, create, diff};
 use geometry::LatLon;
 use usal::contract::{GatewayRequest, Propose};
 
@@ -24,6 +23,7 @@ impl App {
         match command {
             Command::Document(command) => self.change_document(command, now_s),
             Command::View(command) => self.change_view(command, now_s),
+            Command::Preview(command) => self.change_preview(command),
             Command::Layer(command) => self.change_layers(command),
             Command::Link(command) => self.change_link(command, now_s),
             Command::Fly(command) => {
@@ -180,12 +180,7 @@ impl App {
                 self.view.follow = false;
                 self.map.fit();
             }
-            ViewCommand::Follow(follow) => {
-                self.view.follow = follow;
-                if follow {
-                    self.map.follow();
-                }
-            }
+            ViewCommand::Follow(follow) => self.follow(follow),
             ViewCommand::Guide(answer) => self.answer(answer),
             ViewCommand::Tool(id) => {
                 self.view.guide.take(Answer::Draw(None));
@@ -213,21 +208,10 @@ impl App {
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
-            ViewCommand::Scrub(cursor_s) => {
-                self.view.cursor_s = cursor_s;
-                self.view.playing = false;
-            }
-            ViewCommand::Speed(speed) => self.view.speed = Speed(speed),
-            ViewCommand::WhatIf(what_if) => self.view.what_if = *what_if,
-            ViewCommand::Raise(cause) => self.raise(cause),
-            ViewCommand::Coverage(shown) => self.view.coverage = shown,
-            ViewCommand::Play(playing) => self.run_cursor(playing),
             ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::DismissNotice => self.view.notice = None,
             ViewCommand::NameFile(name) => {
-                if let Some(browsing) = &mut self.view.browsing {
-                    browsing.name = name;
-                }
+                self.view.browsing.iter_mut().for_each(|browsing| browsing.name.clone_from(&name));
             }
             ViewCommand::StopBrowsing => self.stop_browsing(),
             ViewCommand::PutImportAside => self.view.imported = None,
@@ -245,29 +229,19 @@ impl App {
         }
     }
 
+    fn follow(&mut self, follow: bool) {
+        self.view.follow = follow;
+        if follow {
+            self.map.follow();
+        }
+    }
+
     fn jump_to(&mut self, selection: Selection) {
         if let Some(at) = self.map.place_of(&selection, self.document.plan()) {
             self.view.follow = false;
             self.map.jump_to(at);
         }
         self.view.select(Some(selection));
-    }
-
-    /// An alarm is raised at the cursor; without one, halfway.
-    fn raise(&mut self, cause: Option<Cause>) {
-        self.view.alarm = cause;
-        if cause.is_some() {
-            let middle_s = self.analysis.forecast.duration_s() / 2.0;
-            self.view.cursor_s.get_or_insert(middle_s);
-        }
-    }
-
-    /// From where it is, or from the start where it stands at the end.
-    fn run_cursor(&mut self, playing: bool) {
-        self.view.playing = playing;
-        if self.view.cursor_s.is_some_and(|c| c >= self.analysis.forecast.duration_s()) {
-            self.view.cursor_s = Some(0.0);
-        }
     }
 
     fn answer(&mut self, answer: Answer) {

@@ -6,7 +6,7 @@
 use super::preview::Forecaster;
 use super::reviewer::{Path, Trial};
 use super::worker::{Analysis, Found, Outbox, Question};
-use super::{Alarm, Coverage, Flown, Shared};
+use super::{Alarm, Coverage, Flown, Forecast, Shared};
 use aircraft::Profile;
 use flight_exec::rehearse::WhatIf;
 use flight_exec::review::Conditions;
@@ -134,7 +134,10 @@ impl Bench {
             Step::Fly => Found::Forecast(question.version, self.fly(question)),
             Step::Divert(alarm) => {
                 self.diverted = Some((self.forecast_version, alarm));
-                Found::Diversion(self.forecast_version, self.forecaster.divert(alarm))
+                // the forecaster keeps a flight that is of no plan any more
+                let is_flown = !self.last.points.is_empty();
+                let diversion = is_flown.then(|| self.forecaster.divert(alarm)).flatten();
+                Found::Diversion(self.forecast_version, diversion)
             }
             Step::Hash | Step::Review => {
                 self.hashed = true;
@@ -196,7 +199,12 @@ impl Bench {
                 self.last = forecast;
                 None
             }
-            Err(why) => Some(why),
+            Err(why) => {
+                if !flies_a_part_of(&self.last, &question.plan) {
+                    self.last = Shared::default();
+                }
+                Some(why)
+            }
         };
         Flown {
             forecast: self.last.clone(),
@@ -250,6 +258,12 @@ impl Bench {
         self.coverage = Some((here, coverage.clone()));
         Found::Coverage(here, coverage)
     }
+}
+
+/// Some leg or stage of the path is in the plan. A path of which nothing is left (its creation was undone) is that of another plan.
+fn flies_a_part_of(path: &Forecast, plan: &FlightPlan) -> bool {
+    let mut parts = path.passages.iter().flat_map(|passage| [&passage.leg, &passage.stage]);
+    parts.any(|id| plan.stage(id).is_some() || plan.leg(id).is_some())
 }
 
 /// Of an aircraft that nobody knows: the standard one.

@@ -1,7 +1,7 @@
 //! Chips at the map's lower right: in which world the path is flown, whether it is up to date, and what its colours mean.
 
 use super::marks;
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::map::{coverage, view::View};
 use crate::panels::{Scene, problems, what_if};
 use crate::theme::{self, Palette};
@@ -51,16 +51,19 @@ fn standing(ui: &mut Ui, scene: &Scene<'_>, p: &Palette, queue: &mut Queue) {
 
 fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let words = what_if::in_words(&scene.view.what_if, scene.document.plan(), scene.units());
+    let alarm = scene.view.alarm_at_cursor().map(what_if::alarm_in_words);
+    let words = [words].into_iter().filter(|words| !words.is_empty()).chain(alarm).collect::<Vec<_>>();
     if words.is_empty() {
         return;
     }
+    let words = words.join(" · ");
     row(ui, |ui| {
         let button = ui.small_button("✖");
         button.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, "Back to the plan's own world")
         });
         if button.on_hover_text("Back to the plan's own world").clicked() {
-            queue.view(ViewCommand::WhatIf(Box::default()));
+            queue.preview(PreviewCommand::Reset);
         }
         let text = format!("What if: {words}");
         ui.add(egui::Label::new(RichText::new(&text).size(12.0)).truncate()).on_hover_text(&text);

@@ -79,7 +79,7 @@ fn shortened(text: &str) -> String {
 
 /// The way out after the alarm: after an engine failure the glide, and fainter the plan as it would be flown with an engine.
 pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-    let Some(found) = scene.analysis.diversion().filter(|_| scene.view.alarm.is_some()) else { return };
+    let Some(found) = scene.diversion() else { return };
     let engine = found.cause == Cause::Engine;
     let powered: Vec<LatLon> =
         found.powered.iter().flat_map(|f| f.track.iter().map(|q| q.position)).collect();

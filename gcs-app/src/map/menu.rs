@@ -2,7 +2,7 @@
 
 use super::tools::pick::things_near;
 use super::tools::{Asked, Canvas, new_leg};
-use crate::command::{Queue, Selection, ViewCommand};
+use crate::command::{PreviewCommand, Queue, Selection, ViewCommand};
 use crate::map::path;
 use crate::map::tools::pen::way;
 use crate::panels::tree::menu as tree_menu;
@@ -172,8 +172,8 @@ fn what_happens_here(ui: &mut Ui, canvas: &Canvas<'_>, at: Pos2, queue: &mut Que
     ui.menu_button("What happens here", |ui| {
         for cause in CAUSES {
             if ui.button(cause_name(cause)).clicked() {
-                queue.view(ViewCommand::Scrub(Some(time_s)));
-                queue.view(ViewCommand::Raise(Some(cause)));
+                queue.preview(PreviewCommand::Scrub(Some(time_s)));
+                queue.preview(PreviewCommand::Raise(Some(cause)));
                 queue.view(ViewCommand::ShowPanel(what_if::ID, true));
             }
         }

@@ -4,7 +4,7 @@ use super::polyline::{self, Cached, Style};
 use super::sketch::Sketch;
 use super::text;
 use super::view::{Mercator, View};
-use crate::command::{Queue, Selection, ViewCommand};
+use crate::command::{PreviewCommand, Queue, Selection};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
@@ -148,7 +148,7 @@ pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palett
 pub fn move_cursor(response: &egui::Response, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
     let at = response.interact_pointer_pos().filter(|_| scene.view.alarm.is_some() && response.clicked());
     if let Some(time_s) = at.and_then(|at| time_near(at, view, scene)) {
-        queue.view(ViewCommand::Scrub(Some(time_s)));
+        queue.preview(PreviewCommand::Scrub(Some(time_s)));
     }
 }
 

@@ -114,6 +114,10 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
 /// What will be flown, when nothing is selected.
 fn summary(ui: &mut Ui, scene: &Scene<'_>) {
     let forecast = scene.forecast();
+    if let (Some(why), false) = (scene.out_of_date(), forecast.points.is_empty()) {
+        let text = RichText::new(format!("◌ {why}")).size(12.0).color(theme::of(ui).caution);
+        ui.add(egui::Label::new(text).wrap());
+    }
     let rows: [(&str, String); 4] = [
         ("Length", scene.units().distance().show(forecast.length_m())),
         ("Duration", units::duration(forecast.duration_s())),

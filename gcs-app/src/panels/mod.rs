@@ -2,6 +2,7 @@
 //!
 //! To add a panel: a file here with a value that implements [`Panel`], and its line in [`all`].
 
+mod aged;
 pub mod alarms;
 pub mod bar;
 pub mod binding;
@@ -49,13 +50,14 @@ use crate::map::furniture::Edge;
 use crate::recent::Recent;
 use crate::recovery::LeftBehind;
 use crate::shelf::Shelf;
-use crate::state::{Aged, Toasts, Vehicle, Vehicles};
+use crate::state::{Toasts, Vehicle, Vehicles};
 use crate::story::Chapter;
 use crate::theme;
-use crate::units::{self, Units};
+use crate::units::Units;
+pub use aged::{age_of, aged_row, value_with_age};
 use browse::Browsing;
 use egui::{RichText, Ui};
-use flight_exec::rehearse::WhatIf;
+use flight_exec::rehearse::{Diversion, WhatIf};
 use flight_plan::{Cause, FlightPlan, Id, Problem};
 use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
@@ -321,6 +323,10 @@ impl<'a> Scene<'a> {
             _ => None,
         }
     }
+    /// The way out after the alarm that is raised, as soon as one is known.
+    pub fn diversion(&self) -> Option<&'a Diversion> {
+        self.analysis.diversion().filter(|_| self.view.alarm_at_cursor().is_some())
+    }
     /// What is wrong with the plan: first what reading it found, then what checking it found.
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {
         self.document.reading_problems().iter().chain(&self.analysis.problems)
@@ -361,41 +367,6 @@ impl<'a> Scene<'a> {
 pub fn group_title(ui: &mut Ui, text: &str) {
     let weak = theme::of(ui).weak;
     ui.label(RichText::new(text.to_uppercase()).size(10.5).color(weak).strong());
-}
-
-/// A value with its name and its age; one that has expired looks expired, and says so.
-pub fn value_with_age(ui: &mut Ui, name: &str, text: &str, age: Option<(f64, bool)>) {
-    aged_row(ui, (name, 70.0), text, age);
-}
-
-/// The same with a width of one's own for the name, screen points.
-pub fn aged_row(ui: &mut Ui, (name, width): (&str, f32), text: &str, age: Option<(f64, bool)>) {
-    let p = theme::of(ui);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        field::name(ui, name, width);
-        let (shown, age_text) = match age {
-            Some((age_s, false)) => (RichText::new(text).color(p.text), units::age(age_s)),
-            Some((age_s, true)) => {
-                (RichText::new(text).color(p.weak).strikethrough(), format!("{} old", units::age(age_s)))
-            }
-            None => (RichText::new("–").color(p.weak), String::new()),
-        };
-        // the age first: a long text ends before it
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            // clear of the scroll bar
-            ui.add_space(8.0);
-            ui.label(RichText::new(age_text).size(10.5).color(p.weak));
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.add(egui::Label::new(shown).truncate());
-            });
-        });
-    });
-}
-
-/// Age and expiry of a value, for [`value_with_age`].
-pub fn age_of<T>(value: &Option<Aged<T>>, now_s: f64) -> Option<(f64, bool)> {
-    value.as_ref().map(|v| (v.age_s(now_s), v.is_expired(now_s)))
 }
 
 /// A button that is the main thing to do here.

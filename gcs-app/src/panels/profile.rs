@@ -1,7 +1,7 @@
 //! Altitude along the path, with the ground below, stages as bands, and a cursor on the timeline.
 
 use super::{Panel, PanelId, Place, Scene, timeline};
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue};
 use crate::forecast::{Forecast, Passage, Point};
 use crate::map::coverage;
 use crate::theme::{self, Palette};
@@ -80,7 +80,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
-        queue.view(ViewCommand::Scrub(Some(axes.time_at(pointer))));
+        queue.preview(PreviewCommand::Scrub(Some(axes.time_at(pointer))));
     }
 }
 
@@ -271,7 +271,7 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
 
 /// The way out after the alarm: it goes on beyond the end of the flight, if need be.
 fn draw_diversion(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
-    let Some(found) = scene.analysis.diversion().filter(|_| scene.view.alarm.is_some()) else { return };
+    let Some(found) = scene.diversion() else { return };
     let at = |time_s: f64, altitude_amsl_m: f64| pos2(axes.x(time_s), axes.y(altitude_amsl_m));
     let powered = found.powered.iter().flat_map(|f| &f.track).map(|q| at(q.time_s, q.altitude_amsl_m));
     let glide = found.glide.iter().flat_map(|g| &g.path);

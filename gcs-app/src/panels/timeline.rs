@@ -1,7 +1,7 @@
 //! The preview's timeline: play and pause, what the preview comes to, and a strip with its stages along which the cursor is moved.
 
 use super::Scene;
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue};
 use crate::forecast::Forecast;
 use crate::theme::{self, Palette};
 use crate::units;
@@ -15,11 +15,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let forecast = scene.forecast();
     let text = if scene.view.playing { "⏸ Pause" } else { "▶ Preview" };
     if ui.add_enabled(!forecast.points.is_empty(), egui::Button::new(text)).on_hover_text("Space").clicked() {
-        queue.view(ViewCommand::Play(!scene.view.playing));
+        queue.preview(PreviewCommand::Play(!scene.view.playing));
     }
     speed(ui, scene, queue);
     if scene.view.cursor_s.is_some() && ui.button("✖").on_hover_text("Hide the cursor").clicked() {
-        queue.view(ViewCommand::Scrub(None));
+        queue.preview(PreviewCommand::Scrub(None));
     }
     let p = theme::of(ui);
     let flights = match forecast.stops {
@@ -33,11 +33,15 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         forecast.waypoints.len(),
         forecast.battery_left.map_or_else(String::new, |b| format!(" · {:.0} % energy left", b * 100.0)),
     );
+    if let (Some(why), false) = (scene.out_of_date(), forecast.points.is_empty()) {
+        // what follows is not of the plan that is shown
+        ui.label(RichText::new("◌ Out of date").color(p.caution)).on_hover_text(why);
+    }
     ui.add(egui::Label::new(RichText::new(&sum).color(p.weak)).truncate()).on_hover_text(sum);
     if scene.is_behind() {
         ui.add(egui::Spinner::new().size(14.0));
     }
-    if let Some(why) = forecast.cut_short.as_ref().or(scene.analysis.no_forecast.as_ref()) {
+    if let Some(why) = scene.analysis.no_forecast.as_ref().or(forecast.cut_short.as_ref()) {
         ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
             .on_hover_text(why);
     }
@@ -49,7 +53,7 @@ fn speed(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let shown = combo.show_ui(ui, |ui| {
         for speed in SPEEDS {
             if ui.selectable_label(now == speed, format!("{speed:.0}×")).clicked() {
-                queue.view(ViewCommand::Speed(speed));
+                queue.preview(PreviewCommand::Speed(speed));
             }
         }
     });
@@ -86,13 +90,13 @@ pub fn strip(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let by = f64::from(i8::from(pressed(Key::ArrowRight)) - i8::from(pressed(Key::ArrowLeft)));
         if by != 0.0 {
             let to = (cursor_s + by * KEY_SHARE * duration_s).clamp(0.0, duration_s);
-            queue.view(ViewCommand::Scrub(Some(to)));
+            queue.preview(PreviewCommand::Scrub(Some(to)));
         }
     }
     let moved = response.dragged() || response.clicked();
     if let Some(at) = response.interact_pointer_pos().filter(|_| moved) {
         let share = f64::from(((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0));
-        queue.view(ViewCommand::Scrub(Some(share * duration_s)));
+        queue.preview(PreviewCommand::Scrub(Some(share * duration_s)));
     }
 }
 

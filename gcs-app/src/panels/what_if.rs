@@ -6,10 +6,10 @@ mod words;
 mod world;
 
 pub use here::{CAUSES, cause_name, reach_name};
-pub use words::{diversion, winds, world as in_words};
+pub use words::{alarm as alarm_in_words, diversion, winds, world as in_words};
 
 use super::{Panel, PanelId, Place, Scene, timeline};
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue};
 use crate::theme;
 use egui::{RichText, ScrollArea, Ui, vec2};
 
@@ -64,7 +64,7 @@ fn reset_button(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let differs = !scene.view.what_if.is_nothing();
     let button = ui.add_enabled(differs, egui::Button::new("↺ Reset"));
     if button.on_hover_text("Calm air, a full battery, and the plan's own values and branches").clicked() {
-        queue.view(ViewCommand::WhatIf(Box::default()));
+        queue.preview(PreviewCommand::WhatIf(Box::default()));
     }
 }
 

@@ -23,6 +23,7 @@ mod inspecting;
 mod interchange;
 mod looks;
 mod maps;
+mod painted;
 mod palette;
 mod pasting;
 mod placing;
@@ -83,9 +84,20 @@ impl Window {
         storage: Option<&'static dyn eframe::Storage>,
         ground: Arc<dyn terrain::Terrain>,
     ) -> Self {
+        Self::open_stepping(text, size, storage, ground, 1.0 / 60.0)
+    }
+
+    /// The same, with so many seconds from frame to frame.
+    fn open_stepping(
+        text: &str,
+        size: Vec2,
+        storage: Option<&'static dyn eframe::Storage>,
+        ground: Arc<dyn terrain::Terrain>,
+        step_s: f32,
+    ) -> Self {
         let (links, far) = Links::pair();
         let document = Document::read(text.as_bytes(), None);
-        let builder = Harness::builder().with_size(size).with_step_dt(1.0 / 60.0);
+        let builder = Harness::builder().with_size(size).with_step_dt(step_s);
         let harness = builder.renderer(Raster::default()).build_eframe(move |creation| {
             creation.storage = storage;
             App::new(creation, document, links, ground).unwrap()

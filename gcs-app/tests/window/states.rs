@@ -7,18 +7,18 @@ use super::emergency::in_emergency;
 use super::filing::until_listed;
 use super::fleet::{tab, two};
 use super::flying::{flying, report};
+use super::painted::texts;
 use super::vehicle::{decision, status};
 use super::whatif::FIRE_WATCH;
 use super::{SQUARE, Window};
-use egui::epaint::TextShape;
-use egui::{Key, LayerId, Order, Pos2, Rect, Role, Shape, Vec2, vec2};
+use egui::{Key, LayerId, Order, Pos2, Rect, Role, Vec2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::Phase;
 use gcs_app::link::Reply;
 use std::collections::HashMap;
 use usal::contract::{Alarm, Severity};
 
-/// In points: the smallest window, 3840 by 2160 at scale 3, and a large one.
+/// In points: the smallest window (at any scale: a window of 960 by 600 is not scaled up), 3840 by 2160 at scale 3, and a large one.
 const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 720.0), vec2(1920.0, 1080.0)];
 /// Sizes that some states are looked at, too: 1280 by 800, 3840 by 2160 at scale 0.8, and 960 by 600 at scale 0.8.
 const MORE: [Vec2; 3] = [vec2(1280.0, 800.0), vec2(4800.0, 2700.0), vec2(1200.0, 750.0)];
@@ -122,14 +122,6 @@ fn overlapping(widgets: &[Widget]) -> Vec<String> {
         }
     }
     faults
-}
-
-fn texts(shape: &Shape) -> Vec<&TextShape> {
-    match shape {
-        Shape::Text(text) => vec![text],
-        Shape::Vec(several) => several.iter().flat_map(texts).collect(),
-        _ => Vec::new(),
-    }
 }
 
 /// Texts end with an ellipsis where there is no room for all of them, and then a tooltip has the rest.

@@ -4,7 +4,7 @@ use super::{SQUARE, Window};
 use aircraft::{Profile, Wind};
 use egui::accesskit::Role;
 use egui::vec2;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::rehearse::{Act, Options, Reach, Scenario, Start, Trigger, When};
 use flight_exec::{Command, preview};
 use flight_plan::{Cause, VariableValue, compile};
@@ -61,6 +61,24 @@ fn wind_changes_the_preview_and_not_the_document() {
     window.until("calm again", is_current);
     assert_eq!(duration_s(&window), calm_s);
     assert!(!window.shows("What if: wind"));
+}
+
+#[test]
+fn what_is_being_drawn_is_tried_in_the_wind_that_is_set() {
+    let mut window = opened(SQUARE);
+    window.press(egui::Key::O);
+    let at = window.centre("Map") + vec2(90.0, 40.0);
+    window.click_at(at);
+    let tried = |window: &mut Window| {
+        window.harness.hover_at(at + vec2(50.0, 0.0));
+        window.steps(3);
+        let mut said = window.harness.query_all_by_label_contains("Orbit: ");
+        said.find_map(|node| node.accesskit_node().value()).unwrap()
+    };
+    let calm = tried(&mut window);
+    assert!(calm.contains(" m · ") || calm.contains(" km · "), "length and time: {calm}");
+    slide(&mut window, "Wind speed", 12.0);
+    assert_ne!(tried(&mut window), calm, "against the wind it takes longer");
 }
 
 #[test]
@@ -143,6 +161,21 @@ fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_
     window.press_ctrl(egui::Key::N);
     assert!(window.plan().stages.is_empty());
     assert!(window.app().view().alarm.is_none(), "another plan");
+}
+
+#[test]
+fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
+    let mut window = opened(SQUARE);
+    for close in ["✖", "Back to the plan's own world"] {
+        scrub(&mut window, 0.5);
+        choose(&mut window, "Engine failure");
+        window.until("the way out", |app| app.analysis().diversion().is_some());
+        assert!(window.colour_within("Map", "Engine failure: return, ").is_some(), "on the map");
+        assert!(window.shows("What if: Engine failure at "), "the map says so");
+        window.click(close);
+        assert_eq!(window.colour_within("Map", "Engine failure: return, "), None, "{close}");
+        assert!(!window.shows("What if: ") && window.app().view().alarm.is_none(), "{close}");
+    }
 }
 
 /// The same flight with the same alarm.

@@ -7,9 +7,9 @@ use crate::map::view::Mercator;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::{self, Units};
-use aircraft::{Profile, Wind};
+use aircraft::Profile;
 use egui::{Painter, Stroke};
-use flight_exec::rehearse::{Options, Preview, Rehearsal, Start};
+use flight_exec::rehearse::{Options, Preview, Rehearsal, Start, WhatIf};
 use flight_plan::create::{self, Approach, is_tried};
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Value, compile};
 use geometry::LatLon;
@@ -71,23 +71,26 @@ impl Trial {
     }
 }
 
+/// What was tried out: of which version of the plan, in which world.
+type Tried = (u64, WhatIf, Leg, Approach);
+
 /// The last leg that was tried out.
 #[derive(Debug, Default)]
 pub struct Trials {
-    tried: Option<(u64, Leg, Approach)>,
+    tried: Option<Tried>,
     trial: Trial,
 }
 
 impl Trials {
     /// A leg that would be put there; flown anew only when it is another.
     pub fn fly(&mut self, leg: Option<Leg>, aim: &Aim, approach: Option<Approach>, canvas: &Canvas<'_>) {
-        let version = canvas.scene.document.version();
-        let wanted = leg.zip(approach).map(|(leg, approach)| (version, leg, approach));
+        let (version, what_if) = (canvas.scene.document.version(), &canvas.scene.view.what_if);
+        let wanted = leg.zip(approach).map(|(leg, approach)| (version, what_if.clone(), leg, approach));
         if wanted == self.tried {
             return;
         }
         self.trial = match &wanted {
-            Some((_, leg, approach)) => fly(leg, aim, *approach, canvas.scene),
+            Some((_, _, leg, approach)) => fly(leg, aim, *approach, canvas.scene),
             None => Trial::default(),
         };
         self.tried = wanted;
@@ -119,7 +122,9 @@ fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
         }
     };
     let pace_mps = profile.cruise_airspeed_mps;
-    let rehearsal = Rehearsal::new(profile, ground.clone(), Wind::CALM, options());
+    // as the preview of the whole plan
+    let winds = scene.view.what_if.winds(plan);
+    let rehearsal = Rehearsal::new(profile, ground.clone(), winds, options());
     Trial { pace_mps, ..flown(leg, approach, level_amsl_m, &program, rehearsal) }
 }
 

@@ -1,7 +1,7 @@
 //! What happens here: an alarm at the preview's cursor, and how alarms end all along the path.
 
 use super::{remark, words};
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue};
 use crate::panels::{Scene, group_title};
 use crate::theme;
 use crate::units;
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let mut covered = scene.view.coverage;
     let hover = "Colours the path by the worst of these alarms at each of its points";
     if ui.checkbox(&mut covered, "Coverage of the whole path").on_hover_text(hover).changed() {
-        queue.view(ViewCommand::Coverage(covered));
+        queue.preview(PreviewCommand::Coverage(covered));
     }
     if let Some(known) = scene.analysis.coverage().filter(|c| scene.view.coverage && !c.is_complete()) {
         ui.add(egui::ProgressBar::new(known.progress() as f32).desired_height(6.0));
@@ -60,7 +60,7 @@ fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let button = ui.selectable_label(raised, RichText::new(short).size(12.5));
     button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, raised, name));
     if button.on_hover_text(name).clicked() {
-        queue.view(ViewCommand::Raise((!raised).then_some(cause)));
+        queue.preview(PreviewCommand::Raise((!raised).then_some(cause)));
     }
 }
 
@@ -71,7 +71,7 @@ fn outcome(ui: &mut Ui, scene: &Scene<'_>) {
             "Raise an alarm: the way out is drawn from the cursor. Click the path or the profile to move it.",
         );
     }
-    let Some(found) = scene.analysis.diversion() else {
+    let Some(found) = scene.diversion() else {
         return remark(ui, "Being computed…");
     };
     let p = theme::of(ui);

@@ -1,6 +1,7 @@
 //! What is otherwise, and what would happen, in words.
 
 use super::here::{cause_name, reach_name};
+use crate::forecast::Alarm;
 use crate::units::{self, Units};
 use aircraft::Wind;
 use flight_exec::rehearse::{Diversion, Glide, Powered, Reach, WhatIf};
@@ -45,6 +46,11 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
     }
     parts.extend(what_if.decisions.iter().map(|(leg, branch)| format!("{leg}: {branch}")));
     parts.join(" · ")
+}
+
+/// `Engine failure at 3:20`.
+pub fn alarm(alarm: Alarm) -> String {
+    format!("{} at {}", cause_name(alarm.cause), units::duration(alarm.time_s))
 }
 
 fn value_in_words(value: &VariableValue, unit: &str) -> String {

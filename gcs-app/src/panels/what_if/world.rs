@@ -1,7 +1,7 @@
 //! Wind, energy and start time; values and branches.
 
 use super::{remark, reset_button};
-use crate::command::{Queue, ViewCommand};
+use crate::command::{PreviewCommand, Queue};
 use crate::panels::problems::told;
 use crate::panels::{Scene, group_title};
 use crate::theme;
@@ -47,7 +47,7 @@ pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 fn send(scene: &Scene<'_>, chosen: WhatIf, queue: &mut Queue) {
     if chosen != scene.view.what_if {
-        queue.view(ViewCommand::WhatIf(Box::new(chosen)));
+        queue.preview(PreviewCommand::WhatIf(Box::new(chosen)));
     }
 }
 
@@ -246,7 +246,7 @@ fn take(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     {
         queue.edit(edit);
         let left = WhatIf { variables: Default::default(), decisions: Default::default(), ..what_if };
-        queue.view(ViewCommand::WhatIf(Box::new(left)));
+        queue.preview(PreviewCommand::WhatIf(Box::new(left)));
     }
 }
 

@@ -1,0 +1,114 @@
+//! What comes in between two frames: from the links, from the worker, from files. Nothing here waits for any of them.
+
+use super::{App, Now};
+use crate::document::Document;
+use crate::forecast::{Analysis, Question};
+use crate::link::{BACKLOG, Call};
+use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
+
+impl App {
+    /// Takes in all that has come since the last frame, and asks for what is wanted next.
+    pub(super) fn drain(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|i| i.time);
+        self.drain_links(now_s);
+        self.drain_worker(ctx);
+        self.view.behind_since_s = match self.scene(Now::read(ctx)).is_behind() {
+            true => self.view.behind_since_s.or(Some(now_s)),
+            false => None,
+        };
+        while let Some(event) = self.files.next_event() {
+            self.file_event(event, now_s);
+        }
+        self.watch_file();
+        self.go_on_quitting();
+        if let Some((story, chapter)) = &mut self.story {
+            *chapter = story.chapter();
+            story.take_work().into_iter().for_each(|job| self.files.adopt(job));
+        }
+        self.tend_messages(ctx, now_s);
+    }
+
+    /// What the vehicles say; and what they are asked because of it.
+    fn drain_links(&mut self, now_s: f64) {
+        // no more than that in a frame: who talks without a break must not stop the drawing
+        for _ in 0..=BACKLOG {
+            let Some(message) = self.links.message() else { break };
+            self.vehicles.receive(message, now_s);
+        }
+        self.look_out(now_s);
+        self.adopt_plan_aboard();
+        for vehicle in self.vehicles.due_for_plan(now_s) {
+            self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
+        }
+        for vehicle in self.vehicles.due_for_landing(now_s) {
+            let ticket = self.call(&vehicle, LOOK_AHEAD, Call::Foresee(None), now_s);
+            if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
+                vehicle.outlook.asked_when_it_lands(ticket, now_s);
+            }
+        }
+        self.compare_with_aboard();
+    }
+
+    /// What was found out about the plan; and what is asked about it now.
+    fn drain_worker(&mut self, ctx: &egui::Context) {
+        if let Some(analysis) = self.worker.answer() {
+            self.analysis = analysis;
+        }
+        let (document, version) = (self.document.id(), self.document.version());
+        if self.analysis.document != document {
+            self.analysis = Analysis::default();
+        }
+        self.drain_layers(ctx);
+        self.worker.ask(Question {
+            document,
+            version,
+            plan: self.document.plan().clone(),
+            what_if: self.view.what_if.clone(),
+            alarm: self.view.alarm_at_cursor(),
+            coverage: self.view.coverage,
+        });
+    }
+
+    /// A window without a plan of its own shows the one that is aboard, also when another changes it there.
+    fn adopt_plan_aboard(&mut self) {
+        let Some(shown) = self.vehicles.shown_name().cloned() else { return };
+        self.drop_plan_of_another(&shown);
+        let Some(aboard) = &self.vehicles.shown().aboard else { return };
+        let version = self.document.version();
+        let here = self.analysis.hash_of(version);
+        if here.is_some_and(|hash| *hash == *aboard.hash) {
+            self.mirrored = Some((shown, version));
+            return;
+        }
+        let is_empty = self.document.plan().stages.is_empty();
+        let was_aboard = here.is_some() && self.mirrored == Some((shown.clone(), version));
+        if self.document.is_nobodys() && (is_empty || was_aboard) {
+            self.document = Document::new(aboard.plan.as_ref().clone(), None, Vec::new());
+            self.mirrored = Some((shown, self.document.version()));
+            if is_empty {
+                self.map.fit();
+            }
+        }
+    }
+
+    /// Another vehicle's plan is not to be seen under this one.
+    fn drop_plan_of_another(&mut self, shown: &VehicleName) {
+        let version = self.document.version();
+        let belongs_to_another =
+            self.mirrored.as_ref().is_some_and(|(whose, of)| whose != shown && *of == version);
+        if belongs_to_another && self.document.is_nobodys() {
+            self.document = Document::default();
+            self.view.select(None);
+            (self.view.cursor_s, self.view.alarm) = (None, None);
+        }
+    }
+
+    /// A proposal is shown beside the plan aboard.
+    fn compare_with_aboard(&mut self) {
+        self.aboard.receive();
+        let vehicle = self.vehicles.shown();
+        if let (Some(aboard), true) = (&vehicle.aboard, vehicle.proposal.is_some()) {
+            self.aboard.ask(aboard);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What the last frame painted, where no widget tells: lines and words on the map and on the profile.
+
+use super::Window;
+use egui::epaint::{ColorMode, TextShape};
+use egui::{Color32, Rect, Shape};
+use egui_kittest::kittest::Queryable;
+
+/// The texts of a shape.
+pub fn texts(shape: &Shape) -> Vec<&TextShape> {
+    match shape {
+        Shape::Text(text) => vec![text],
+        Shape::Vec(several) => several.iter().flat_map(texts).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The colours of the lines of a shape.
+fn strokes(shape: &Shape) -> Vec<Color32> {
+    match shape {
+        Shape::Vec(several) => several.iter().flat_map(strokes).collect(),
+        Shape::LineSegment { stroke, .. } => vec![stroke.color],
+        Shape::Circle(circle) => vec![circle.stroke.color],
+        Shape::Path(path) => match path.stroke.color {
+            ColorMode::Solid(colour) => vec![colour],
+            ColorMode::UV(_) => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+impl Window {
+    /// These words are painted somewhere.
+    pub fn paints(&self, words: &str) -> bool {
+        self.colour_of(words).is_some()
+    }
+
+    /// The colour of words that are painted somewhere.
+    pub fn colour_of(&self, words: &str) -> Option<Color32> {
+        self.colour_in(Rect::EVERYTHING, words)
+    }
+
+    /// The colour of words that are painted within what is called so.
+    pub fn colour_within(&self, name: &str, words: &str) -> Option<Color32> {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        self.colour_in(rect.expand(1.0), words)
+    }
+
+    /// The halo of words is painted before them.
+    fn colour_in(&self, rect: Rect, words: &str) -> Option<Color32> {
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.contains_rect(clipped.clip_rect));
+        let found = inside.flat_map(|clipped| texts(&clipped.shape));
+        let text = found.filter(|text| text.galley.text().contains(words)).last()?;
+        let own = text.galley.job.sections.first().map(|section| section.format.color);
+        text.override_text_color
+            .or(own.filter(|own| *own != Color32::PLACEHOLDER))
+            .or(Some(text.fallback_color))
+    }
+
+    /// So many lines of this colour are painted within what is called so.
+    pub fn lines_within(&self, name: &str, colour: Color32) -> usize {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        self.lines_in(rect, colour)
+    }
+
+    fn lines_in(&self, rect: Rect, colour: Color32) -> usize {
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
+        inside.flat_map(|clipped| strokes(&clipped.shape)).filter(|found| *found == colour).count()
+    }
+}
