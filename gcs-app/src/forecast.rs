@@ -6,12 +6,14 @@
 mod aboard;
 mod bench;
 mod coverage;
+mod left_out;
 mod preview;
 mod reviewer;
 mod worker;
 
 pub use aboard::Aboard;
 pub use coverage::Coverage;
+pub use left_out::LeftOut;
 pub use worker::{Analysis, Question, Worker};
 
 use flight_exec::rehearse::WhatIf;
@@ -83,6 +85,8 @@ pub struct Forecast {
     pub points: Vec<Point>,
     /// Its passages, in order.
     pub passages: Vec<Passage>,
+    /// Legs of the plan that are not flown, in its order.
+    pub left_out: Vec<LeftOut>,
     /// The waypoints that will be sent.
     pub waypoints: Vec<Waypoint>,
     /// Share of the energy left at the end, 0..1.

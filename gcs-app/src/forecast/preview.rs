@@ -1,6 +1,6 @@
 //! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
-use super::{Alarm, Forecast, Passage, Point, Shared};
+use super::{Alarm, Forecast, Passage, Point, Shared, left_out};
 use aircraft::{Profile, Wind, Winds};
 use flight_exec::rehearse::{
     Diversion, Kept, Options, Preview, PreviewError, Reach, Rehearsal, Start, WhatIf,
@@ -91,6 +91,7 @@ impl Forecaster {
         self.last = Arc::new(Forecast {
             points,
             passages,
+            left_out: left_out::of(preview, program.flown()),
             waypoints: preview.waypoints.iter().filter(|w| !w.replaced).map(|w| w.waypoint.clone()).collect(),
             battery_left: Some(preview.battery_left),
             stops: preview.stops.len(),

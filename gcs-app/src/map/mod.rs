@@ -12,6 +12,7 @@ pub mod foreseen;
 pub mod furniture;
 pub mod graticule;
 mod items;
+mod left_out;
 pub mod marks;
 mod menu;
 pub mod navigate;
@@ -30,11 +31,11 @@ pub mod zones;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
-use crate::theme;
+use crate::theme::{self, Palette};
 use crate::tiles::{Reader, Relief};
-use egui::{DragPanButtons, Role, Ui};
-use flight_plan::Variables;
+use egui::{DragPanButtons, Painter, Role, Ui};
 use flight_plan::create::Way;
+use flight_plan::{Id, Variables};
 use geometry::LatLon;
 use rasters::Raster;
 use sketch::Sketch;
@@ -184,7 +185,7 @@ impl MapState {
     }
 
     /// The relief, then the maps from the lowest to the uppermost.
-    fn draw_rasters(&mut self, painter: &egui::Painter, view: &View, scene: &Scene<'_>, dark: bool) {
+    fn draw_rasters(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, dark: bool) {
         if let Some(relief) = &mut self.relief {
             relief.draw(painter, view, 1.0, dark);
         }
@@ -245,32 +246,9 @@ impl MapState {
         response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, "Map"));
         let p = theme::of(ui);
         let painter = ui.painter_at(view.rect);
-        self.basemap.draw(&painter, view, p);
-        self.draw_rasters(&painter, view, scene, ui.visuals().dark_mode);
-        self.basemap.draw_names(&painter, view, p);
-        if scene.view.edge.graticule {
-            graticule::draw(&painter, view, p);
-        }
-        if scene.view.edge.rings {
-            graticule::draw_rings(&painter, view, scene, p);
-        }
-        zones::draw(&painter, view, scene, p);
-        plan::draw_areas(&painter, view, &self.sketch, scene, p);
-        variables::draw(&painter, view, &self.sketch, scene, p);
-        plan::draw_emergencies(&painter, view, &self.sketch, scene, p);
-        footprints::draw(&painter, view, &self.sketch, scene, p);
-        plan::draw_ways(&painter, view, &self.sketch, scene, p);
-        self.path.draw(&painter, view, scene, &self.sketch, p);
-        self.aircraft.draw_trail(&painter, view, scene, p);
-        foreseen::draw(&painter, view, scene, p);
-        aircraft::draw_ahead(&painter, view, scene, p);
-        path::draw_decision(&painter, view, scene, p);
-        plan::draw_runways(&painter, view, scene.document.plan(), p);
-        marks::draw_diversion(&painter, view, scene, p);
-        let place = |problem| self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan());
-        let error_at = marks::first_error(scene).and_then(place);
-        let others: Vec<LatLon> = marks::off_path(scene).filter_map(place).collect();
-        marks::draw_failures(&painter, view, scene, (error_at, &others), p);
+        self.draw_ground(&painter, view, scene, ui.visuals().dark_mode, p);
+        self.draw_plan(&painter, view, scene, p);
+        self.draw_faults(&painter, view, scene, p);
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
         let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
@@ -287,6 +265,44 @@ impl MapState {
         // over what can be grabbed, too
         let over = ui.rect_contains_pointer(view.rect).then(|| ui.ctx().pointer_hover_pos()).flatten();
         furniture::pointer(ui, view, over, scene);
+    }
+
+    fn draw_ground(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, dark: bool, p: &Palette) {
+        self.basemap.draw(painter, view, p);
+        self.draw_rasters(painter, view, scene, dark);
+        self.basemap.draw_names(painter, view, p);
+        if scene.view.edge.graticule {
+            graticule::draw(painter, view, p);
+        }
+        if scene.view.edge.rings {
+            graticule::draw_rings(painter, view, scene, p);
+        }
+    }
+
+    /// The plan, the paths that will be, would be and were flown.
+    fn draw_plan(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+        zones::draw(painter, view, scene, p);
+        plan::draw_areas(painter, view, &self.sketch, scene, p);
+        variables::draw(painter, view, &self.sketch, scene, p);
+        plan::draw_emergencies(painter, view, &self.sketch, scene, p);
+        footprints::draw(painter, view, &self.sketch, scene, p);
+        plan::draw_ways(painter, view, &self.sketch, scene, p);
+        self.path.draw(painter, view, scene, &self.sketch, p);
+        let place_of_leg = |id: &Id| self.place_of(&Selection::Leg(id.clone()), scene.document.plan());
+        left_out::draw(painter, view, scene, place_of_leg, p);
+        self.aircraft.draw_trail(painter, view, scene, p);
+        foreseen::draw(painter, view, scene, p);
+        aircraft::draw_ahead(painter, view, scene, p);
+        path::draw_decision(painter, view, scene, p);
+        plan::draw_runways(painter, view, scene.document.plan(), p);
+        marks::draw_diversion(painter, view, scene, p);
+    }
+
+    fn draw_faults(&self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+        let place = |problem| self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan());
+        let error_at = marks::first_error(scene).and_then(place);
+        let others: Vec<LatLon> = marks::off_path(scene).filter_map(place).collect();
+        marks::draw_failures(painter, view, scene, (error_at, &others), p);
     }
 
     /// Places the plan anew, when it or the variables aboard have changed.

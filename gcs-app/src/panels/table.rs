@@ -1,22 +1,21 @@
 //! The plan as it will be flown, one row per passage of a leg, stage by stage. Only the rows in view are laid out. Names, altitudes and
 //! airspeeds are typed where they stand.
 
+mod cell;
 mod rows;
 pub(super) mod typed;
 
 use super::in_place::{InPlace, Typed};
-use super::tree::title;
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::forecast::Passage;
 use crate::theme;
+use cell::{cell, heading, left_out};
 use egui::{
-    Align, Align2, Context, EventFilter, FontId, Id as WidgetId, Key, Modifiers, Rect, Response, RichText,
-    Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
+    Align, Context, EventFilter, Id as WidgetId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, Ui,
 };
 use egui_extras::{TableBuilder, TableRow};
 use flight_plan::Id;
-use rows::{Row, Said, cells, heads, label, part, rows, said};
+use rows::{Entry, Row, Said, cells, heads, label, part, rows, said};
 use std::collections::HashMap;
 use typed::Column;
 
@@ -115,11 +114,10 @@ impl Table {
             return;
         }
         self.selected.clone_from(&scene.view.selection);
-        let passages = &scene.forecast().passages;
         let is_it = |row: &Row| match (row, &self.selected) {
             (Row::Stage(stage), Some(Selection::Stage(id))) => stage == id,
-            (Row::Passage(index), Some(Selection::Leg(id))) => {
-                passages.get(*index).is_some_and(|p| p.leg == *id)
+            (row, Some(Selection::Leg(id))) => {
+                row.entry(scene.forecast()).is_some_and(|entry| entry.leg == id)
             }
             _ => false,
         };
@@ -167,7 +165,7 @@ impl Table {
     fn current(&self, scene: &Scene<'_>) -> Option<Selection> {
         match self.rows.get(self.cursor.row)? {
             Row::Stage(stage) => Some(Selection::Stage(stage.clone())),
-            Row::Passage(index) => Some(part(scene, scene.forecast().passages.get(*index)?)),
+            row => Some(part(scene, &row.entry(scene.forecast())?)),
         }
     }
 
@@ -178,16 +176,20 @@ impl Table {
         queue.view(ViewCommand::Select(selection));
     }
 
-    fn said_of(&self, scene: &Scene<'_>, passage: &Passage) -> Said {
-        self.said.get(part(scene, passage).id()).cloned().unwrap_or_default()
+    fn said_of(&self, scene: &Scene<'_>, entry: &Entry<'_>) -> Said {
+        self.said.get(part(scene, entry).id()).cloned().unwrap_or_default()
+    }
+
+    /// The leg of a row, if it is one.
+    fn entry<'a>(&self, row: usize, scene: &Scene<'a>) -> Option<Entry<'a>> {
+        self.rows.get(row)?.entry(scene.forecast())
     }
 
     /// Begins to type into the cell with the keyboard.
     fn edit(&mut self, scene: &Scene<'_>) {
-        let Some(Row::Passage(index)) = self.rows.get(self.cursor.row) else { return };
-        let Some(passage) = scene.forecast().passages.get(*index) else { return };
+        let Some(entry) = self.entry(self.cursor.row, scene) else { return };
         let text =
-            self.cursor.column.text(&label(scene, passage), &self.said_of(scene, passage), scene.units());
+            self.cursor.column.text(&label(scene, &entry), &self.said_of(scene, &entry), scene.units());
         let Cursor { row, column, .. } = self.cursor;
         self.editing = Some(Editing { row, column, field: InPlace::new(&text) });
     }
@@ -225,12 +227,12 @@ impl Table {
                 let index = row.index();
                 match self.rows.get(index) {
                     Some(Row::Stage(stage)) => heading(&mut row, whole, scene, stage, queue),
-                    Some(Row::Passage(passage)) => {
-                        if let Some(passage) = scene.forecast().passages.get(*passage) {
-                            done = self.passage(&mut row, scene, passage).map(|d| (index, d)).or(done.take());
+                    _ => {
+                        if let Some(entry) = self.entry(index, scene) {
+                            done =
+                                self.leg(&mut row, whole, scene, &entry).map(|d| (index, d)).or(done.take());
                         }
                     }
-                    None => {}
                 }
             });
         });
@@ -239,30 +241,39 @@ impl Table {
         }
     }
 
-    fn passage(
+    fn leg(
         &mut self,
         row: &mut TableRow<'_, '_>,
+        whole: Rect,
         scene: &Scene<'_>,
-        passage: &Passage,
+        entry: &Entry<'_>,
     ) -> Option<(Column, Done)> {
         let index = row.index();
-        let said = self.said_of(scene, passage);
-        row.set_selected(scene.is_selected(&part(scene, passage)));
+        let said = self.said_of(scene, entry);
+        row.set_selected(scene.is_selected(&part(scene, entry)));
         let mut done = None;
         let mut columns = Column::ALL.into_iter();
-        for text in cells(scene, passage, &said) {
+        for (number, text) in cells(scene, entry, &said).into_iter().enumerate() {
             let column = columns.next();
+            if let (None, Err(why)) = (column, entry.flown) {
+                row.col(|ui| {
+                    if number == Column::ALL.len() {
+                        left_out(ui, whole, why);
+                    }
+                });
+                continue;
+            }
             row.col(|ui| match (column, &mut self.editing) {
                 (Some(column), Some(Editing { row, column: at, field }))
                     if *row == index && *at == column =>
                 {
-                    let name = format!("{} of {}", column.name(), passage.leg);
+                    let name = format!("{} of {}", column.name(), entry.leg);
                     let typed = field.show(ui, ui.max_rect(), &name);
                     done = typed.map(|typed| (column, Done::Typed(typed))).or(done.take());
                 }
                 (Some(column), _) => {
                     let is_current = (self.cursor.row, self.cursor.column) == (index, column);
-                    let name = format!("{} of {}", column.name(), passage.leg);
+                    let name = format!("{} of {}", column.name(), entry.leg);
                     let response = cell(ui, (index, column), is_current, text, &name);
                     if response.double_clicked() {
                         done = Some((column, Done::Edited));
@@ -331,11 +342,10 @@ impl Table {
     /// Takes what was typed, for all legs that are selected with that one; where it means nothing, it can be mended.
     fn finish(&mut self, row: usize, column: Column, text: &str, scene: &Scene<'_>, queue: &mut Queue) {
         self.editing = None;
-        let Some(Row::Passage(index)) = self.rows.get(row) else { return };
-        let Some(passage) = scene.forecast().passages.get(*index) else { return };
-        let said = self.said_of(scene, passage);
-        let part = part(scene, passage);
-        if text == column.text(&label(scene, passage), &said, scene.units()) {
+        let Some(entry) = self.entry(row, scene) else { return };
+        let said = self.said_of(scene, &entry);
+        let part = part(scene, &entry);
+        if text == column.text(&label(scene, &entry), &said, scene.units()) {
             return;
         }
         let legs = match scene.selected_legs() {
@@ -349,45 +359,5 @@ impl Table {
                 self.editing = Some(Editing { row, column, field: InPlace::new(text) });
             }
         }
-    }
-}
-
-/// A cell that can be typed into.
-fn cell(ui: &mut Ui, at: (usize, Column), is_current: bool, text: String, name: &str) -> Response {
-    let rect = ui.max_rect();
-    let (id, sense) = match is_current {
-        true => (cursor_id(), Sense::click()),
-        // one stop of the Tab key; from there the arrows go on
-        false => (WidgetId::unique(("table cell", at.0, at.1.name())), Sense::CLICK),
-    };
-    ui.add_space(4.0);
-    ui.add(egui::Label::new(&text).truncate().selectable(false));
-    let response = ui.interact(rect, id, sense);
-    response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, name));
-    if response.has_focus() {
-        let stroke = Stroke::new(1.0, theme::of(ui).accent);
-        ui.painter().rect_stroke(rect.shrink(0.5), 3.0, stroke, StrokeKind::Inside);
-    }
-    response.on_hover_text(format!("{text}\nDouble-click or F2 to change it"))
-}
-
-/// Where a stage begins: its name over all columns.
-fn heading(row: &mut TableRow<'_, '_>, whole: Rect, scene: &Scene<'_>, stage: &Id, queue: &mut Queue) {
-    row.set_selected(scene.is_selected(&Selection::Stage(stage.clone())));
-    let name = scene.document.plan().stage(stage).map_or("", |stage| stage.name.as_str());
-    let name = title(name, stage.as_str());
-    row.col(|ui| {
-        let rect = ui.max_rect();
-        let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
-        let at = rect.left_center();
-        painter.text(at, Align2::LEFT_CENTER, &name, FontId::proportional(12.5), theme::of(ui).accent);
-        let response = ui.response();
-        response.widget_info(|| egui::WidgetInfo::labeled(Role::Label, true, format!("Stage {name}")));
-    });
-    for _ in 1..Column::COUNT {
-        row.col(|_| {});
-    }
-    if row.response().clicked() {
-        queue.view(ViewCommand::Select(Some(Selection::Stage(stage.clone()))));
     }
 }

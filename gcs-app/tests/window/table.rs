@@ -241,3 +241,34 @@ fn of_a_hundred_thousand_passages_the_table_lays_out_what_is_seen() {
         assert!(harness.query_by_label("Altitude of leg0").is_none(), "it is scrolled");
     });
 }
+
+/// Nobody knows how high the ground is.
+#[derive(Debug)]
+pub struct Unknown;
+
+impl terrain::Terrain for Unknown {
+    fn elevation_m(&self, _: geometry::LatLon) -> Option<f64> {
+        None
+    }
+}
+
+#[test]
+fn a_leg_that_would_be_left_out_stays_in_the_table_and_on_the_map() {
+    let agl = r#"<TF id="side2" fix="B" altitude="120" altitudeReference="agl"/>"#;
+    let text = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, agl);
+    let mut window = Window::open_over(&text, vec2(1600.0, 1000.0), None, Arc::new(Unknown));
+    window.until_analysed();
+    super::fleet::tab(&mut window, "Table");
+    window.steps(3);
+    let top = |name: &str| window.centre(&format!("Name of {name}")).y;
+    assert!(top("side1") < top("side2") && top("side2") < top("side3"), "it stands where it would be flown");
+    assert!(window.shows("⚠ Left out: "), "with the reason");
+    assert!(window.paints("left out: side2"), "and as a broken line on the map");
+    let at = window.centre("Name of side2");
+    window.click_at(at);
+    assert_eq!(window.selected(), "side2");
+    window.fill_in(Role::SpinButton, "Altitude", "130");
+    window.choose_option("Above", "home");
+    window.until_analysed();
+    assert!(!window.shows("⚠ Left out: ") && !window.paints("left out: side2"));
+}

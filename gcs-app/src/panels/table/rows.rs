@@ -17,18 +17,55 @@ pub(super) enum Row {
     Stage(Id),
     /// A passage of the forecast, by its index.
     Passage(usize),
+    /// A leg that would be left out, by its index in the forecast.
+    LeftOut(usize),
 }
 
-/// All rows of a flight.
+/// A leg in the table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Entry<'a> {
+    pub leg: &'a Id,
+    pub stage: &'a Id,
+    /// A passage of it; else why it is left out.
+    pub flown: Result<&'a Passage, &'a str>,
+}
+
+impl Row {
+    /// `None`: it is a heading.
+    pub fn entry<'a>(&self, forecast: &'a Forecast) -> Option<Entry<'a>> {
+        match self {
+            Self::Stage(_) => None,
+            Self::Passage(index) => {
+                let passage = forecast.passages.get(*index)?;
+                Some(Entry { leg: &passage.leg, stage: &passage.stage, flown: Ok(passage) })
+            }
+            Self::LeftOut(index) => {
+                let left = forecast.left_out.get(*index)?;
+                Some(Entry { leg: &left.leg, stage: &left.stage, flown: Err(&left.reason) })
+            }
+        }
+    }
+}
+
+/// All rows of a flight: legs that would be left out stand where they would be flown.
 pub(super) fn rows(forecast: &Forecast) -> Vec<Row> {
     let mut rows = Vec::with_capacity(forecast.passages.len());
+    let mut left_out = forecast.left_out.iter().enumerate().peekable();
     let mut stage: Option<&Id> = None;
-    for (index, passage) in forecast.passages.iter().enumerate() {
-        if stage != Some(&passage.stage) {
-            rows.push(Row::Stage(passage.stage.clone()));
-            stage = Some(&passage.stage);
+    let mut push = |rows: &mut Vec<Row>, of, row| {
+        if stage != Some(of) {
+            rows.push(Row::Stage(of.clone()));
+            stage = Some(of);
         }
-        rows.push(Row::Passage(index));
+        rows.push(row);
+    };
+    for index in 0..=forecast.passages.len() {
+        while let Some((number, left)) = left_out.next_if(|(_, left)| left.before <= index) {
+            push(&mut rows, &left.stage, Row::LeftOut(number));
+        }
+        if let Some(passage) = forecast.passages.get(index) {
+            push(&mut rows, &passage.stage, Row::Passage(index));
+        }
     }
     rows
 }
@@ -59,17 +96,17 @@ pub(super) fn said(plan: &FlightPlan) -> HashMap<Id, Said> {
     stages.chain(of_procedures).chain(of_legs).collect()
 }
 
-/// What a passage is of: a leg, also that of a procedure, or a stage without legs.
-pub(super) fn part(scene: &Scene<'_>, passage: &Passage) -> Selection {
-    let leg = scene.document.written(&passage.leg);
-    if leg == passage.stage { Selection::Stage(leg) } else { Selection::Leg(leg) }
+/// What a row is of: a leg, also that of a procedure, or a stage without legs.
+pub(super) fn part(scene: &Scene<'_>, entry: &Entry<'_>) -> Selection {
+    let leg = scene.document.written(entry.leg);
+    if leg == *entry.stage { Selection::Stage(leg) } else { Selection::Leg(leg) }
 }
 
 /// What people call it.
-pub(super) fn label(scene: &Scene<'_>, passage: &Passage) -> String {
-    let stage = scene.document.plan().stage(&passage.stage).filter(|stage| stage.id == passage.leg);
+pub(super) fn label(scene: &Scene<'_>, entry: &Entry<'_>) -> String {
+    let stage = scene.document.plan().stage(entry.stage).filter(|stage| stage.id == *entry.leg);
     stage.map_or_else(
-        || scene.document.leg_label(&passage.leg).to_owned(),
+        || scene.document.leg_label(entry.leg).to_owned(),
         |stage| title(&stage.name, stage.id.as_str()),
     )
 }
@@ -95,14 +132,15 @@ pub(super) fn heads(units: crate::units::Units) -> [String; Column::COUNT] {
     ]
 }
 
-/// What stands in the columns of a passage.
-pub(super) fn cells(scene: &Scene<'_>, passage: &Passage, said: &Said) -> [String; Column::COUNT] {
-    let kind = scene.document.kind_name(&passage.leg);
-    let pass = passage.passes.last().map_or_else(String::new, u64::to_string);
-    let points = scene.forecast().part(passage).unwrap_or_default();
-    let name = label(scene, passage);
+/// What stands in the columns of a leg.
+pub(super) fn cells(scene: &Scene<'_>, entry: &Entry<'_>, said: &Said) -> [String; Column::COUNT] {
+    let kind = scene.document.kind_name(entry.leg);
+    let passage = entry.flown.ok();
+    let pass = passage.and_then(|passage| passage.passes.last()).map_or_else(String::new, u64::to_string);
+    let points = passage.and_then(|passage| scene.forecast().part(passage)).unwrap_or_default();
+    let name = label(scene, entry);
     let (altitude, airspeed) = (altitude_text(scene, said, points), airspeed_text(scene, said));
-    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+    let (Some(passage), Some(first), Some(last)) = (passage, points.first(), points.last()) else {
         let mut cells = [(); Column::COUNT].map(|()| "–".to_owned());
         cells[..3].clone_from_slice(&[name, altitude, airspeed]);
         cells[6..8].clone_from_slice(&[kind.into(), pass]);

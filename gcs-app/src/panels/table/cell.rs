@@ -1,0 +1,69 @@
+//! What is drawn in the table's cells.
+
+use super::cursor_id;
+use super::typed::Column;
+use crate::command::{Queue, Selection, ViewCommand};
+use crate::panels::Scene;
+use crate::panels::tree::title;
+use crate::theme;
+use egui::{Align2, FontId, Id as WidgetId, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui};
+use egui_extras::TableRow;
+use flight_plan::Id;
+
+/// A cell that can be typed into.
+pub(super) fn cell(ui: &mut Ui, at: (usize, Column), is_current: bool, text: String, name: &str) -> Response {
+    let rect = ui.max_rect();
+    let (id, sense) = match is_current {
+        true => (cursor_id(), Sense::click()),
+        // one stop of the Tab key; from there the arrows go on
+        false => (WidgetId::unique(("table cell", at.0, at.1.name())), Sense::CLICK),
+    };
+    ui.add_space(4.0);
+    ui.add(egui::Label::new(&text).truncate().selectable(false));
+    let response = ui.interact(rect, id, sense);
+    response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, name));
+    if response.has_focus() {
+        let stroke = Stroke::new(1.0, theme::of(ui).accent);
+        ui.painter().rect_stroke(rect.shrink(0.5), 3.0, stroke, StrokeKind::Inside);
+    }
+    response.on_hover_text(format!("{text}\nDouble-click or F2 to change it"))
+}
+
+/// Why a leg is not flown: over all columns that would say how it is.
+pub(super) fn left_out(ui: &mut Ui, whole: Rect, why: &str) {
+    let rect = ui.max_rect();
+    let text = format!("⚠ Left out: {why}");
+    let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
+    let colour = theme::of(ui).caution;
+    painter.text(rect.left_center(), Align2::LEFT_CENTER, &text, FontId::proportional(12.5), colour);
+    let response = ui.response();
+    response.widget_info(|| egui::WidgetInfo::labeled(Role::Label, true, &text));
+    response.on_hover_text(text);
+}
+
+/// Where a stage begins: its name over all columns.
+pub(super) fn heading(
+    row: &mut TableRow<'_, '_>,
+    whole: Rect,
+    scene: &Scene<'_>,
+    stage: &Id,
+    queue: &mut Queue,
+) {
+    row.set_selected(scene.is_selected(&Selection::Stage(stage.clone())));
+    let name = scene.document.plan().stage(stage).map_or("", |stage| stage.name.as_str());
+    let name = title(name, stage.as_str());
+    row.col(|ui| {
+        let rect = ui.max_rect();
+        let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
+        let at = rect.left_center();
+        painter.text(at, Align2::LEFT_CENTER, &name, FontId::proportional(12.5), theme::of(ui).accent);
+        let response = ui.response();
+        response.widget_info(|| egui::WidgetInfo::labeled(Role::Label, true, format!("Stage {name}")));
+    });
+    for _ in 1..Column::COUNT {
+        row.col(|_| {});
+    }
+    if row.response().clicked() {
+        queue.view(ViewCommand::Select(Some(Selection::Stage(stage.clone()))));
+    }
+}
