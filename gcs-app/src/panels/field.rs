@@ -77,10 +77,12 @@ pub fn number_between(
     unit: Unit,
     range_si: RangeInclusive<f64>,
 ) -> Change<f64> {
-    let mut shown = unit.from_si(si);
+    let before = unit.from_si(si);
+    let decimals = unit.decimals.max(1);
+    let mut shown = before;
     let drag = DragValue::new(&mut shown)
         .suffix(format!(" {}", unit.symbol))
-        .max_decimals(unit.decimals.max(1))
+        .max_decimals(decimals)
         .speed(unit.from_si(1.0).max(0.05))
         .range(unit.from_si(*range_si.start())..=unit.from_si(*range_si.end()))
         // what is only looked at stays as it is, however wrong
@@ -88,7 +90,9 @@ pub fn number_between(
         .update_while_editing(false);
     let response = ui.add_sized([78.0, 24.0], drag);
     named(&response, name, shown);
-    outcome(&response, unit.to_si(shown))
+    // a field that was only entered and left gives the number back as it is shown
+    let is_rounded = !response.dragged() && (shown - before).abs() < 0.5 * 0.1_f64.powi(decimals as i32);
+    if response.changed() && is_rounded { Change::None } else { outcome(&response, unit.to_si(shown)) }
 }
 
 /// Gives a spin button a name, which its text alone is not.

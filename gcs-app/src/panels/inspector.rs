@@ -3,6 +3,7 @@
 
 mod aboard;
 mod bind;
+mod datum;
 mod form;
 mod formula;
 pub mod inherited;

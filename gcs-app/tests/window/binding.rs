@@ -34,7 +34,7 @@ fn a_number_is_bound_beside_its_field() {
     let mut window = window();
     window.select_row(("TF side2", 0));
     window.steps(2);
-    window.click_beginning("Airspeed: ");
+    window.click_role(Role::Button, "Own airspeed");
     window.steps(2);
     let before = window.plan();
     window.click_role(Role::Button, "Airspeed: bind to a variable");
@@ -127,7 +127,7 @@ fn a_variable_is_dragged_from_the_plan_to_what_it_says() {
     let row = |window: &Window, name: &str| {
         window.harness.get_by_role_and_label(Role::TreeItem, name).rect().lerp_inside(egui::vec2(0.4, 0.5))
     };
-    let field = window.find_beginning(Role::Button, "Airspeed: ");
+    let field = window.harness.get_by_role_and_label(Role::SpinButton, "Airspeed").rect().center();
     let from = row(&window, "VAR fast");
     window.drag(from, field - from);
     assert_eq!(speed(&window, "side2"), Some(Value::Expression("fast".into())));

@@ -1,5 +1,6 @@
 //! The inspector shows and changes everything that the language has.
 
+use super::table::Unknown;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -15,7 +16,7 @@ use gcs_app::panels::inspector::Inspector;
 use gcs_app::panels::{Elevations, Panel, Scene, ViewState};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use terrain::Flat;
+use terrain::{Flat, Terrain};
 
 /// Every element of the language; the tests of the description compare it with the schema.
 const EVERYTHING: &str = include_str!("../../../shared/flight-plan/tests/data/everything.xml");
@@ -25,7 +26,7 @@ struct Sheet {
     document: Document,
     view: ViewState,
     notice: Option<String>,
-    terrain: Flat,
+    terrain: Arc<dyn Terrain>,
 }
 
 impl Sheet {
@@ -51,7 +52,7 @@ impl Sheet {
             recent: &recent,
             connections: &connections,
             left_behind: None,
-            ground: Elevations(&self.terrain),
+            ground: Elevations(self.terrain.as_ref()),
             now_s: 0.0,
             utc: jiff::Timestamp::UNIX_EPOCH,
         };
@@ -76,7 +77,8 @@ struct Panels(Harness<'static, Sheet>);
 impl Panels {
     fn open(selection: Option<Selection>) -> Self {
         let document = Document::read(EVERYTHING.as_bytes(), None);
-        let sheet = Sheet { document, view: ViewState::default(), notice: None, terrain: Flat(300.0) };
+        let sheet =
+            Sheet { document, view: ViewState::default(), notice: None, terrain: Arc::new(Flat(300.0)) };
         let builder = Harness::builder()
             .with_size(vec2(420.0, 4000.0))
             .with_step_dt(1.0 / 60.0)
@@ -463,4 +465,57 @@ fn the_other_direction_of_a_runway_is_levelled_by_a_button() {
     assert!(!panels.shows("the other direction"));
     panels.undo();
     assert_eq!(panels.plan(), plan, "one step");
+}
+
+/// The altitude of a leg as a number, and its reference.
+fn altitude(panels: &Panels, leg: &str) -> (f64, AltitudeReference) {
+    match panels.leg_of(leg).altitude.unwrap() {
+        Altitude { metres: Value::Constant(metres), reference } => (metres, reference),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_altitude_that_counts_from_something_else_stays_where_it_is() {
+    let mut panels = Panels::leg("tf");
+    panels.set_altitude("tf", 120.0, AltitudeReference::Agl);
+    let before = panels.plan();
+    let home_m = before.home().unwrap().elevation_amsl_m;
+    panels.choose("Above", "AMSL");
+    assert_eq!(altitude(&panels, "tf"), (420.0, AltitudeReference::Amsl));
+    assert!(panels.shows("By the ground at its place, 300 m AMSL"));
+    panels.choose("Above", "home");
+    assert_eq!(altitude(&panels, "tf"), (420.0 - home_m, AltitudeReference::Home));
+    assert!(!panels.shows("By the ground"), "no ground is in it");
+    panels.choose("Above", "AGL");
+    assert_eq!(panels.plan(), before, "there and back");
+    panels.undo();
+    assert_eq!(altitude(&panels, "tf").1, AltitudeReference::Home, "one step each");
+}
+
+#[test]
+fn where_no_ground_is_known_an_altitude_keeps_its_number_and_says_so() {
+    let mut panels = Panels::leg("tf");
+    panels.0.state_mut().terrain = Arc::new(Unknown);
+    panels.set_altitude("tf", 120.0, AltitudeReference::Agl);
+    panels.choose("Above", "AMSL");
+    assert_eq!(altitude(&panels, "tf"), (120.0, AltitudeReference::Amsl));
+    assert!(panels.shows("The number stays as it was: nothing is known of the ground there"));
+    panels.write(Role::SpinButton, "Altitude", "500");
+    panels.enter();
+    assert!(!panels.shows("The number stays"), "it is another one");
+}
+
+#[test]
+fn altitudes_of_several_legs_count_each_from_its_own_ground() {
+    let mut panels = Panels::leg("scan");
+    for leg in ["scan", "tf"] {
+        panels.set_altitude(leg, 90.0, AltitudeReference::Agl);
+    }
+    panels.0.state_mut().view.toggle("tf".into());
+    panels.0.run_steps(3);
+    panels.choose("Above", "AMSL");
+    for leg in ["scan", "tf"] {
+        assert_eq!(altitude(&panels, leg), (390.0, AltitudeReference::Amsl), "{leg}");
+    }
 }

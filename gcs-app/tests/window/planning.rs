@@ -211,7 +211,18 @@ fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
     assert!(before.leg(&"side3".into()).unwrap().leg.altitude.is_none() && stage.altitude.is_some());
     window.click("TF side3");
     assert!(window.shows("from circuit") && window.shows("from the aircraft's cruise"));
-    window.click("Altitude: 150 m above home");
+    for field in ["Altitude", "Airspeed"] {
+        let at =
+            window.harness.get_by_role_and_label(egui::accesskit::Role::SpinButton, field).rect().center();
+        window.click_at(at);
+        window.press(Key::Enter);
+        assert_eq!(window.plan(), before, "{field}: what is only looked at is not changed");
+    }
+    window.fill_in(egui::accesskit::Role::SpinButton, "Altitude", "170");
+    let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone().unwrap();
+    assert_eq!((own.metres, own.reference), (Value::Constant(170.0), flight_plan::AltitudeReference::Home));
+    window.click("Undo");
+    window.click("Own altitude");
     let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone();
     assert_eq!(own, stage.altitude, "nothing jumps");
     window.until_analysed();
@@ -239,4 +250,49 @@ fn variables_that_are_a_place_are_on_the_map() {
     window.harness.get_by_label("Variable fire centre").click_accesskit();
     window.steps(3);
     assert_eq!(window.selected(), "fire_centre");
+}
+
+/// Step by step back from a plan that flies to nothing: each path is that of the plan, or says that it is not.
+#[test]
+fn every_path_is_that_of_the_plan_that_undo_leaves_or_says_that_it_is_not() {
+    let mut window = Window::open_with(super::creating::EMPTY, vec2(1280.0, 1000.0), None);
+    window.steps(3);
+    window.click("Among the example's hills");
+    window.press(Key::Escape);
+    window.click("Draw a runway (R)");
+    let at = window.centre("Map");
+    window.click_at(at);
+    window.click_at(at + vec2(60.0, -30.0));
+    window.click("Select and move (V)");
+    for stage in ["Take-off stage", "Mission stage"] {
+        window.add_to("main plan", stage);
+    }
+    window.click("Draw legs (T)");
+    window.click_at(at + vec2(120.0, 60.0));
+    window.until_analysed();
+    assert!(window.app().analysis().forecast.length_m() > 100.0);
+    while window.app().document().can_undo() {
+        window.press_ctrl(Key::Z);
+        window.until_analysed();
+        window.steps(30);
+        let plan = window.plan();
+        let forecast = &window.app().analysis().forecast;
+        let is_gone = |id: &Id| plan.leg(id).is_none() && plan.stage(id).is_none();
+        let is_old = forecast.passages.iter().any(|passage| is_gone(&passage.leg));
+        assert!(!is_old || window.paints("◌ Out of date"), "{:?}", forecast.passages);
+        assert!(!plan.stages.is_empty() || forecast.points.is_empty());
+    }
+}
+
+#[test]
+fn figures_of_a_path_that_is_out_of_date_say_so() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    assert!(!window.shows("Out of date"));
+    window.click("TF side3");
+    window.fill_in(egui::accesskit::Role::SpinButton, "Airspeed", "90");
+    window.until_analysed();
+    window.press(Key::Escape);
+    // the map, the row above the profile, and the plan's figures
+    assert!(window.harness.query_all_by_label_contains("Out of date").count() >= 3);
 }

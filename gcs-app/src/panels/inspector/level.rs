@@ -1,13 +1,16 @@
 //! An altitude with what it is measured from: one row, or what holds where there is none or where legs differ.
 
+use super::datum::{self, Recounted};
+use super::inherited::Inherited;
 use super::page::Page;
 use super::{bind, inherited, value};
 use crate::command::ViewCommand;
 use crate::panels::table::typed;
 use crate::panels::{binding, field};
-use egui::{Pos2, Ui};
+use crate::theme;
+use egui::{Id, Pos2, RichText, Ui};
 use flight_plan::describe::{Change, OneOf, Property, Row, Subject};
-use flight_plan::{Altitude, AltitudeReference, Edit, Value};
+use flight_plan::{Altitude, AltitudeReference, Edit, Element, Value};
 
 /// It is an altitude and its reference, or nothing.
 pub fn is_level(one: &OneOf) -> bool {
@@ -42,11 +45,7 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
     let below = field::row_with_help(ui, one.label, one.help, |ui| {
         let below = value::field(ui, page, metres);
         if below.is_none() {
-            ui.scope(|ui| {
-                ui.set_max_width(ui.available_width() - 24.0);
-                value::field(ui, page, reference);
-            });
-            remove(ui, page, one);
+            measured_from(ui, page, one, metres, reference);
         }
         below
     });
@@ -54,13 +53,76 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
     value::finish(ui, page, metres, below);
     if is_formula {
         // a formula takes the whole row
-        field::row_with_help(ui, "", "", |ui| {
-            ui.scope(|ui| {
-                ui.set_max_width(ui.available_width() - 24.0);
-                value::field(ui, page, reference);
-            });
-            remove(ui, page, one);
-        });
+        field::row_with_help(ui, "", "", |ui| measured_from(ui, page, one, metres, reference));
+    }
+    remark(ui, page, metres, reference);
+}
+
+/// The choice of what it is measured from, and leaving it out.
+fn measured_from(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
+    let chosen = ui.scope(|ui| {
+        ui.set_max_width(ui.available_width() - 24.0);
+        value::chosen(ui, page, reference)
+    });
+    if let Some(word) = chosen.inner.flatten() {
+        recount(ui, page, metres, reference, word);
+    }
+    remove(ui, page, one);
+}
+
+/// Counts the altitude of all that are shown from something else.
+fn recount(ui: &Ui, page: &mut Page<'_, '_>, metres: &Property, reference: &Property, word: String) {
+    let (mut first, mut remarked) = (None, None);
+    let edit = page.edit_each(|draft, element| {
+        let said = read(element, metres, reference)?;
+        let to = by_name(&word)?;
+        let Recounted { metres: number, remark } = datum::recounted(page.scene, draft.subject(), &said, to);
+        let number = inherited::as_written(&number);
+        first.get_or_insert_with(|| number.clone());
+        remarked = remarked.take().or(remark);
+        Some(vec![Change::Set(*metres, Some(number)), Change::Set(*reference, Some(word.clone()))])
+    });
+    page.send_edit(edit);
+    if let Some((number, text)) = first.zip(remarked) {
+        ui.data_mut(|d| d.insert_temp(remark_id(page, metres), Remark { of: (number, word), text }));
+    }
+}
+
+/// The altitude of an element.
+fn read(element: &Element, metres: &Property, reference: &Property) -> Option<Altitude> {
+    let number = metres.value(element)?;
+    let metres = match number.strip_prefix('=') {
+        Some(source) => Value::Expression(source.trim().into()),
+        None => Value::Constant(number.parse().ok()?),
+    };
+    let word = reference.value(element);
+    let reference = word.as_deref().map_or(Some(AltitudeReference::Amsl), by_name)?;
+    Some(Altitude { metres, reference })
+}
+
+fn by_name(word: &str) -> Option<AltitudeReference> {
+    AltitudeReference::NAMES.iter().find(|(name, _)| *name == word).map(|(_, reference)| *reference)
+}
+
+/// What was said when an altitude became this one.
+#[derive(Debug, Clone)]
+struct Remark {
+    of: (String, String),
+    text: String,
+}
+
+fn remark_id(page: &Page<'_, '_>, metres: &Property) -> Id {
+    Id::unique(("recounted", page.subject().clone(), metres.attribute))
+}
+
+/// Stands there until the altitude is another one.
+fn remark(ui: &mut Ui, page: &Page<'_, '_>, metres: &Property, reference: &Property) {
+    let id = remark_id(page, metres);
+    let Some(Remark { of, text }) = ui.data(|d| d.get_temp(id)) else { return };
+    let now = (metres.value(page.element()), reference.value(page.element()));
+    if now == (Some(of.0), Some(of.1)) {
+        let text = RichText::new(text).size(12.0).color(theme::of(ui).caution);
+        ui.add(egui::Label::new(text).wrap());
     }
 }
 
@@ -104,18 +166,18 @@ fn remove(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
     }
 }
 
-/// What holds without one; a click gives it one of its own, which begins with that.
+/// What holds without one: where it is inherited, an edit gives it one of its own, which begins with that.
 fn absent(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
     let said = one.ways.last().map_or("none", |way| way.label);
     let inherits = page.leg_or_stage().filter(|_| said == "inherited" && !page.is_several());
     let inherited = inherits.and_then(|of| Some((of, inherited::altitude(page.scene, of)?)));
     field::row_with_help(ui, one.label, one.help, |ui| match inherited {
-        Some((of, inherited)) => {
-            let text = inherited::altitude_text(page.scene, &inherited.value);
-            if value::inherited_button(ui, &page.name(one.label), &text, &inherited.from) {
-                let altitude = Some(inherited.value);
-                page.queue.edit(Edit::SetAltitude { of: of.clone(), altitude });
-            }
+        Some((of, Inherited { value: Altitude { metres, reference }, from })) => {
+            let from = format!("{}, from {from}", inherited::reference_name(reference));
+            let unit = page.scene.units().altitude();
+            let changed = value::inherited_number(ui, page, one.label, (&metres, unit), &from);
+            let set = |metres| Some(Altitude { metres, reference });
+            page.send_edit(changed.map(|metres| Edit::SetAltitude { of: of.clone(), altitude: set(metres) }));
         }
         None => {
             if value::absent_button(ui, &page.name(one.label), said) {

@@ -99,6 +99,19 @@ impl<'a, 's> Page<'a, 's> {
         }
     }
 
+    /// What makes these changes of each, together; `None`: of one they can't be made.
+    pub fn edit_each(
+        &self,
+        mut changes: impl FnMut(&Draft, &Element) -> Option<Vec<Change>>,
+    ) -> field::Change<Edit> {
+        let mut edit = |draft: &Draft| {
+            let element = draft.element().at(&self.path)?;
+            draft.edit_together(self.plan(), &self.path, &changes(draft, element)?).ok()
+        };
+        let edits: Option<Vec<Edit>> = self.drafts.iter().map(&mut edit).collect();
+        edits.map_or(field::Change::None, |edits| field::Change::Set(Edit::All(edits)))
+    }
+
     /// Makes a change as one undo step, or says why it can't be made.
     pub fn change(&mut self, change: &Change) {
         match self.edit(change) {
@@ -148,10 +161,20 @@ impl<'a, 's> Page<'a, 's> {
             field::Change::None => {}
             field::Change::Moving(value) => {
                 if let Ok(edit) = self.edit(&Change::Set(*property, Some(value))) {
-                    self.queue.document(DocumentCommand::DragEdit(edit));
+                    self.send_edit(field::Change::Moving(edit));
                 }
             }
             field::Change::Set(value) => self.set(property, Some(value)),
+            field::Change::Ended => self.send_edit(field::Change::Ended),
+        }
+    }
+
+    /// Makes an edit as a field is changed: a drag becomes one undo step.
+    pub fn send_edit(&mut self, change: field::Change<Edit>) {
+        match change {
+            field::Change::None => {}
+            field::Change::Moving(edit) => self.queue.document(DocumentCommand::DragEdit(edit)),
+            field::Change::Set(edit) => self.queue.edit(edit),
             field::Change::Ended => self.queue.document(DocumentCommand::EndGesture),
         }
     }

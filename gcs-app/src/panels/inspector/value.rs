@@ -1,6 +1,7 @@
 //! A value: its field, by what it may be.
 
 use super::formula::{self, Typing};
+use super::inherited::Inherited;
 use super::page::Page;
 use super::{bind, inherited, together};
 use crate::coordinates;
@@ -8,8 +9,8 @@ use crate::panels::field;
 use crate::theme;
 use crate::units::{self, Unit, Units};
 use egui::{RichText, Ui};
-use flight_plan::Use;
 use flight_plan::describe::{self, Kind, Property, Quantity, Range, Sort, choices};
+use flight_plan::{Use, Value};
 
 /// A value in a row of its own.
 pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
@@ -102,7 +103,11 @@ fn is_there_when_absent(kind: Kind) -> bool {
 fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) -> Option<Typing> {
     let name = page.name(property.label);
     match property.kind {
-        Kind::Choice(words) => choice(ui, page, property, words, value),
+        Kind::Choice(_) => {
+            if let Some(word) = chosen(ui, page, property) {
+                page.set(property, word);
+            }
+        }
         Kind::Reference(sort) => reference(ui, page, property, sort, value),
         Kind::Flag => flag(ui, page, property, value),
         Kind::Number(range) => number(ui, page, property, range, value),
@@ -124,7 +129,10 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
     None
 }
 
-fn choice(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, words: &[describe::Word], value: &str) {
+/// A choice among words: the one that was chosen now; `None` in it leaves the property out.
+pub fn chosen(ui: &mut Ui, page: &Page<'_, '_>, property: &Property) -> Option<Option<String>> {
+    let Kind::Choice(words) = property.kind else { return None };
+    let value = property.value(page.element()).unwrap_or_default();
     let mut options: Vec<(&str, Option<&str>)> =
         words.iter().map(|(word, label)| (*label, Some(*word))).collect();
     // left out, unless that is one of the words
@@ -132,12 +140,10 @@ fn choice(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, words: &[de
         options.insert(0, (said, None));
     }
     let without = || options.iter().position(|(label, _)| Some(*label) == property.without);
-    let now = options.iter().position(|(_, word)| *word == Some(value)).or_else(without);
+    let now = options.iter().position(|(_, word)| *word == Some(value.as_str())).or_else(without);
     let labels: Vec<&str> = options.iter().map(|(label, _)| *label).collect();
     let chosen = field::choice(ui, &page.name(property.label), &labels, now);
-    if let Some((_, word)) = chosen.and_then(|chosen| options.get(chosen)) {
-        page.set(property, word.map(str::to_owned));
-    }
+    chosen.and_then(|chosen| options.get(chosen)).map(|(_, word)| word.map(str::to_owned))
 }
 
 fn reference(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, sort: Sort, value: &str) {
@@ -259,15 +265,14 @@ fn ahead(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str)
     }
 }
 
-/// What holds when nothing is given; a click gives it a value of its own.
+/// What holds when nothing is given; where it is inherited, an edit gives it a value of its own, else a click.
 fn absent(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, said: &str) {
     let name = page.name(property.label);
     let of = page.leg_or_stage().filter(|_| property.attribute == "speed" && !page.is_several());
-    if let Some(inherited) = of.and_then(|of| inherited::speed_mps(page.scene, of)) {
-        let text = inherited::value_text(&inherited.value, page.scene.units().speed());
-        if inherited_button(ui, &name, &text, &inherited.from) {
-            page.set(property, Some(inherited::as_written(&inherited.value)));
-        }
+    if let Some(Inherited { value, from }) = of.and_then(|of| inherited::speed_mps(page.scene, of)) {
+        let unit = page.scene.units().speed();
+        let changed = inherited_number(ui, page, property.label, (&value, unit), &format!("from {from}"));
+        page.send(property, changed.map(|value| inherited::as_written(&value)));
     } else if absent_button(ui, &name, said) {
         page.change(&describe::Change::Begin(*property));
     }
@@ -281,18 +286,41 @@ pub fn absent_button(ui: &mut Ui, name: &str, said: &str) -> bool {
     response.clicked()
 }
 
-/// A value that comes from elsewhere; true when it becomes one of its own, to be changed.
-pub fn inherited_button(ui: &mut Ui, name: &str, text: &str, from: &str) -> bool {
-    let hover =
-        format!("{name}: inherited from {from}. Click to give it one of its own, beginning with this one.");
-    let response = ui.button(text).on_hover_text(hover);
-    let label = format!("{name}: {text}");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
-    let clicked = response.clicked();
-    let from = RichText::new(format!("from {from}")).size(12.0).color(theme::of(ui).weak);
-    ui.add(egui::Label::new(from).truncate());
-    clicked
+/// A value that comes from elsewhere, and what it becomes as its own: only an edit makes it that, or the button that says so.
+pub fn inherited_number(
+    ui: &mut Ui,
+    page: &Page<'_, '_>,
+    label: &str,
+    (value, unit): (&Value<f64>, Unit),
+    from: &str,
+) -> field::Change<Value<f64>> {
+    let weak = theme::of(ui).weak;
+    let name = page.name(label);
+    // as its own number in its place, so that a drag goes on when it has become that
+    let changed = match value {
+        Value::Constant(si) => {
+            ui.visuals_mut().override_text_color = Some(weak);
+            let changed = field::number(ui, &name, *si, unit, f64::MIN);
+            ui.visuals_mut().override_text_color = None;
+            changed.map(Value::Constant)
+        }
+        Value::Expression(formula) => {
+            ui.add(egui::Label::new(RichText::new(formula.to_string()).color(weak)).truncate());
+            field::Change::None
+        }
+    };
+    ui.scope(|ui| {
+        ui.set_max_width(ui.available_width() - OWN_WIDTH);
+        ui.add(egui::Label::new(RichText::new(from).size(12.0).color(weak)).truncate()).on_hover_text(from);
+    });
+    match field::small_button(ui, "✏", &page.name(&format!("Own {}", label.to_lowercase()))) {
+        true => field::Change::Set(value.clone()),
+        false => changed,
+    }
 }
+
+/// Of the button that makes a value its own, screen points.
+const OWN_WIDTH: f32 = 42.0;
 
 /// In which unit a quantity is shown.
 pub fn unit(quantity: Quantity, u: Units) -> Unit {

@@ -94,10 +94,19 @@ impl Author {
         match gesture {
             Next::Click(name) => self.window.click_role(Role::Button, name),
             Next::Tick(name) => self.window.click_role(Role::CheckBox, name),
-            Next::Begin(name) => self.window.click_beginning(name),
+            Next::Begin(name) => self.give_own(name),
             Next::Choose(list, option) => self.window.choose_option(list, option),
             Next::Write(name, text) => self.window.fill_in(Role::TextInput, name, text),
             Next::Number(name, text) => self.window.fill_in(Role::SpinButton, name, text),
+        }
+    }
+
+    /// Gives a value of its own what inherits it, else what has none.
+    fn give_own(&mut self, name: &str) {
+        let own = format!("Own {}", name.trim_end_matches(": ").to_lowercase());
+        match self.window.harness.query_by_role_and_label(Role::Button, &own).is_some() {
+            true => self.window.click_role(Role::Button, &own),
+            false => self.window.click_beginning(name),
         }
     }
 

@@ -72,9 +72,19 @@ impl Draft {
                 to: to.trim().into(),
             });
         }
+        self.edit_together(plan, at, std::slice::from_ref(wanted))
+    }
+
+    /// The same of several changes that belong together: none of them is of an identifier.
+    ///
+    /// # Errors
+    /// As [`Draft::edit`].
+    pub fn edit_together(&self, plan: &FlightPlan, at: &[usize], wanted: &[Change]) -> Result<Edit, String> {
         let mut changed = self.element.clone();
         let first = First { plan, root: &self.element };
-        change::apply(&mut changed, at, wanted, &first).ok_or(GONE)?;
+        for change in wanted {
+            change::apply(&mut changed, at, change, &first).ok_or(GONE)?;
+        }
         let (_, before) = read_part(&self.element.text());
         let (part, problems) = read_part(&changed.text());
         let known = |message: &str| before.iter().any(|p| p.message == message);
