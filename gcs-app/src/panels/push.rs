@@ -80,11 +80,13 @@ fn changes(ui: &mut Ui, plan: &FlightPlan, changes: &[Change], p: &Palette) {
 }
 
 fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
-    let hash = short_hash(&proposal.report.hash);
-    let (text, colour) = if proposal.report.acceptable {
-        (format!("✔ Checked aboard: {hash} can be flown"), p.good)
-    } else {
-        (format!("✖ Checked aboard: {hash} can't be flown. It stays a draft."), p.warning)
+    let (report, hash) = (&proposal.report, short_hash(&proposal.report.hash));
+    // what is found in a plan that is accepted are warnings
+    let (text, colour) = match (report.acceptable, report.problems.len()) {
+        (true, 0) => (format!("✔ Checked aboard: {hash} can be flown"), p.good),
+        (true, 1) => (format!("⚠ Checked aboard: {hash} can be flown, 1 warning"), p.caution),
+        (true, count) => (format!("⚠ Checked aboard: {hash} can be flown, {count} warnings"), p.caution),
+        (false, _) => (format!("✖ Checked aboard: {hash} can't be flown. It stays a draft."), p.warning),
     };
     ui.label(RichText::new(text).strong().color(colour));
 }

@@ -3,7 +3,7 @@
 use super::vehicle::{decision, place, status};
 use super::{SQUARE, Window};
 use egui::Key;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply};
 use gcs_app::state::Outcome;
@@ -142,6 +142,29 @@ fn proposal_says_in_words_what_is_different_and_what_was_edited_since() {
     window.press(egui::Key::Delete);
     window.until_analysed();
     assert!(window.shows("The draft was edited since"));
+}
+
+#[test]
+fn a_proposal_with_warnings_is_amber_and_one_without_is_green() {
+    let p = gcs_app::theme::palette(true);
+    let warning = "out of glide of every runway".to_owned();
+    let cases = [
+        (vec![], "✔ Checked aboard: ", " can be flown", p.good),
+        (vec![warning.clone()], "⚠ Checked aboard: ", " can be flown, 1 warning", p.caution),
+        (vec![warning.clone(), warning], "⚠ Checked aboard: ", " can be flown, 2 warnings", p.caution),
+    ];
+    for (problems, begins, ends, colour) in cases {
+        let (mut window, hash) = connected();
+        window.click("Push");
+        let (ticket, _) = window.asked().unwrap();
+        let report = ProposalReport { problems, ..report(&hash, true) };
+        window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+        let verdict =
+            window.harness.get_by_label_contains("Checked aboard").accesskit_node().value().unwrap();
+        assert!(verdict.starts_with(begins) && verdict.ends_with(ends), "{verdict}");
+        assert_eq!(window.colour_of(begins), Some(colour), "{verdict}");
+        assert!(window.is_enabled("Commit"));
+    }
 }
 
 #[test]

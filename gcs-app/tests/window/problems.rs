@@ -71,3 +71,36 @@ fn the_button_in_a_problem_is_not_the_problem() {
     let altitude = window.plan().leg(&"side2".into()).unwrap().leg.altitude.clone().unwrap();
     assert_eq!(altitude.reference.name(), "home");
 }
+
+/// On the map and on the profile; what is in order has no red.
+#[test]
+fn a_leg_and_a_zone_in_error_are_red_on_map_and_profile() {
+    let red = gcs_app::theme::palette(true).warning;
+    let places = ["Map", "Vertical profile"];
+    let lines = |window: &Window| places.map(|place| window.lines_within(place, red));
+    let good = opened(SQUARE);
+    assert_eq!(lines(&good), [0, 0]);
+    let zone = ZONE.replace("radius=\"60\"", "radius=\"150\"");
+    let bad = opened(&SQUARE.replacen("<mainPlan", &zone, 1));
+    let [map, profile] = lines(&bad);
+    assert!(map > 0 && profile > 0, "{map} {profile}");
+    assert_eq!(bad.colour_within("Map", "quarry"), Some(red), "the zone");
+    // one that is out of the way is as any other, and so is the leg
+    let aside = opened(&SQUARE.replacen("<mainPlan", &zone.replace("36.3241", "36.3141"), 1));
+    assert_eq!(aside.errors(), Vec::<String>::new());
+    assert_eq!(lines(&aside), [0, 0]);
+    assert!(aside.colour_within("Map", "quarry").is_some_and(|colour| colour != red));
+}
+
+/// A leg that the path does not come to is marked with a cross.
+#[test]
+fn a_leg_in_error_that_is_not_flown_has_a_red_cross_at_its_place() {
+    let red = gcs_app::theme::palette(true).warning;
+    let agl = r#"<TF id="side2" fix="B" altitude="120" altitudeReference="agl"/>"#;
+    let text = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, agl);
+    let ground = std::sync::Arc::new(super::table::Unknown);
+    let mut window = Window::open_over(&text, vec2(1280.0, 800.0), None, ground);
+    window.until_analysed();
+    assert!(window.errors().iter().any(|error| error.contains("side2")), "{:?}", window.errors());
+    assert!(window.lines_within("Map", red) >= 3, "a circle and its two strokes");
+}
