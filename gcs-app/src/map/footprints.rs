@@ -1,16 +1,18 @@
 //! What is seen on the pictures that are taken along legs: a footprint for each, and how much of it the next one shows again.
 
 use super::sketch::Sketch;
-use super::sketch::photos::{Photos, USUAL_ACROSS_DEG};
+use super::sketch::photos::{Photos, Spot, USUAL_ACROSS_DEG};
 use super::text;
 use super::view::View;
 use crate::command::Selection;
-use crate::forecast::Point;
+use crate::forecast::{Forecast, Point};
 use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
 use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use flight_plan::Id;
 use geometry::LatLon;
+use std::collections::HashMap;
 
 /// A picture is as long as this share of its width: 4 to 3, its long side across the track.
 const LONG: f64 = 0.75;
@@ -44,8 +46,8 @@ pub fn draw(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, 
         let selected = scene.is_selected(&Selection::Leg(photos.leg.clone()));
         let least = if selected { LEAST[0] } else { LEAST[1] };
         let mut first = None;
-        for part in scene.forecast().passages_of(&photos.leg) {
-            for footprint in along(part, photos) {
+        for stretch in stretches(scene.forecast(), photos, &sketch.photo_ends) {
+            for footprint in along(&stretch, photos) {
                 let is_seen = footprint.width_m * view.points_per_metre() > least;
                 if left == 0 || !is_seen || !view.is_near(view.place(footprint.at)) {
                     continue;
@@ -71,17 +73,57 @@ fn paint(painter: &Painter, view: &View, footprint: &Footprint, selected: bool, 
     painter.add(Shape::convex_polygon(corners, fill, stroke));
 }
 
-/// The pictures of one passage of a leg; those over ground of which no elevation is known are left out.
-fn along<'a>(part: &'a [Point], photos: &'a Photos) -> impl Iterator<Item = Footprint> + 'a {
-    let begin_m = part.first().map_or(0.0, |point| point.distance_m) + photos.from_m;
+/// A part of the path on which pictures are taken.
+struct Stretch<'a> {
+    points: &'a [Point],
+    /// Where the first one is taken, and up to where, metres from the start of the flight.
+    from_m: f64,
+    to_m: f64,
+}
+
+/// For each passage of the leg on which they begin: that passage, or for a series all until it ends.
+fn stretches<'a>(
+    forecast: &'a Forecast,
+    photos: &'a Photos,
+    ends: &'a HashMap<Id, Vec<Spot>>,
+) -> impl Iterator<Item = Stretch<'a>> {
+    let begun = forecast.passages.iter().enumerate().filter(|(_, passage)| passage.leg == photos.leg);
+    begun.filter_map(move |(index, passage)| {
+        let part = forecast.part(passage)?;
+        let from_m = photos.from.distance_m(part)?;
+        let to_m = match photos.is_series {
+            true => series_end_m(forecast, index, from_m, ends),
+            false => part.last()?.distance_m,
+        };
+        let behind = forecast.points.get(passage.first..)?;
+        let end = behind.partition_point(|point| point.distance_m < to_m) + 1;
+        Some(Stretch { points: behind.get(..end).unwrap_or(behind), from_m, to_m })
+    })
+}
+
+/// Where a series that begins on a passage ends, metres from the start of the flight.
+fn series_end_m(forecast: &Forecast, index: usize, from_m: f64, ends: &HashMap<Id, Vec<Spot>>) -> f64 {
+    let passages = forecast.passages.iter().skip(index);
+    let mut found = passages.filter_map(|passage| {
+        let part = forecast.part(passage)?;
+        let ends = ends.get(&passage.leg)?.iter().filter_map(|spot| spot.distance_m(part));
+        // it does not end where it begins
+        ends.filter(|end_m| *end_m > from_m).reduce(f64::min)
+    });
+    found.next().unwrap_or_else(|| forecast.length_m())
+}
+
+/// The pictures of a stretch; those over ground of which no elevation is known are left out.
+fn along<'a>(stretch: &Stretch<'a>, photos: &'a Photos) -> impl Iterator<Item = Footprint> + use<'a> {
+    let (begin_m, to_m) = (stretch.from_m, stretch.to_m);
     let half_rad = (photos.across_deg.unwrap_or(USUAL_ACROSS_DEG) / 2.0).to_radians();
-    part.windows(2).flat_map(move |ends| {
+    stretch.points.windows(2).flat_map(move |ends| {
         let [from, to] = [&ends[0], &ends[1]];
         let before = ((from.distance_m - begin_m) / photos.every_m).ceil().max(0.0);
         let track_deg = from.position.bearing_deg(to.position);
         (0..MOST)
             .map(move |i| begin_m + (before + i as f64) * photos.every_m)
-            .take_while(|m| *m < to.distance_m)
+            .take_while(move |m| *m < to.distance_m.min(to_m))
             .filter_map(move |at_m| {
                 let share = (at_m - from.distance_m) / (to.distance_m - from.distance_m).max(1e-6);
                 let height_m = from.altitude_amsl_m - from.ground_amsl_m?;
@@ -112,9 +154,11 @@ fn words(photos: &Photos, footprint: &Footprint, units: Units) -> (String, bool)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::forecast::Passage;
 
     fn photos(every_m: f64, from_m: f64) -> Photos {
-        Photos { leg: "a".into(), every_m, from_m, across_deg: Some(90.0) }
+        let from = Spot::Metres(from_m);
+        Photos { leg: "a".into(), every_m, from, is_series: false, across_deg: Some(90.0) }
     }
 
     /// 1000 m to the east, 100 m above the ground, a point each 200 m.
@@ -138,7 +182,10 @@ mod tests {
             [(300.0, 300.0, 3), (300.0, 0.0, 4), (90.0, 90.0, 11), (5000.0, 5000.0, 0)]
         {
             let photos = photos(every_m, from_m);
-            let found: Vec<Footprint> = along(&part, &photos).collect();
+            let to_m = part.last().unwrap().distance_m;
+            let from_m = photos.from.distance_m(&part).unwrap();
+            let stretch = Stretch { points: &part, from_m, to_m };
+            let found: Vec<Footprint> = along(&stretch, &photos).collect();
             assert_eq!(found.len(), expected, "{every_m} {from_m}");
             for pair in found.windows(2) {
                 assert!((pair[0].at.distance_m(pair[1].at) - every_m).abs() < 0.5);
@@ -147,6 +194,50 @@ mod tests {
                 found.iter().all(|f| (f.width_m - 200.0).abs() < 1e-6 && (f.track_deg - 90.0).abs() < 0.1)
             );
         }
+    }
+
+    /// Four legs of 200 m each and one of 200 m more; each with its pictures at every 100 m.
+    fn flight() -> Forecast {
+        let points = part();
+        let passage = |n: usize, leg: &str| Passage {
+            leg: leg.into(),
+            stage: "s".into(),
+            passes: Vec::new(),
+            first: n,
+            end: n + 1,
+            energy_left: 1.0,
+            clearance_m: None,
+        };
+        let passages = ["before", "a", "b", "c", "a"].into_iter().enumerate();
+        let passages = passages.map(|(n, leg)| passage(n, leg)).collect();
+        Forecast { points, passages, ..Forecast::default() }
+    }
+
+    #[test]
+    fn a_series_goes_on_along_the_legs_behind_until_it_is_ended() {
+        let forecast = flight();
+        let begun = Photos { is_series: true, ..photos(100.0, 0.0) };
+        let stretches_m = |photos: &Photos, ends: &[(&str, Spot)]| -> Vec<(f64, f64)> {
+            let ends = ends.iter().map(|(leg, spot)| ((*leg).into(), vec![*spot])).collect();
+            let found = stretches(&forecast, photos, &ends);
+            found.map(|stretch| (stretch.from_m - 500.0, stretch.to_m - 500.0)).collect()
+        };
+        let alone = Photos { is_series: false, ..begun.clone() };
+        assert_eq!(stretches_m(&alone, &[]), [(200.0, 400.0), (800.0, 1000.0)], "pictures of the leg only");
+        // it begins anew where the leg is flown again
+        let again = ("a", Spot::Metres(0.0));
+        assert_eq!(stretches_m(&begun, &[again]), [(200.0, 800.0), (800.0, 1000.0)]);
+        for (spot, end_m) in [
+            (Spot::Metres(0.0), 600.0),
+            (Spot::Metres(50.0), 650.0),
+            (Spot::End, 800.0),
+            (Spot::Seconds(10.0), 800.0),
+        ] {
+            assert_eq!(stretches_m(&begun, &[again, ("c", spot)])[0], (200.0, end_m), "{spot:?}");
+        }
+        let ends = HashMap::from([("c".into(), vec![Spot::Metres(0.0)])]);
+        let first = stretches(&forecast, &begun, &ends).next().unwrap();
+        assert_eq!(along(&first, &begun).count(), 4, "at 200, 300, 400 and 500 m");
     }
 
     #[test]

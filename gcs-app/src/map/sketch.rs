@@ -48,6 +48,8 @@ pub struct Sketch {
     pub ways: Vec<Way>,
     /// Pictures along legs.
     pub photos: Vec<photos::Photos>,
+    /// Where legs end a series of pictures.
+    pub photo_ends: HashMap<Id, Vec<photos::Spot>>,
 }
 
 /// A variable that is a place.
@@ -85,6 +87,10 @@ impl Sketch {
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
         self.handles.extend(numbers::handles(leg, reader));
         self.photos.extend(photos::of(leg, reader));
+        let ends = photos::ends(leg, reader);
+        if !ends.is_empty() {
+            self.photo_ends.insert(leg.id.clone(), ends);
+        }
         match &leg.kind {
             LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {
