@@ -1,10 +1,14 @@
 //! Files: dialogs, reading and writing, each on a thread of its own; the window gets the result later.
 
+mod disk;
+mod event;
 mod listing;
 mod reading;
 mod saving;
 mod watch;
 
+pub use disk::Disk;
+pub use event::FileEvent;
 pub use listing::Entry;
 pub use reading::{Choices, Content, Imported};
 pub use saving::{Over, Stamp, Writing};
@@ -12,10 +16,10 @@ pub(crate) use saving::{write_together, write_whole};
 pub use watch::Watched;
 
 use crate::desktop;
-use crate::document::Document;
 use crate::export::{self, Exported};
 use crate::formats::FileFormat;
 use crate::jobs::{Job, Jobs, Progress};
+use disk::Machine;
 use flight_plan::FlightPlan;
 use interchange::Format;
 use std::panic::AssertUnwindSafe;
@@ -25,82 +29,6 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 use terrain::Terrain;
 use watch::Watch;
-
-/// What came of it.
-#[derive(Debug)]
-pub enum FileEvent {
-    /// A file was chosen to be opened.
-    Chosen(PathBuf),
-    /// A file was dropped onto the window that is no map.
-    PlanDropped(PathBuf),
-    /// A file was read.
-    Opened(Content),
-    /// The document's own file was read again.
-    Reread {
-        /// Which.
-        path: PathBuf,
-        /// What is in it.
-        theirs: Box<Document>,
-    },
-    /// A document was saved.
-    Saved {
-        /// Where.
-        path: PathBuf,
-        /// What is in it now.
-        text: Arc<str>,
-        /// Which document.
-        document: u64,
-        /// Which version.
-        version: u64,
-        /// The file's state since then.
-        stamp: Option<Stamp>,
-    },
-    /// A document was not saved.
-    NotSaved {
-        /// Which.
-        document: u64,
-        /// Why, and what to do; `None`: it is not wanted any more.
-        why: Option<String>,
-    },
-    /// Another program has written the file since; it was left as it is.
-    ChangedMeanwhile {
-        /// The file.
-        path: PathBuf,
-        /// Of which document.
-        document: u64,
-    },
-    /// The same was found without saving.
-    ChangedOutside {
-        /// The file.
-        path: PathBuf,
-        /// Its state as the window knew it.
-        known: Stamp,
-        /// Its state now; `None`: it is gone.
-        stamp: Option<Stamp>,
-    },
-    /// A plan is ready to be written for another program.
-    Exported(Box<Exported>),
-    /// It was written.
-    ExportWritten {
-        /// Where.
-        path: PathBuf,
-        /// What.
-        exported: Arc<Exported>,
-    },
-    /// A map or a folder of elevations was chosen.
-    MapChosen(PathBuf),
-    /// The desktop has no dialog to ask with.
-    NoDialog(Purpose),
-    /// What is in a folder, or why that can't be said.
-    Listed {
-        /// The folder.
-        folder: PathBuf,
-        /// Folders first, each by name.
-        entries: Result<Vec<Entry>, String>,
-    },
-    /// It didn't work; the sentence says what to do.
-    Failed(String),
-}
 
 /// What a file is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,6 +72,7 @@ pub struct Files {
     wake: Arc<dyn Fn() + Send + Sync>,
     watch: Watch,
     jobs: Jobs,
+    disk: Arc<dyn Disk>,
     /// The desktop is asked for a dialog; false as soon as it turned out to have none.
     pub desktop: bool,
 }
@@ -166,7 +95,12 @@ impl Files {
                 wake();
             }))
         };
-        Self { outbox, inbox, wake, watch, jobs: Jobs::default(), desktop: true }
+        Self { outbox, inbox, wake, watch, jobs: Jobs::default(), disk: Arc::new(Machine), desktop: true }
+    }
+
+    /// Reads what is opened from this disk.
+    pub fn read_from(&mut self, disk: Arc<dyn Disk>) {
+        self.disk = disk;
     }
 
     /// Looks at a file from now on, and tells once if it is no longer in this state.
@@ -196,8 +130,9 @@ impl Files {
 
     /// Reads the document's own file again.
     pub fn reread(&mut self, path: PathBuf) {
+        let disk = self.disk.clone();
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, &Choices::default(), progress) {
+            match reading::read(disk.as_ref(), &path, &Choices::default(), progress) {
                 Ok(Content::Plan(theirs)) => FileEvent::Reread { path, theirs },
                 Ok(Content::Foreign(_)) => {
                     FileEvent::Failed(format!("{} is no flight plan any more.", path.display()))
@@ -230,8 +165,9 @@ impl Files {
 
     /// Says whether something that was dropped is a map or a plan.
     pub fn sort_dropped(&self, path: PathBuf) {
+        let disk = self.disk.clone();
         self.work(move || {
-            Some(match reading::is_map(&path) {
+            Some(match reading::is_map(disk.as_ref(), &path) {
                 true => FileEvent::MapChosen(path),
                 false => FileEvent::PlanDropped(path),
             })
@@ -273,8 +209,9 @@ impl Files {
 
     /// Reads a file; another program's as what was chosen.
     pub fn open_with(&mut self, path: PathBuf, choices: Choices) {
+        let disk = self.disk.clone();
         self.job(format!("Reading {}", name_of(&path)), move |progress| {
-            match reading::read(&path, &choices, progress) {
+            match reading::read(disk.as_ref(), &path, &choices, progress) {
                 Ok(content) => FileEvent::Opened(content),
                 Err(why) => FileEvent::Failed(why),
             }

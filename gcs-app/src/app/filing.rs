@@ -37,6 +37,11 @@ impl App {
         self.files.desktop = false;
     }
 
+    /// Reads files that are opened from this disk instead of the machine's.
+    pub fn read_from(&mut self, disk: std::sync::Arc<dyn crate::files::Disk>) {
+        self.files.read_from(disk);
+    }
+
     pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {
         let Some(keeper) = &mut self.keeper else { return };
         if let Some(wait) = keeper.tend(self.shelf.unsaved(&self.document), ctx.input(|i| i.time)) {

@@ -1,13 +1,12 @@
 //! Reading a file that somebody wants opened: whether it is text, how long it may be, and what it means.
 
-use super::Stamp;
+use super::{Disk, Stamp};
 use crate::document::Document;
 use crate::formats::{self, FileFormat};
 use crate::jobs::Progress;
 use crate::layers;
 use flight_plan::Runway;
 use interchange::{Areas, Assumptions, Feature, Format, Import};
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -56,10 +55,16 @@ pub struct Imported {
 }
 
 /// Reads it as what was chosen; the sentence says why that can't be, and what to do.
-pub(super) fn read(path: &Path, choices: &Choices, progress: &Progress) -> Result<Content, String> {
+pub(super) fn read(
+    disk: &dyn Disk,
+    path: &Path,
+    choices: &Choices,
+    progress: &Progress,
+) -> Result<Content, String> {
     let path = &with_extension(path);
     let stamp = Stamp::of(path);
-    let bytes = bytes(path, progress).map_err(|why| format!("{} can't be opened: {why}", path.display()))?;
+    let bytes =
+        bytes(disk, path, progress).map_err(|why| format!("{} can't be opened: {why}", path.display()))?;
     match FileFormat::of(path, &bytes) {
         FileFormat::Legwork => {
             let mut document = Document::read(&bytes, Some(path.to_owned()));
@@ -94,29 +99,25 @@ fn with_extension(path: &Path) -> PathBuf {
 }
 
 /// A dropped file or folder is a map or elevations; else it is taken to be a plan.
-pub(super) fn is_map(path: &Path) -> bool {
-    path.is_dir() || (path.is_file() && head(path).is_ok_and(|head| layers::is_map(path, &head)))
+pub(super) fn is_map(disk: &dyn Disk, path: &Path) -> bool {
+    path.is_dir() || (path.is_file() && head(disk, path).is_ok_and(|head| layers::is_map(path, &head)))
 }
 
-fn head(path: &Path) -> std::io::Result<Vec<u8>> {
+fn head(disk: &dyn Disk, path: &Path) -> std::io::Result<Vec<u8>> {
     let mut head = Vec::new();
-    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    disk.open(path)?.take(HEAD).read_to_end(&mut head)?;
     Ok(head)
 }
 
-fn bytes(path: &Path, progress: &Progress) -> Result<Vec<u8>, String> {
-    let meta = std::fs::metadata(path).map_err(|error| error.to_string())?;
-    if !meta.is_file() {
-        return Err("it is no file".into());
-    }
+fn bytes(disk: &dyn Disk, path: &Path, progress: &Progress) -> Result<Vec<u8>, String> {
     let text = |error: std::io::Error| error.to_string();
-    check_kind(path, &head(path).map_err(text)?)?;
-    let all = meta.len();
+    let all = disk.length(path).map_err(text)?.ok_or("it is no file")?;
+    check_kind(path, &head(disk, path).map_err(text)?)?;
     if all > LONGEST {
         return Err(too_long(all));
     }
     let mut bytes = Vec::new();
-    let mut file = File::open(path).map_err(text)?;
+    let mut file = disk.open(path).map_err(text)?;
     while file.by_ref().take(CHUNK).read_to_end(&mut bytes).map_err(text)? > 0 {
         progress.set(bytes.len() as u64, all);
         // it may be growing
@@ -152,10 +153,12 @@ fn check_kind(path: &Path, head: &[u8]) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::disk::Machine;
     use super::*;
+    use std::fs::File;
 
     fn why(path: &Path) -> String {
-        read(path, &Choices::default(), &Progress::default()).unwrap_err()
+        read(&Machine, path, &Choices::default(), &Progress::default()).unwrap_err()
     }
 
     #[test]
@@ -188,7 +191,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("survey.v2.xml"), "<flightPlan/>").unwrap();
         let Ok(Content::Plan(document)) =
-            read(&folder.path().join("survey.v2"), &Choices::default(), &Progress::default())
+            read(&Machine, &folder.path().join("survey.v2"), &Choices::default(), &Progress::default())
         else {
             panic!()
         };
@@ -217,19 +220,23 @@ mod tests {
         let path = folder.path().join("mission.xml");
         let wpl = b"QGC WPL 110\n1 0 3 16 0 0 0 0 36.3 -84.1 100 1\n2 0 3 211 0 0 0 0 0 0 0 1\n";
         std::fs::write(&path, wpl).unwrap();
-        let Ok(Content::Foreign(imported)) = read(&path, &Choices::default(), &Progress::default()) else {
+        let Ok(Content::Foreign(imported)) = read(&Machine, &path, &Choices::default(), &Progress::default())
+        else {
             panic!()
         };
         assert_eq!((imported.format, imported.import.plan.name.as_str()), (Format::Waypoints, "mission"));
         assert!(imported.import.notes.iter().any(|note| note.code == "command-not-carried"));
         std::fs::write(&path, "<flightPlan/>").unwrap();
-        assert!(matches!(read(&path, &Choices::default(), &Progress::default()), Ok(Content::Plan(_))));
+        assert!(matches!(
+            read(&Machine, &path, &Choices::default(), &Progress::default()),
+            Ok(Content::Plan(_))
+        ));
     }
 
     #[test]
     fn a_map_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(is_map(folder.path()), "of elevations");
+        assert!(is_map(&Machine, folder.path()), "of elevations");
         for (name, content, expected) in [
             ("world", &b"PMTiles\x03"[..], true),
             ("plan", b"<flightPlan/>", false),
@@ -239,8 +246,8 @@ mod tests {
         ] {
             let path = folder.path().join(name);
             std::fs::write(&path, content).unwrap();
-            assert_eq!(is_map(&path), expected, "{name}");
+            assert_eq!(is_map(&Machine, &path), expected, "{name}");
         }
-        assert!(!is_map(&folder.path().join("missing")));
+        assert!(!is_map(&Machine, &folder.path().join("missing")));
     }
 }

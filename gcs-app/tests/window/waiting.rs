@@ -1,11 +1,16 @@
 //! The window never waits: whatever is slow (the ground, a server) is held fast here, and frames go on.
 
+use super::interchange::drop_file;
 use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
+use gcs_app::files::Disk;
 use gcs_app::layers::State;
 use geometry::LatLon;
+use std::io::Read;
 use std::net::TcpListener;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::ThreadId;
 use std::time::Duration;
@@ -48,6 +53,78 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
     *gate.0.lock().unwrap() = true;
     gate.1.notify_all();
     window.until_analysed();
+}
+
+/// A disk of which each read waits until the gate is opened. It has one long file and one that is read in many parts.
+struct Slow {
+    window: ThreadId,
+    gate: Arc<(Mutex<bool>, Condvar)>,
+    /// Reads that have begun.
+    reads: Arc<AtomicUsize>,
+}
+
+impl Disk for Slow {
+    fn length(&self, path: &Path) -> std::io::Result<Option<u64>> {
+        assert_ne!(std::thread::current().id(), self.window, "the window's own thread asks the disk");
+        Ok(Some(if path.ends_with("long.xml") { 100 << 20 } else { PARTS * PART }))
+    }
+
+    fn open(&self, path: &Path) -> std::io::Result<Box<dyn Read>> {
+        assert_ne!(std::thread::current().id(), self.window, "the window's own thread opens a file");
+        assert!(path.is_absolute());
+        let text = std::io::Cursor::new(SQUARE).chain(std::io::repeat(b' ').take(PARTS * PART));
+        Ok(Box::new(SlowFile { gate: self.gate.clone(), reads: self.reads.clone(), text }))
+    }
+}
+
+/// Bytes of a file that comes in so many parts.
+const PART: u64 = 1 << 20;
+const PARTS: u64 = 8;
+
+struct SlowFile<R> {
+    gate: Arc<(Mutex<bool>, Condvar)>,
+    reads: Arc<AtomicUsize>,
+    text: R,
+}
+
+impl<R: Read> Read for SlowFile<R> {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        self.reads.fetch_add(1, Ordering::SeqCst);
+        let (is_open, changed) = &*self.gate;
+        drop(changed.wait_while(is_open.lock().unwrap(), |is_open| !*is_open).unwrap());
+        self.text.read(into)
+    }
+}
+
+#[test]
+fn frames_and_edits_go_on_while_the_disk_is_slow() {
+    let folder = tempfile::tempdir().unwrap();
+    for file in ["long.xml", "plan.xml"] {
+        let path = folder.path().join(file);
+        std::fs::write(&path, SQUARE).unwrap();
+        let (gate, reads) = (Arc::<(Mutex<bool>, Condvar)>::default(), Arc::<AtomicUsize>::default());
+        let mut window = Window::open(super::creating::EMPTY);
+        window.steps(3);
+        let thread = std::thread::current().id();
+        let slow = Slow { window: thread, gate: gate.clone(), reads: reads.clone() };
+        window.harness.state_mut().read_from(Arc::new(slow));
+        drop_file(&mut window, &path);
+        window.until("a read", |_| reads.load(Ordering::SeqCst) > 0);
+        // none of these frames can wait for the disk: it does not answer before they are over
+        window.steps(60);
+        window.add_to("main plan", "Mission stage");
+        assert_eq!(window.plan().stages.len(), 1);
+        window.click("Undo");
+        *gate.0.lock().unwrap() = true;
+        gate.1.notify_all();
+        match file {
+            "long.xml" => window.until("the refusal", |app| {
+                app.view().notice.as_ref().is_some_and(|why| why.contains("it has 100 MB, and at most 64 MB"))
+            }),
+            _ => window.until("the plan", |app| app.document().plan().stages.len() > 1),
+        }
+        assert!(file == "long.xml" || reads.load(Ordering::SeqCst) as u64 > PARTS);
+    }
 }
 
 #[test]
